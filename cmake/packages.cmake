@@ -1,0 +1,13 @@
+# Every package is one of Debian's; scripts/setup installs them.
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(Boost 1.74 REQUIRED)
+find_package(Ceres 2.1 REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(Threads REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
+find_library(UDUNITS2_LIBRARY udunits2 REQUIRED)
+find_path(FCCP_INCLUDE_DIR libfccp/csv.h REQUIRED)

@@ -1,0 +1,12 @@
+# Warnings as a private target, so that they never leak to whoever links the library.
+add_library(rigcal_warnings INTERFACE)
+target_compile_options(rigcal_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+  -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wimplicit-fallthrough)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 reports false positives of these for std::string and fixed-size Eigen at -O2.
+  target_compile_options(rigcal_warnings INTERFACE -Wno-restrict -Wno-null-dereference
+    -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow)
+endif()
+if(RIGCAL_WERROR)
+  target_compile_options(rigcal_warnings INTERFACE -Werror)
+endif()

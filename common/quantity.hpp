@@ -1,0 +1,36 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace rigcal {
+
+/// A text is not a quantity, or not one of the expected dimension. what() says which and what was
+/// expected; the reader of a file adds where.
+class QuantityError : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// Affine map from one unit to another: to = scale * from + offset (offset only for temperatures).
+struct UnitConversion {
+  double scale = 1.0;
+  double offset = 0.0;
+  double operator()(double value) const { return scale * value + offset; }
+};
+
+/// Conversion between units of the same dimension, by UDUNITS-2. Cycles (Hz) and radians (rad/s)
+/// are different kinds here and convert by 2 pi; plain 1/s is neither and converts to neither.
+/// "lpm" (L/min) and "gpm" (US gallon/min) are accepted; "1" or "" is dimensionless.
+///
+/// @throws QuantityError  unknown unit, or different dimensions
+UnitConversion unit_conversion(std::string_view from, std::string_view to);
+
+/// Number and unit, "6.2 MPa", converted to `unit` (Pa -> 6.2e6). The number must be finite, with
+/// a decimal point; locale-independent.
+///
+/// @throws QuantityError  no number, no unit though `unit` has a dimension, wrong dimension
+double parse_quantity(std::string_view text, std::string_view unit);
+
+}  // namespace rigcal
