@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace rigcal::datasets {
+
+/// Which columns of a file are wanted, and how its text is laid out.
+struct CsvRequest {
+  std::vector<std::string> columns;  ///< header names, in the order of the result
+  char separator = 0;                ///< 0: found from the header (',' ';' or tab)
+  std::string time_column;           ///< among `columns`; checked to increase; may be empty
+  std::size_t max_bytes = std::size_t{4} << 30;  ///< larger files are refused
+};
+
+struct CsvTable {
+  std::vector<std::vector<double>> columns;  ///< one per requested name, same length each
+  long first_data_line = 0;                  ///< line number of the first row, for messages
+};
+
+/// Reads the wanted columns of a CSV file, strictly.
+///
+/// Header in the first line that is not a comment ("#..."); a unit in the header may stand behind
+/// the name ("x [mm]", "x (mm)") and is not part of it. CRLF, a byte-order mark and a missing final
+/// newline are accepted; with ';' or tab as separator a decimal comma is accepted too. Everything
+/// else that is not a finite number in a wanted column is an error, as are a wrong count of
+/// columns, an empty field, time that does not increase, and a binary file. Columns that are not
+/// wanted are counted but not converted.
+///
+/// @throws InputError  file:line:column, what was found and what was expected
+CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request);
+
+/// Header names of a CSV file (units stripped), for `init` and for messages.
+std::vector<std::string> csv_header(const std::filesystem::path& path, char separator = 0);
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rigcal::datasets {
+
+/// What a column of a record holds.
+enum class Channel {
+  reference,        ///< position reference [m]
+  command,          ///< valve command [V]
+  position,         ///< [m]
+  load_pressure,    ///< [Pa]
+  pressure_a,       ///< [Pa]
+  pressure_b,       ///< [Pa]
+  supply_pressure,  ///< [Pa]
+  force,            ///< [N]
+  temperature,      ///< [K]
+};
+
+struct ChannelInfo {
+  Channel channel;
+  std::string_view key;   ///< name in the campaign file and in result files: "position"
+  std::string_view name;  ///< with its SI unit: "position_m"
+  std::string_view unit;  ///< SI unit: "m"
+  bool is_output;         ///< compared with the model unless its role says otherwise
+};
+
+/// All channels, in the order of the enumeration.
+const std::vector<ChannelInfo>& channel_table();
+const ChannelInfo& info(Channel channel);
+std::optional<Channel> channel_from_key(std::string_view key);
+
+/// One recorded run as it came from a file, in SI.
+struct Repeat {
+  std::string source;  ///< file, and the column set where one file holds several repeats
+  std::vector<double> time_s;
+  std::map<Channel, std::vector<double>> values;  ///< each of the shape of time_s
+};
+
+/// Mean over the repeats of one channel.
+struct Series {
+  std::vector<double> mean;  ///< shape (samples)
+  std::vector<double> sd;    ///< sample standard deviation over repeats; empty for a single repeat
+  std::vector<int> count;    ///< repeats that carry this sample
+  /// Standard deviation of one repeat, pooled over the samples: sqrt(mean of sd^2). NaN where
+  /// neither repeats nor the campaign's `sd` tell it.
+  double pooled_sd = std::numeric_limits<double>::quiet_NaN();
+  /// Standard deviation of the mean: what a residual is divided by. NaN where unknown.
+  double sd_of_mean = std::numeric_limits<double>::quiet_NaN();
+  int repeats = 1;  ///< repeats that carry this channel
+};
+
+/// What became of one repeat when it was averaged.
+struct RepeatReport {
+  std::string source;
+  double offset_s = 0.0;     ///< by how much this repeat came later than the others
+  double deviation = 0.0;    ///< rms distance from the mean of the others over the pooled sd
+  bool outlier = false;
+};
+
+/// The averaged record of one condition: what the model is compared with.
+struct Record {
+  std::string condition;
+  std::vector<double> time_s;         ///< shape (samples), increasing
+  std::map<Channel, Series> channels;
+  int repeats = 1;
+  std::vector<RepeatReport> repeat_reports;
+  std::vector<std::string> warnings;  ///< in words: outliers, single repeats, gaps
+  std::vector<std::string> files;     ///< every file read for it
+};
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <span>
+
+namespace rigcal::metrics {
+
+/// Complex amplitude of a signal at one frequency.
+struct Fundamental {
+  double amplitude = 0.0;
+  double phase_rad = 0.0;  ///< of A sin(2 pi f t + phase)
+};
+
+/// Least-squares fit of a sin + b cos + c at `frequency_hz` over whole periods from the end of the
+/// record (the last n whole periods; the first is dropped as transient when there are three or
+/// more). Sample times need not be equidistant.
+///
+/// @throws std::invalid_argument  less than one period, fewer than 4 samples, sizes differ
+Fundamental fundamental(std::span<const double> time_s, std::span<const double> signal,
+                        double frequency_hz);
+
+/// How a simulated signal stands to a measured one at the fundamental.
+struct FundamentalComparison {
+  double gain_ratio = 0.0;  ///< simulated amplitude over measured amplitude
+  double phase_deg = 0.0;   ///< simulated phase minus measured phase, in (-180, 180]
+  double delay_s = 0.0;     ///< by how much the simulation is late: -phase / (360 f)
+};
+
+/// @throws std::domain_error  the measured signal has no component at this frequency
+FundamentalComparison compare_fundamentals(std::span<const double> time_s,
+                                           std::span<const double> measured,
+                                           std::span<const double> simulated, double frequency_hz);
+
+/// Output over input at the fundamental: gain and phase of the loop (position over reference).
+struct FrequencyResponse {
+  double gain = 0.0;
+  double phase_deg = 0.0;
+  double delay_s = 0.0;
+};
+FrequencyResponse frequency_response(std::span<const double> time_s, std::span<const double> input,
+                                     std::span<const double> output, double frequency_hz);
+
+}  // namespace rigcal::metrics

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+namespace rigcal::model {
+
+/// Value of a signal at one instant and its time derivatives within the present segment.
+struct SignalSample {
+  double value = 0.0;
+  double slope = 0.0;
+  double curvature = 0.0;
+};
+
+/// A scalar function of time that is smooth between breakpoints. A simulation ends a step at every
+/// breakpoint and asks for values by segment, so that an edge is never smeared or leapt over.
+class Signal {
+ public:
+  /// c for all t.
+  static Signal constant(double value);
+  /// A sin(2 pi f t).
+  static Signal sine(double amplitude, double frequency_hz);
+  /// A sgn(sin(2 pi f t)), +A at t = 0; at an edge the value of the new half period.
+  static Signal square(double amplitude, double frequency_hz);
+  /// A sin(phase) whose frequency goes from f0 to f1 over `sweep_s`, then stays at f1.
+  static Signal chirp(double amplitude, double start_hz, double end_hz, double sweep_s,
+                      bool logarithmic);
+  /// Samples held until the next one (zero-order hold), the first before its time too.
+  static Signal held(std::vector<double> time_s, std::vector<double> value);
+  /// Samples joined by straight lines, constant outside.
+  static Signal linear(std::vector<double> time_s, std::vector<double> value);
+  /// offset + A sin(2 pi f t + phase).
+  static Signal ripple(double offset, double amplitude, double frequency_hz, double phase_rad);
+
+  /// Segment that holds at time t; at a breakpoint the later one.
+  std::size_t segment_at(double t) const;
+  /// End of a segment; infinity for the last.
+  double segment_end(std::size_t segment) const;
+  /// Value and derivatives at t by the formula of `segment`.
+  SignalSample sample(std::size_t segment, double t) const;
+  /// Value at t by the segment that holds there.
+  double value(double t) const { return sample(segment_at(t), t).value; }
+  /// Longest step that cannot skip an oscillation; infinity if the segments are that.
+  double max_step() const;
+  /// Largest absolute value, for error scales.
+  double peak() const;
+
+ private:
+  enum class Kind { constant, sine, square, chirp, held, linear };
+  Kind kind_ = Kind::constant;
+  double amplitude_ = 0.0;
+  double offset_ = 0.0;
+  double frequency_hz_ = 0.0;
+  double end_frequency_hz_ = 0.0;
+  double sweep_s_ = 0.0;
+  double phase_rad_ = 0.0;
+  bool logarithmic_ = false;
+  std::shared_ptr<const std::vector<double>> time_s_;
+  std::shared_ptr<const std::vector<double>> value_;
+};
+
+}  // namespace rigcal::model

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <atomic>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/parameter.hpp"
+#include "model/signal.hpp"
+
+namespace rigcal::model {
+
+/// What a simulation can tell at each sample. The recorded kinds include their sensor's offset.
+enum class Output {
+  position,       ///< reading of the position sensor [m]
+  velocity,       ///< [m/s]
+  load_pressure,  ///< P_L = p_A - p_B [Pa]
+  pressure_a,     ///< [Pa]
+  pressure_b,     ///< [Pa]
+  force,          ///< what a load cell in the rod reads [N] (docs/model.md)
+  command,        ///< controller output after the limit, or the recorded command [V]
+  spool,          ///< valve spool travel [m]
+  servo_flow,     ///< Q_L, flow of the servo valve to the load [m3/s]
+  leakage_flow,   ///< internal leakage across the piston [m3/s]
+  work_flow,      ///< A x', flow that moves the piston [m3/s]
+};
+
+/// "position_m", "servo_flow_m3_per_s": name with its SI unit.
+std::string_view output_name(Output output);
+inline constexpr std::array kAllOutputs{
+    Output::position,   Output::velocity,   Output::load_pressure, Output::pressure_a,
+    Output::pressure_b, Output::force,      Output::command,       Output::spool,
+    Output::servo_flow, Output::leakage_flow, Output::work_flow};
+
+enum class ControllerKind {
+  none,  ///< the drive is the valve command [V]
+  pid,   ///< the drive is the position reference [m]
+};
+
+enum class InitialState {
+  rest,   ///< all states zero, whatever the initial_* parameters say
+  given,  ///< from the initial_* parameters (free or fixed)
+};
+
+/// What acts on the rig. The drive is delayed by `transport_delay`, the others are not.
+struct SimulationInputs {
+  Signal drive = Signal::constant(0.0);          ///< reference [m] or command [V]
+  std::optional<Signal> external_force_n;        ///< added to the parameter `external_force`
+  std::optional<Signal> supply_pressure_pa;      ///< in place of the parameter `supply_pressure`
+};
+
+enum class Method {
+  rosenbrock,  ///< RODAS4, L-stable: the default
+  dopri5,      ///< Odeint's Dormand-Prince 5(4): not stiff parts, cross-check
+};
+
+struct SimulationOptions {
+  Method method = Method::rosenbrock;
+  /// Local error per step over the running peak of each state, and of each sensitivity.
+  double tolerance = 1e-6;
+  long max_steps = 5'000'000;   ///< accepted and rejected
+  double max_seconds = 120.0;   ///< wall time of one simulation
+  const std::atomic<bool>* cancel = nullptr;  ///< ends the simulation when it becomes true
+
+  /// @throws std::invalid_argument  naming the field
+  void validate() const;
+};
+
+enum class SimulationStatus {
+  ok,
+  bad_parameters,   ///< a value is not finite or outside its hard bounds
+  not_finite,       ///< the state left the numbers
+  step_too_small,   ///< error control asked for a vanishing step
+  too_many_steps,
+  out_of_time,
+  cancelled,
+};
+std::string_view to_string(SimulationStatus status);
+
+/// A simulated run. Unless `status` is ok the matrices are empty: a failed run has no numbers that
+/// could be taken for good ones.
+struct Simulation {
+  SimulationStatus status = SimulationStatus::ok;
+  double failed_at_s = 0.0;  ///< time at which it ended, if it failed
+  std::string reason;        ///< in words, if it failed
+  Eigen::MatrixXd outputs;   ///< shape (samples, outputs), SI
+  /// d outputs / d parameter: one matrix of shape (samples, free) per output, SI.
+  std::vector<Eigen::MatrixXd> sensitivities;
+  long steps = 0;
+  long rejected_steps = 0;
+  bool ok() const { return status == SimulationStatus::ok; }
+};
+
+/// The rig that is simulated: which parameters it has and how it is driven.
+struct Rig {
+  PlantKind plant = PlantKind::load_pressure;
+  ControllerKind controller = ControllerKind::pid;
+  InitialState initial = InitialState::rest;
+};
+
+/// Solves the model from the first of `times_s` to the last.
+///
+/// @param parameters  SI values and which are given (decides the optional terms)
+/// @param free        table indices of the parameters whose sensitivities are wanted; may be empty
+/// @param times_s     shape (samples), increasing, at least one
+/// @param outputs     what to return, in this order
+/// @return            never throws for a point that cannot be simulated: see `status`
+/// @throws std::invalid_argument  broken contract (sizes, order, options)
+Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
+                    const SimulationInputs& inputs, std::span<const double> times_s,
+                    std::span<const Output> outputs, const SimulationOptions& options = {});
+
+}  // namespace rigcal::model
