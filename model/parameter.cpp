@@ -1,0 +1,105 @@
+#include "model/parameter.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "model/parameter_values.hpp"
+
+namespace rigcal::model {
+namespace {
+
+constexpr auto kLoadPressureTable = [] {
+  constexpr auto& fields = kLoadPressureFields<double>;
+  std::array<ParameterSpec, fields.size()> table{};
+  for (std::size_t i = 0; i < fields.size(); ++i) table[i] = fields[i].spec;
+  return table;
+}();
+
+int checked_index(PlantKind plant, std::string_view key) {
+  const int index = parameter_index(plant, key);
+  if (index < 0) throw std::invalid_argument(fmt::format("unknown parameter '{}'", key));
+  return index;
+}
+
+}  // namespace
+
+std::string_view to_string(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::plant: return "plant";
+    case ParameterKind::term: return "optional term";
+    case ParameterKind::controller: return "controller";
+    case ParameterKind::sensor: return "sensor";
+    case ParameterKind::initial: return "initial state";
+  }
+  return "";
+}
+
+std::optional<PlantKind> plant_from_name(std::string_view name) {
+  if (name == "load_pressure") return PlantKind::load_pressure;
+  return std::nullopt;
+}
+
+std::string_view to_string(PlantKind plant) {
+  switch (plant) {
+    case PlantKind::load_pressure: return "load_pressure";
+  }
+  return "";
+}
+
+std::vector<std::string> plant_names() { return {"load_pressure"}; }
+
+std::span<const ParameterSpec> parameter_table(PlantKind plant) {
+  switch (plant) {
+    case PlantKind::load_pressure: return kLoadPressureTable;
+  }
+  return {};
+}
+
+int parameter_index(PlantKind plant, std::string_view key) {
+  const auto table = parameter_table(plant);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i].key == key) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+ParameterValues ParameterValues::defaults(PlantKind plant) {
+  ParameterValues values;
+  values.plant = plant;
+  for (const ParameterSpec& spec : parameter_table(plant)) {
+    values.value.push_back(spec.default_value.value_or(0.0));
+    values.given.push_back(false);
+  }
+  return values;
+}
+
+double ParameterValues::operator[](std::string_view key) const {
+  return value[static_cast<std::size_t>(checked_index(plant, key))];
+}
+
+bool ParameterValues::is_given(std::string_view key) const {
+  return given[static_cast<std::size_t>(checked_index(plant, key))];
+}
+
+void ParameterValues::set(std::string_view key, double si_value) {
+  set(checked_index(plant, key), si_value);
+}
+
+void ParameterValues::set(int index, double si_value) {
+  value.at(static_cast<std::size_t>(index)) = si_value;
+  given.at(static_cast<std::size_t>(index)) = true;
+}
+
+std::vector<std::string> ParameterValues::missing() const {
+  std::vector<std::string> keys;
+  const auto table = parameter_table(plant);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i].kind == ParameterKind::plant && !table[i].default_value && !given[i]) {
+      keys.emplace_back(table[i].key);
+    }
+  }
+  return keys;
+}
+
+}  // namespace rigcal::model
