@@ -5,34 +5,44 @@
 namespace rigcal::metrics {
 
 // Each metric of measured y and simulated s, both of shape (n), same unit, same sample times.
-// Population moments (divided by n). All throw
+// Population moments (divided by n), e = y - s. All throw
 //   std::invalid_argument  sizes differ, n < 2, or a value is not finite
-//   std::domain_error      the metric does not exist: a signal is constant where its variance divides
-// so that nothing undefined is ever printed as a number.
+//   std::domain_error      the metric does not exist: the measured signal is constant (every metric
+//                          but rmse and maximum_error), the simulated one is (correlation), or the
+//                          result is beyond the largest double
+// so that nothing undefined is ever printed as a number. Every sum is exact to about 1e-16 of the
+// spread it measures, for any offset, scale and length.
 
-/// Coefficient of determination, eq. 15: rho2 = 1 - var(y - s) / var(y). Blind to a constant offset.
+/// Coefficient of determination, eq. 15: rho2 = 1 - var(e) / var(y). Blind to a constant offset.
+/// At most 1, no lower limit; 0 for a constant simulated signal.
 double rho2(std::span<const double> measured, std::span<const double> simulated);
 
-/// Pearson correlation, eq. 16: R = cov(y, s) / (std(y) std(s)). Blind to gain and offset.
+/// 1 - rho2 = var(e) / var(y), with all its digits where rho2 is too near 1 to hold them.
+double unexplained_variance(std::span<const double> measured, std::span<const double> simulated);
+
+/// Pearson correlation, eq. 16: R = cov(y, s) / (std(y) std(s)), in [-1, 1]. Blind to gain and
+/// offset.
 double correlation(std::span<const double> measured, std::span<const double> simulated);
 
-/// Concordance, eq. 17, equal to Lin's: CCC = 2 cov(y, s) / (var(y) + var(s) + (mean y - mean s)^2).
+/// Concordance, eq. 17: CCC = (var(s) + var(y) - var(e)) / (var(s) + var(y) + (mean e)^2), in
+/// [-1, 1], computed in Lin's equal form 2 cov(y, s) / (var(y) + var(s) + (mean y - mean s)^2).
+/// 0 for a constant simulated signal.
 double concordance(std::span<const double> measured, std::span<const double> simulated);
 
-/// Mean absolute residual over the peak-to-peak of the measured signal, in percent. The paper does
-/// not define its absolute error; this is our definition.
+/// 100 mean |e| / (max y - min y), in percent. The paper does not define its absolute error; this
+/// is our definition.
 double absolute_error_percent(std::span<const double> measured, std::span<const double> simulated);
 
-/// sqrt(mean((y - s)^2)), in the unit of y.
+/// sqrt(mean(e^2)), in the unit of y.
 double rmse(std::span<const double> measured, std::span<const double> simulated);
 
-/// MATLAB compare's fit: 100 (1 - ||y - s|| / ||y - mean y||), in percent.
+/// MATLAB compare's fit: 100 (1 - ||e|| / ||y - mean y||), in percent. At most 100, no lower limit.
 double nrmse_fit_percent(std::span<const double> measured, std::span<const double> simulated);
 
-/// max |y - s|, in the unit of y.
+/// max |e|, in the unit of y.
 double maximum_error(std::span<const double> measured, std::span<const double> simulated);
 
-/// All of the above in one pass over the data (two passes for the moments).
+/// Every metric of the table in metrics/metric_table.hpp.
 struct Agreement {
   double rho2 = 0.0;
   double r = 0.0;
@@ -42,6 +52,9 @@ struct Agreement {
   double nrmse_fit_percent = 0.0;
   double maximum_error = 0.0;
 };
+
+/// All at once, for the cost of one and equal to each bit for bit. Throws where any of them does;
+/// for signals that lack one metric (a constant simulation has no R) ask for the others singly.
 Agreement agreement(std::span<const double> measured, std::span<const double> simulated);
 
 }  // namespace rigcal::metrics

@@ -6,15 +6,22 @@ namespace rigcal::metrics {
 
 /// Complex amplitude of a signal at one frequency.
 struct Fundamental {
-  double amplitude = 0.0;
-  double phase_rad = 0.0;  ///< of A sin(2 pi f t + phase)
+  double amplitude = 0.0;  ///< >= 0, in the unit of the signal
+  double phase_rad = 0.0;  ///< of A sin(2 pi f t + phase), in (-pi, pi]
 };
 
 /// Least-squares fit of a sin + b cos + c at `frequency_hz` over whole periods from the end of the
 /// record (the last n whole periods; the first is dropped as transient when there are three or
-/// more). Sample times need not be equidistant.
+/// more). Sample times need not be equidistant. A sample stands for the interval before it, so that
+/// n periods of m samples each are n periods, and a window never counts both of its ends.
 ///
-/// @throws std::invalid_argument  less than one period, fewer than 4 samples, sizes differ
+/// @param time_s        shape (n), increasing
+/// @param signal        shape (n), any unit
+/// @param frequency_hz  > 0
+/// @throws std::invalid_argument  less than one period, fewer than 4 samples (in the record or in
+///                                the window), sizes differ, a value is not finite, times do not
+///                                increase, frequency not positive, or samples that cannot tell the
+///                                frequency from an offset (two per period, say)
 Fundamental fundamental(std::span<const double> time_s, std::span<const double> signal,
                         double frequency_hz);
 
@@ -25,17 +32,21 @@ struct FundamentalComparison {
   double delay_s = 0.0;     ///< by how much the simulation is late: -phase / (360 f)
 };
 
-/// @throws std::domain_error  the measured signal has no component at this frequency
+/// @throws std::invalid_argument  as fundamental()
+/// @throws std::domain_error      a signal has no component at this frequency (an amplitude below
+///                                1e-12 of its peak-to-peak): a phase would be of rounding
 FundamentalComparison compare_fundamentals(std::span<const double> time_s,
                                            std::span<const double> measured,
                                            std::span<const double> simulated, double frequency_hz);
 
 /// Output over input at the fundamental: gain and phase of the loop (position over reference).
 struct FrequencyResponse {
-  double gain = 0.0;
-  double phase_deg = 0.0;
-  double delay_s = 0.0;
+  double gain = 0.0;       ///< output amplitude over input amplitude
+  double phase_deg = 0.0;  ///< output phase minus input phase, in (-180, 180]
+  double delay_s = 0.0;    ///< by how much the output is late: -phase / (360 f)
 };
+
+/// @throws  as compare_fundamentals()
 FrequencyResponse frequency_response(std::span<const double> time_s, std::span<const double> input,
                                      std::span<const double> output, double frequency_hz);
 
