@@ -1,0 +1,56 @@
+#include "metrics/metric_table.hpp"
+
+#include <catch2/catch.hpp>
+#include <set>
+#include <string>
+#include <vector>
+
+using namespace rigcal::metrics;
+
+TEST_CASE("kMetrics: a row for every member of Agreement, in its order", "[metrics]") {
+  STATIC_REQUIRE(sizeof(Agreement) == kMetrics.size() * sizeof(double));
+  Agreement numbered;
+  double number = 0.0;
+  for (const MetricSpec& metric : kMetrics) numbered.*metric.value = ++number;
+  CHECK(numbered.rho2 == 1.0);
+  CHECK(numbered.maximum_error == number);
+}
+
+TEST_CASE("kMetrics: names as in the results, unit at the end of the name", "[metrics]") {
+  std::vector<std::string> names;
+  for (const MetricSpec& metric : kMetrics) names.emplace_back(metric.name);
+  CHECK(names == std::vector<std::string>{"rho2", "r", "ccc", "absolute_error_percent", "rmse",
+                                          "nrmse_fit_percent", "maximum_error"});
+  for (const MetricSpec& metric : kMetrics) {
+    CAPTURE(metric.name);
+    CHECK(metric.name.ends_with("_percent") == (metric.unit == "%"));
+    CHECK(std::set<std::string_view>{"1", "%", "channel"}.count(metric.unit) == 1);
+    CHECK_FALSE(metric.formula.empty());
+    CHECK(metric.formula.find('\n') == std::string_view::npos);
+  }
+}
+
+TEST_CASE("kMetrics: higher_is_better points from the worse simulation to the better one",
+          "[metrics]") {
+  const std::vector<double> measured{0.0, 1.0, 0.0, -1.0};
+  const std::vector<double> better{0.0, 0.875, 0.125, -1.0};
+  const std::vector<double> worse{0.5, 0.25, 0.5, -0.25};
+  for (const MetricSpec& metric : kMetrics) {
+    CAPTURE(metric.name);
+    CHECK((metric.compute(measured, better) > metric.compute(measured, worse)) ==
+          metric.higher_is_better);
+  }
+}
+
+TEST_CASE("kMetrics: a scaled channel scales the metrics in its unit and no other", "[metrics]") {
+  const std::vector<double> measured{0.0, 1.0, 0.0, -1.0}, simulated{0.5, 0.25, 0.5, -0.25};
+  std::vector<double> measured_4 = measured, simulated_4 = simulated;
+  for (double& value : measured_4) value *= 4.0;
+  for (double& value : simulated_4) value *= 4.0;
+  for (const MetricSpec& metric : kMetrics) {
+    CAPTURE(metric.name);
+    // A factor of four rounds nothing.
+    CHECK(metric.compute(measured_4, simulated_4) ==
+          metric.compute(measured, simulated) * (metric.unit == "channel" ? 4.0 : 1.0));
+  }
+}
