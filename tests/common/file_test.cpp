@@ -1,0 +1,138 @@
+#include "common/file.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "common/error.hpp"
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using rigcal::InputError;
+using rigcal::sha256_of_file;
+using rigcal::write_file_atomically;
+using rigcal::WriteError;
+
+namespace {
+
+/// A folder of its own for each test, removed at the end.
+class Folder {
+ public:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "rigcal_file_XXXXXX").string();
+    REQUIRE(::mkdtemp(name.data()) != nullptr);
+    path_ = name;
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  ~Folder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  fs::path operator/(const std::string& name) const { return path_ / name; }
+  std::ptrdiff_t entries() const {
+    return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
+  }
+
+ private:
+  fs::path path_;
+};
+
+std::string content_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+TEST_CASE("write_file_atomically: writes, replaces, leaves nothing beside", "[common]") {
+  const Folder folder;
+  const std::string binary("a\0b\n\xFF", 5);
+  write_file_atomically(folder / "out.json", "first, and longer");
+  write_file_atomically(folder / "out.json", binary);
+  CHECK(content_of(folder / "out.json") == binary);
+  CHECK(folder.entries() == 1);
+  write_file_atomically(folder / "empty", "");
+  CHECK(fs::file_size(folder / "empty") == 0);
+}
+
+TEST_CASE("write_file_atomically: makes missing folders", "[common]") {
+  const Folder folder;
+  write_file_atomically(folder / "a/b/c.csv", "x");
+  CHECK(content_of(folder / "a/b/c.csv") == "x");
+}
+
+TEST_CASE("write_file_atomically: others may read the file as the umask says", "[common]") {
+  const Folder folder;
+  write_file_atomically(folder / "made", "x");
+  std::ofstream(folder / "reference") << "x";
+  CHECK(fs::status(folder / "made").permissions() ==
+        fs::status(folder / "reference").permissions());
+}
+
+TEST_CASE("write_file_atomically: a folder in the way", "[common]") {
+  const Folder folder;
+  fs::create_directory(folder / "taken");
+  CHECK_THROWS_WITH(write_file_atomically(folder / "taken", "x"),
+                    Contains("taken") && Contains("cannot be written: "));
+  CHECK(folder.entries() == 1);
+  CHECK_THROWS_AS(write_file_atomically(folder / "taken/", "x"), WriteError);
+}
+
+TEST_CASE("write_file_atomically: a file where a folder should be", "[common]") {
+  const Folder folder;
+  std::ofstream(folder / "file") << "x";
+  CHECK_THROWS_WITH(write_file_atomically(folder / "file/out.csv", "x"),
+                    Contains("out.csv: cannot be written: "));
+  CHECK_THROWS_AS(write_file_atomically("/proc/no_such_folder/out.csv", "x"), WriteError);
+}
+
+TEST_CASE("write_file_atomically: a full disk leaves the old file as it was", "[common]") {
+  const Folder folder;
+  write_file_atomically(folder / "out.csv", "old");
+  rlimit before{};
+  REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);  // so that write() fails instead
+  rlimit small = before;
+  small.rlim_cur = 4096;
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &small) == 0);
+  std::string message = "no error";
+  try {
+    write_file_atomically(folder / "out.csv", std::string(100'000, 'x'));
+  } catch (const WriteError& error) {
+    message = error.what();
+  }
+  REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
+  std::signal(SIGXFSZ, handler);
+  CHECK_THAT(message, Contains("out.csv: cannot be written: "));
+  CHECK(content_of(folder / "out.csv") == "old");
+  CHECK(folder.entries() == 1);
+}
+
+TEST_CASE("sha256_of_file: published test vectors", "[common]") {
+  // FIPS 180-2, appendix B: "abc", the 56-byte message, and a million times "a".
+  const Folder folder;
+  const auto sum = [&folder](const std::string& text) {
+    write_file_atomically(folder / "text", text);
+    return sha256_of_file(folder / "text");
+  };
+  CHECK(sum("") == "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  CHECK(sum("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  CHECK(sum("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq") ==
+        "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  CHECK(sum(std::string(1'000'000, 'a')) ==
+        "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_CASE("sha256_of_file: what cannot be read is an error", "[common]") {
+  const Folder folder;
+  CHECK_THROWS_WITH(sha256_of_file(folder / "missing"),
+                    Contains("missing: cannot be read: No such file"));
+  CHECK_THROWS_AS(sha256_of_file(folder / ""), InputError);
+}
