@@ -1,0 +1,155 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/parameter_map.hpp"
+#include "datasets/campaign.hpp"
+#include "datasets/record.hpp"
+#include "metrics/agreement.hpp"
+#include "metrics/noise_floor.hpp"
+
+namespace rigcal::calib {
+
+/// What a fit needs beside the campaign and its records.
+struct FitOptions {
+  int starts = 1;            ///< 1: the campaign's start values; more: latin hypercube around them
+  std::uint64_t seed = 1;    ///< of the latin hypercube
+  int threads = 1;           ///< results are the same bits for any number
+  int max_iterations = 200;  ///< per start
+  std::optional<double> max_seconds;  ///< of all starts together; beyond: status `stopped`
+  double function_tolerance = 1e-10;   ///< |d cost| / cost of Ceres
+  double gradient_tolerance = 1e-10;
+  double parameter_tolerance = 1e-9;
+  const std::atomic<bool>* cancel = nullptr;  ///< ends the fit with the best so far
+  /// Told of every iteration: start (from 1), iteration, cost, relative change of cost, seconds.
+  std::function<void(int, int, double, double, double)> progress;
+
+  void validate() const;
+};
+
+enum class FitStatus {
+  converged,
+  stopped,  ///< a limit of iterations or time, or a signal: the best so far
+  failed,   ///< no start gave a usable result
+};
+std::string_view to_string(FitStatus status);
+
+enum class Identifiability { identified, weak, not_identifiable };
+std::string_view to_string(Identifiability identifiability);
+
+/// One parameter in the result: fitted or known.
+struct FittedParameter {
+  int index = 0;
+  datasets::Scope scope = datasets::Scope::rig;
+  std::string level;  ///< leak level or condition; empty for the rig
+  double value = 0.0;
+  double start = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+  bool fitted = false;
+  bool nuisance = false;
+  std::optional<double> standard_error;  ///< absent where the Jacobian does not determine it
+  std::optional<std::pair<double, double>> ci95;
+  bool at_bound = false;
+  Identifiability identifiability = Identifiability::identified;
+  std::string reason;  ///< in words: why no error, why weak, at which bound
+};
+
+/// One start of a multi-start fit.
+struct StartReport {
+  int number = 1;
+  std::vector<double> start_values;  ///< SI, order of the unknowns
+  std::vector<double> end_values;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;
+  int iterations = 0;
+  FitStatus status = FitStatus::failed;
+  std::string message;
+};
+
+/// A simulation that failed during the fit (first few of each kind are kept, all are counted).
+struct SimulationFailure {
+  std::string condition;
+  std::vector<std::pair<std::string, double>> parameters;  ///< names and SI values of the unknowns
+  double time_s = 0.0;
+  std::string reason;
+  int start = 1;
+};
+
+/// Agreement of one channel in one condition.
+struct ChannelScore {
+  datasets::Channel channel = datasets::Channel::position;
+  std::optional<metrics::Agreement> agreement;       ///< absent: see `problem`
+  std::optional<metrics::NoiseFloor> noise_floor;    ///< absent where the noise is unknown
+  std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
+  std::string problem;                               ///< why a metric does not exist, in words
+};
+
+enum class Verdict { pass, warn, fail };
+std::string_view to_string(Verdict verdict);
+
+/// Score of one condition, and the series it was computed from.
+struct ConditionScore {
+  std::string id;
+  datasets::Use use = datasets::Use::fit;
+  std::vector<ChannelScore> channels;
+  std::optional<Verdict> verdict;    ///< absent without [acceptance]
+  std::vector<std::string> reasons;  ///< of WARN and FAIL, in words
+  std::string failure;               ///< why it could not be simulated; empty if it could
+  long samples = 0;                  ///< that count (inside the windows)
+  std::vector<double> time_s;
+  /// measured mean and simulated value per output channel, whole record
+  std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
+  std::vector<bool> in_window;       ///< empty: all
+};
+
+/// Everything that a fit found.
+struct Fit {
+  FitStatus status = FitStatus::failed;
+  std::string message;  ///< in words: why it stopped, what is not to be trusted
+  double cost = 0.0;    ///< half the sum of squared weighted residuals, priors included
+  long residual_count = 0;
+  long evaluations = 0;        ///< of all residuals
+  double wall_seconds = 0.0;
+  double tolerance = 0.0;      ///< of the simulations
+  std::vector<FittedParameter> parameters;
+  std::vector<std::string> correlation_names;
+  Eigen::MatrixXd correlation;  ///< shape (unknowns that have a standard error)^2
+  int rank = 0;                 ///< of the scaled Jacobian at the optimum
+  std::vector<double> singular_values;
+  std::vector<StartReport> starts;
+  int best_start = 0;
+  std::vector<SimulationFailure> failures;
+  long failure_count = 0;
+  std::vector<std::string> warnings;
+  std::vector<ConditionScore> conditions;  ///< fit and validate conditions, campaign order
+  std::optional<Verdict> verdict;          ///< worst of the conditions
+
+  /// A result that may be used: converged, every parameter finite.
+  bool usable() const;
+};
+
+/// Calibrates the free parameters on the `fit` conditions by Ceres (analytic Jacobian, unit box)
+/// and scores `fit` and `validate` conditions. Never throws for a fit that fails: see status.
+///
+/// @param records  of the fit and validate conditions, found by their `condition`
+/// @throws InputError  nothing is free, no `fit` condition, a channel without any weight...
+Fit fit(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
+        const FitOptions& options);
+
+/// Scores `fit` and `validate` conditions with given values; estimates nothing but nuisance
+/// parameters (by the same machinery as fit()).
+///
+/// @param values  of an earlier fit, or empty: the campaign's own values
+/// @throws InputError  a leak level (or condition) that needs a value which `values` does not have
+Fit validate(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
+             const std::vector<datasets::FittedValue>* values, const FitOptions& options);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/campaign.hpp"
+
+namespace rigcal::calib {
+
+/// One unknown of the fit: a parameter of the rig, of one leak level, or of one condition.
+struct Unknown {
+  int index = 0;  ///< row of the plant's parameter table
+  datasets::Scope scope = datasets::Scope::rig;
+  std::string level;  ///< leak level or condition; empty for the rig
+  double start = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+  std::optional<datasets::Prior> prior;
+  bool nuisance = false;
+};
+
+/// The unknowns of a set of conditions, in a fixed order, and which of them act in which condition.
+/// Optimiser coordinates z are in [0, 1]: linear in the bounds, or in their logarithms where both
+/// are positive and span more than a decade.
+class ParameterMap {
+ public:
+  /// @param conditions     those that take part
+  /// @param nuisance_only  true in validation: everything but nuisance parameters keeps its value
+  ParameterMap(const datasets::Campaign& campaign,
+               const std::vector<const datasets::Condition*>& conditions, bool nuisance_only);
+
+  const std::vector<Unknown>& unknowns() const { return unknowns_; }
+  /// Positions in unknowns() that act in condition i, in the order of their table index.
+  const std::vector<int>& acting(std::size_t condition) const { return acting_[condition]; }
+
+  double to_physical(int unknown, double z) const;
+  double to_unit(int unknown, double value) const;
+  /// d value / d z
+  double slope(int unknown, double z) const;
+
+ private:
+  std::vector<Unknown> unknowns_;
+  std::vector<std::vector<int>> acting_;
+};
+
+}  // namespace rigcal::calib
