@@ -26,11 +26,16 @@ int checked_index(PlantKind plant, std::string_view key) {
 
 std::string_view to_string(ParameterKind kind) {
   switch (kind) {
-    case ParameterKind::plant: return "plant";
-    case ParameterKind::term: return "optional term";
-    case ParameterKind::controller: return "controller";
-    case ParameterKind::sensor: return "sensor";
-    case ParameterKind::initial: return "initial state";
+    case ParameterKind::plant:
+      return "plant";
+    case ParameterKind::term:
+      return "optional term";
+    case ParameterKind::controller:
+      return "controller";
+    case ParameterKind::sensor:
+      return "sensor";
+    case ParameterKind::initial:
+      return "initial state";
   }
   return "";
 }
@@ -42,7 +47,8 @@ std::optional<PlantKind> plant_from_name(std::string_view name) {
 
 std::string_view to_string(PlantKind plant) {
   switch (plant) {
-    case PlantKind::load_pressure: return "load_pressure";
+    case PlantKind::load_pressure:
+      return "load_pressure";
   }
   return "";
 }
@@ -51,7 +57,8 @@ std::vector<std::string> plant_names() { return {"load_pressure"}; }
 
 std::span<const ParameterSpec> parameter_table(PlantKind plant) {
   switch (plant) {
-    case PlantKind::load_pressure: return kLoadPressureTable;
+    case PlantKind::load_pressure:
+      return kLoadPressureTable;
   }
   return {};
 }

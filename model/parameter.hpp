@@ -28,10 +28,10 @@ struct ParameterSpec {
   std::string_view meaning;  ///< one line
   std::string_view source;   ///< equation or document
   ParameterKind kind = ParameterKind::plant;
-  double lower = 0.0;                      ///< no value below makes sense (SI)
-  double upper = 0.0;                      ///< no value above makes sense (SI)
-  std::optional<double> default_value{};   ///< value where none is given; none: must be given
-  bool can_be_fitted = true;               ///< false where the model is not differentiable in it
+  double lower = 0.0;                     ///< no value below makes sense (SI)
+  double upper = 0.0;                     ///< no value above makes sense (SI)
+  std::optional<double> default_value{};  ///< value where none is given; none: must be given
+  bool can_be_fitted = true;              ///< false where the model is not differentiable in it
 };
 
 enum class PlantKind { load_pressure };

@@ -32,8 +32,8 @@ enum class Output {
 /// "position_m", "servo_flow_m3_per_s": name with its SI unit.
 std::string_view output_name(Output output);
 inline constexpr std::array kAllOutputs{
-    Output::position,   Output::velocity,   Output::load_pressure, Output::pressure_a,
-    Output::pressure_b, Output::force,      Output::command,       Output::spool,
+    Output::position,   Output::velocity,     Output::load_pressure, Output::pressure_a,
+    Output::pressure_b, Output::force,        Output::command,       Output::spool,
     Output::servo_flow, Output::leakage_flow, Output::work_flow};
 
 enum class ControllerKind {
@@ -48,9 +48,9 @@ enum class InitialState {
 
 /// What acts on the rig. The drive is delayed by `transport_delay`, the others are not.
 struct SimulationInputs {
-  Signal drive = Signal::constant(0.0);          ///< reference [m] or command [V]
-  std::optional<Signal> external_force_n;        ///< added to the parameter `external_force`
-  std::optional<Signal> supply_pressure_pa;      ///< in place of the parameter `supply_pressure`
+  Signal drive = Signal::constant(0.0);      ///< reference [m] or command [V]
+  std::optional<Signal> external_force_n;    ///< added to the parameter `external_force`
+  std::optional<Signal> supply_pressure_pa;  ///< in place of the parameter `supply_pressure`
 };
 
 enum class Method {
@@ -62,8 +62,8 @@ struct SimulationOptions {
   Method method = Method::rosenbrock;
   /// Local error per step over the running peak of each state, and of each sensitivity.
   double tolerance = 1e-6;
-  long max_steps = 5'000'000;   ///< accepted and rejected
-  double max_seconds = 120.0;   ///< wall time of one simulation
+  long max_steps = 5'000'000;                 ///< accepted and rejected
+  double max_seconds = 120.0;                 ///< wall time of one simulation
   const std::atomic<bool>* cancel = nullptr;  ///< ends the simulation when it becomes true
 
   /// @throws std::invalid_argument  naming the field
@@ -72,9 +72,9 @@ struct SimulationOptions {
 
 enum class SimulationStatus {
   ok,
-  bad_parameters,   ///< a value is not finite or outside its hard bounds
-  not_finite,       ///< the state left the numbers
-  step_too_small,   ///< error control asked for a vanishing step
+  bad_parameters,  ///< a value is not finite or outside its hard bounds
+  not_finite,      ///< the state left the numbers
+  step_too_small,  ///< error control asked for a vanishing step
   too_many_steps,
   out_of_time,
   cancelled,

@@ -1,0 +1,45 @@
+#pragma once
+
+#include "model/parameter.hpp"
+#include "model/simulate.hpp"
+
+namespace rigcal::model {
+
+/// Which states a rig has beside those of its plant, and where they stand in the state vector.
+struct Layout {
+  int plant_states = 0;
+  int valve_order = 0;  ///< 0: spool follows the command; 1, 2: lag
+  int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
+  bool pid = false;
+  int integral = -1;      ///< integral action [V]
+  int filter = -1;        ///< filtered error [m]
+  int held = -1;          ///< output of a sampled controller, held [V]
+  bool friction = false;  ///< a dry-friction term was given
+  int states = 0;
+
+  bool sampled() const { return held >= 0; }
+};
+
+inline Layout layout_of(const Rig& rig, const ParameterValues& values, int plant_states) {
+  Layout layout;
+  layout.plant_states = plant_states;
+  int next = plant_states;
+  if (values.is_given("valve_frequency")) {
+    layout.valve_order = 2;
+  } else if (values.is_given("valve_time_constant")) {
+    layout.valve_order = 1;
+  }
+  if (layout.valve_order > 0) layout.valve = next;
+  next += layout.valve_order;
+  layout.pid = rig.controller == ControllerKind::pid;
+  if (layout.pid) {
+    if (values.is_given("ki")) layout.integral = next++;
+    if (values.is_given("kd")) layout.filter = next++;
+    if (values.is_given("sample_time")) layout.held = next++;
+  }
+  layout.friction = values.is_given("coulomb_friction") || values.is_given("stribeck_friction");
+  layout.states = next;
+  return layout;
+}
+
+}  // namespace rigcal::model

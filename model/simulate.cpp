@@ -1,0 +1,148 @@
+#include "model/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "model/layout.hpp"
+#include "model/load_pressure.hpp"
+#include "model/simulate_sized.hpp"
+
+namespace rigcal::model {
+namespace {
+
+struct OutputName {
+  Output output;
+  std::string_view name;
+};
+constexpr std::array kOutputNames{
+    OutputName{Output::position, "position_m"},
+    OutputName{Output::velocity, "velocity_m_per_s"},
+    OutputName{Output::load_pressure, "load_pressure_pa"},
+    OutputName{Output::pressure_a, "pressure_a_pa"},
+    OutputName{Output::pressure_b, "pressure_b_pa"},
+    OutputName{Output::force, "force_n"},
+    OutputName{Output::command, "command_v"},
+    OutputName{Output::spool, "spool_m"},
+    OutputName{Output::servo_flow, "servo_flow_m3_per_s"},
+    OutputName{Output::leakage_flow, "leakage_flow_m3_per_s"},
+    OutputName{Output::work_flow, "work_flow_m3_per_s"},
+};
+
+/// The first parameter in use that is not finite or outside its limits, in words; empty if none.
+std::string bad_parameter(const ParameterValues& values) {
+  const auto table = parameter_table(values.plant);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const ParameterSpec& spec = table[i];
+    const bool in_use = values.given[i] || spec.kind == ParameterKind::plant;
+    if (!in_use) continue;
+    const double v = values.value[i];
+    if (!(v >= spec.lower && v <= spec.upper)) {
+      return fmt::format("{} = {:g} {} lies outside [{:g}, {:g}]", spec.key, v, spec.unit,
+                         spec.lower, spec.upper);
+    }
+  }
+  return {};
+}
+
+void require(bool condition, const char* message) {
+  if (!condition) throw std::invalid_argument(std::string("simulate: ") + message);
+}
+
+void dispatch(const SizedRequest& request, Simulation& result) {
+  switch (request.layout.states) {
+    case 3:
+      return simulate_sized<3>(request, result);
+    case 4:
+      return simulate_sized<4>(request, result);
+    case 5:
+      return simulate_sized<5>(request, result);
+    case 6:
+      return simulate_sized<6>(request, result);
+    case 7:
+      return simulate_sized<7>(request, result);
+    case 8:
+      return simulate_sized<8>(request, result);
+    default:
+      throw std::logic_error("simulate: a layout with an unexpected number of states");
+  }
+}
+
+}  // namespace
+
+std::string_view output_name(Output output) {
+  for (const OutputName& row : kOutputNames) {
+    if (row.output == output) return row.name;
+  }
+  return "";
+}
+
+std::string_view to_string(SimulationStatus status) {
+  switch (status) {
+    case SimulationStatus::ok:
+      return "ok";
+    case SimulationStatus::bad_parameters:
+      return "bad parameters";
+    case SimulationStatus::not_finite:
+      return "not finite";
+    case SimulationStatus::step_too_small:
+      return "step too small";
+    case SimulationStatus::too_many_steps:
+      return "too many steps";
+    case SimulationStatus::out_of_time:
+      return "out of time";
+    case SimulationStatus::cancelled:
+      return "cancelled";
+  }
+  return "";
+}
+
+void SimulationOptions::validate() const {
+  require(tolerance > 0.0 && tolerance < 0.1, "tolerance must lie between 0 and 0.1");
+  require(max_steps > 0, "max_steps must be positive");
+  require(max_seconds > 0.0, "max_seconds must be positive");
+}
+
+Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
+                    const SimulationInputs& inputs, std::span<const double> times_s,
+                    std::span<const Output> outputs, const SimulationOptions& options) {
+  options.validate();
+  const auto table = parameter_table(rig.plant);
+  require(parameters.plant == rig.plant && parameters.value.size() == table.size(),
+          "parameters belong to another plant");
+  require(!times_s.empty(), "no sample times");
+  for (std::size_t i = 1; i < times_s.size(); ++i) {
+    require(times_s[i] > times_s[i - 1], "sample times must increase");
+  }
+  for (const int index : free) {
+    require(index >= 0 && index < static_cast<int>(table.size()), "free: no such parameter");
+    require(table[static_cast<std::size_t>(index)].can_be_fitted, "free: cannot be fitted");
+  }
+
+  Simulation result;
+  result.reason = bad_parameter(parameters);
+  if (!result.reason.empty()) {
+    result.status = SimulationStatus::bad_parameters;
+    result.failed_at_s = times_s.front();
+    return result;
+  }
+  const auto samples = static_cast<Eigen::Index>(times_s.size());
+  result.outputs.setZero(samples, static_cast<Eigen::Index>(outputs.size()));
+  result.sensitivities.assign(
+      outputs.size(), Eigen::MatrixXd::Zero(samples, static_cast<Eigen::Index>(free.size())));
+  const Layout layout = layout_of(rig, parameters, LoadPressurePlant::kStates);
+  dispatch({layout, rig.initial, parameters, free, inputs, times_s, outputs, options}, result);
+  if (result.ok() && !result.outputs.allFinite()) {
+    result.status = SimulationStatus::not_finite;
+    result.failed_at_s = times_s.back();
+    result.reason = "an output is not finite";
+  }
+  if (!result.ok()) {
+    result.outputs.resize(0, 0);
+    result.sensitivities.clear();
+  }
+  return result;
+}
+
+}  // namespace rigcal::model

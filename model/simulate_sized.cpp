@@ -1,0 +1,85 @@
+#include "model/simulate_sized.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/run.hpp"
+
+#ifndef RIGCAL_STATES
+#error "compiled once per number of states with -DRIGCAL_STATES=n"
+#endif
+
+namespace rigcal::model {
+namespace {
+
+using Plant = LoadPressurePlant;
+
+/// Typical size of a parameter, for the error scale of its sensitivity.
+double scale_of(const ParameterSpec& spec, double value) {
+  if (value != 0.0) return std::abs(value);
+  const double range = std::max(std::abs(spec.lower), std::abs(spec.upper));
+  return std::isfinite(range) && range > 0.0 ? 1e-3 * range : 1.0;
+}
+
+/// One pass with the sensitivities to at most P of the free parameters.
+template <int N, int P, template <int, int> class Stepper>
+void pass(const SizedRequest& request, int first, int count, Simulation& result) {
+  const double start_s = request.times_s.front();
+  const auto track = [start_s](const Signal& signal, double delay_s) {
+    return InputTrack(signal, start_s, delay_s);
+  };
+  std::optional<InputTrack> force;
+  std::optional<InputTrack> supply;
+  if (request.inputs.external_force_n) force = track(*request.inputs.external_force_n, 0.0);
+  if (request.inputs.supply_pressure_pa) supply = track(*request.inputs.supply_pressure_pa, 0.0);
+  const auto free =
+      request.free.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+  std::array<double, static_cast<std::size_t>(P)> scale;
+  scale.fill(1.0);
+  const auto table = parameter_table(request.parameters.plant);
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const auto index = static_cast<std::size_t>(free[j]);
+    scale[j] = scale_of(table[index], request.parameters.value[index]);
+  }
+  System<Plant, N, P> system(request.layout, request.parameters, free,
+                             track(request.inputs.drive, request.parameters["transport_delay"]),
+                             std::move(force), std::move(supply));
+  Run<Plant, N, P, Stepper> run(std::move(system), scale, request.times_s, request.outputs,
+                                request.options);
+  run(request.initial, result, first, count);
+}
+
+/// Passes until every free parameter had its turn; 4 or 8 at a time.
+template <int N, template <int, int> class Stepper>
+void passes(const SizedRequest& request, Simulation& result) {
+  const int free = static_cast<int>(request.free.size());
+  if (free == 0) {
+    pass<N, 0, Stepper>(request, 0, 0, result);
+    return;
+  }
+  for (int first = 0; first < free && result.ok();) {
+    const int left = free - first;
+    const int count = std::min(left, left <= 4 ? 4 : 8);
+    if (left <= 4) {
+      pass<N, 4, Stepper>(request, first, count, result);
+    } else {
+      pass<N, 8, Stepper>(request, first, count, result);
+    }
+    first += count;
+  }
+}
+
+}  // namespace
+
+template <int N>
+void simulate_sized(const SizedRequest& request, Simulation& result) {
+  if (request.options.method == Method::dopri5) {
+    passes<N, DormandPrince>(request, result);
+  } else {
+    passes<N, Rosenbrock>(request, result);
+  }
+}
+
+template void simulate_sized<RIGCAL_STATES>(const SizedRequest&, Simulation&);
+
+}  // namespace rigcal::model

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <span>
+
+#include "model/layout.hpp"
+#include "model/simulate.hpp"
+
+namespace rigcal::model {
+
+inline constexpr int kMinStates = 3;
+inline constexpr int kMaxStates = 8;
+
+/// Everything that one simulation needs, its number of states fixed at compile time in
+/// simulate_sized.cpp (compiled once per number, so that the parts build side by side).
+struct SizedRequest {
+  const Layout& layout;
+  InitialState initial;
+  const ParameterValues& parameters;
+  std::span<const int> free;
+  const SimulationInputs& inputs;
+  std::span<const double> times_s;
+  std::span<const Output> outputs;
+  const SimulationOptions& options;
+};
+
+template <int N>
+void simulate_sized(const SizedRequest& request, Simulation& result);
+
+}  // namespace rigcal::model
