@@ -89,7 +89,7 @@ Fundamental fit(std::span<const double> time_s, std::span<const double> signal,
     right += x * (wide(signal[i]) - wide(signal[begin]));
   }
   const Eigen::SelfAdjointEigenSolver<Matrix3> spectrum(normal, Eigen::EigenvaluesOnly);
-  const Vector3 eigenvalues = spectrum.eigenvalues();
+  const Vector3& eigenvalues = spectrum.eigenvalues();
   if (eigenvalues[0] < 1e-9L * eigenvalues[2])
     throw std::invalid_argument(
         fmt::format("fundamental: the {} samples of the {} signal in whole periods of {} s cannot "
