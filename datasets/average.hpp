@@ -10,9 +10,11 @@
 namespace rigcal::datasets {
 
 struct AverageOptions {
-  bool align = true;  ///< shift repeats by the cross-correlation of their driving or fastest channel
-  /// A repeat whose rms distance from the mean of the others exceeds this many times the median of
-  /// these distances is named an outlier. It is never dropped silently: it stays in the mean.
+  bool align =
+      true;  ///< shift repeats by the cross-correlation of their driving or fastest channel
+  /// A repeat whose rms distance from the sample-wise median of all exceeds this many times the
+  /// median of these distances is named an outlier. It is never dropped silently: it stays in the
+  /// mean. (The mean would hide an outlier of three or four repeats: it lies halfway to it.)
   double outlier_ratio = 3.0;
   std::map<Channel, double> known_sd;  ///< the campaign's `sd` of a sample, where given
   int repeats_averaged = 1;            ///< repeats already averaged in a single file
@@ -20,10 +22,16 @@ struct AverageOptions {
 
 /// Aligned mean, sd and count of any number of repeats of one condition. Repeats may carry
 /// different channels; each channel is averaged over those that carry it. Repeats are resampled to
-/// the time base of the first by the fractional shift found; samples at the ends that not every
-/// repeat covers have a smaller count.
+/// the time base of the first by the fractional shift found (alignment.hpp: offsets are relative to
+/// their mean); samples at the ends that not every repeat covers have a smaller count, and those
+/// that a channel does not cover at all are cut off.
 ///
-/// @throws std::invalid_argument  no repeat, or repeats of incompatible sampling (message says which)
+/// A channel's standard deviation comes from its repeats. With a single repeat, or identical ones,
+/// it is the `known_sd` of the samples in the file, which is that of the mean too; else unknown.
+/// Resampling leaves 97 % to 100 % of the standard deviation of white noise (resample.hpp).
+///
+/// @throws std::invalid_argument  no repeat, or repeats of incompatible sampling (message says
+/// which)
 Record average(const std::string& condition, const std::vector<Repeat>& repeats,
                const AverageOptions& options);
 

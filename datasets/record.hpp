@@ -45,8 +45,10 @@ struct Repeat {
 /// Mean over the repeats of one channel.
 struct Series {
   std::vector<double> mean;  ///< shape (samples)
-  std::vector<double> sd;    ///< sample standard deviation over repeats; empty for a single repeat
-  std::vector<int> count;    ///< repeats that carry this sample
+  /// Sample standard deviation (n - 1) over repeats; NaN at the ends where only one repeat has a
+  /// sample; empty for a single repeat.
+  std::vector<double> sd;
+  std::vector<int> count;  ///< repeats that carry this sample
   /// Standard deviation of one repeat, pooled over the samples: sqrt(mean of sd^2). NaN where
   /// neither repeats nor the campaign's `sd` tell it.
   double pooled_sd = std::numeric_limits<double>::quiet_NaN();
@@ -58,15 +60,16 @@ struct Series {
 /// What became of one repeat when it was averaged.
 struct RepeatReport {
   std::string source;
-  double offset_s = 0.0;     ///< by how much this repeat came later than the others
-  double deviation = 0.0;    ///< rms distance from the mean of the others over the pooled sd
+  double offset_s = 0.0;  ///< by how much this repeat came later than their mean
+  /// rms distance from the mean of the others over the pooled sd; of its worst channel
+  double deviation = 0.0;
   bool outlier = false;
 };
 
 /// The averaged record of one condition: what the model is compared with.
 struct Record {
   std::string condition;
-  std::vector<double> time_s;         ///< shape (samples), increasing
+  std::vector<double> time_s;  ///< shape (samples), increasing
   std::map<Channel, Series> channels;
   int repeats = 1;
   std::vector<RepeatReport> repeat_reports;

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace rigcal::datasets {
+
+enum class Interpolator {
+  band_limited,  ///< sinc of 16 samples to each side under a Hann window
+  linear,        ///< no overshoot at the edges of a held signal
+};
+
+/// y[i] = x(i + shift) for i = 0..samples-1; NaN where x does not reach. A shift within 1e-6 of a
+/// whole number of samples copies.
+///
+/// The band-limited interpolator keeps the amplitude within 0.1 % up to 0.44 of the sample rate. At
+/// half a sample it leaves 97 % of the standard deviation of white noise (linear: 71 %).
+/// Beyond its ends a record continues by reflection through its last sample, so that a slope goes
+/// on.
+std::vector<double> shifted(const std::vector<double>& x, double shift, std::size_t samples,
+                            Interpolator interpolator);
+
+}  // namespace rigcal::datasets
