@@ -221,11 +221,12 @@ class RowReader {
                                    std::size_t index) const {
     const std::string& name = header_.names[index].full;
     if (line_number == table_.first_data_line && is_text_only(line))
-      throw error(line, line_number, field.begin,
-                  fmt::format("a second header line ('{}' in column '{}'); expected numbers. Units "
-                              "stand behind the names (\"x [mm]\") or in the campaign file: remove "
-                              "this line",
-                              shown(field.text), shown(name)));
+      throw error(
+          line, line_number, field.begin,
+          fmt::format("no numbers in the first row ('{}' in column '{}'), as in a second header "
+                      "line; expected numbers. Units stand behind the names (\"x [mm]\") or "
+                      "in the campaign file: remove such a line",
+                      shown(field.text), shown(name)));
     if (field.text.empty())
       throw error(line, line_number, field.begin,
                   fmt::format("column '{}' is empty; expected a number", shown(name)));

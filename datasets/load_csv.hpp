@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -26,12 +27,18 @@ struct CsvTable {
 /// newline are accepted; with ';' or tab as separator a decimal comma is accepted too. Everything
 /// else that is not a finite number in a wanted column is an error, as are a wrong count of
 /// columns, an empty field, time that does not increase, and a binary file. Columns that are not
-/// wanted are counted but not converted.
+/// wanted are counted but not converted. A name may be asked for with its unit, too, and must be
+/// where only the unit tells two columns apart. At most 12 million numbers are read (96 MB).
 ///
-/// @throws InputError  file:line:column, what was found and what was expected
+/// @throws InputError  file:line:column, what was found and what was expected; the column is the
+///                     position of the field in characters, from 1
+/// @throws std::invalid_argument  time_column is not among the columns
 CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request);
 
-/// Header names of a CSV file (units stripped), for `init` and for messages.
+/// Header names of a CSV file, for `init` and for messages: without units, except where only the
+/// unit tells two columns apart.
+///
+/// @throws InputError  as load_csv
 std::vector<std::string> csv_header(const std::filesystem::path& path, char separator = 0);
 
 }  // namespace rigcal::datasets
