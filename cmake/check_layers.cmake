@@ -1,4 +1,5 @@
 # Forbids upward includes: cmake -DROOT=... -P check_layers.cmake
+cmake_minimum_required(VERSION 3.25)
 # common <- { model, metrics } <- datasets <- calib <- { diagnosis, report } <- apps
 set(allowed_common common)
 set(allowed_model common model)

@@ -21,12 +21,41 @@ struct Linearisation {
   std::array<Eigen::Matrix<double, N, N>, static_cast<std::size_t>(P)> jacobian_tangent;
 };
 
-/// RODAS4, an L-stable, stiffly accurate Rosenbrock method of order 4(3) with dense output of order
-/// 3 (Hairer and Wanner, Solving ODEs II, IV.7), as an Odeint error stepper with dense output.
+/// Coefficients of RODAS4P, an L-stable, stiffly accurate Rosenbrock method of order 4(3) with
+/// dense output whose order does not fall on stiff linear parts (G. Steinebach, Order-reduction of
+/// ROW-methods for DAEs and method of lines applications, TH Darmstadt preprint 1741, 1995), in the
+/// form of Hairer and Wanner, Solving ODEs II, IV.7.
+struct Rodas4P {
+  static constexpr int kStages = 6;
+  static constexpr double kGamma = 0.25;
+  static constexpr double kTime[] = {0.0, 0.75, 0.21, 0.63, 1.0, 1.0};
+  static constexpr double kSlope[] = {0.25, -0.5, -0.023504, -0.0362, 0.0, 0.0};
+  static constexpr double kState[kStages][kStages] = {
+      {},
+      {3.0},
+      {1.831036793486759, 0.4955183967433795},
+      {2.304376582692669, -0.05249275245743001, -1.176798761832782},
+      {-7.170454962423024, -4.741636671481785, -16.31002631330971, -1.062004044111401},
+      {-7.170454962423024, -4.741636671481785, -16.31002631330971, -1.062004044111401, 1.0}};
+  static constexpr double kRate[kStages][kStages] = {
+      {},
+      {-12.0},
+      {-8.791795173947035, -2.207865586973518},
+      {10.81793056857153, 6.780270611428266, 19.53485944642410},
+      {34.19095006749676, 15.49671153725963, 54.74760875964130, 14.16005392148534},
+      {34.62605830930532, 15.30084976114473, 56.99955578662667, 18.40807009793095,
+       -5.714285714285717}};
+  static constexpr double kDense[2][kStages] = {
+      {25.09876703708589, 11.62013104361867, 28.49148307714626, -5.664021568594133},
+      {1.638054557396973, -0.7373619806678748, 8.477918219238990, 15.99253148779520,
+       -1.882352941176471}};
+};
+
+/// RODAS4P as an Odeint error stepper with dense output.
 ///
-/// Odeint's rosenbrock4 has the same coefficients but for the sign of d4, which costs it two orders
-/// on systems that depend on time (tests/model/rosenbrock_test.cpp), works on heap-allocated uBLAS
-/// matrices and knows no sensitivities.
+/// Odeint's own rosenbrock4 (RODAS) has a wrong sign in its d4, which costs it order on systems
+/// that depend on time; it works on heap-allocated uBLAS matrices, knows no sensitivities, and
+/// needs three times the steps at a tolerance of 1e-6 where a valve is stiff (docs/decisions/0002).
 ///
 /// The sensitivities are the exact derivatives of the discrete step (the same linear systems, their
 /// right-hand sides differentiated), hence also the method applied to the variational equations.
@@ -34,8 +63,8 @@ template <int N, int P>
 class Rosenbrock {
  public:
   using State = StateMatrix<N, P>;
+  using K = Rodas4P;
   static constexpr int kOrder = 4;
-  static constexpr int kErrorOrder = 3;
 
   /// One step from x at t of size dt.
   /// @param system  has derivative(x, t) -> State
@@ -44,58 +73,43 @@ class Rosenbrock {
   void do_step(const System& system, const Linearisation<N, P>& lin, const State& x, double t,
                State& x_out, double dt, State& x_err) {
     factorise(lin.jacobian, dt);
-    const double r = 1.0 / dt;
-    g1_ = solve(lin, lin.f + dt * kD1 * lin.f_t);
-    g2_ = solve(lin, system.derivative(x + 1.544 * g1_, t + 0.386 * dt) + dt * kD2 * lin.f_t -
-                         5.6688 * r * g1_);
-    g3_ = solve(
-        lin,
-        system.derivative(x + 0.9466785280815826 * g1_ + 0.2557011698983284 * g2_, t + 0.21 * dt) +
-            dt * kD3 * lin.f_t + r * (-2.430093356833875 * g1_ - 0.2063599157091915 * g2_));
-    g4_ = solve(lin, system.derivative(x + 3.314825187068521 * g1_ + 2.896124015972201 * g2_ +
-                                           0.9986419139977817 * g3_,
-                                       t + 0.63 * dt) +
-                         dt * kD4 * lin.f_t +
-                         r * (-0.1073529058151375 * g1_ - 9.594562251023355 * g2_ -
-                              20.47028614809616 * g3_));
-    State x_stage = x + 1.221224509226641 * g1_ + 6.019134481288629 * g2_ +
-                    12.53708332932087 * g3_ - 0.6878860361058950 * g4_;
-    g5_ = solve(lin, system.derivative(x_stage, t + dt) +
-                         r * (7.496443313967647 * g1_ - 10.24680431464352 * g2_ -
-                              33.99990352819905 * g3_ + 11.70890893206160 * g4_));
-    x_stage += g5_;
-    x_err = solve(
-        lin, system.derivative(x_stage, t + dt) +
-                 r * (8.083246795921522 * g1_ - 7.981132988064893 * g2_ - 31.52159432874371 * g3_ +
-                      16.31930543123136 * g4_ - 6.058818238834054 * g5_));
-    x_out = x_stage + x_err;
+    State stage = x;
+    for (int i = 0; i < K::kStages; ++i) {
+      State rhs;
+      if (i == 0) {
+        rhs = lin.f;
+      } else {
+        stage = x;
+        for (int j = 0; j < i; ++j) stage += K::kState[i][j] * g_[j];
+        rhs = system.derivative(stage, t + K::kTime[i] * dt);
+        for (int j = 0; j < i; ++j) rhs += (K::kRate[i][j] / dt) * g_[j];
+      }
+      if (K::kSlope[i] != 0.0) rhs += (K::kSlope[i] * dt) * lin.f_t;
+      g_[i] = solve(lin, rhs);
+    }
+    x_err = g_[K::kStages - 1];
+    x_out = stage + x_err;
   }
 
   /// Prepares calc_state for the step just done.
   void prepare_dense_output() {
-    cont3_ = 10.12623508344586 * g1_ - 7.487995877610167 * g2_ - 34.80091861555747 * g3_ -
-             7.992771707568823 * g4_ + 1.025137723295662 * g5_;
-    cont4_ = -0.6762803392801253 * g1_ + 6.087714651680015 * g2_ + 16.43084320892478 * g3_ +
-             24.76722511418386 * g4_ - 6.594389125716872 * g5_;
+    for (int k = 0; k < 2; ++k) {
+      dense_[k].setZero();
+      for (int j = 0; j < K::kStages - 1; ++j) dense_[k] += K::kDense[k][j] * g_[j];
+    }
   }
 
   /// State at a time within the step just done.
   void calc_state(double t, State& x, const State& x_old, double t_old, const State& x_new,
                   double t_new) const {
     const double s = (t - t_old) / (t_new - t_old);
-    x = x_old * (1.0 - s) + s * (x_new + (1.0 - s) * (cont3_ + s * cont4_));
+    x = x_old * (1.0 - s) + s * (x_new + (1.0 - s) * (dense_[0] + s * dense_[1]));
   }
 
  private:
-  static constexpr double kGamma = 0.25;
-  static constexpr double kD1 = 0.25;
-  static constexpr double kD2 = -0.1043;
-  static constexpr double kD3 = 0.1035;
-  static constexpr double kD4 = -0.0362;
-
   void factorise(const Eigen::Matrix<double, N, N>& jacobian, double dt) {
     Eigen::Matrix<double, N, N> w = -jacobian;
-    w.diagonal().array() += 1.0 / (kGamma * dt);
+    w.diagonal().array() += 1.0 / (K::kGamma * dt);
     inverse_ = w.inverse();
   }
 
@@ -115,7 +129,8 @@ class Rosenbrock {
   }
 
   Eigen::Matrix<double, N, N> inverse_;
-  State g1_, g2_, g3_, g4_, g5_, cont3_, cont4_;
+  State g_[K::kStages];
+  State dense_[2];
 };
 
 }  // namespace rigcal::model
