@@ -7,6 +7,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -267,8 +268,18 @@ std::string mismatch(const Unit& from, std::string_view from_text, const Unit& t
                          : fmt::format("'{}' has another dimension", from_text);
 }
 
+/// A factor between units is nearly always a short decimal; the rounding of its own computation is
+/// taken back, so that "1 kHz" is 1000 Hz and not 999.9999999999999.
+double without_rounding(double factor) {
+  const std::string digits = fmt::format("{:.13e}", factor);
+  double rounded = factor;
+  std::from_chars(digits.data(), digits.data() + digits.size(), rounded);
+  const double few_ulps = 4.0 * std::numeric_limits<double>::epsilon() * std::abs(factor);
+  return std::abs(rounded - factor) <= few_ulps ? rounded : factor;
+}
+
 UnitConversion conversion(const Unit& from, const Unit& to) {
-  return {from.scale / to.scale, (from.offset - to.offset) / to.scale};
+  return {without_rounding(from.scale / to.scale), (from.offset - to.offset) / to.scale};
 }
 
 /// A number and what stands behind it.

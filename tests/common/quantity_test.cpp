@@ -102,6 +102,7 @@ TEST_CASE("parse_quantity: Hz and rad/s convert by 2 pi", "[common]") {
   CHECK_THAT(parse_quantity("1 rad/s", "Hz"), WithinRel(0.5 / kPi, kRounding));
   CHECK(parse_quantity("0.1 Hz", "Hz") == 0.1);
   CHECK(parse_quantity("400 rad/s", "rad/s") == 400.0);
+  CHECK(parse_quantity("1 kHz", "Hz") == 1000.0);
   CHECK_THAT(parse_quantity("2 kHz", "rad/s"), WithinRel(4000.0 * kPi, kRounding));
   CHECK_THAT(parse_quantity("3 hertz", "rad/s"), WithinRel(6.0 * kPi, kRounding));
   CHECK_THAT(parse_quantity("60 rpm", "Hz"), WithinRel(1.0, kRounding));
