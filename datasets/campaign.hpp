@@ -31,7 +31,9 @@ struct Prior {
 struct ParameterSetting {
   int index = 0;       ///< row of the plant's parameter table
   double value = 0.0;  ///< the known value, or the start of a fitted one
-  double lower = 0.0;  ///< bounds of the fit; meaningless unless `fit`
+  /// Bounds of the fit. Where the campaign gives none: value/10 to 10 value within the parameter's
+  /// limits (its limits where the value is 0). NaN: not given, and not `fit`.
+  double lower = 0.0;
   double upper = 0.0;
   bool fit = false;
   Scope scope = Scope::rig;
@@ -49,9 +51,9 @@ enum class Interpolation { hold, linear };
 /// One entry of [recording.channels].
 struct ChannelSetting {
   Channel channel = Channel::position;
-  std::string column;
-  UnitConversion to_si;          ///< unit of the file -> SI, gain and offset of the channel included
-  std::optional<double> sd;      ///< of the samples in the file, SI
+  std::string column;        ///< empty: only where `columns` of a repeat names one
+  UnitConversion to_si;      ///< SI = conversion(gain * raw + offset), from the file's number
+  std::optional<double> sd;  ///< of the samples in the file, SI, after `gain`
   ChannelRole role = ChannelRole::output;
   Interpolation interpolation = Interpolation::hold;
 };
@@ -65,8 +67,8 @@ std::string_view to_string(Use use);
 /// One item of `repeats`: files (a pattern with * and ?), or columns of one file.
 struct RepeatPattern {
   std::string file;
-  std::vector<std::string> numbers;         ///< what {n} stands for; empty: one repeat per file
-  std::map<Channel, std::string> columns;   ///< over the columns of the channels; {n} replaced
+  std::vector<std::string> numbers;        ///< what {n} stands for; empty: one repeat per file
+  std::map<Channel, std::string> columns;  ///< over the columns of the channels; {n} replaced
 };
 
 struct TimeWindow {
@@ -84,11 +86,11 @@ struct Condition {
   std::optional<double> amplitude;         ///< [m], or [V] where no controller is in the loop
   std::optional<std::string> leak_level;
   Use use = Use::fit;
-  Overrides overrides;                     ///< `parameters` and `controller` of this condition
+  Overrides overrides;  ///< `parameters` and `controller` of this condition
   std::vector<RepeatPattern> repeats;
-  std::optional<std::string> averaged;     ///< file that is averaged already
+  std::optional<std::string> averaged;  ///< file that is averaged already
   int repeats_averaged = 1;
-  std::vector<TimeWindow> windows;         ///< empty: the whole record counts
+  std::vector<TimeWindow> windows;  ///< empty: the whole record counts
   std::optional<double> duration_s;
   std::optional<double> sample_rate_hz;
   std::optional<double> temperature_k;
@@ -123,20 +125,20 @@ struct FitSettings {
 
 /// [synthetic]: a known rig and what disturbs its records.
 struct SyntheticSettings {
-  Overrides parameters;                                ///< the truth, over the campaign's values
-  std::map<std::string, Overrides> level_parameters;   ///< [synthetic.leak_level."..."]
+  Overrides parameters;                               ///< the truth, over the campaign's values
+  std::map<std::string, Overrides> level_parameters;  ///< [synthetic.leak_level."..."]
   int repeats = 5;
-  double duration_s = 0.0;                             ///< where a condition has none; 0: none
+  double duration_s = 0.0;  ///< where a condition has none; 0: none
   double sample_rate_hz = 0.0;
-  std::map<Channel, double> noise_sd;                  ///< white, of one repeat, SI
-  std::map<Channel, double> ar1_sd;                    ///< stationary sd of an AR(1) noise, SI
-  double ar1_coefficient = 0.9;                        ///< per sample
-  std::map<Channel, double> quantisation;              ///< step of the converter, SI
-  std::map<Channel, double> drift;                     ///< linear, over the record, random sign, SI
-  double trigger_jitter_s = 0.0;                       ///< sd of the start of each repeat
-  double supply_ripple_pa = 0.0;                       ///< amplitude
+  std::map<Channel, double> noise_sd;      ///< white, of one repeat, SI
+  std::map<Channel, double> ar1_sd;        ///< stationary sd of an AR(1) noise, SI
+  double ar1_coefficient = 0.9;            ///< per sample
+  std::map<Channel, double> quantisation;  ///< step of the converter, SI
+  std::map<Channel, double> drift;         ///< linear, over the record, random sign, SI
+  double trigger_jitter_s = 0.0;           ///< sd of the start of each repeat
+  double supply_ripple_pa = 0.0;           ///< amplitude
   double supply_ripple_hz = 50.0;
-  std::map<int, double> variation;                     ///< relative sd between repeats, by parameter
+  std::map<int, double> variation;  ///< relative sd between repeats, by parameter
 };
 
 struct SimulationSettings {
@@ -150,7 +152,7 @@ struct Campaign {
   std::filesystem::path file;
   std::filesystem::path data_dir;  ///< where relative record paths start
   std::string name;
-  bool synthetic = false;          ///< its records were made by `rigcal synthesize`
+  bool synthetic = false;  ///< its records were made by `rigcal synthesize`
   model::Rig rig;
   std::vector<ParameterSetting> parameters;
   std::map<std::string, Overrides> leak_levels;
@@ -180,13 +182,19 @@ Campaign load_campaign(const std::filesystem::path& file,
                        const std::filesystem::path& data_dir = {});
 
 /// Changes a value as `--set name="value unit"` does (a fitted parameter stays fitted, from there).
-/// @throws UsageError  unknown name, wrong unit, value outside the parameter's limits
+/// @throws UsageError  unknown name, wrong unit, value outside the parameter's limits or bounds, or
+///                     of no effect because every condition has its own
 void set_value(Campaign& campaign, std::string_view assignment);
 
 /// Makes exactly these parameters free, as `--free a,b` does. Bounds that the campaign does not
 /// give are value/10 to 10 value within the parameter's limits (its limits where the value is 0).
 /// @throws UsageError  unknown name, or a parameter that cannot be fitted
 void set_free(Campaign& campaign, const std::vector<std::string>& names);
+
+/// Checks that the values still belong together; call it after the last set_value() and set_free(),
+/// since one alone may leave a pair half given.
+/// @throws UsageError  naming the condition and what is missing or contradicts
+void check_values(const Campaign& campaign);
 
 /// Values that hold in a condition: rig, then its leak level, then its own.
 model::ParameterValues values_in(const Campaign& campaign, const Condition& condition);
@@ -212,8 +220,13 @@ model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& con
 std::vector<double> sample_times(const Condition& condition, const Record* record);
 
 /// The campaign file with known values in place of starts: what `fitted.toml` holds. `values` are
-/// (table index, level or condition or empty for the rig, SI value). Relative record paths are
-/// rewritten so that they hold from `out_dir`.
+/// (table index, level or condition or empty for the rig, SI value). Nuisance parameters stay free;
+/// a start goes where every condition has a value of its own; what --set and --free changed is
+/// written too. Relative record paths are rewritten so that they hold from `out_dir`. Comments of
+/// the file are lost, its order is kept.
+///
+/// @throws InputError             the campaign file is gone or was changed into a wrong one
+/// @throws std::invalid_argument  a value for a condition that is not there
 struct FittedValue {
   int index = 0;
   Scope scope = Scope::rig;
