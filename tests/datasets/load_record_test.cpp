@@ -1,0 +1,156 @@
+#include "datasets/load_record.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "common/error.hpp"
+#include "common/file.hpp"
+
+using namespace rigcal::datasets;
+using Catch::Contains;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Record files of one test case, gone at its end.
+class Files {
+ public:
+  explicit Files(const std::string& name) : path_(fs::temp_directory_path() / name) {
+    fs::remove_all(path_);
+  }
+  ~Files() { fs::remove_all(path_); }
+  Files(const Files&) = delete;
+  Files& operator=(const Files&) = delete;
+  void write(const std::string& name, const std::string& text) const {
+    rigcal::write_file_atomically(path_ / name, text);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// A campaign as the loader would make it: position in mm, pressure in bar, time in ms.
+Campaign campaign_in(const Files& files) {
+  Campaign campaign;
+  campaign.file = files.path() / "campaign.toml";
+  campaign.data_dir = files.path();
+  campaign.time_column = "t";
+  campaign.time_to_s = {1e-3, 0.0};
+  campaign.alignment = Alignment::none;
+  ChannelSetting position;
+  position.channel = Channel::position;
+  position.column = "x";
+  position.to_si = {1e-3, 0.5};
+  campaign.channels[Channel::position] = position;
+  ChannelSetting pressure;
+  pressure.channel = Channel::pressure_a;
+  pressure.to_si = {1e5, 0.0};
+  campaign.channels[Channel::pressure_a] = pressure;
+  return campaign;
+}
+
+Condition condition_of(const std::string& id, const std::string& pattern) {
+  Condition condition;
+  condition.id = id;
+  condition.repeats.push_back({pattern, {}, {}});
+  condition.where = {"campaign.toml", 12, 1};
+  return condition;
+}
+
+}  // namespace
+
+TEST_CASE("load_record: columns become SI channels, repeats a mean", "[datasets]") {
+  const Files files("rigcal_load_record_si");
+  files.write("a_1.csv", "t,x,other\n0,1,a\n10,2,b\n20,4,c\n");
+  files.write("a_2.csv", "t,x,other\n0,3,a\n10,2,b\n20,8,c\n");
+  const Record record = load_record(campaign_in(files), condition_of("a", "a_*.csv"));
+  CHECK(record.condition == "a");
+  CHECK(record.repeats == 2);
+  REQUIRE(record.time_s.size() == 3);
+  CHECK_THAT(record.time_s[2], WithinAbs(0.02, 1e-15));
+  const Series& position = record.channels.at(Channel::position);
+  CHECK_THAT(position.mean[0], WithinAbs(0.502, 1e-15));
+  CHECK_THAT(position.mean[2], WithinAbs(0.506, 1e-15));
+  CHECK_THAT(position.sd[2], WithinRel(std::sqrt(8.0) * 1e-3, 1e-9));
+  CHECK(record.files == std::vector<std::string>{(files.path() / "a_1.csv").string(),
+                                                 (files.path() / "a_2.csv").string()});
+  REQUIRE(record.repeat_reports.size() == 2);
+  CHECK(record.repeat_reports[1].source == "a_2.csv");
+  CHECK(record.channels.count(Channel::pressure_a) == 0);  // no repeat carries it
+}
+
+TEST_CASE("load_record: columns of one file as repeats with different channels", "[datasets]") {
+  const Files files("rigcal_load_record_columns");
+  files.write("all.csv", "t,x1,x2,p1\n0,1,3,5\n10,2,2,6\n20,4,8,7\n");
+  Condition condition;
+  condition.id = "steps";
+  condition.repeats.push_back(
+      {"all.csv", {"1"}, {{Channel::position, "x{n}"}, {Channel::pressure_a, "p{n}"}}});
+  condition.repeats.push_back({"all.csv", {"2"}, {{Channel::position, "x{n}"}}});
+  const Record record = load_record(campaign_in(files), condition);
+  CHECK(record.channels.at(Channel::position).repeats == 2);
+  CHECK(record.channels.at(Channel::pressure_a).repeats == 1);
+  CHECK_THAT(record.channels.at(Channel::pressure_a).mean[2], WithinAbs(7e5, 1e-6));
+  CHECK(record.files.size() == 1);
+}
+
+TEST_CASE("load_record: an averaged file keeps the sd of its samples", "[datasets]") {
+  const Files files("rigcal_load_record_averaged");
+  files.write("mean.csv", "t,x\n0,1\n10,2\n");
+  Campaign campaign = campaign_in(files);
+  campaign.channels[Channel::position].sd = 2e-5;
+  Condition condition;
+  condition.id = "a";
+  condition.averaged = "mean.csv";
+  condition.repeats_averaged = 5;
+  const Record record = load_record(campaign, condition);
+  CHECK(record.repeats == 5);
+  CHECK(record.channels.at(Channel::position).sd_of_mean == 2e-5);
+  CHECK(record.channels.at(Channel::position).repeats == 5);
+}
+
+TEST_CASE("load_record: repeats that do not belong together name their condition", "[datasets]") {
+  const Files files("rigcal_load_record_errors");
+  files.write("a_1.csv", "t,x\n0,1\n10,2\n20,4\n");
+  files.write("a_2.csv", "t,x\n0,1\n25,2\n50,4\n");
+  try {
+    load_record(campaign_in(files), condition_of("a", "a_*.csv"));
+    FAIL("no error");
+  } catch (const rigcal::InputError& error) {
+    CHECK_THAT(error.what(), Contains("campaign.toml:12:1") && Contains("\"a\"") &&
+                                 Contains("a_1.csv") && Contains("a_2.csv"));
+  }
+  Condition none;
+  none.id = "none";
+  CHECK_THROWS_AS(load_record(campaign_in(files), none), rigcal::InputError);
+  files.write("b.csv", "t,y\n0,1\n");
+  CHECK_THROWS_WITH(load_record(campaign_in(files), condition_of("b", "b.csv")),
+                    Contains("b.csv") && Contains("x"));
+  Campaign timeless = campaign_in(files);
+  timeless.time_column.clear();
+  CHECK_THROWS_WITH(load_record(timeless, condition_of("a", "a_1.csv")), Contains("time"));
+}
+
+TEST_CASE("load_records: the campaign's order, the uses asked for, any threads", "[datasets]") {
+  const Files files("rigcal_load_records");
+  Campaign campaign = campaign_in(files);
+  for (const std::string id : {"d", "c", "b", "a"}) {
+    files.write(id + ".csv", "t,x\n0,1\n10,2\n");
+    campaign.conditions.push_back(condition_of(id, id + ".csv"));
+  }
+  campaign.conditions[1].use = Use::validate;
+  campaign.conditions[2].use = Use::ignore;
+  for (const int threads : {1, 3}) {
+    const auto records = load_records(campaign, {Use::fit, Use::validate}, threads);
+    REQUIRE(records.size() == 3);
+    CHECK(records[0].condition == "d");
+    CHECK(records[1].condition == "c");
+    CHECK(records[2].condition == "a");
+  }
+  CHECK(load_records(campaign, {Use::diagnose}, 2).empty());
+}
