@@ -45,7 +45,8 @@ X integral_rate(const X& error_m, const ControllerOutput<X>& u, const P& p) {
 }
 
 /// One tick of the sampled controller: the filter by backward Euler, the output held until the next
-/// tick, the integral advanced by forward Euler with the same back-calculation.
+/// tick, the integral advanced by forward Euler with the same back-calculation, which reaches the
+/// limit within one period at the fastest and so cannot overshoot it.
 template <typename X, typename State, typename P>
 void controller_tick(const X& error_m, State& state, const P& p, const Layout& layout) {
   const double period_s = value_of(p.sample_time_s);
@@ -57,7 +58,9 @@ void controller_tick(const X& error_m, State& state, const P& p, const Layout& l
   const ControllerOutput<X> u = controller_output(error_m, state, p, layout);
   if (layout.integral >= 0) {
     auto& integral = state[static_cast<std::size_t>(layout.integral)];
-    integral = integral + integral_rate(error_m, u, p) * period_s;
+    auto pull = anti_windup_rate(p) * period_s;
+    if (value_of(pull) > 1.0) pull = 1.0;
+    integral = integral + error_m * (p.ki_v_per_m_s * period_s) + (u.limited - u.wanted) * pull;
   }
   state[static_cast<std::size_t>(layout.held)] = u.limited;
 }

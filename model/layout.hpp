@@ -11,10 +11,11 @@ struct Layout {
   int valve_order = 0;  ///< 0: spool follows the command; 1, 2: lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
   bool pid = false;
-  int integral = -1;      ///< integral action [V]
-  int filter = -1;        ///< filtered error [m]
-  int held = -1;          ///< output of a sampled controller, held [V]
-  bool friction = false;  ///< a dry-friction term was given
+  int integral = -1;                    ///< integral action [V]
+  int filter = -1;                      ///< filtered error [m]
+  int held = -1;                        ///< output of a sampled controller, held [V]
+  bool friction = false;                ///< a dry-friction term was given
+  bool initial_pressure_given = false;  ///< else the load pressure starts in equilibrium
   int states = 0;
 
   bool sampled() const { return held >= 0; }
@@ -38,6 +39,7 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, int plant
     if (values.is_given("sample_time")) layout.held = next++;
   }
   layout.friction = values.is_given("coulomb_friction") || values.is_given("stribeck_friction");
+  layout.initial_pressure_given = values.is_given("initial_load_pressure");
   layout.states = next;
   return layout;
 }

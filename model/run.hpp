@@ -19,7 +19,7 @@ namespace rigcal::model {
 
 /// Walks a system from the first sample to the last: steps under error control, each ending at the
 /// next breakpoint of an input or tick of the controller at the latest, samples read from the dense
-/// output in between.
+/// output in between. Inside, time counts from the first sample.
 ///
 /// @tparam Stepper  Rosenbrock or DormandPrince
 template <typename Plant, int N, int P, template <int, int> class Stepper>
@@ -31,12 +31,13 @@ class Run {
 
   Run(Sys system, const std::array<double, static_cast<std::size_t>(P)>& parameter_scale,
       std::span<const double> times_s, std::span<const Output> outputs,
-      const SimulationOptions& options)
+      const SimulationOptions& options, std::chrono::steady_clock::time_point started)
       : system_(std::move(system)),
         norm_(floors(), parameter_scale, options.tolerance),
         times_s_(times_s),
         outputs_(outputs),
         options_(options),
+        started_(started),
         observed_(outputs.size()) {
     period_s_ = system_.layout().sampled() ? value_of(system_.parameters().sample_time_s)
                                            : std::numeric_limits<double>::infinity();
@@ -47,16 +48,14 @@ class Run {
   /// Writes the outputs of every sample into `result` (matrices already sized); columns
   /// [first_column, first_column + columns) of the sensitivities.
   void operator()(InitialState initial, Simulation& result, int first_column, int columns) {
-    const double t_first = times_s_.front();
-    const double t_last = times_s_.back();
-    double t = t_first;
+    const double t_last = sample_time(times_s_.size() - 1);
+    double t = 0.0;
     State x = system_.initial(initial, t);
     if (system_.layout().sampled()) system_.tick(x, t);
     norm_.see(x);
-    double h = first_step(x, t, t_last - t_first);
+    double h = first_step(x, t, t_last);
     std::size_t next_sample = 0;
     long tick_count = 1;
-    const auto start = std::chrono::steady_clock::now();
 
     const auto emit = [&](const State& state, double time) {
       system_.observe(state, time, outputs_, observed_);
@@ -64,13 +63,13 @@ class Run {
     };
 
     while (next_sample < times_s_.size()) {
-      const double next_tick = t_first + static_cast<double>(tick_count) * period_s_;
+      const double next_tick = static_cast<double>(tick_count) * period_s_;
       double stop = std::min(t_last, next_tick);
       for_each_track([&stop](InputTrack& track) { stop = std::min(stop, track.segment_end()); });
 
       // Smooth stretch up to the next event.
       while (t < stop) {
-        while (next_sample < times_s_.size() && at(times_s_[next_sample], t)) emit(x, t);
+        while (next_sample < times_s_.size() && at(sample_time(next_sample), t)) emit(x, t);
         Linearisation<N, P> lin = system_.linearise(x, t);
         double error = 0.0;
         double t_new = t;
@@ -78,7 +77,7 @@ class Run {
         State x_err;
         double step = 0.0;
         for (bool accepted = false; !accepted;) {
-          if (!within_budget(result, start, t)) return;
+          if (!within_budget(result, t)) return;
           step = std::min(h, h_max_);
           t_new = t + step;
           if (t_new > stop - 1e-3 * step) {
@@ -101,7 +100,7 @@ class Run {
           } else {
             ++result.rejected_steps;
             h = step * std::min(factor, 0.9);
-            if (h < 1e-13 * std::max(std::abs(t), 1e-3)) {
+            if (h < 16.0 * kEpsilon * std::max(t, 1e-3)) {
               fail(result, finite ? SimulationStatus::step_too_small : SimulationStatus::not_finite,
                    t,
                    finite ? fmt::format("error control asks for steps below {:.1e} s", h)
@@ -110,15 +109,17 @@ class Run {
             }
           }
         }
-        if (next_sample < times_s_.size() && times_s_[next_sample] < t_new &&
-            !at(times_s_[next_sample], t_new)) {
+        const auto inside = [&] {
+          return next_sample < times_s_.size() && sample_time(next_sample) < t_new &&
+                 !at(sample_time(next_sample), t_new);
+        };
+        if (inside()) {
           stepper_.prepare_dense_output();
           State between;
-          while (next_sample < times_s_.size() && times_s_[next_sample] < t_new &&
-                 !at(times_s_[next_sample], t_new)) {
-            const double sample_time = times_s_[next_sample];
-            stepper_.calc_state(sample_time, between, x, t, x_new, t_new);
-            emit(between, sample_time);
+          while (inside()) {
+            const double time = sample_time(next_sample);
+            stepper_.calc_state(time, between, x, t, x_new, t_new);
+            emit(between, time);
           }
         }
         x = x_new;
@@ -132,11 +133,13 @@ class Run {
         system_.tick(x, t);
         ++tick_count;
       }
-      while (next_sample < times_s_.size() && at(times_s_[next_sample], t)) emit(x, t);
+      while (next_sample < times_s_.size() && at(sample_time(next_sample), t)) emit(x, t);
     }
   }
 
  private:
+  static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+
   static Eigen::Matrix<double, N, 1> floors_of(const Layout& layout) {
     Eigen::Matrix<double, N, 1> floor;
     floor.setConstant(1e-3);  // volts
@@ -156,10 +159,15 @@ class Run {
     if (system_.supply_pressure()) f(*system_.supply_pressure());
   }
 
-  /// Sample times and edges are rounded: closer than this is the same instant.
-  static bool at(double a, double b) {
-    return std::abs(a - b) <= 1e-12 * std::max(1.0, std::abs(b));
+  double sample_time(std::size_t sample) const { return times_s_[sample] - times_s_.front(); }
+
+  /// Sample times and edges are rounded: closer than this is the same instant. A nanosecond at
+  /// most, unless the time stamps themselves are coarser.
+  double same_instant() const {
+    const double longest = std::max({1.0, std::abs(times_s_.front()), std::abs(times_s_.back())});
+    return std::max(std::min(1e-12 * longest, 1e-9), 8.0 * kEpsilon * longest);
   }
+  bool at(double a, double b) const { return std::abs(a - b) <= same_instant_s_; }
 
   /// A first step from the slope of the state; the error control takes it from there.
   double first_step(const State& x, double t, double span) const {
@@ -180,20 +188,19 @@ class Run {
         x.col(1 + delay) += (before - system_.derivative(x, t)).col(0);
       }
     }
-    for_each_track([t](InputTrack& track) { advance(track, t); });
+    for_each_track([this, t](InputTrack& track) { advance(track, t); });
   }
 
-  static void advance(InputTrack& track, double t) {
+  void advance(InputTrack& track, double t) const {
     while (passed(track, t)) track.next_segment();
   }
 
-  static bool passed(const InputTrack& track, double t) {
+  bool passed(const InputTrack& track, double t) const {
     const double end = track.segment_end();
     return end <= t || at(end, t);
   }
 
-  bool within_budget(Simulation& result, std::chrono::steady_clock::time_point start,
-                     double t) const {
+  bool within_budget(Simulation& result, double t) const {
     const long taken = result.steps + result.rejected_steps;
     if (taken >= options_.max_steps) {
       fail(result, SimulationStatus::too_many_steps, t,
@@ -205,7 +212,7 @@ class Run {
         fail(result, SimulationStatus::cancelled, t, "stopped on request");
         return false;
       }
-      const std::chrono::duration<double> used = std::chrono::steady_clock::now() - start;
+      const std::chrono::duration<double> used = std::chrono::steady_clock::now() - started_;
       if (used.count() > options_.max_seconds) {
         fail(result, SimulationStatus::out_of_time, t,
              fmt::format("{:g} s of computing were not enough", options_.max_seconds));
@@ -215,9 +222,9 @@ class Run {
     return true;
   }
 
-  static void fail(Simulation& result, SimulationStatus status, double t, std::string reason) {
+  void fail(Simulation& result, SimulationStatus status, double t, std::string reason) const {
     result.status = status;
-    result.failed_at_s = t;
+    result.failed_at_s = times_s_.front() + t;
     result.reason = std::move(reason);
   }
 
@@ -240,10 +247,12 @@ class Run {
   std::span<const double> times_s_;
   std::span<const Output> outputs_;
   const SimulationOptions& options_;
+  std::chrono::steady_clock::time_point started_;
   std::vector<C> observed_;
   Stepper<N, P> stepper_;
   double period_s_ = 0.0;
   double h_max_ = 0.0;
+  double same_instant_s_ = same_instant();
 };
 
 }  // namespace rigcal::model

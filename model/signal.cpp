@@ -16,6 +16,12 @@ constexpr double kEdgeTolerance = 1e-9;
 /// Steps per period that no step may exceed, so that none skips an oscillation.
 constexpr double kStepsPerPeriod = 8.0;
 
+void require_frequency(double frequency_hz) {
+  if (!(frequency_hz >= 0.0 && std::isfinite(frequency_hz))) {
+    throw std::invalid_argument("Signal: a frequency must be finite and not negative");
+  }
+}
+
 void require_samples(const std::vector<double>& time_s, const std::vector<double>& value) {
   if (time_s.empty() || time_s.size() != value.size()) {
     throw std::invalid_argument("Signal: times and values must have the same size, at least 1");
@@ -40,6 +46,7 @@ Signal Signal::sine(double amplitude, double frequency_hz) {
 }
 
 Signal Signal::ripple(double offset, double amplitude, double frequency_hz, double phase_rad) {
+  require_frequency(frequency_hz);
   Signal s;
   s.kind_ = Kind::sine;
   s.offset_ = offset;
@@ -50,6 +57,7 @@ Signal Signal::ripple(double offset, double amplitude, double frequency_hz, doub
 }
 
 Signal Signal::square(double amplitude, double frequency_hz) {
+  require_frequency(frequency_hz);
   Signal s;
   s.kind_ = Kind::square;
   s.amplitude_ = amplitude;
@@ -59,6 +67,8 @@ Signal Signal::square(double amplitude, double frequency_hz) {
 
 Signal Signal::chirp(double amplitude, double start_hz, double end_hz, double sweep_s,
                      bool logarithmic) {
+  require_frequency(start_hz);
+  require_frequency(end_hz);
   if (!(sweep_s > 0.0)) throw std::invalid_argument("Signal::chirp: sweep_s must be positive");
   if (logarithmic && !(start_hz > 0.0 && end_hz > 0.0)) {
     throw std::invalid_argument("Signal::chirp: a logarithmic sweep needs positive frequencies");

@@ -31,11 +31,14 @@ constexpr std::array kOutputNames{
 };
 
 /// The first parameter in use that is not finite or outside its limits, in words; empty if none.
-std::string bad_parameter(const ParameterValues& values) {
+/// A second-order valve needs its damping ratio and a derivative its filter: neither has a default.
+std::string bad_parameter(const ParameterValues& values, const Layout& layout) {
   const auto table = parameter_table(values.plant);
   for (std::size_t i = 0; i < table.size(); ++i) {
     const ParameterSpec& spec = table[i];
-    const bool in_use = values.given[i] || spec.kind == ParameterKind::plant;
+    const bool in_use = values.given[i] || spec.kind == ParameterKind::plant ||
+                        (layout.valve_order == 2 && spec.key == "valve_damping_ratio") ||
+                        (layout.filter >= 0 && spec.key == "derivative_filter");
     if (!in_use) continue;
     const double v = values.value[i];
     if (!(v >= spec.lower && v <= spec.upper)) {
@@ -107,11 +110,14 @@ void SimulationOptions::validate() const {
 Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
                     const SimulationInputs& inputs, std::span<const double> times_s,
                     std::span<const Output> outputs, const SimulationOptions& options) {
+  const auto started = std::chrono::steady_clock::now();
   options.validate();
   const auto table = parameter_table(rig.plant);
   require(parameters.plant == rig.plant && parameters.value.size() == table.size(),
           "parameters belong to another plant");
   require(!times_s.empty(), "no sample times");
+  require(std::isfinite(times_s.front()) && std::isfinite(times_s.back()),
+          "sample times must be finite");
   for (std::size_t i = 1; i < times_s.size(); ++i) {
     require(times_s[i] > times_s[i - 1], "sample times must increase");
   }
@@ -121,7 +127,8 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
   }
 
   Simulation result;
-  result.reason = bad_parameter(parameters);
+  const Layout layout = layout_of(rig, parameters, LoadPressurePlant::kStates);
+  result.reason = bad_parameter(parameters, layout);
   if (!result.reason.empty()) {
     result.status = SimulationStatus::bad_parameters;
     result.failed_at_s = times_s.front();
@@ -131,8 +138,8 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
   result.outputs.setZero(samples, static_cast<Eigen::Index>(outputs.size()));
   result.sensitivities.assign(
       outputs.size(), Eigen::MatrixXd::Zero(samples, static_cast<Eigen::Index>(free.size())));
-  const Layout layout = layout_of(rig, parameters, LoadPressurePlant::kStates);
-  dispatch({layout, rig.initial, parameters, free, inputs, times_s, outputs, options}, result);
+  dispatch({layout, rig.initial, parameters, free, inputs, times_s, outputs, options, started},
+           result);
   if (result.ok() && !result.outputs.allFinite()) {
     result.status = SimulationStatus::not_finite;
     result.failed_at_s = times_s.back();

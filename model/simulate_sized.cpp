@@ -45,7 +45,7 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
                              track(request.inputs.drive, request.parameters["transport_delay"]),
                              std::move(force), std::move(supply));
   Run<Plant, N, P, Stepper> run(std::move(system), scale, request.times_s, request.outputs,
-                                request.options);
+                                request.options, request.started);
   run(request.initial, result, first, count);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <span>
 
 #include "model/layout.hpp"
@@ -21,6 +22,7 @@ struct SizedRequest {
   std::span<const double> times_s;
   std::span<const Output> outputs;
   const SimulationOptions& options;
+  std::chrono::steady_clock::time_point started;  ///< from when max_seconds counts
 };
 
 template <int N>

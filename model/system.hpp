@@ -170,12 +170,17 @@ class System {
     States states;
     states.fill(C(0.0));
     if (mode == InitialState::given) {
-      const auto plant = Plant::initial(parameters_);
+      const auto plant = Plant::initial(parameters_, layout_.initial_pressure_given);
       for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
       // The loop was closed before the record began: no kick of the derivative, spool at rest.
       const C drive = input_value<C>(drive_.sample(t), true);
       if (layout_.filter >= 0) {
         states[static_cast<std::size_t>(layout_.filter)] = drive - plant[Plant::position];
+      }
+      if (layout_.sampled()) {
+        states[static_cast<std::size_t>(layout_.held)] =
+            controller_output(C(drive - plant[Plant::position]), states, parameters_, layout_)
+                .limited;
       }
       if (layout_.valve_order > 0) {
         states[static_cast<std::size_t>(layout_.valve)] = valve_command(states, drive);
