@@ -1,5 +1,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "tests/datasets/campaign_fixture.hpp"
 
@@ -334,4 +336,17 @@ TEST_CASE("set_free: refuses and leaves the campaign as it was", "[datasets]") {
   CHECK(setting_of(campaign, "damping").fit);
   CHECK(campaign.setting(model::parameter_index(campaign.rig.plant, "valve_time_constant")) ==
         nullptr);
+}
+
+TEST_CASE("load_campaign: the example of the documentation", "[datasets]") {
+  std::ifstream in(std::string(RIGCAL_SOURCE_DIR) + "/docs/campaign-file.md");
+  const std::string document(std::istreambuf_iterator<char>(in), {});
+  const std::string fence = "```toml\n";
+  const std::size_t begin = document.find(fence);
+  REQUIRE(begin != std::string::npos);
+  const std::size_t end = document.find("```", begin + fence.size());
+  const Campaign campaign =
+      load_text(document.substr(begin + fence.size(), end - begin - fence.size()));
+  CHECK(campaign.conditions.size() == 1);
+  CHECK(setting_of(campaign, "mass").fit);
 }
