@@ -197,8 +197,9 @@ Campaign true_campaign(const Campaign& campaign) {
   Campaign truth = campaign;
   if (!campaign.synthetic_settings) return truth;
   for (const auto& [index, value] : campaign.synthetic_settings->parameters) {
+    const int row = index;  // clang 14 cannot capture a structured binding
     const auto found = std::find_if(truth.parameters.begin(), truth.parameters.end(),
-                                    [&](const auto& setting) { return setting.index == index; });
+                                    [&](const auto& setting) { return setting.index == row; });
     if (found == truth.parameters.end()) {
       ParameterSetting added;
       added.index = index;
