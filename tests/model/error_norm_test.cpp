@@ -1,0 +1,63 @@
+#include "model/error_norm.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+using namespace rigcal::model;
+using Catch::WithinRel;
+
+namespace {
+
+constexpr double kTolerance = 1e-4;
+using Norm = ErrorNorm<2, 1>;
+using State = Norm::State;
+
+State state(double x, double x_p, double y, double y_p) {
+  State s;
+  s << x, x_p, y, y_p;
+  return s;
+}
+Norm norm() { return {Eigen::Vector2d(1e-6, 100.0), {2.0}, kTolerance}; }
+
+}  // namespace
+
+TEST_CASE("error_norm: each state against its own running peak", "[model]") {
+  Norm n = norm();
+  n.see(state(0.5, 0.0, 2e6, 0.0));
+  n.see(state(0.1, 0.0, 1e6, 0.0));
+  const State now = state(0.1, 0.0, 1e6, 0.0);
+  const double e = n(state(0.5 * kTolerance, 0.0, 0.0, 0.0), now);
+  CHECK_THAT(e, WithinRel(std::sqrt(0.5), 1e-14));  // one state of two at its tolerance
+  CHECK_THAT(n(state(0.0, 0.0, 2e6 * kTolerance, 0.0), now), WithinRel(std::sqrt(0.5), 1e-14));
+  // A new value above the peak counts at once.
+  CHECK_THAT(n(state(kTolerance, 0.0, 0.0, 0.0), state(1.0, 0.0, 0.0, 0.0)),
+             WithinRel(std::sqrt(0.5), 1e-14));
+}
+
+TEST_CASE("error_norm: a state at rest counts from its floor", "[model]") {
+  CHECK_THAT(norm()(state(1e-6 * kTolerance, 0.0, 0.0, 0.0), State::Zero()),
+             WithinRel(std::sqrt(0.5), 1e-14));
+}
+
+TEST_CASE("error_norm: the worst of state and sensitivities rules", "[model]") {
+  Norm n = norm();
+  n.see(state(1.0, 3.0, 1e6, 0.0));
+  const double state_error = 0.1 * kTolerance;
+  const double e = n(state(state_error, 3.0 * kTolerance * 10.0, 0.0, 0.0), State::Zero());
+  CHECK_THAT(e, WithinRel(std::sqrt(0.5), 1e-14));  // at the ten times looser tolerance
+  // A sensitivity that is still zero: one hundredth of state / parameter is its floor.
+  Norm fresh = norm();
+  fresh.see(state(1.0, 0.0, 1e6, 0.0));
+  CHECK_THAT(fresh(state(0.0, 10.0 * kTolerance * 0.01 * 1.0 / 2.0, 0.0, 0.0), State::Zero()),
+             WithinRel(std::sqrt(0.5), 1e-14));
+}
+
+TEST_CASE("error_norm: what is not a number is not accepted", "[model]") {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double bad : {kNaN, kInfinity}) {
+    CHECK_FALSE(std::isfinite(norm()(state(bad, 0.0, 0.0, 0.0), State::Zero())));
+    CHECK_FALSE(std::isfinite(norm()(state(0.0, 0.0, 0.0, bad), State::Zero())));
+  }
+}

@@ -1,0 +1,77 @@
+#include "model/terms.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace rigcal::model;
+using Catch::WithinRel;
+
+namespace {
+
+using D = Dual<double, 1>;
+constexpr double kSupply = 6.2e6;
+constexpr double kCd = 0.6;
+constexpr double kWidth = 0.02075;
+constexpr double kRho = 847.0;
+constexpr double kEps = 100.0;
+
+template <typename X>
+X servo(const X& spool, const X& load_pressure) {
+  return servo_flow(spool, load_pressure, kSupply, kCd, kWidth, kRho, kEps);
+}
+
+}  // namespace
+
+TEST_CASE("servo_flow: eq. 4 where the head is large", "[model]") {
+  struct Row {
+    double spool, pressure, head;
+  };
+  // At heads above 1 MPa the straightening at 100 Pa changes less than 1e-8.
+  for (const Row& row : {Row{1e-4, 0.0, 6.2e6}, Row{1e-4, 2e6, 4.2e6}, Row{1e-4, -2e6, 8.2e6},
+                         Row{-1e-4, 2e6, 8.2e6}, Row{-1e-4, -2e6, 4.2e6}}) {
+    CAPTURE(row.spool, row.pressure);
+    CHECK_THAT(servo(row.spool, row.pressure),
+               WithinRel(kCd * kWidth * row.spool * std::sqrt(row.head / kRho), 1e-8));
+  }
+}
+
+TEST_CASE("servo_flow: odd under mirror of spool and pressure, nothing at zero spool", "[model]") {
+  for (const double pressure : {-7e6, -1e6, 0.0, 3e6, 6.5e6}) {
+    CAPTURE(pressure);
+    CHECK(servo(-2e-4, -pressure) == -servo(2e-4, pressure));
+    CHECK(servo(0.0, pressure) == 0.0);
+  }
+}
+
+TEST_CASE("servo_flow: turns back where the load pressure passes the supply", "[model]") {
+  CHECK(servo(1e-4, kSupply - 1.0) > 0.0);
+  CHECK(servo(1e-4, kSupply) == 0.0);
+  CHECK(servo(1e-4, kSupply + 1.0) < 0.0);
+  CHECK(servo(-1e-4, -kSupply - 1.0) > 0.0);
+  // Always against the pressure: a runaway would need a positive slope.
+  for (const double pressure : {-6.2e6, 0.0, 6.1e6, 6.2e6, 6.3e6}) {
+    CAPTURE(pressure);
+    CHECK(servo(D(1e-4), D::variable(pressure, 0)).derivative[0] < 0.0);
+    CHECK(servo(D(-1e-4), D::variable(pressure, 0)).derivative[0] < 0.0);
+  }
+}
+
+TEST_CASE("orifice_leakage: odd, eq. 11 far from zero, finite slope at it", "[model]") {
+  const auto leak = [](auto pressure) {
+    return orifice_leakage(pressure, 0.35, 4.456e-6, kRho, kEps);
+  };
+  const double gain = 0.35 * 4.456e-6 * std::sqrt(2.0 / kRho);
+  CHECK(leak(-3e5) == -leak(3e5));
+  CHECK_THAT(leak(1e6), WithinRel(gain * 1e3, 1e-8));  // (eps/P)^2 / 4 = 2.5e-9
+  CHECK_THAT(leak(D::variable(0.0, 0)).derivative[0], WithinRel(gain / std::sqrt(kEps), 1e-14));
+  CHECK(orifice_leakage(1e6, 0.0, 4.456e-6, kRho, kEps) == 0.0);
+}
+
+TEST_CASE("dry_friction: breakaway, Coulomb limit, odd, nothing at rest", "[model]") {
+  const auto friction = [](auto v) { return dry_friction(v, 200.0, 80.0, 0.01, 1e-4); };
+  CHECK(friction(0.0) == 0.0);
+  CHECK(friction(-0.02) == -friction(0.02));
+  CHECK_THAT(friction(0.2), WithinRel(200.0, 1e-14));  // exp(-400) is nothing
+  CHECK_THAT(friction(0.01), WithinRel(200.0 + 80.0 * std::exp(-1.0), 1e-14));
+  CHECK_THAT(friction(D::variable(0.0, 0)).derivative[0], WithinRel(280.0 / 1e-4, 1e-14));
+}
