@@ -1,0 +1,267 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "rig.hpp"
+
+using namespace rigcal::model;
+
+namespace {
+
+using Values = std::vector<std::pair<const char*, double>>;
+
+struct Scenario {
+  const char* name;
+  Signal drive;
+  Values values;
+  ControllerKind controller = ControllerKind::pid;
+  InitialState initial = InitialState::rest;
+  bool recorded_loads = false;
+};
+
+Signal recorded(bool straight) {
+  std::vector<double> value;
+  for (int i = 0; i < 21; ++i) value.push_back(0.004 * std::sin(0.9 * i) + 0.001 * (i % 3));
+  const auto times = grid(0.0, 0.2, 21);
+  return straight ? Signal::linear(times, value) : Signal::held(times, value);
+}
+
+/// Every waveform, every combination of terms that changes the layout, every parameter once.
+const std::vector<Scenario>& scenarios() {
+  const Values offsets{{"position_offset", 1e-3},
+                       {"load_pressure_offset", 1e5},
+                       {"pressure_a_offset", 1e5},
+                       {"pressure_b_offset", -1e5},
+                       {"force_offset", 20.0}};
+  static const std::vector<Scenario> rows{
+      {"square, plain", Signal::square(0.004, 8.0), {{"stiffness", 5e4}}},
+      {"square, delayed", Signal::square(0.004, 8.0), {{"transport_delay", 0.0083}}},
+      {"square, delayed, PID, second-order valve",
+       Signal::square(0.004, 8.0),
+       {{"transport_delay", 0.0083},
+        {"ki", 2000.0},
+        {"kd", 3.0},
+        {"derivative_filter", 200.0},
+        {"valve_frequency", 700.0},
+        {"valve_damping_ratio", 0.7}}},
+      {"sine, first-order valve, integral, small terms",
+       Signal::sine(0.006, 9.0),
+       {{"ki", 3000.0},
+        {"valve_time_constant", 0.003},
+        {"valve_offset", 0.15},
+        {"valve_dead_band", 0.2},
+        {"valve_null_leakage", 5e-12},
+        {"laminar_leakage", 8e-12},
+        {"external_force", 400.0},
+        {"transport_delay", 0.004}}},
+      {"chirp, PID at its limit, dry friction",
+       Signal::chirp(0.01, 4.0, 30.0, 0.15, false),
+       {{"ki", 2000.0},
+        {"kd", 2.0},
+        {"derivative_filter", 300.0},
+        {"output_limit", 3.0},
+        {"coulomb_friction", 150.0},
+        {"stribeck_friction", 90.0},
+        {"stribeck_velocity", 0.02},
+        {"friction_smoothing", 5e-3},
+        {"transport_delay", 0.003}}},
+      {"logarithmic chirp, derivative, first-order valve",
+       Signal::chirp(0.005, 4.0, 30.0, 0.15, true),
+       {{"kd", 2.0}, {"derivative_filter", 300.0}, {"valve_time_constant", 0.002}}},
+      {"held, continuous loop, delayed", recorded(false), {{"transport_delay", 0.0043}}},
+      {"linear, sampled PID, second-order valve, delayed",
+       recorded(true),
+       {{"ki", 2000.0},
+        {"kd", 2.0},
+        {"derivative_filter", 300.0},
+        {"sample_time", 0.0025},
+        {"valve_frequency", 700.0},
+        {"valve_damping_ratio", 0.9},
+        {"output_limit", 8.0},
+        {"transport_delay", 0.0043}}},
+      {"held, sampled P", recorded(false), {{"sample_time", 0.0025}}},
+      {"given state, PID, valve",
+       Signal::sine(0.005, 6.0),
+       {{"initial_position", 2e-3},
+        {"initial_velocity", 0.02},
+        {"initial_load_pressure", 3e5},
+        {"position_offset", 4e-4},
+        {"transport_delay", 0.004},
+        {"kd", 2.0},
+        {"derivative_filter", 200.0},
+        {"valve_time_constant", 0.004}},
+       ControllerKind::pid,
+       InitialState::given},
+      {"given state, sampled PD, valve",
+       Signal::sine(0.005, 6.0),
+       {{"initial_position", 2e-3},
+        {"kd", 2.0},
+        {"derivative_filter", 200.0},
+        {"sample_time", 0.0025},
+        {"valve_time_constant", 0.004}},
+       ControllerKind::pid,
+       InitialState::given},
+      {"command, no controller, recorded loads, offsets", Signal::sine(3.0, 10.0), offsets,
+       ControllerKind::none, InitialState::rest, true},
+      {"square command, second-order valve, delayed",
+       Signal::square(2.0, 10.0),
+       {{"valve_frequency", 500.0}, {"valve_damping_ratio", 0.5}, {"transport_delay", 0.0043}},
+       ControllerKind::none},
+  };
+  return rows;
+}
+
+Experiment experiment(const Scenario& s) {
+  Experiment e;
+  e.rig.controller = s.controller;
+  e.rig.initial = s.initial;
+  e.inputs.drive = s.drive;
+  e.set("kp", 900.0);
+  for (const auto& [key, value] : s.values) e.set(key, value);
+  if (s.recorded_loads) {
+    e.inputs.external_force_n = Signal::linear({0.0, 0.05, 0.1}, {0.0, 500.0, -200.0});
+    e.inputs.supply_pressure_pa = Signal::ripple(6e6, 2e5, 20.0, 0.4);
+  }
+  e.times_s.clear();
+  for (int i = 0; i < 50; ++i) e.times_s.push_back(0.00131 + 0.00253 * i);  // off every edge
+  if (s.initial == InitialState::rest) e.times_s.insert(e.times_s.begin(), 0.0);
+  e.outputs.assign(kAllOutputs.begin(), kAllOutputs.end());
+  e.options.tolerance = 1e-9;
+  return e;
+}
+
+/// Parameters in use that may be fitted.
+std::vector<int> fittable(const Experiment& e) {
+  std::vector<int> result;
+  const auto table = parameter_table(e.rig.plant);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const bool in_use = e.values.given[i] || table[i].kind == ParameterKind::plant;
+    if (in_use && table[i].can_be_fitted) result.push_back(static_cast<int>(i));
+  }
+  return result;
+}
+
+/// Central difference of all outputs by one parameter.
+Eigen::MatrixXd difference_by(Experiment e, int index, double relative_step) {
+  e.free.clear();
+  const double value = e.values.value[static_cast<std::size_t>(index)];
+  const double step = value != 0.0 ? relative_step * std::abs(value) : relative_step;
+  e.values.set(index, value + step);
+  const Simulation above = e();
+  e.values.set(index, value - step);
+  const Simulation below = e();
+  REQUIRE(above.ok());
+  REQUIRE(below.ok());
+  return (above.outputs - below.outputs) / (2.0 * step);
+}
+
+/// Step of the differences: (587 rad/s 0.13 s / 2 1e-4)^2 / 6 = 2e-6 of truncation in the ringing.
+constexpr double kRelativeStep = 1e-4;
+
+}  // namespace
+
+TEST_CASE("sensitivity: exact against differences, every parameter, term and waveform", "[model]") {
+  std::set<int> seen;
+  for (const Scenario& scenario : scenarios()) {
+    CAPTURE(scenario.name);
+    Experiment e = experiment(scenario);
+    e.free = fittable(e);
+    const Simulation run = e();
+    INFO(run.reason);
+    REQUIRE(run.ok());
+    for (std::size_t j = 0; j < e.free.size(); ++j) {
+      const auto index = static_cast<std::size_t>(e.free[j]);
+      const std::string key(parameter_table(e.rig.plant)[index].key);
+      const bool at_zero = e.values.value[index] == 0.0;
+      if (at_zero || std::isinf(e.values.value[index])) continue;
+      const Eigen::MatrixXd expected = difference_by(e, e.free[j], kRelativeStep);
+      for (std::size_t k = 0; k < e.outputs.size(); ++k) {
+        const Eigen::VectorXd exact = run.sensitivities[k].col(static_cast<Eigen::Index>(j));
+        const Eigen::VectorXd by_difference = expected.col(static_cast<Eigen::Index>(k));
+        const double output_peak = peak(run.outputs.col(static_cast<Eigen::Index>(k)));
+        // Noise of the difference: errors of 1e-9 a step, mostly alike in both runs, over the step;
+        // more where the leak's root is steep, at zero pressure.
+        const double noise = 5e-8 * output_peak / (kRelativeStep * std::abs(e.values.value[index]));
+        CAPTURE(key, output_name(e.outputs[k]), peak(exact));
+        CHECK(peak(exact - by_difference) < 2e-3 * peak(by_difference) + noise);
+        if (peak(exact) > 10.0 * noise) seen.insert(e.free[j]);
+      }
+    }
+  }
+  const auto table = parameter_table(PlantKind::load_pressure);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    CAPTURE(table[i].key);
+    CHECK((seen.count(static_cast<int>(i)) == 1) == table[i].can_be_fitted);
+  }
+}
+
+TEST_CASE("sensitivity: many at once equal one at a time", "[model]") {
+  Experiment e = experiment(scenarios().front());
+  e.options.tolerance = 1e-8;
+  e.free = fittable(e);
+  REQUIRE(e.free.size() > 8);
+  const Simulation together = e();
+  REQUIRE(together.ok());
+  const auto all = e.free;
+  for (std::size_t j = 0; j < all.size(); ++j) {
+    e.free = {all[j]};
+    const Simulation alone = e();
+    REQUIRE(alone.ok());
+    for (std::size_t k = 0; k < e.outputs.size(); ++k) {
+      const Eigen::VectorXd expected = alone.sensitivities[k].col(0);
+      CAPTURE(all[j], output_name(e.outputs[k]));
+      // Other steps, the same solution: ten times looser than the states, some hundred steps.
+      CHECK(peak(together.sensitivities[k].col(static_cast<Eigen::Index>(j)) - expected) <=
+            3e-4 * peak(expected));
+    }
+  }
+}
+
+TEST_CASE("sensitivity: exact where the leak is stiff", "[model]") {
+  Experiment e;
+  e.set("leakage_coefficient", 1.35);
+  e.times_s = grid(0.0, 2.5, 51);
+  e.inputs.drive = Signal::sine(0.0508, 0.1);
+  e.options.tolerance = 1e-9;
+  for (const char* key : {"mass", "damping", "valve_gain", "leakage_coefficient", "kp"}) {
+    e.free.push_back(parameter_index(PlantKind::load_pressure, key));
+  }
+  const Simulation run = e();
+  REQUIRE(run.ok());
+  for (std::size_t j = 0; j < e.free.size(); ++j) {
+    // Mass hardly matters here (and the bulk modulus not at all): a long step lifts it out of the
+    // noise.
+    const Eigen::MatrixXd expected = difference_by(e, e.free[j], 1e-2);
+    for (std::size_t k = 0; k < 2; ++k) {
+      CAPTURE(e.free[j], k);
+      const auto exact = run.sensitivities[k].col(static_cast<Eigen::Index>(j));
+      // (1e-2)^2 of truncation, and the noise of runs whose steps are 1e-9 off.
+      const double noise = 1e-7 * peak(run.outputs.col(static_cast<Eigen::Index>(k))) /
+                           (1e-2 * e.values.value[static_cast<std::size_t>(e.free[j])]);
+      CHECK(peak(exact - expected.col(static_cast<Eigen::Index>(k))) < 1e-3 * peak(exact) + noise);
+      CHECK(peak(exact) > 5.0 * noise);
+    }
+  }
+}
+
+TEST_CASE("sensitivity: at the tolerance of a fit good to a percent", "[model]") {
+  // Step control sees the sensitivities; without that they are wrong in silence (paper.md).
+  Experiment e;
+  e.inputs.drive = Signal::square(0.0508, 1.0);
+  e.times_s = grid(0.0, 2.0, 201);
+  for (const char* key : {"mass", "bulk_modulus", "valve_gain", "leakage_coefficient"}) {
+    e.free.push_back(parameter_index(PlantKind::load_pressure, key));
+  }
+  e.options.tolerance = 1e-4;
+  const Simulation loose = e();
+  e.options.tolerance = 1e-9;
+  const Simulation tight = e();
+  REQUIRE(loose.ok());
+  REQUIRE(tight.ok());
+  for (Eigen::Index j = 0; j < 4; ++j) {
+    const Eigen::VectorXd expected = tight.sensitivities[0].col(j);
+    CAPTURE(j);
+    CHECK(peak(loose.sensitivities[0].col(j) - expected) < 0.02 * peak(expected));
+  }
+}
