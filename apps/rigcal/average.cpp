@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "datasets/load_record.hpp"
+#include "report/csv.hpp"
+#include "report/folder.hpp"
+#include "report/terminal.hpp"
+
+namespace rigcal::app {
+namespace {
+
+ExitCode run_average(const CampaignOptions& options, const Invocation& invocation) {
+  const datasets::Campaign campaign = load(options);
+  report::require_writable(options.out);
+  std::vector<datasets::Record> records;
+  std::vector<report::ResultFile> files;
+  std::string text;
+  report::Json json;
+  json["campaign"] = campaign.name;
+  json["records"] = report::Json::array();
+  for (const datasets::Condition& condition : campaign.conditions) {
+    if (!condition.has_record() || condition.use == datasets::Use::ignore) continue;
+    stop_if(invocation.cancel);
+    records.push_back(datasets::load_record(campaign, condition));
+    const datasets::Record& record = records.back();
+    files.push_back({std::filesystem::path("averaged") / (condition.id + ".csv"),
+                     report::averaged_csv(record)});
+    text += report::record_text(condition, record);
+    json["records"].push_back(report::record_json(condition, record));
+  }
+  if (records.empty()) {
+    throw InputError({campaign.file.string()},
+                     "no condition has a record to average; expected repeats or averaged");
+  }
+  files.push_back({"repeatability.csv", report::repeatability_csv(records)});
+  report::write_results(options.out, files, report::hash_inputs(campaign, records));
+  text += fmt::format("files: {} {}\n", (options.out / "repeatability.csv").string(),
+                      (options.out / "averaged" / "").string());
+  print(options.print, text, json);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Run add_average(CLI::App& verb) {
+  const auto options = std::make_shared<CampaignOptions>();
+  add_campaign_options(verb, *options);
+  return [options](const Invocation& invocation) { return run_average(*options, invocation); };
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,63 @@
+#include "calib/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/outcome.hpp"
+#include "apps/rigcal/progress.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "datasets/load_record.hpp"
+#include "report/folder.hpp"
+
+namespace rigcal::app {
+namespace {
+
+constexpr int kMostStarts = 100'000;
+
+struct Options {
+  CampaignOptions common;
+  std::optional<int> starts;
+  std::uint64_t seed = 1;
+};
+
+ExitCode run_fit(const Options& options, const Invocation& invocation) {
+  const datasets::Campaign campaign = load(options.common);
+  const auto records = datasets::load_records(
+      campaign, {datasets::Use::fit, datasets::Use::validate}, options.common.threads);
+  calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
+  settings.starts = options.starts.value_or(settings.starts);
+  settings.seed = options.seed;
+  report::Provenance provenance{invocation.command, options.seed, recorded(options.common),
+                                report::hash_inputs(campaign, records)};
+  provenance.options.emplace_back("starts", fmt::format("{}", settings.starts));
+  stop_if(invocation.cancel);
+  report::require_writable(options.common.out);
+
+  calib::Fit fit;
+  {
+    Progress progress(options.common.print.quiet, settings.starts);
+    settings.progress = std::ref(progress);
+    fit = calib::fit(campaign, records, settings);
+  }
+  return write_and_print(options.common,
+                         {report::ResultKind::fit, campaign, records, fit, provenance});
+}
+
+}  // namespace
+
+Run add_fit(CLI::App& verb) {
+  const auto options = std::make_shared<Options>();
+  add_campaign_options(verb, options->common);
+  verb.add_option("--starts", options->starts,
+                  "Number of starts (default: the campaign's, or 1); the best result counts")
+      ->check(CLI::Range(1, kMostStarts));
+  verb.add_option("--seed", options->seed, "Seed of the further starts")->capture_default_str();
+  return [options](const Invocation& invocation) { return run_fit(*options, invocation); };
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <vector>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "common/error.hpp"
+#include "common/suggest.hpp"
+#include "report/provenance.hpp"
+
+namespace {
+
+using rigcal::ExitCode;
+using rigcal::app::Invocation;
+using rigcal::app::Run;
+
+struct VerbRow {
+  const char* name;
+  const char* summary;
+  Run (*add)(CLI::App&);
+};
+
+constexpr std::array kVerbs{
+    VerbRow{"check", "Load and check everything; one line per record", rigcal::app::add_check},
+    VerbRow{"average", "Mean, sd and count of the repeats, and the noise floor",
+            rigcal::app::add_average},
+    VerbRow{"simulate", "Run the model: all signals and flows", rigcal::app::add_simulate},
+    VerbRow{"fit", "Estimate the free parameters and score the conditions", rigcal::app::add_fit},
+    VerbRow{"validate", "Score the conditions with the parameters of a fit",
+            rigcal::app::add_validate},
+    VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},
+    VerbRow{"params", "List every parameter", rigcal::app::add_params},
+};
+
+std::vector<std::string> verb_names() {
+  std::vector<std::string> names;
+  for (const VerbRow& row : kVerbs) names.emplace_back(row.name);
+  return names;
+}
+
+std::string one_line(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text;
+}
+
+std::string command_line(int argc, char** argv) {
+  std::string text = "rigcal";
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool plain = !argument.empty() && argument.find_first_of(" \t\"'$*?\\") == argument.npos;
+    text += plain ? " " + argument : " '" + argument + "'";
+  }
+  return text;
+}
+
+/// The verb must be the first argument, so that an unknown one can be named.
+void check_verb(int argc, char** argv) {
+  const std::vector<std::string> known = verb_names();
+  if (argc < 2) {
+    throw rigcal::UsageError(fmt::format("no verb; expected one of {}", fmt::join(known, ", ")));
+  }
+  const std::string verb = argv[1];
+  if (!verb.empty() && verb.front() == '-') return;
+  if (std::find(known.begin(), known.end(), verb) == known.end()) {
+    throw rigcal::UsageError(rigcal::unknown_name_message("verb", verb, known));
+  }
+}
+
+ExitCode run(int argc, char** argv) {
+  check_verb(argc, argv);
+  CLI::App app{"Calibrates models of servo-hydraulic rigs from recorded runs", "rigcal"};
+  app.set_version_flag("--version", fmt::format("rigcal {} ({})", rigcal::report::version(),
+                                                rigcal::report::revision()));
+  app.require_subcommand(1);
+  app.fallthrough();
+  std::vector<std::pair<CLI::App*, Run>> verbs;
+  for (const VerbRow& row : kVerbs) {
+    CLI::App* verb = app.add_subcommand(row.name, row.summary);
+    verbs.emplace_back(verb, row.add(*verb));
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    app.exit(help);
+    return ExitCode::done;
+  } catch (const CLI::ParseError& error) {
+    const auto chosen = app.get_subcommands();
+    throw rigcal::UsageError(chosen.empty()
+                                 ? std::string(error.what())
+                                 : fmt::format("{}: {}", chosen.front()->get_name(), error.what()));
+  }
+  const Invocation invocation{command_line(argc, argv), rigcal::app::watch_signals()};
+  for (const auto& [verb, action] : verbs) {
+    if (verb->parsed()) return action(invocation);
+  }
+  throw std::logic_error("no verb was parsed");
+}
+
+ExitCode complain(ExitCode code, const std::string& message) {
+  std::fputs(fmt::format("rigcal: {}\n", message).c_str(), stderr);
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const ExitCode code = [&] {
+    try {
+      return run(argc, argv);
+    } catch (const rigcal::Error& error) {
+      return complain(error.code(), one_line(error.what()));
+    } catch (const std::bad_alloc&) {
+      return complain(ExitCode::internal, "out of memory");
+    } catch (const std::exception& error) {
+      return complain(ExitCode::internal, one_line(error.what()) + " (this is a bug)");
+    }
+  }();
+  return static_cast<int>(code);
+}

@@ -1,0 +1,70 @@
+#include "apps/rigcal/options.hpp"
+
+#include <fmt/format.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <system_error>
+#include <thread>
+
+#include "common/error.hpp"
+
+namespace rigcal::app {
+namespace {
+
+constexpr int kMostThreads = 1024;
+
+int hardware_threads() {
+  const unsigned count = std::thread::hardware_concurrency();
+  return count > 0 ? static_cast<int>(std::min<unsigned>(count, kMostThreads)) : 1;
+}
+
+}  // namespace
+
+void add_print_options(CLI::App& verb, PrintOptions& options) {
+  verb.add_flag("--quiet", options.quiet, "Print nothing but errors");
+  verb.add_flag("--json", options.json, "Print JSON instead of text");
+}
+
+void add_campaign_options(CLI::App& verb, CampaignOptions& options) {
+  options.threads = hardware_threads();
+  verb.add_option("CAMPAIGN", options.campaign, "Campaign file")->required();
+  verb.add_option("--data", options.data,
+                  "Where relative record paths start (default: the campaign file's folder)");
+  verb.add_option("--out", options.out, "Folder of the results")->capture_default_str();
+  // One value per --set, or it would swallow the campaign file.
+  verb.add_option("--set", options.set, "Change a value: name=\"value unit\"; repeatable")
+      ->allow_extra_args(false);
+  verb.add_option("--free", options.free, "Fit exactly these parameters: a,b")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  verb.add_option("--threads", options.threads, "Threads; results do not depend on it")
+      ->check(CLI::Range(1, kMostThreads))
+      ->default_str("all");
+  add_print_options(verb, options.print);
+}
+
+datasets::Campaign load(const CampaignOptions& options) {
+  datasets::Campaign campaign = datasets::load_campaign(options.campaign, options.data);
+  for (const std::string& assignment : options.set) datasets::set_value(campaign, assignment);
+  if (!options.free.empty()) datasets::set_free(campaign, options.free);
+  if (!options.set.empty() || !options.free.empty()) datasets::check_values(campaign);
+  return campaign;
+}
+
+std::vector<std::pair<std::string, std::string>> recorded(const CampaignOptions& options) {
+  return {{"set", fmt::format("{}", fmt::join(options.set, ", "))},
+          {"free", fmt::format("{}", fmt::join(options.free, ","))}};
+}
+
+void print(const PrintOptions& options, const std::string& text, const report::Json& json) {
+  if (options.quiet) return;
+  const std::string shown = options.json ? report::json_text(json) : text;
+  const bool written = std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size();
+  if (!written || std::fflush(stdout) != 0) {
+    throw WriteError("standard output: cannot be written: " +
+                     std::generic_category().message(errno));
+  }
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "datasets/campaign.hpp"
+#include "report/json.hpp"
+#include "report/provenance.hpp"
+
+namespace rigcal::app {
+
+/// How a verb prints.
+struct PrintOptions {
+  bool quiet = false;
+  bool json = false;
+};
+
+/// What every verb that reads a campaign understands.
+struct CampaignOptions {
+  std::filesystem::path campaign;
+  std::filesystem::path data;
+  std::filesystem::path out = "rigcal-out";
+  std::vector<std::string> set;
+  std::vector<std::string> free;
+  int threads = 1;
+  PrintOptions print;
+};
+
+void add_print_options(CLI::App& verb, PrintOptions& options);
+void add_campaign_options(CLI::App& verb, CampaignOptions& options);
+
+/// The campaign with the values of --set and --free.
+///
+/// @throws InputError, UsageError
+datasets::Campaign load(const CampaignOptions& options);
+
+/// The options that change numbers, for the provenance.
+std::vector<std::pair<std::string, std::string>> recorded(const CampaignOptions& options);
+
+/// Prints a result on stdout, as text or as JSON.
+///
+/// @throws WriteError  stdout does not take it
+void print(const PrintOptions& options, const std::string& text, const report::Json& json);
+
+}  // namespace rigcal::app

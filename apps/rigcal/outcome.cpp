@@ -1,0 +1,102 @@
+#include "apps/rigcal/outcome.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+
+#include "report/csv.hpp"
+#include "report/folder.hpp"
+#include "report/terminal.hpp"
+
+namespace rigcal::app {
+namespace {
+
+using calib::FitStatus;
+
+report::Style terminal_style() {
+  const char* no_colour = std::getenv("NO_COLOR");
+  const bool wanted = no_colour == nullptr || std::strlen(no_colour) == 0;
+  return {wanted && ::isatty(STDOUT_FILENO) == 1};
+}
+
+std::string fitted_toml(const CampaignOptions& options, const report::Result& result) {
+  std::vector<datasets::FittedValue> values;
+  for (const calib::FittedParameter& p : result.fit.parameters) {
+    if (p.fitted) values.push_back({p.index, p.scope, p.level, p.value});
+  }
+  const std::string text = fitted_campaign_text(result.campaign, values, options.out);
+  if (report::status_of(result.fit) == FitStatus::converged) return text;
+  return "# status: stopped: the best so far, not a fit that converged\n" + text;
+}
+
+std::vector<report::ResultFile> files_of(const CampaignOptions& options,
+                                         const report::Result& result) {
+  const bool is_fit = result.kind == report::ResultKind::fit;
+  std::vector<report::ResultFile> files;
+  for (const calib::ConditionScore& score : result.fit.conditions) {
+    files.push_back({std::filesystem::path("residuals") / (score.id + ".csv"),
+                     report::residuals_csv(result, score)});
+  }
+  files.push_back({"scorecard.csv", report::scorecard_csv(result)});
+  if (is_fit && report::status_of(result.fit) != FitStatus::failed) {
+    files.push_back({"fitted.toml", fitted_toml(options, result)});
+  }
+  // Last, so that whoever finds it finds the others too.
+  files.push_back(
+      {is_fit ? "fit.json" : "validation.json", report::json_text(result_json(result))});
+  return files;
+}
+
+std::string text_of(const CampaignOptions& options, const report::Result& result,
+                    const std::vector<report::ResultFile>& files) {
+  const report::Style style = terminal_style();
+  std::string text = report::scorecard_text(result, style) + "\n" +
+                     report::parameters_text(result, style) + "\n" +
+                     report::verdict_text(result, style) + "files:";
+  for (const report::ResultFile& file : files) {
+    if (!file.path.has_parent_path()) {
+      text += fmt::format(" {}", (options.out / file.path).string());
+    }
+  }
+  return text + fmt::format(" {}\n", (options.out / "residuals" / "").string());
+}
+
+}  // namespace
+
+ExitCode exit_code_of(const calib::Fit& fit) {
+  switch (report::status_of(fit)) {
+    case FitStatus::failed:
+      return ExitCode::no_result;
+    case FitStatus::stopped:
+      return ExitCode::stopped;
+    case FitStatus::converged:
+      break;
+  }
+  return fit.verdict == calib::Verdict::fail ? ExitCode::verdict_fail : ExitCode::done;
+}
+
+ExitCode write_and_print(const CampaignOptions& options, const report::Result& result) {
+  const std::vector<report::ResultFile> files = files_of(options, result);
+  const ExitCode code = exit_code_of(result.fit);
+  report::write_results(options.out, files, result.provenance.inputs);
+  if (result.kind == report::ResultKind::fit && code == ExitCode::no_result) {
+    report::remove_stale(options.out / "fitted.toml");
+  }
+  print(options.print, text_of(options, result, files), report::result_json(result));
+  return code;
+}
+
+calib::FitOptions fit_options(const CampaignOptions& options, const datasets::Campaign& campaign,
+                              const std::atomic<bool>& cancel) {
+  calib::FitOptions fit;
+  fit.starts = campaign.fit.starts;
+  fit.max_iterations = campaign.fit.max_iterations;
+  fit.max_seconds = campaign.fit.max_seconds;
+  fit.threads = options.threads;
+  fit.cancel = &cancel;
+  return fit;
+}
+
+}  // namespace rigcal::app

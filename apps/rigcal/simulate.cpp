@@ -1,0 +1,169 @@
+#include "model/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "calib/initial_state.hpp"
+#include "calib/parallel.hpp"
+#include "common/suggest.hpp"
+#include "datasets/load_record.hpp"
+#include "report/csv.hpp"
+#include "report/folder.hpp"
+
+namespace rigcal::app {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+using datasets::Record;
+
+struct Options {
+  CampaignOptions common;
+  std::vector<std::string> conditions;
+};
+
+/// A condition with all that its simulation needs.
+struct Task {
+  const Condition* condition = nullptr;
+  model::Rig rig;
+  model::ParameterValues values;
+  model::SimulationInputs inputs;
+  std::vector<double> time_s;
+  std::optional<Record> record;
+};
+
+std::vector<const Condition*> wanted(const Campaign& campaign,
+                                     const std::vector<std::string>& ids) {
+  std::vector<const Condition*> result;
+  if (ids.empty()) {
+    for (const Condition& condition : campaign.conditions) {
+      if (condition.use != datasets::Use::ignore) result.push_back(&condition);
+    }
+    return result;
+  }
+  std::vector<std::string> known;
+  for (const Condition& condition : campaign.conditions) known.push_back(condition.id);
+  for (const std::string& id : ids) {
+    const Condition* condition = campaign.find(id);
+    if (condition == nullptr) {
+      throw UsageError("--condition: " + unknown_name_message("condition", id, known));
+    }
+    if (std::find(result.begin(), result.end(), condition) == result.end()) {
+      result.push_back(condition);
+    }
+  }
+  return result;
+}
+
+Task prepare(const Campaign& campaign, const Condition& condition) {
+  Task task;
+  task.condition = &condition;
+  task.rig = campaign.rig;
+  task.values = datasets::values_in(campaign, condition);
+  const bool generated = condition.waveform != datasets::Waveform::recorded &&
+                         condition.duration_s && condition.sample_rate_hz;
+  if (!generated && condition.has_record()) {
+    task.record = datasets::load_record(campaign, condition);
+    const calib::InitialPlan plan = calib::plan_initial_state(campaign, condition, *task.record);
+    task.rig.initial = plan.state;
+    for (const auto& [index, value] : plan.known) task.values.set(index, value);
+  } else if (condition.waveform == datasets::Waveform::recorded) {
+    throw InputError(condition.where,
+                     fmt::format("condition \"{}\": the waveform is \"recorded\", but there is no "
+                                 "record; expected repeats or averaged",
+                                 condition.id));
+  }
+  const Record* record = task.record ? &*task.record : nullptr;
+  task.time_s = datasets::sample_times(condition, record);
+  task.inputs = datasets::inputs_of(campaign, condition, task.values, record);
+  return task;
+}
+
+std::string file_of(const Task& task, const model::Simulation& simulation) {
+  std::vector<double> reference_m;
+  if (task.rig.controller == model::ControllerKind::pid) {
+    for (const double t : task.time_s) reference_m.push_back(task.inputs.drive.value(t));
+  }
+  return report::simulation_csv(task.time_s, reference_m, model::kAllOutputs, simulation);
+}
+
+std::string line_of(const Task& task, const model::Simulation& simulation) {
+  if (simulation.ok()) {
+    return fmt::format("{}: {} samples, {} steps\n", task.condition->id, task.time_s.size(),
+                       simulation.steps);
+  }
+  return fmt::format("{}: {} at {:.6g} s: {}\n", task.condition->id, to_string(simulation.status),
+                     simulation.failed_at_s, simulation.reason);
+}
+
+report::Json json_of(const Task& task, const model::Simulation& simulation) {
+  report::Json json;
+  json["condition"] = task.condition->id;
+  json["status"] = std::string(to_string(simulation.status));
+  json["samples"] = task.time_s.size();
+  json["steps"] = simulation.steps;
+  json["failed_at_s"] =
+      simulation.ok() ? report::Json(nullptr) : report::number(simulation.failed_at_s);
+  json["reason"] = simulation.ok() ? report::Json(nullptr) : report::Json(simulation.reason);
+  return json;
+}
+
+ExitCode run_simulate(const Options& options, const Invocation& invocation) {
+  const Campaign campaign = load(options.common);
+  std::vector<Task> tasks;
+  std::vector<Record> records;
+  for (const Condition* condition : wanted(campaign, options.conditions)) {
+    stop_if(invocation.cancel);
+    tasks.push_back(prepare(campaign, *condition));
+    if (tasks.back().record) records.push_back(*tasks.back().record);
+  }
+  report::require_writable(options.common.out);
+
+  model::SimulationOptions settings;
+  settings.method = campaign.simulation.method;
+  settings.tolerance = campaign.simulation.tolerance.value_or(settings.tolerance);
+  settings.max_seconds = campaign.simulation.max_seconds;
+  settings.cancel = &invocation.cancel;
+  std::vector<model::Simulation> simulations(tasks.size());
+  calib::parallel_for(tasks.size(), options.common.threads, [&](std::size_t i) {
+    const Task& task = tasks[i];
+    simulations[i] = model::simulate(task.rig, task.values, {}, task.inputs, task.time_s,
+                                     model::kAllOutputs, settings);
+  });
+
+  std::vector<report::ResultFile> files;
+  std::string text;
+  std::string problems;
+  report::Json json = report::Json::array();
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    files.push_back({tasks[i].condition->id + ".csv", file_of(tasks[i], simulations[i])});
+    text += line_of(tasks[i], simulations[i]);
+    if (!simulations[i].ok()) problems += line_of(tasks[i], simulations[i]);
+    json.push_back(json_of(tasks[i], simulations[i]));
+  }
+  report::write_results(options.common.out, files, report::hash_inputs(campaign, records));
+  text += fmt::format("files: {}\n", (options.common.out / "").string());
+  print(options.common.print, text, json);
+  if (problems.empty()) return ExitCode::done;
+  problems.pop_back();
+  throw Error(invocation.cancel.load() ? ExitCode::stopped : ExitCode::no_result, problems);
+}
+
+}  // namespace
+
+Run add_simulate(CLI::App& verb) {
+  const auto options = std::make_shared<Options>();
+  add_campaign_options(verb, options->common);
+  verb.add_option("--condition", options->conditions,
+                  "Only this condition; repeatable (default: all that are not ignored)")
+      ->allow_extra_args(false);
+  return [options](const Invocation& invocation) { return run_simulate(*options, invocation); };
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,50 @@
+#include "datasets/synthesize.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <memory>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "report/folder.hpp"
+
+namespace rigcal::app {
+namespace {
+
+struct Options {
+  CampaignOptions common;
+  std::uint64_t seed = 1;
+};
+
+ExitCode run_synthesize(const Options& options, const Invocation& invocation) {
+  const CampaignOptions& common = options.common;
+  const datasets::Campaign campaign = load(common);
+  report::require_inputs_kept(common.out, {"campaign.toml"}, report::hash_inputs(campaign, {}));
+  report::require_writable(common.out);
+  stop_if(invocation.cancel);
+  const datasets::SynthesisReport made =
+      datasets::synthesize(campaign, options.seed, common.out, common.threads);
+  report::Json json;
+  json["campaign_file"] = made.campaign_file.string();
+  json["files"] = made.files;
+  json["samples"] = made.samples;
+  json["seed"] = options.seed;
+  print(common.print,
+        fmt::format("{}: {} synthetic records, {} samples, seed {}\n", made.campaign_file.string(),
+                    made.files, made.samples, options.seed),
+        json);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Run add_synthesize(CLI::App& verb) {
+  const auto options = std::make_shared<Options>();
+  add_campaign_options(verb, options->common);
+  verb.add_option("--seed", options->seed, "Seed of the noise")->required();
+  return [options](const Invocation& invocation) { return run_synthesize(*options, invocation); };
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,98 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <memory>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/outcome.hpp"
+#include "apps/rigcal/progress.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "calib/fit.hpp"
+#include "datasets/load_record.hpp"
+#include "report/folder.hpp"
+#include "report/validity.hpp"
+
+namespace rigcal::app {
+namespace {
+
+using datasets::Campaign;
+using datasets::Use;
+
+struct Options {
+  CampaignOptions common;
+  std::filesystem::path fit;
+};
+
+/// Known values of the rig that were others when the fit was made.
+std::vector<std::string> changed_values(const Campaign& campaign,
+                                        const report::EarlierFit& earlier) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  std::vector<std::string> warnings;
+  for (const datasets::FittedValue& known : earlier.known) {
+    const datasets::ParameterSetting* setting = campaign.setting(known.index);
+    if (setting == nullptr || setting->fit || setting->value == known.value) continue;
+    const model::ParameterSpec& spec = table[static_cast<std::size_t>(known.index)];
+    warnings.push_back(fmt::format("{} is {:g} {} here, but was {:g} {} in the fit", spec.key,
+                                   setting->value, spec.unit, known.value, spec.unit));
+  }
+  return warnings;
+}
+
+std::vector<std::string> warnings_of(const Campaign& campaign,
+                                     const std::vector<datasets::Record>& records,
+                                     const calib::Fit& fit, const report::EarlierFit& earlier) {
+  std::vector<std::string> warnings;
+  if (earlier.status == calib::FitStatus::stopped) {
+    warnings.push_back("the fit was stopped before it converged: " + earlier.message);
+  }
+  const auto add = [&](const std::vector<std::string>& more) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  };
+  add(changed_values(campaign, earlier));
+  add(report::outside(report::coverage(campaign, records, fit, {Use::fit, Use::validate}),
+                      earlier.validity));
+  return warnings;
+}
+
+ExitCode run_validate(const Options& options, const Invocation& invocation) {
+  const Campaign campaign = load(options.common);
+  std::optional<report::EarlierFit> earlier;
+  std::vector<std::filesystem::path> more_inputs;
+  if (!options.fit.empty()) {
+    earlier = report::read_fit(options.fit, campaign.rig.plant);
+    more_inputs.push_back(options.fit);
+  }
+  const auto records =
+      datasets::load_records(campaign, {Use::fit, Use::validate}, options.common.threads);
+  calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
+  const report::Provenance provenance{invocation.command, settings.seed, recorded(options.common),
+                                      report::hash_inputs(campaign, records, more_inputs)};
+  stop_if(invocation.cancel);
+  report::require_writable(options.common.out);
+
+  calib::Fit fit;
+  {
+    Progress progress(options.common.print.quiet, 1);
+    settings.progress = std::ref(progress);
+    fit = calib::validate(campaign, records, earlier ? &earlier->values : nullptr, settings);
+  }
+  if (earlier) {
+    const auto warnings = warnings_of(campaign, records, fit, *earlier);
+    fit.warnings.insert(fit.warnings.end(), warnings.begin(), warnings.end());
+  }
+  return write_and_print(options.common,
+                         {report::ResultKind::validation, campaign, records, fit, provenance});
+}
+
+}  // namespace
+
+Run add_validate(CLI::App& verb) {
+  const auto options = std::make_shared<Options>();
+  add_campaign_options(verb, options->common);
+  verb.add_option("--fit", options->fit,
+                  "fit.json of an earlier fit (default: the campaign's own values)");
+  return [options](const Invocation& invocation) { return run_validate(*options, invocation); };
+}
+
+}  // namespace rigcal::app

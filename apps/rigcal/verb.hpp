@@ -1,0 +1,29 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <functional>
+#include <string>
+
+#include "common/error.hpp"
+
+namespace rigcal::app {
+
+/// What every verb is told about this run of the command.
+struct Invocation {
+  std::string command;              ///< the command line
+  const std::atomic<bool>& cancel;  ///< becomes true when a signal asks the run to end
+};
+
+using Run = std::function<ExitCode(const Invocation&)>;
+
+// Each adds the options of one verb to its subcommand and returns what runs it.
+Run add_check(CLI::App& verb);
+Run add_average(CLI::App& verb);
+Run add_simulate(CLI::App& verb);
+Run add_fit(CLI::App& verb);
+Run add_validate(CLI::App& verb);
+Run add_synthesize(CLI::App& verb);
+Run add_params(CLI::App& verb);
+
+}  // namespace rigcal::app

@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <iterator>
+
+#include "common/error.hpp"
+#include "common/suggest.hpp"
+#include "report/json.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using datasets::FittedValue;
+using datasets::Scope;
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::error_code error;
+  if (!stream || !std::filesystem::is_regular_file(file, error)) {
+    throw InputError({file.string()}, "cannot be read; expected the fit.json of an earlier fit");
+  }
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+Location location_of_byte(const std::string& file, const std::string& text, std::size_t byte) {
+  const std::size_t end = std::min(byte > 0 ? byte - 1 : 0, text.size());
+  const auto begin = text.begin();
+  const auto stop = begin + static_cast<std::ptrdiff_t>(end);
+  const long line = 1 + static_cast<long>(std::count(begin, stop, '\n'));
+  const std::size_t newline = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
+  const std::size_t line_start = newline == std::string::npos ? 0 : newline + 1;
+  return {file, line, static_cast<long>(end - line_start) + 1};
+}
+
+/// One value of the file, with its place in words.
+class Node {
+ public:
+  Node(const Json& json, const std::string& file, std::string path)
+      : json_(json), file_(file), path_(std::move(path)) {}
+
+  [[noreturn]] void fail(const std::string& expected) const {
+    throw InputError(
+        {file_}, fmt::format("key '{}': found {}, expected {}", path_,
+                             shortened(json_.dump(-1, ' ', false, Json::error_handler_t::replace)),
+                             expected));
+  }
+
+  Node operator[](const std::string& key) const {
+    const std::string path = path_.empty() ? key : path_ + "." + key;
+    if (!json_.is_object()) fail("an object");
+    const auto found = json_.find(key);
+    if (found == json_.end()) {
+      throw InputError({file_}, fmt::format("key '{}' is missing; is this a fit.json?", path));
+    }
+    return {*found, file_, path};
+  }
+
+  std::vector<Node> items() const {
+    if (!json_.is_array()) fail("a list");
+    std::vector<Node> result;
+    for (std::size_t i = 0; i < json_.size(); ++i) {
+      result.emplace_back(json_[i], file_, fmt::format("{}[{}]", path_, i));
+    }
+    return result;
+  }
+
+  bool is_null() const { return json_.is_null(); }
+  std::string string() const {
+    if (!json_.is_string()) fail("a text");
+    return json_.get<std::string>();
+  }
+  bool boolean() const {
+    if (!json_.is_boolean()) fail("true or false");
+    return json_.get<bool>();
+  }
+  double real() const {
+    if (!json_.is_number()) fail("a number");
+    return json_.get<double>();
+  }
+  std::optional<Range> range() const {
+    if (is_null()) return std::nullopt;
+    const std::vector<Node> ends = items();
+    if (ends.size() != 2) fail("two numbers, or null");
+    return Range{ends[0].real(), ends[1].real()};
+  }
+
+ private:
+  static std::string shortened(std::string text) {
+    constexpr std::size_t kLongest = 40;
+    if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
+    return text;
+  }
+
+  const Json& json_;
+  std::string file_;
+  std::string path_;
+};
+
+template <typename Enum, std::size_t N>
+Enum one_of(const Node& node, const std::array<Enum, N>& values) {
+  const std::string text = node.string();
+  std::string names;
+  for (const Enum value : values) {
+    if (to_string(value) == text) return value;
+    names += std::string(names.empty() ? "" : ", ") + std::string(to_string(value));
+  }
+  node.fail("one of " + names);
+}
+
+int index_of(const Node& name, model::PlantKind plant) {
+  const auto table = model::parameter_table(plant);
+  const std::string text = name.string();
+  const auto found = std::find_if(table.begin(), table.end(),
+                                  [&](const model::ParameterSpec& s) { return s.name == text; });
+  if (found == table.end()) {
+    std::vector<std::string> known;
+    for (const model::ParameterSpec& spec : table) known.emplace_back(spec.name);
+    const std::string near = nearest_name(text, known);
+    name.fail(fmt::format("a parameter of the plant {}{}", to_string(plant),
+                          near.empty() ? "" : " such as " + near));
+  }
+  return static_cast<int>(found - table.begin());
+}
+
+Validity read_validity(const Node& node) {
+  Validity validity;
+  validity.frequency_hz = node["frequency_hz"].range();
+  const Node amplitude_m = node["amplitude_m"];
+  validity.amplitude = amplitude_m.is_null() ? node["amplitude_v"].range() : amplitude_m.range();
+  validity.supply_pressure_pa = node["supply_pressure_pa"].range();
+  validity.leakage_coefficient = node["leakage_coefficient"].range();
+  for (const Node& level : node["leak_levels"].items()) {
+    validity.leak_levels.push_back(level.string());
+  }
+  return validity;
+}
+
+}  // namespace
+
+EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
+  const std::string name = file.string();
+  const std::string text = read_text(file);
+  Json json;
+  try {
+    json = Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw InputError(location_of_byte(name, text, error.byte), "this is not JSON");
+  }
+  const Node root(json, name, "");
+  if (!json.is_object()) {
+    throw InputError({name}, "found no JSON object, expected the fit.json of an earlier fit");
+  }
+  if (root["schema"].string() != kFitSchema) {
+    root["schema"].fail(fmt::format("\"{}\"", kFitSchema));
+  }
+  using calib::FitStatus;
+  EarlierFit result;
+  result.status = one_of(root["status"],
+                         std::array{FitStatus::converged, FitStatus::stopped, FitStatus::failed});
+  result.message = root["message"].string();
+  if (result.status == FitStatus::failed) {
+    throw InputError({name}, fmt::format("this fit failed ({}), its values mean nothing; expected "
+                                         "one that converged",
+                                         result.message));
+  }
+  for (const Node& entry : root["parameters"].items()) {
+    FittedValue value;
+    value.index = index_of(entry["name"], plant);
+    value.scope =
+        one_of(entry["scope"], std::array{Scope::rig, Scope::leak_level, Scope::condition});
+    if (value.scope != Scope::rig) value.level = entry["level"].string();
+    const bool fitted = entry["fitted"].boolean();
+    // A nuisance parameter belongs to the records of its fit.
+    if (entry["nuisance"].boolean() || (!fitted && entry["value"].is_null())) continue;
+    value.value = entry["value"].real();
+    if (fitted) {
+      result.values.push_back(std::move(value));
+    } else if (value.scope == Scope::rig) {
+      result.known.push_back(std::move(value));
+    }
+  }
+  result.validity = read_validity(root["validity"]);
+  return result;
+}
+
+}  // namespace rigcal::report

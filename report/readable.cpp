@@ -1,0 +1,53 @@
+#include "report/readable.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+namespace rigcal::report {
+namespace {
+
+struct Relative {
+  std::string_view si_unit;
+  ReadableUnit unit;
+};
+
+/// Largest first within an SI unit; the last takes what is smaller still.
+constexpr std::array kRelatives{
+    Relative{"Pa", {"GPa", 1e9}},    Relative{"Pa", {"MPa", 1e6}},
+    Relative{"Pa", {"kPa", 1e3}},    Relative{"Pa", {"Pa", 1.0}},
+    Relative{"m", {"m", 1.0}},       Relative{"m", {"mm", 1e-3}},
+    Relative{"m", {"um", 1e-6}},     Relative{"m2", {"cm2", 1e-4}},
+    Relative{"m2", {"mm2", 1e-6}},   Relative{"m3", {"L", 1e-3}},
+    Relative{"m3", {"cm3", 1e-6}},   Relative{"m3/s", {"L/min", 1e-3 / 60.0}},
+    Relative{"s", {"s", 1.0}},       Relative{"s", {"ms", 1e-3}},
+    Relative{"m/V", {"m/V", 1.0}},   Relative{"m/V", {"mm/V", 1e-3}},
+    Relative{"m/V", {"um/V", 1e-6}}, Relative{"N", {"kN", 1e3}},
+    Relative{"N", {"N", 1.0}},       Relative{"m/s", {"m/s", 1.0}},
+    Relative{"m/s", {"mm/s", 1e-3}},
+};
+
+}  // namespace
+
+ReadableUnit readable_unit(double si_value, std::string_view si_unit) {
+  ReadableUnit found{si_unit == "1" ? std::string_view{} : si_unit, 1.0};
+  for (const Relative& relative : kRelatives) {
+    if (relative.si_unit != si_unit) continue;
+    // Zero has no size of its own.
+    if (si_value == 0.0) return {si_unit, 1.0};
+    found = relative.unit;
+    if (std::abs(si_value) >= 0.9999999 * found.si) break;
+  }
+  return found;
+}
+
+std::string readable(double si_value, std::string_view si_unit, int digits) {
+  if (!std::isfinite(si_value)) return "-";
+  const ReadableUnit unit = readable_unit(si_value, si_unit);
+  std::string text = fmt::format("{:.{}g}", si_value / unit.si, digits);
+  if (!unit.name.empty()) text.append(" ").append(unit.name);
+  return text;
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,226 @@
+#include "report/terminal.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/groups.hpp"
+#include "report/readable.hpp"
+#include "report/text_table.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using calib::FitStatus;
+using calib::Verdict;
+using datasets::Channel;
+using Align = TextTable::Align;
+
+std::string coloured(const std::string& text, const char* code, const Style& style) {
+  return style.colour ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : text;
+}
+
+std::string coloured(Verdict verdict, const Style& style) {
+  const char* code = verdict == Verdict::pass ? "32" : verdict == Verdict::warn ? "33" : "31";
+  return coloured(std::string(to_string(verdict)), code, style);
+}
+
+/// The channel of the terminal's scorecard.
+std::optional<Channel> shown_channel(const calib::Fit& fit) {
+  std::optional<Channel> first;
+  for (const calib::ConditionScore& condition : fit.conditions) {
+    for (const calib::ChannelScore& score : condition.channels) {
+      if (score.channel == Channel::position) return score.channel;
+      if (!first) first = score.channel;
+    }
+  }
+  return first;
+}
+
+std::string fraction(double value) { return fmt::format("{:.5f}", value); }
+std::string percent(double value) { return fmt::format("{:.3f}", value); }
+
+TextTable condition_table(const Result& result, Channel channel) {
+  TextTable table({{"condition"},
+                   {"use"},
+                   {"waveform"},
+                   {"frequency", Align::right},
+                   {"leak level"},
+                   {"rho2", Align::right},
+                   {"R", Align::right},
+                   {"CCC", Align::right},
+                   {"error %", Align::right},
+                   {"floor %", Align::right},
+                   {"verdict"}});
+  for (const calib::ConditionScore& score : result.fit.conditions) {
+    const datasets::Condition* condition = result.campaign.find(score.id);
+    std::vector<std::string> row{score.id, std::string(to_string(score.use)), "-", "-", "-"};
+    if (condition != nullptr) {
+      row[2] = to_string(condition->waveform);
+      if (condition->frequency_hz) row[3] = fmt::format("{:.6g} Hz", *condition->frequency_hz);
+      row[4] = condition->leak_level.value_or("-");
+    }
+    const auto found =
+        std::find_if(score.channels.begin(), score.channels.end(),
+                     [&](const calib::ChannelScore& s) { return s.channel == channel; });
+    const bool scored = found != score.channels.end() && found->agreement;
+    row.push_back(scored ? fraction(found->agreement->rho2) : "-");
+    row.push_back(scored ? fraction(found->agreement->r) : "-");
+    row.push_back(scored ? fraction(found->agreement->ccc) : "-");
+    row.push_back(scored ? percent(found->agreement->absolute_error_percent) : "-");
+    row.push_back(scored && found->noise_floor ? percent(found->noise_floor->absolute_error_percent)
+                                               : "-");
+    row.push_back(!score.failure.empty() ? "not simulated"
+                  : score.verdict        ? std::string(to_string(*score.verdict))
+                                         : "-");
+    table.add(std::move(row));
+  }
+  return table;
+}
+
+TextTable group_table(const Result& result, Channel channel) {
+  TextTable table({{"by"},
+                   {"group"},
+                   {"conditions", Align::right},
+                   {"rho2", Align::right},
+                   {"R", Align::right},
+                   {"CCC", Align::right},
+                   {"error %", Align::right},
+                   {"worst rho2", Align::right},
+                   {"worst error %", Align::right}});
+  for (const Group& group : groups(result.campaign, result.fit)) {
+    const auto found = group.channels.find(channel);
+    if (found == group.channels.end()) continue;
+    const GroupScore& score = found->second;
+    table.add({group.by == "leak_level" ? "leak level" : group.by, group.label,
+               fmt::format("{}", score.conditions), fraction(score.mean.rho2),
+               fraction(score.mean.r), fraction(score.mean.ccc),
+               percent(score.mean.absolute_error_percent), fraction(score.worst.rho2),
+               percent(score.worst.absolute_error_percent)});
+  }
+  return table;
+}
+
+/// Numbers of one parameter, all in the unit of its value.
+std::string in_unit(double si_value, const ReadableUnit& unit, int digits) {
+  if (!std::isfinite(si_value)) return "-";
+  return fmt::format("{:.{}g}", si_value / unit.si, digits);
+}
+
+std::string limits(double low, double high, const ReadableUnit& unit, int digits) {
+  return fmt::format("{} .. {}", in_unit(low, unit, digits), in_unit(high, unit, digits));
+}
+
+}  // namespace
+
+std::string scorecard_text(const Result& result, const Style& style) {
+  const std::optional<Channel> channel = shown_channel(result.fit);
+  if (!channel) return "No channel was compared.\n";
+  std::string text = coloured(fmt::format("Agreement of {}", info(*channel).key), "1", style) +
+                     "\n" + condition_table(result, *channel).text();
+  const TextTable gathered = group_table(result, *channel);
+  if (!gathered.empty()) {
+    text += "\n" + coloured("Gathered (means, and the worst)", "1", style) + "\n" + gathered.text();
+  }
+  return text;
+}
+
+std::string parameters_text(const Result& result, const Style& style) {
+  const auto table = model::parameter_table(result.campaign.rig.plant);
+  TextTable text({{"parameter"},
+                  {"for"},
+                  {"value", Align::right},
+                  {"unit"},
+                  {"std. error", Align::right},
+                  {"95 % interval", Align::right},
+                  {"bounds", Align::right},
+                  {"at bound"},
+                  {"identifiability"}});
+  std::string reasons;
+  for (const calib::FittedParameter& p : result.fit.parameters) {
+    if (!p.fitted) continue;
+    const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
+    const ReadableUnit unit = readable_unit(p.value, spec.unit);
+    const std::string whose = p.scope == datasets::Scope::rig ? "rig" : p.level;
+    text.add({std::string(spec.key) + (p.nuisance ? " (nuisance)" : ""), whose,
+              in_unit(p.value, unit, 6), std::string(unit.name),
+              p.standard_error ? in_unit(*p.standard_error, unit, 3) : "-",
+              p.ci95 ? limits(p.ci95->first, p.ci95->second, unit, 5) : "-",
+              limits(p.lower, p.upper, unit, 4), p.at_bound ? "yes" : "no",
+              std::string(to_string(p.identifiability))});
+    if (!p.reason.empty()) reasons += fmt::format("  {} ({}): {}\n", spec.key, whose, p.reason);
+  }
+  if (text.empty()) return "No parameter was estimated.\n";
+  return coloured("Parameters", "1", style) + "\n" + text.text() + reasons;
+}
+
+std::string verdict_text(const Result& result, const Style& style) {
+  const calib::Fit& fit = result.fit;
+  const FitStatus status = status_of(fit);
+  const char* code = status == FitStatus::converged ? "32"
+                     : status == FitStatus::stopped ? "33"
+                                                    : "31";
+  std::string text =
+      fmt::format("status: {}", coloured(std::string(to_string(status)), code, style));
+  if (!fit.message.empty()) text += ": " + fit.message;
+  text += "\n";
+  for (const calib::ConditionScore& condition : fit.conditions) {
+    if (!condition.failure.empty()) {
+      text += fmt::format("  {}: not simulated: {}\n", condition.id, condition.failure);
+    }
+    for (const std::string& reason : condition.reasons) {
+      text += fmt::format("  {}: {}\n", condition.id, reason);
+    }
+  }
+  text += fit.verdict ? fmt::format("verdict: {}\n", coloured(*fit.verdict, style))
+                      : "verdict: none (the campaign has no [acceptance])\n";
+  for (const std::string& warning : fit.warnings) text += fmt::format("warning: {}\n", warning);
+  if (result.campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
+  return text;
+}
+
+std::string record_text(const datasets::Condition& condition, const datasets::Record& record) {
+  const double duration_s =
+      record.time_s.empty() ? 0.0 : record.time_s.back() - record.time_s.front();
+  const double rate_hz =
+      duration_s > 0.0 ? static_cast<double>(record.time_s.size() - 1) / duration_s : 0.0;
+  std::string channels;
+  for (const auto& [channel, series] : record.channels) {
+    const datasets::ChannelInfo& about = info(channel);
+    channels += fmt::format(
+        "{}{} (sd {})", channels.empty() ? "" : ", ", about.key,
+        std::isfinite(series.pooled_sd) ? readable(series.pooled_sd, about.unit, 3) : "unknown");
+  }
+  std::string text =
+      fmt::format("{}: {}, {} samples at {:.6g} Hz, {:.6g} s, {} repeat{}, {}, {} file{}\n",
+                  condition.id, to_string(condition.use), record.time_s.size(), rate_hz, duration_s,
+                  record.repeats, record.repeats == 1 ? "" : "s", channels, record.files.size(),
+                  record.files.size() == 1 ? "" : "s");
+  for (const std::string& warning : record.warnings) {
+    text += fmt::format("  warning: {}\n", warning);
+  }
+  return text;
+}
+
+std::string parameter_table_text(model::PlantKind plant) {
+  TextTable table({{"key"},
+                   {"symbol"},
+                   {"unit"},
+                   {"default", Align::right},
+                   {"lowest", Align::right},
+                   {"highest", Align::right},
+                   {"kind"},
+                   {"meaning"},
+                   {"source"}});
+  for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
+    table.add({std::string(spec.key), std::string(spec.symbol), std::string(spec.unit),
+               spec.default_value ? fmt::format("{:g}", *spec.default_value) : "-",
+               fmt::format("{:g}", spec.lower), fmt::format("{:g}", spec.upper),
+               std::string(to_string(spec.kind)), std::string(spec.meaning),
+               std::string(spec.source)});
+  }
+  return table.text();
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/fit.hpp"
+#include "datasets/campaign.hpp"
+#include "datasets/record.hpp"
+
+namespace rigcal::report {
+
+struct Range {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// What the conditions of a fit cover; a range is empty where no condition tells it.
+struct Validity {
+  std::optional<Range> frequency_hz;
+  std::optional<Range> amplitude;  ///< half of peak to peak of the drive: [m], or [V] in open loop
+  std::optional<Range> supply_pressure_pa;
+  std::optional<Range> leakage_coefficient;
+  std::vector<std::string> leak_levels;
+};
+
+/// What the conditions of one use cover, with the values of `fit` where it has them.
+///
+/// @param records  those that were compared; where a condition states no amplitude, or its supply
+///                 was recorded, its record tells
+Validity coverage(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
+                  const calib::Fit& fit, const std::vector<datasets::Use>& uses);
+
+/// In words, each way in which `asked` leaves `covered`, by more than 1 % of the bound.
+std::vector<std::string> outside(const Validity& asked, const Validity& covered);
+
+}  // namespace rigcal::report
