@@ -49,8 +49,9 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   run(request.initial, result, first, count);
 }
 
-/// Passes until every free parameter had its turn; 4 or 8 at a time.
-template <int N, template <int, int> class Stepper>
+/// Passes until every free parameter had its turn: up to kWidest sensitivities at a time, 4 where
+/// they suffice.
+template <int N, int kWidest, template <int, int> class Stepper>
 void passes(const SizedRequest& request, Simulation& result) {
   const int free = static_cast<int>(request.free.size());
   if (free == 0) {
@@ -59,11 +60,11 @@ void passes(const SizedRequest& request, Simulation& result) {
   }
   for (int first = 0; first < free && result.ok();) {
     const int left = free - first;
-    const int count = std::min(left, left <= 4 ? 4 : 8);
+    const int count = std::min(left, left <= 4 ? 4 : kWidest);
     if (left <= 4) {
       pass<N, 4, Stepper>(request, first, count, result);
     } else {
-      pass<N, 8, Stepper>(request, first, count, result);
+      pass<N, kWidest, Stepper>(request, first, count, result);
     }
     first += count;
   }
@@ -74,9 +75,9 @@ void passes(const SizedRequest& request, Simulation& result) {
 template <int N>
 void simulate_sized(const SizedRequest& request, Simulation& result) {
   if (request.options.method == Method::dopri5) {
-    passes<N, DormandPrince>(request, result);
+    passes<N, 4, DormandPrince>(request, result);
   } else {
-    passes<N, Rosenbrock>(request, result);
+    passes<N, 8, Rosenbrock>(request, result);
   }
 }
 
