@@ -24,7 +24,7 @@ struct FitOptions {
   int threads = 1;           ///< results are the same bits for any number
   int max_iterations = 200;  ///< per start
   std::optional<double> max_seconds;  ///< of all starts together; beyond: status `stopped`
-  double function_tolerance = 1e-10;   ///< |d cost| / cost of Ceres
+  double function_tolerance = 1e-10;  ///< |d cost| / cost of Ceres
   double gradient_tolerance = 1e-10;
   double parameter_tolerance = 1e-9;
   const std::atomic<bool>* cancel = nullptr;  ///< ends the fit with the best so far
@@ -56,6 +56,8 @@ struct FittedParameter {
   bool fitted = false;
   bool nuisance = false;
   std::optional<double> standard_error;  ///< absent where the Jacobian does not determine it
+  /// From the scatter of the residuals themselves: larger where they are correlated in time.
+  std::optional<double> robust_standard_error;
   std::optional<std::pair<double, double>> ci95;
   bool at_bound = false;
   Identifiability identifiability = Identifiability::identified;
@@ -86,10 +88,10 @@ struct SimulationFailure {
 /// Agreement of one channel in one condition.
 struct ChannelScore {
   datasets::Channel channel = datasets::Channel::position;
-  std::optional<metrics::Agreement> agreement;       ///< absent: see `problem`
-  std::optional<metrics::NoiseFloor> noise_floor;    ///< absent where the noise is unknown
+  std::optional<metrics::Agreement> agreement;           ///< absent: see `problem`
+  std::optional<metrics::NoiseFloor> noise_floor;        ///< absent where the noise is unknown
   std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
-  std::string problem;                               ///< why a metric does not exist, in words
+  std::string problem;                                   ///< why a metric does not exist, in words
 };
 
 enum class Verdict { pass, warn, fail };
@@ -107,7 +109,7 @@ struct ConditionScore {
   std::vector<double> time_s;
   /// measured mean and simulated value per output channel, whole record
   std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
-  std::vector<bool> in_window;       ///< empty: all
+  std::vector<bool> in_window;  ///< empty: all
 };
 
 /// Everything that a fit found.
@@ -116,9 +118,10 @@ struct Fit {
   std::string message;  ///< in words: why it stopped, what is not to be trusted
   double cost = 0.0;    ///< half the sum of squared weighted residuals, priors included
   long residual_count = 0;
-  long evaluations = 0;        ///< of all residuals
+  double reduced_chi_square = 0.0;  ///< 2 cost / (residuals - rank); about 1 if the noise is all
+  long evaluations = 0;             ///< of all residuals
   double wall_seconds = 0.0;
-  double tolerance = 0.0;      ///< of the simulations
+  double tolerance = 0.0;  ///< of the simulations
   std::vector<FittedParameter> parameters;
   std::vector<std::string> correlation_names;
   Eigen::MatrixXd correlation;  ///< shape (unknowns that have a standard error)^2

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,15 +20,29 @@ struct Unknown {
   bool nuisance = false;
 };
 
-/// The unknowns of a set of conditions, in a fixed order, and which of them act in which condition.
-/// Optimiser coordinates z are in [0, 1]: linear in the bounds, or in their logarithms where both
-/// are positive and span more than a decade.
+/// True where the condition, or its leak level, has a known value of its own for a parameter: it
+/// goes before any value that holds for the rig, fitted ones too.
+bool known_in(const datasets::Campaign& campaign, const datasets::Condition& condition, int index);
+
+/// The level for which a value of this scope holds in a condition: empty for the rig.
+///
+/// @throws InputError  scope leak_level, and the condition has none
+std::string level_in(const datasets::Condition& condition, datasets::Scope scope,
+                     std::string_view parameter);
+
+/// The unknowns of a set of conditions, in a fixed order (table index, then first appearance of the
+/// level), and which of them act in which condition. Optimiser coordinates z are in [0, 1]: linear
+/// in the bounds, or in their logarithms where both are positive and span more than a decade.
 class ParameterMap {
  public:
   /// @param conditions     those that take part
   /// @param nuisance_only  true in validation: everything but nuisance parameters keeps its value
+  /// @param extra          unknowns beside those of the campaign (initial states of conditions)
+  /// @throws InputError    a start outside its bounds, bounds that are not finite or empty, a
+  ///                       condition without the leak level that a scope asks for
   ParameterMap(const datasets::Campaign& campaign,
-               const std::vector<const datasets::Condition*>& conditions, bool nuisance_only);
+               const std::vector<const datasets::Condition*>& conditions, bool nuisance_only,
+               const std::vector<Unknown>& extra = {});
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   /// Positions in unknowns() that act in condition i, in the order of their table index.

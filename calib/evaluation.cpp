@@ -1,0 +1,117 @@
+#include "calib/evaluation.hpp"
+
+#include <cmath>
+
+#include "calib/loss.hpp"
+#include "calib/triangle.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// [J r] of one channel: chain rule to the unit box, weight, loss.
+Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t channel,
+                              const model::Simulation& run, const Eigen::VectorXd& slopes,
+                              const datasets::FitSettings& settings, double& square_sum) {
+  const ProblemChannel& data = condition.channels[channel];
+  const auto column = static_cast<Eigen::Index>(channel);
+  const Eigen::Index unknowns = slopes.size();
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(condition.rows.size()), unknowns + 1);
+  for (std::size_t i = 0; i < condition.rows.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    const auto sample = static_cast<Eigen::Index>(condition.rows[i]);
+    const double error = run.outputs(sample, column) - data.measured[i];
+    square_sum += error * error;
+    const LossValue loss = apply_loss(settings.loss, settings.loss_scale, error / data.sd);
+    const double weight = loss.slope / data.sd;
+    for (Eigen::Index j = 0; j < unknowns; ++j)
+      rows(row, j) = run.sensitivities[channel](sample, j) * slopes(j) * weight;
+    rows(row, unknowns) = loss.residual;
+  }
+  return rows;
+}
+
+}  // namespace
+
+ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
+                                       std::span<const double> z, const std::atomic<bool>* cancel,
+                                       ConditionRows* rows) {
+  const ProblemCondition& data = problem.conditions[condition];
+  const datasets::Campaign& campaign = *problem.campaign;
+  model::SimulationOptions options;
+  options.method = campaign.simulation.method;
+  options.tolerance = problem.tolerance;
+  options.max_steps = data.max_steps;
+  options.max_seconds = campaign.simulation.max_seconds;
+  options.cancel = cancel;
+  const model::Simulation run =
+      model::simulate(data.rig, problem.values_at(condition, z), data.free, data.inputs,
+                      data.fit_times(), data.outputs, options);
+
+  ConditionEvaluation result;
+  result.status = run.status;
+  result.steps = run.steps + run.rejected_steps;
+  result.failed_at_s = run.failed_at_s;
+  result.reason = run.reason;
+  if (!run.ok()) return result;
+
+  const std::vector<int>& acting = problem.map.acting(condition);
+  const auto unknowns = static_cast<Eigen::Index>(acting.size());
+  Eigen::VectorXd slopes(unknowns);
+  for (std::size_t j = 0; j < acting.size(); ++j) {
+    slopes(static_cast<Eigen::Index>(j)) =
+        problem.map.slope(acting[j], z[static_cast<std::size_t>(acting[j])]);
+  }
+  const auto samples = static_cast<Eigen::Index>(data.rows.size());
+  if (rows != nullptr) {
+    const Eigen::Index total = samples * static_cast<Eigen::Index>(data.channels.size());
+    rows->jacobian.resize(total, unknowns);
+    rows->residual.resize(total);
+  }
+  Triangle triangle(unknowns + 1);
+  for (std::size_t k = 0; k < data.channels.size(); ++k) {
+    double square_sum = 0.0;
+    const Eigen::MatrixXd weighted = weighted_rows(data, k, run, slopes, campaign.fit, square_sum);
+    triangle.add(weighted);
+    result.rms.push_back(std::sqrt(square_sum / static_cast<double>(samples)));
+    if (rows == nullptr) continue;
+    const Eigen::Index first = static_cast<Eigen::Index>(k) * samples;
+    rows->jacobian.middleRows(first, samples) = weighted.leftCols(unknowns);
+    rows->residual.segment(first, samples) = weighted.col(unknowns);
+  }
+  result.triangle = triangle.get();
+  if (!result.triangle.allFinite()) {
+    result.status = model::SimulationStatus::not_finite;
+    result.failed_at_s = data.fit_times().back();
+    result.reason = "a residual or its derivative is not finite";
+    result.triangle.resize(0, 0);
+  }
+  return result;
+}
+
+Linearisation linearise(const Problem& problem, const Evaluation& evaluation) {
+  const auto unknowns = static_cast<Eigen::Index>(problem.map.unknowns().size());
+  Triangle total(unknowns + 1);
+  for (std::size_t i = 0; i < evaluation.conditions.size(); ++i) {
+    const Eigen::MatrixXd& part = evaluation.conditions[i].triangle;
+    const std::vector<int>& acting = problem.map.acting(i);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(part.rows(), unknowns + 1);
+    for (std::size_t j = 0; j < acting.size(); ++j)
+      rows.col(acting[j]) = part.col(static_cast<Eigen::Index>(j));
+    rows.col(unknowns) = part.col(part.cols() - 1);
+    total.add(rows);
+  }
+  for (Eigen::Index j = 0; j < unknowns; ++j) {
+    const auto u = static_cast<std::size_t>(j);
+    const auto& prior = problem.map.unknowns()[u].prior;
+    if (!prior) continue;
+    const int unknown = static_cast<int>(j);
+    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, unknowns + 1);
+    row(0, j) = problem.map.slope(unknown, evaluation.z[u]) / prior->sd;
+    row(0, unknowns) =
+        (problem.map.to_physical(unknown, evaluation.z[u]) - prior->mean) / prior->sd;
+    total.add(row);
+  }
+  return {total.get().leftCols(unknowns), total.get().col(unknowns)};
+}
+
+}  // namespace rigcal::calib

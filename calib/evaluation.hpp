@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/problem.hpp"
+
+namespace rigcal::calib {
+
+/// What one condition contributes at one point of the unit box.
+struct ConditionEvaluation {
+  model::SimulationStatus status = model::SimulationStatus::ok;
+  double failed_at_s = 0.0;
+  std::string reason;  ///< in words, if it failed
+  /// Triangle of [J r], shape (acting unknowns + 1)^2: J in unit-box coordinates, r weighted.
+  Eigen::MatrixXd triangle;
+  std::vector<double> rms;  ///< root mean square of simulated minus measured per channel, SI
+  long steps = 0;
+
+  bool ok() const { return status == model::SimulationStatus::ok; }
+  /// Half the sum of squares.
+  double cost() const { return 0.5 * triangle.col(triangle.cols() - 1).squaredNorm(); }
+};
+
+/// Weighted residuals and their Jacobian of one condition, every row of it.
+struct ConditionRows {
+  Eigen::MatrixXd jacobian;  ///< shape (channels * samples that count, acting unknowns)
+  Eigen::VectorXd residual;
+};
+
+/// Simulates one condition with sensitivities. Residual: (simulated - measured) / sd, then the
+/// loss. Never throws for a point that cannot be simulated.
+///
+/// @param z       shape (unknowns), in the unit box
+/// @param rows    if not null, receives every row
+ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
+                                       std::span<const double> z, const std::atomic<bool>* cancel,
+                                       ConditionRows* rows = nullptr);
+
+/// All conditions at one point.
+struct Evaluation {
+  std::vector<double> z;
+  std::vector<ConditionEvaluation> conditions;
+  double cost = 0.0;  ///< half the sum of squares, priors included
+  bool ok = false;    ///< every condition could be simulated
+};
+
+/// Least-squares system of all conditions and priors at one point, as a triangle.
+struct Linearisation {
+  Eigen::MatrixXd jacobian;  ///< shape (unknowns + 1, unknowns), unit-box coordinates
+  Eigen::VectorXd residual;  ///< shape (unknowns + 1); half its squared norm is the cost
+};
+
+/// @param evaluation  one that is ok
+Linearisation linearise(const Problem& problem, const Evaluation& evaluation);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,122 @@
+#include "calib/evaluator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/parallel.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// Failures that are kept in words, of each condition and kind.
+constexpr int kFailuresKept = 3;
+
+double prior_cost(const Problem& problem, std::span<const double> z) {
+  double cost = 0.0;
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const auto& prior = problem.map.unknowns()[j].prior;
+    if (!prior) continue;
+    const double residual =
+        (problem.map.to_physical(static_cast<int>(j), z[j]) - prior->mean) / prior->sd;
+    cost += 0.5 * residual * residual;
+  }
+  return cost;
+}
+
+bool is_at(const Evaluation& evaluation, std::span<const double> z) {
+  return std::equal(evaluation.z.begin(), evaluation.z.end(), z.begin(), z.end());
+}
+
+}  // namespace
+
+const Evaluation& Evaluator::evaluate(std::span<const double> z) {
+  if (!last_.conditions.empty() && is_at(last_, z)) {
+    keep_best();  // it may be of an earlier start
+    return last_;
+  }
+  if (best_.ok && is_at(best_, z)) {
+    last_ = best_;
+    return last_;
+  }
+  Evaluation evaluation;
+  evaluation.z.assign(z.begin(), z.end());
+  evaluation.conditions.resize(problem_.conditions.size());
+  if (aborted()) {
+    for (ConditionEvaluation& each : evaluation.conditions)
+      each.status = model::SimulationStatus::cancelled;
+    last_ = std::move(evaluation);
+    return last_;
+  }
+  parallel_for(problem_.conditions.size(), options_.threads, [&](std::size_t i) {
+    evaluation.conditions[i] = evaluate_condition(problem_, i, z, options_.cancel);
+  });
+  ++evaluations_;
+  evaluation.ok = std::all_of(evaluation.conditions.begin(), evaluation.conditions.end(),
+                              [](const ConditionEvaluation& each) { return each.ok(); });
+  if (evaluation.ok) {
+    evaluation.cost = prior_cost(problem_, z);
+    for (const ConditionEvaluation& each : evaluation.conditions) evaluation.cost += each.cost();
+  } else {
+    record_failures(evaluation);
+  }
+  last_ = std::move(evaluation);
+  keep_best();
+  return last_;
+}
+
+void Evaluator::keep_best() {
+  if (last_.ok && (!best_.ok || last_.cost < best_.cost)) best_ = last_;
+}
+
+void Evaluator::begin_start(int number) {
+  start_ = number;
+  best_ = {};
+}
+
+void Evaluator::forget() {
+  last_ = {};
+  best_ = {};
+}
+
+void Evaluator::PrepareForEvaluation(bool /*evaluate_jacobians*/, bool /*new_evaluation_point*/) {
+  try {
+    evaluate(watched_);
+  } catch (...) {
+    error_ = std::current_exception();
+    last_ = {};
+    last_.conditions.resize(problem_.conditions.size());
+    for (ConditionEvaluation& each : last_.conditions)
+      each.status = model::SimulationStatus::cancelled;
+  }
+}
+
+bool Evaluator::cancelled() const {
+  return error_ != nullptr ||
+         (options_.cancel != nullptr && options_.cancel->load(std::memory_order_relaxed));
+}
+
+void Evaluator::rethrow() const {
+  if (error_) std::rethrow_exception(error_);
+}
+
+void Evaluator::record_failures(const Evaluation& evaluation) {
+  for (std::size_t i = 0; i < evaluation.conditions.size(); ++i) {
+    const ConditionEvaluation& each = evaluation.conditions[i];
+    if (each.ok() || each.status == model::SimulationStatus::cancelled) continue;
+    ++failure_count_;
+    if (++kept_[{i, each.status}] > kFailuresKept) continue;
+    SimulationFailure failure;
+    failure.condition = problem_.conditions[i].condition->id;
+    for (const int j : problem_.map.acting(i)) {
+      const auto u = static_cast<std::size_t>(j);
+      failure.parameters.emplace_back(problem_.name(u),
+                                      problem_.map.to_physical(j, evaluation.z[u]));
+    }
+    failure.time_s = each.failed_at_s;
+    failure.reason = each.reason;
+    failure.start = start_;
+    failures_.push_back(std::move(failure));
+  }
+}
+
+}  // namespace rigcal::calib

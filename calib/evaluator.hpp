@@ -1,0 +1,81 @@
+#pragma once
+
+#include <ceres/evaluation_callback.h>
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "calib/evaluation.hpp"
+#include "calib/fit.hpp"
+
+namespace rigcal::calib {
+
+/// Evaluates all conditions of a problem in parallel and hands the results to Ceres' cost
+/// functions.
+///
+/// Every evaluation carries sensitivities: nearly every trial point becomes the next iterate, whose
+/// Jacobian is then there already, and cost and gradient come from the same steps of the solver.
+/// The last and the best point are kept, so that nothing is computed twice.
+class Evaluator final : public ceres::EvaluationCallback {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  struct Options {
+    int threads = 1;
+    const std::atomic<bool>* cancel = nullptr;
+    std::optional<Clock::time_point> deadline;
+  };
+
+  /// Borrows the problem, whose weights may change between solves: call forget() then.
+  Evaluator(const Problem& problem, Options options)
+      : problem_(problem), options_(std::move(options)) {}
+
+  /// The evaluation at z; not ok where a condition could not be simulated, which is recorded.
+  const Evaluation& evaluate(std::span<const double> z);
+
+  /// Begins a start of a multi-start: best() is then the best of this start.
+  void begin_start(int number);
+  /// Drops what is kept of earlier points.
+  void forget();
+  /// The point of lowest cost so far; not ok if there is none.
+  const Evaluation& best() const { return best_; }
+
+  /// Where Ceres keeps the point; read at every PrepareForEvaluation.
+  void watch(std::span<const double> z) { watched_ = z; }
+  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
+  /// The evaluation that PrepareForEvaluation made.
+  const Evaluation& prepared() const { return last_; }
+
+  /// A signal or the time limit ends the fit.
+  bool out_of_time() const { return options_.deadline && Clock::now() >= *options_.deadline; }
+  bool cancelled() const;
+  bool aborted() const { return cancelled() || out_of_time(); }
+  /// Throws what an evaluation threw inside Ceres.
+  void rethrow() const;
+
+  long evaluations() const { return evaluations_; }
+  long failure_count() const { return failure_count_; }
+  const std::vector<SimulationFailure>& failures() const { return failures_; }
+
+ private:
+  void keep_best();
+  void record_failures(const Evaluation& evaluation);
+
+  const Problem& problem_;
+  Options options_;
+  Evaluation last_;
+  Evaluation best_;
+  std::span<const double> watched_;
+  std::exception_ptr error_;
+  int start_ = 1;
+  long evaluations_ = 0;
+  long failure_count_ = 0;
+  std::vector<SimulationFailure> failures_;
+  std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept_;
+};
+
+}  // namespace rigcal::calib

@@ -1,0 +1,334 @@
+#include "calib/fit.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "calib/acceptance.hpp"
+#include "calib/evaluator.hpp"
+#include "calib/identifiability.hpp"
+#include "calib/known_values.hpp"
+#include "calib/multi_start.hpp"
+#include "calib/scorecard.hpp"
+#include "calib/weights.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+using datasets::FittedValue;
+using datasets::Record;
+using datasets::Use;
+using Clock = Evaluator::Clock;
+
+/// A later point may take this many times the steps of the start before it is given up.
+constexpr long kStepsOverStart = 50;
+constexpr long kLeastSteps = 20'000;
+
+std::vector<const Condition*> conditions_of(const Campaign& campaign, std::vector<Use> uses) {
+  std::vector<const Condition*> result;
+  for (const Condition& condition : campaign.conditions) {
+    if (std::find(uses.begin(), uses.end(), condition.use) != uses.end())
+      result.push_back(&condition);
+  }
+  return result;
+}
+
+void budget_steps(Problem& problem, const Evaluation& start) {
+  if (!start.ok) return;
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    problem.conditions[i].max_steps =
+        std::max(kLeastSteps, kStepsOverStart * start.conditions[i].steps);
+  }
+}
+
+std::vector<FittedValue> values_of(const std::vector<FittedParameter>& parameters) {
+  std::vector<FittedValue> values;
+  for (const FittedParameter& each : parameters) {
+    if (each.fitted && !each.nuisance)
+      values.push_back({each.index, each.scope, each.level, each.value});
+  }
+  return values;
+}
+
+void add_correlation(const Problem& problem, const Uncertainty& found, Fit& fit) {
+  std::vector<Eigen::Index> rows;
+  for (std::size_t j = 0; j < found.standard_error.size(); ++j) {
+    if (!found.standard_error[j]) continue;
+    rows.push_back(static_cast<Eigen::Index>(j));
+    fit.correlation_names.push_back(problem.name(j));
+  }
+  fit.correlation = found.correlation(rows, rows);
+}
+
+void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
+  const double chi = found.reduced_chi_square;
+  const double freedom = std::max(1.0, static_cast<double>(fit.residual_count - found.rank));
+  const double scatter = 5.0 * std::sqrt(2.0 / freedom);
+  if (fit.residual_count <= found.rank) {
+    fit.warnings.push_back(
+        fmt::format("{} residuals for {} unknowns: nothing is left to tell the noise by",
+                    fit.residual_count, problem.map.unknowns().size()));
+  } else if (chi > 1.0 + std::max(0.1, scatter)) {
+    fit.warnings.push_back(fmt::format(
+        "the residuals are {:.3g} times as large as the noise (reduced chi-square {:.4g}): the "
+        "model does not explain all of the records; standard errors are scaled up by that factor",
+        std::sqrt(chi), chi));
+  } else if (chi < 1.0 - std::max(0.5, scatter)) {
+    fit.warnings.push_back(
+        fmt::format("the residuals are only {:.3g} times as large as the noise (reduced chi-square "
+                    "{:.4g}): the stated standard deviations are too large",
+                    std::sqrt(chi), chi));
+  }
+}
+
+/// Names in words what is not to be trusted about the parameters.
+void warn_of_parameters(const Problem& problem, const std::vector<FittedParameter>& parameters,
+                        Fit& fit) {
+  std::vector<std::string> bounded;
+  std::vector<std::string> loose;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const FittedParameter& each = parameters[j];
+    if (each.at_bound) bounded.push_back(problem.name(j));
+    if (each.identifiability == Identifiability::not_identifiable && !each.nuisance)
+      loose.push_back(problem.name(j));
+    const bool says_something = each.at_bound || !each.standard_error ||
+                                each.identifiability != Identifiability::identified;
+    if (says_something) fit.warnings.push_back(fmt::format("{}: {}", problem.name(j), each.reason));
+  }
+  if (!bounded.empty()) fit.message += fmt::format("; at a bound: {}", fmt::join(bounded, ", "));
+  if (!loose.empty()) fit.message += fmt::format("; not identifiable: {}", fmt::join(loose, ", "));
+}
+
+Evaluator::Options evaluator_options(const Campaign& campaign, const FitOptions& options,
+                                     Clock::time_point began) {
+  Evaluator::Options result;
+  result.threads = options.threads;
+  result.cancel = options.cancel;
+  const auto limit_s = options.max_seconds ? options.max_seconds : campaign.fit.max_seconds;
+  if (limit_s) {
+    result.deadline = began + std::chrono::duration_cast<Clock::duration>(
+                                  std::chrono::duration<double>(*limit_s));
+  }
+  return result;
+}
+
+/// Solves a problem and describes what was found, all but the scores.
+Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                         Fit& fit) {
+  budget_steps(problem, evaluator.evaluate(problem.start()));
+  MultiStart found = multi_start(problem, evaluator, options);
+  if (found.optimum.ok && problem.has_estimated_sd())
+    estimate_weights(problem, evaluator, options, found, fit.warnings);
+  fit.status = found.result.status;
+  fit.message = found.result.message;
+  fit.starts = std::move(found.starts);
+  if (static_cast<int>(fit.starts.size()) < options.starts) {
+    fit.warnings.push_back(fmt::format("only {} of {} starts were made before the fit was stopped",
+                                       fit.starts.size(), options.starts));
+  }
+  fit.best_start = found.best;
+  fit.evaluations = evaluator.evaluations();
+  fit.failures = evaluator.failures();
+  fit.failure_count = evaluator.failure_count();
+  fit.residual_count = problem.residual_count();
+  fit.tolerance = problem.tolerance;
+  if (!found.optimum.ok) {
+    if (fit.starts.size() > 1)
+      fit.message = "no start could be simulated; of the first: " + fit.message;
+    return {};
+  }
+  fit.cost = found.optimum.cost;
+  const Uncertainty spread = uncertainty(problem, found.optimum, options.threads);
+  fit.rank = spread.rank;
+  fit.singular_values = spread.singular_values;
+  fit.reduced_chi_square = spread.reduced_chi_square;
+  fit.parameters = describe_unknowns(problem, found.optimum, found.result.check, spread);
+  add_correlation(problem, spread, fit);
+  warn_of_noise(problem, spread, fit);
+  warn_of_parameters(problem, fit.parameters, fit);
+  return found.optimum;
+}
+
+/// Puts scores in the order of the campaign and judges them together.
+void finish(const Campaign& campaign, Clock::time_point began, Fit& fit) {
+  std::stable_sort(fit.conditions.begin(), fit.conditions.end(), [&](const auto& a, const auto& b) {
+    return campaign.find(a.id) < campaign.find(b.id);
+  });
+  fit.verdict = worst(fit.conditions);
+  const auto words = overfitting_warnings(fit.conditions);
+  fit.warnings.insert(fit.warnings.end(), words.begin(), words.end());
+  for (const ConditionScore& score : fit.conditions) {
+    if (!score.failure.empty()) {
+      fit.warnings.push_back(
+          fmt::format("condition \"{}\" could not be simulated: {}", score.id, score.failure));
+    }
+  }
+  fit.wall_seconds = std::chrono::duration<double>(Clock::now() - began).count();
+}
+
+/// Scores conditions at known values, nuisance parameters estimated anew.
+Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
+             const std::vector<const Condition*>& conditions,
+             const std::vector<FittedValue>* values, const FitOptions& options,
+             Clock::time_point began) {
+  Fit fit;
+  Problem problem = make_problem(campaign, records, conditions, true, values);
+  Evaluator evaluator(problem, evaluator_options(campaign, options, began));
+  FitOptions once = options;
+  once.starts = 1;
+  std::vector<double> z = problem.start();
+  if (problem.map.unknowns().empty()) {
+    fit.status = FitStatus::converged;
+    fit.message = "scored at known values; nothing was estimated";
+    fit.residual_count = problem.residual_count();
+    fit.tolerance = problem.tolerance;
+  } else {
+    const Evaluation optimum = solve_problem(problem, evaluator, once, fit);
+    if (optimum.ok) z = optimum.z;
+    fit.message = "nuisance parameters: " + fit.message;
+  }
+  const auto known = describe_known(problem);
+  fit.parameters.insert(fit.parameters.end(), known.begin(), known.end());
+  fit.conditions = score_conditions(problem, z, options.threads);
+  if (problem.map.unknowns().empty() &&
+      std::all_of(fit.conditions.begin(), fit.conditions.end(),
+                  [](const ConditionScore& score) { return !score.failure.empty(); })) {
+    fit.status = FitStatus::failed;
+    fit.message = "no condition could be simulated";
+  }
+  return fit;
+}
+
+/// Nuisance parameters and scores of the validate conditions join a fit.
+void add_validation(Fit validation, Fit& fit) {
+  for (FittedParameter& each : validation.parameters) {
+    if (each.fitted) fit.parameters.push_back(std::move(each));
+  }
+  if (validation.status != FitStatus::converged)
+    fit.warnings.push_back("validate conditions: " + validation.message);
+  for (const std::string& text : validation.warnings)
+    fit.warnings.push_back("validate conditions: " + text);
+  fit.evaluations += validation.evaluations;
+  std::move(validation.conditions.begin(), validation.conditions.end(),
+            std::back_inserter(fit.conditions));
+}
+
+}  // namespace
+
+void FitOptions::validate() const {
+  const auto require = [](bool holds, const char* message) {
+    if (!holds) throw std::invalid_argument(std::string("FitOptions: ") + message);
+  };
+  require(starts >= 1, "starts must be at least 1");
+  require(threads >= 1, "threads must be at least 1");
+  require(max_iterations >= 0, "max_iterations must not be negative");
+  require(!max_seconds || *max_seconds > 0.0, "max_seconds must be positive");
+  require(function_tolerance > 0.0, "function_tolerance must be positive");
+  require(gradient_tolerance > 0.0, "gradient_tolerance must be positive");
+  require(parameter_tolerance > 0.0, "parameter_tolerance must be positive");
+}
+
+std::string_view to_string(FitStatus status) {
+  switch (status) {
+    case FitStatus::converged:
+      return "converged";
+    case FitStatus::stopped:
+      return "stopped";
+    case FitStatus::failed:
+      return "failed";
+  }
+  return "";
+}
+
+std::string_view to_string(Identifiability identifiability) {
+  switch (identifiability) {
+    case Identifiability::identified:
+      return "identified";
+    case Identifiability::weak:
+      return "weak";
+    case Identifiability::not_identifiable:
+      return "not_identifiable";
+  }
+  return "";
+}
+
+std::string_view to_string(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::pass:
+      return "PASS";
+    case Verdict::warn:
+      return "WARN";
+    case Verdict::fail:
+      return "FAIL";
+  }
+  return "";
+}
+
+bool Fit::usable() const {
+  return status == FitStatus::converged &&
+         std::all_of(parameters.begin(), parameters.end(),
+                     [](const FittedParameter& each) { return std::isfinite(each.value); });
+}
+
+Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitOptions& options) {
+  options.validate();
+  const auto began = Clock::now();
+  const auto fitted = conditions_of(campaign, {Use::fit});
+  const auto validated = conditions_of(campaign, {Use::validate});
+  if (fitted.empty()) {
+    throw InputError({campaign.file.string()},
+                     "no condition has use = \"fit\": expected at least one");
+  }
+  Problem problem = make_problem(campaign, records, fitted, false, nullptr);
+  if (problem.map.unknowns().empty()) {
+    throw InputError({campaign.file.string()},
+                     "nothing is free in the conditions of the fit: expected `fit = true` at a "
+                     "parameter, or --free");
+  }
+  // A leak level that only validation has must be told before the hours of a fit, not after.
+  std::vector<FittedValue> placeholder;
+  for (const Unknown& unknown : problem.map.unknowns()) {
+    if (!unknown.nuisance)
+      placeholder.push_back({unknown.index, unknown.scope, unknown.level, unknown.start});
+  }
+  for (const Condition* condition : validated) values_with(campaign, *condition, placeholder);
+
+  Fit result;
+  Evaluator evaluator(problem, evaluator_options(campaign, options, began));
+  const Evaluation optimum = solve_problem(problem, evaluator, options, result);
+  if (optimum.ok) {
+    result.conditions = score_conditions(problem, optimum.z, options.threads);
+    const auto values = values_of(result.parameters);
+    if (!validated.empty()) {
+      FitOptions quiet = options;
+      quiet.progress = nullptr;
+      add_validation(score_at(campaign, records, validated, &values, quiet, began), result);
+    }
+  }
+  const auto known = describe_known(problem);
+  result.parameters.insert(result.parameters.end(), known.begin(), known.end());
+  finish(campaign, began, result);
+  return result;
+}
+
+Fit validate(const Campaign& campaign, const std::vector<Record>& records,
+             const std::vector<FittedValue>* values, const FitOptions& options) {
+  options.validate();
+  const auto began = Clock::now();
+  const auto conditions = conditions_of(campaign, {Use::fit, Use::validate});
+  if (conditions.empty()) {
+    throw InputError({campaign.file.string()},
+                     "no condition has use = \"fit\" or \"validate\": expected at least one");
+  }
+  Fit result = score_at(campaign, records, conditions, values, options, began);
+  finish(campaign, began, result);
+  return result;
+}
+
+}  // namespace rigcal::calib

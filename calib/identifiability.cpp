@@ -1,0 +1,175 @@
+#include "calib/identifiability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace rigcal::calib {
+namespace {
+
+constexpr double kWeak = 0.2;
+constexpr double kNotIdentifiable = 1.0;
+constexpr double kRobustMatters = 1.5;
+constexpr double kStrongCorrelation = 0.9;
+
+using datasets::Scope;
+using model::ParameterKind;
+using model::ParameterSpec;
+
+const ParameterSpec& spec_of(const Problem& problem, int index) {
+  return model::parameter_table(problem.campaign->rig.plant)[static_cast<std::size_t>(index)];
+}
+
+bool zero_is_arbitrary(const ParameterSpec& spec, const Unknown& unknown) {
+  return spec.kind == ParameterKind::sensor || spec.kind == ParameterKind::initial ||
+         (unknown.lower < 0.0 && unknown.upper > 0.0);
+}
+
+bool may_be_absent(const ParameterSpec& spec) {
+  return spec.lower == 0.0 &&
+         (spec.kind == ParameterKind::term || spec.key == "leakage_coefficient");
+}
+
+std::string number(const ParameterSpec& spec, double value) {
+  return spec.unit == "1" ? fmt::format("{:.4g}", value)
+                          : fmt::format("{:.4g} {}", value, spec.unit);
+}
+
+/// "; correlated 0.98 with mass_kg", or nothing.
+std::string partner(const Problem& problem, const Uncertainty& found, std::size_t unknown) {
+  const auto row = static_cast<Eigen::Index>(unknown);
+  Eigen::Index best = -1;
+  for (Eigen::Index k = 0; k < found.correlation.cols(); ++k) {
+    if (k == row || !found.standard_error[static_cast<std::size_t>(k)]) continue;
+    if (best < 0 || std::abs(found.correlation(row, k)) > std::abs(found.correlation(row, best)))
+      best = k;
+  }
+  if (best < 0 || std::abs(found.correlation(row, best)) < kStrongCorrelation) return {};
+  return fmt::format("; correlated {:.3f} with {}", found.correlation(row, best),
+                     problem.name(static_cast<std::size_t>(best)));
+}
+
+void add_reason(FittedParameter& parameter, const std::string& text) {
+  parameter.reason += parameter.reason.empty() ? text : "; " + text;
+}
+
+/// Grade and reason of a parameter that has an interval of this half width.
+void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown, double half_width,
+           FittedParameter& parameter) {
+  const Unknown& u = problem.map.unknowns()[unknown];
+  const ParameterSpec& spec = spec_of(problem, u.index);
+  const bool arbitrary = zero_is_arbitrary(spec, u);
+  const bool absent = may_be_absent(spec) && parameter.value - half_width <= 0.0;
+  const double scale = arbitrary || absent ? u.upper - u.lower : std::abs(parameter.value);
+  const double share = scale > 0.0 ? half_width / scale : kNotIdentifiable * 2.0;
+  if (share > kNotIdentifiable) {
+    parameter.identifiability = Identifiability::not_identifiable;
+  } else if (share > kWeak) {
+    parameter.identifiability = Identifiability::weak;
+  }
+  if (absent) {
+    add_reason(parameter, fmt::format("cannot be told from 0: at most {} (95 %)",
+                                      number(spec, parameter.value + half_width)));
+  }
+  if (parameter.identifiability == Identifiability::identified) return;
+  add_reason(parameter,
+             fmt::format("half width of the 95 % interval is {:.0f} % of {}{}", 100.0 * share,
+                         arbitrary || absent ? "the width of its bounds" : "the value",
+                         partner(problem, found, unknown)));
+}
+
+void describe_bound(const Problem& problem, const OptimumCheck& check, std::size_t unknown,
+                    FittedParameter& parameter) {
+  const BoundSide side = check.side[unknown];
+  if (side == BoundSide::inside) return;
+  const Unknown& u = problem.map.unknowns()[unknown];
+  parameter.at_bound = true;
+  const bool lower = side == BoundSide::lower;
+  const std::string text =
+      fmt::format("at its {} bound {}: {}", lower ? "lower" : "upper",
+                  number(spec_of(problem, u.index), lower ? u.lower : u.upper),
+                  check.held[unknown] ? "the records ask for a value beyond it"
+                                      : "the records ask for no value beyond it");
+  parameter.reason = parameter.reason.empty() ? text : text + "; " + parameter.reason;
+}
+
+FittedParameter known(int index, Scope scope, std::string level, double value) {
+  FittedParameter parameter;
+  parameter.index = index;
+  parameter.scope = scope;
+  parameter.level = std::move(level);
+  parameter.value = value;
+  parameter.start = value;
+  parameter.lower = value;
+  parameter.upper = value;
+  return parameter;
+}
+
+}  // namespace
+
+std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Evaluation& optimum,
+                                               const OptimumCheck& check,
+                                               const Uncertainty& found) {
+  std::vector<FittedParameter> result;
+  for (std::size_t j = 0; j < optimum.z.size(); ++j) {
+    const Unknown& u = problem.map.unknowns()[j];
+    const ParameterSpec& spec = spec_of(problem, u.index);
+    FittedParameter& parameter = result.emplace_back();
+    parameter.index = u.index;
+    parameter.scope = u.scope;
+    parameter.level = u.level;
+    parameter.value = problem.map.to_physical(static_cast<int>(j), optimum.z[j]);
+    parameter.start = u.start;
+    parameter.lower = u.lower;
+    parameter.upper = u.upper;
+    parameter.fitted = true;
+    parameter.nuisance = u.nuisance;
+    parameter.standard_error = found.standard_error[j];
+    parameter.robust_standard_error = found.robust_standard_error[j];
+    if (parameter.standard_error) {
+      double error = *parameter.standard_error;
+      const double robust = parameter.robust_standard_error.value_or(0.0);
+      if (robust > kRobustMatters * error) {
+        add_reason(parameter, "residuals are correlated in time: interval from the robust error");
+        error = robust;
+      }
+      const double half_width = found.student_t * error;
+      parameter.ci95 = {std::max(spec.lower, parameter.value - half_width),
+                        std::min(spec.upper, parameter.value + half_width)};
+      grade(problem, found, j, half_width, parameter);
+    } else {
+      parameter.identifiability = Identifiability::not_identifiable;
+      parameter.reason = found.reason[j];
+    }
+    describe_bound(problem, check, j, parameter);
+  }
+  return result;
+}
+
+std::vector<FittedParameter> describe_known(const Problem& problem) {
+  const datasets::Campaign& campaign = *problem.campaign;
+  std::vector<FittedParameter> result;
+  for (const auto& setting : campaign.parameters) {
+    const auto& unknowns = problem.map.unknowns();
+    const bool fitted = std::any_of(unknowns.begin(), unknowns.end(), [&](const Unknown& unknown) {
+      return unknown.index == setting.index;
+    });
+    if (!fitted) result.push_back(known(setting.index, Scope::rig, {}, setting.value));
+  }
+  std::set<std::string> levels;
+  for (const ProblemCondition& each : problem.conditions) {
+    const datasets::Condition& condition = *each.condition;
+    for (const auto& [index, value] : condition.overrides)
+      result.push_back(known(index, Scope::condition, condition.id, value));
+    if (!condition.leak_level || !levels.insert(*condition.leak_level).second) continue;
+    const auto level = campaign.leak_levels.find(*condition.leak_level);
+    if (level == campaign.leak_levels.end()) continue;
+    for (const auto& [index, value] : level->second)
+      result.push_back(known(index, Scope::leak_level, *condition.leak_level, value));
+  }
+  return result;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/fit.hpp"
+#include "calib/optimum.hpp"
+#include "calib/problem.hpp"
+#include "calib/uncertainty.hpp"
+
+namespace rigcal::calib {
+
+/// The unknowns of a solved problem as results: values, errors, intervals, bounds and how well each
+/// is identified, in words where it is not.
+///
+/// Interval: value +- t SE, cut at the limits beyond which the parameter makes no sense; with the
+/// robust error where that exceeds the plain one by half. Half width above 20 % of the value: weak;
+/// above 100 %, or no standard error: not identifiable. Where zero is arbitrary (offsets, initial
+/// states, bounds of both signs) or the effect may be absent (leakage, friction, optional terms
+/// whose interval reaches 0) the half width is judged against the width of the bounds instead.
+std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Evaluation& optimum,
+                                               const OptimumCheck& check,
+                                               const Uncertainty& uncertainty);
+
+/// What the campaign knows: its other settings, and values of leak levels and conditions.
+std::vector<FittedParameter> describe_known(const Problem& problem);
+
+}  // namespace rigcal::calib

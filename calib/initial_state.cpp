@@ -1,0 +1,111 @@
+#include "calib/initial_state.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Campaign;
+using datasets::Channel;
+using datasets::Condition;
+using datasets::InitialMode;
+using datasets::Record;
+
+/// Smallest half width of bounds for a record that does not move [m, m/s, Pa].
+constexpr double kLeastTravel_m = 1e-6;
+constexpr double kLeastSpeed_m_per_s = 1e-6;
+constexpr double kLeastPressure_pa = 1e3;
+
+/// Recorded load pressure, from both chamber pressures if need be; empty if neither is there.
+std::vector<double> load_pressure(const Record& record) {
+  if (const auto found = record.channels.find(Channel::load_pressure);
+      found != record.channels.end()) {
+    return found->second.mean;
+  }
+  const auto a = record.channels.find(Channel::pressure_a);
+  const auto b = record.channels.find(Channel::pressure_b);
+  if (a == record.channels.end() || b == record.channels.end()) return {};
+  std::vector<double> difference(a->second.mean.size());
+  std::transform(a->second.mean.begin(), a->second.mean.end(), b->second.mean.begin(),
+                 difference.begin(), std::minus<>());
+  return difference;
+}
+
+double initial_mean(const Record& record, const std::vector<double>& signal, double window_s) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < signal.size(); ++i) {
+    if (i > 0 && record.time_s[i] - record.time_s.front() > window_s) break;
+    sum += signal[i];
+    ++count;
+  }
+  return sum / count;
+}
+
+double peak_to_peak(const std::vector<double>& signal) {
+  const auto [low, high] = std::minmax_element(signal.begin(), signal.end());
+  return *high - *low;
+}
+
+double fastest_change(const Record& record, const std::vector<double>& signal) {
+  double fastest = 0.0;
+  for (std::size_t i = 1; i < signal.size(); ++i) {
+    fastest = std::max(
+        fastest, std::abs(signal[i] - signal[i - 1]) / (record.time_s[i] - record.time_s[i - 1]));
+  }
+  return fastest;
+}
+
+/// One initial_* parameter: its value from the record, and how far it may lie from there.
+struct Guess {
+  std::string_view key;
+  double value = 0.0;
+  double half_width = 0.0;
+};
+
+}  // namespace
+
+InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condition,
+                               const Record& record) {
+  InitialPlan plan;
+  if (campaign.initial == InitialMode::rest) return plan;
+  plan.state = model::InitialState::given;
+  const auto position = record.channels.find(Channel::position);
+  if (position == record.channels.end() || position->second.mean.empty()) {
+    throw InputError(
+        condition.where,
+        fmt::format("condition \"{}\": `initial` is \"{}\", but no position is "
+                    "recorded: expected a position channel, or initial = \"rest\"",
+                    condition.id, campaign.initial == InitialMode::fit ? "fit" : "record"));
+  }
+  const auto& x = position->second.mean;
+  const double window_s = campaign.initial_window_s;
+  const double supply_pa = datasets::values_in(campaign, condition)["supply_pressure"];
+  const std::vector<double> P_L = load_pressure(record);
+  const std::vector<Guess> guesses{
+      {"initial_position", initial_mean(record, x, window_s),
+       std::max(peak_to_peak(x), kLeastTravel_m)},
+      {"initial_velocity", 0.0, std::max(fastest_change(record, x), kLeastSpeed_m_per_s)},
+      {"initial_load_pressure", P_L.empty() ? 0.0 : initial_mean(record, P_L, window_s),
+       std::max(P_L.empty() ? supply_pa : peak_to_peak(P_L), kLeastPressure_pa)},
+  };
+  for (const Guess& guess : guesses) {
+    const int index = model::parameter_index(campaign.rig.plant, guess.key);
+    if (campaign.setting(index) != nullptr || known_in(campaign, condition, index)) continue;
+    const bool unrecorded = P_L.empty() && guess.key == "initial_load_pressure";
+    if (campaign.initial == InitialMode::record) {
+      if (unrecorded) continue;  // the model then starts in equilibrium with the load
+      plan.known.emplace_back(index, guess.value);
+    } else {
+      plan.unknowns.push_back({index, datasets::Scope::condition, condition.id, guess.value,
+                               guess.value - guess.half_width, guess.value + guess.half_width,
+                               std::nullopt, true});
+    }
+  }
+  return plan;
+}
+
+}  // namespace rigcal::calib

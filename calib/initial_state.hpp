@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "calib/parameter_map.hpp"
+#include "datasets/campaign.hpp"
+#include "datasets/record.hpp"
+
+namespace rigcal::calib {
+
+/// Where a simulation of one condition starts.
+struct InitialPlan {
+  model::InitialState state = model::InitialState::rest;
+  datasets::Overrides known;      ///< initial_* values read from the record
+  std::vector<Unknown> unknowns;  ///< initial_* values to be estimated; nuisance
+};
+
+/// What the campaign's `initial` means for one condition:
+///   rest    all states zero;
+///   record  position, and load pressure where pressures are recorded, are their means over the
+///           `initial_window`; the velocity is zero, and an unrecorded load pressure that of
+///           equilibrium with the load;
+///   fit     position, velocity and load pressure are estimated, between bounds from the record:
+///   one
+///           peak-to-peak about the mean of the window, the fastest change between two samples, the
+///           supply pressure (or one peak-to-peak of the recorded load pressure).
+/// Values that the campaign gives or fits itself stay as they are.
+///
+/// @throws InputError  record or fit without a recorded position
+InitialPlan plan_initial_state(const datasets::Campaign& campaign,
+                               const datasets::Condition& condition,
+                               const datasets::Record& record);
+
+}  // namespace rigcal::calib

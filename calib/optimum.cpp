@@ -1,0 +1,59 @@
+#include "calib/optimum.hpp"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+namespace rigcal::calib {
+namespace {
+
+constexpr double kLargestOffset = 1e-2;  // of a standard error
+
+}  // namespace
+
+BoundSide bound_side(double z) {
+  if (z <= kAtBound) return BoundSide::lower;
+  return z >= 1.0 - kAtBound ? BoundSide::upper : BoundSide::inside;
+}
+
+double rank_threshold(double simulation_tolerance) {
+  return std::clamp(simulation_tolerance, 1e-9, 1e-5);
+}
+
+bool OptimumCheck::stationary() const { return relative_offset <= kLargestOffset; }
+
+OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation) {
+  const Linearisation system = linearise(problem, evaluation);
+  const Eigen::VectorXd gradient = system.jacobian.transpose() * system.residual;
+  OptimumCheck check;
+  std::vector<Eigen::Index> free;
+  for (std::size_t j = 0; j < evaluation.z.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    const BoundSide side = bound_side(evaluation.z[j]);
+    const bool outward = (side == BoundSide::lower && gradient(column) > 0.0) ||
+                         (side == BoundSide::upper && gradient(column) < 0.0);
+    check.side.push_back(side);
+    check.held.push_back(outward);
+    if (!outward && system.jacobian.col(column).norm() > 0.0) free.push_back(column);
+  }
+  if (free.empty()) return check;
+
+  Eigen::MatrixXd scaled = system.jacobian(Eigen::all, free);
+  const Eigen::VectorXd norms = scaled.colwise().norm();
+  scaled.array().rowwise() /= norms.transpose().array();
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU);
+  svd.setThreshold(rank_threshold(problem.tolerance));
+  const Eigen::Index rank = svd.rank();
+  const Eigen::VectorXd explained = svd.matrixU().leftCols(rank).transpose() * system.residual;
+  const double freedom = std::max(1.0, static_cast<double>(problem.residual_count() - rank));
+  const double unexplained =
+      std::sqrt(std::max(0.0, system.residual.squaredNorm() - explained.squaredNorm()));
+  const double noise =
+      std::max(1.0, unexplained / std::sqrt(freedom));  // as standard errors have it
+  const double offset =
+      explained.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(rank, 1)));
+  check.relative_offset = offset / noise;
+  return check;
+}
+
+}  // namespace rigcal::calib

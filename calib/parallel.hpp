@@ -1,0 +1,40 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstddef>
+#include <exception>
+#include <thread>
+#include <vector>
+
+namespace rigcal::calib {
+
+/// Calls task(i) once for each i in [0, count) on up to `threads` threads, the caller's included.
+/// Each task must write to a place of its own and read nothing that another writes: then the
+/// results are the same bits for any number of threads.
+///
+/// @throws  what the task of the lowest index threw; the others are run to their end
+template <typename Task>
+void parallel_for(std::size_t count, int threads, Task task) {
+  std::vector<std::exception_ptr> errors(count);
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      try {
+        task(i);
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+    }
+  };
+  const std::size_t helpers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
+  std::vector<std::thread> pool;
+  for (std::size_t i = 1; i < helpers; ++i) pool.emplace_back(work);
+  work();
+  for (std::thread& thread : pool) thread.join();
+  for (const std::exception_ptr& error : errors) {
+    if (error) std::rethrow_exception(error);
+  }
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,272 @@
+#include "calib/problem.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "calib/initial_state.hpp"
+#include "calib/known_values.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Campaign;
+using datasets::Channel;
+using datasets::Condition;
+using datasets::Record;
+
+/// First guess of an unknown standard deviation, as a share of the peak-to-peak.
+constexpr double kGuessedNoise = 1e-2;
+/// Tolerance of the simulations where nothing tells the noise.
+constexpr double kDefaultTolerance = 1e-6;
+
+const Record& record_of(const Condition& condition, const std::vector<Record>& records) {
+  const auto found = std::find_if(records.begin(), records.end(), [&](const Record& record) {
+    return record.condition == condition.id;
+  });
+  if (found == records.end() || found->time_s.empty()) {
+    throw InputError(condition.where, fmt::format("condition \"{}\" has no record: expected "
+                                                  "`repeats` or `averaged`",
+                                                  condition.id));
+  }
+  return *found;
+}
+
+/// Standard deviation of the mean that record or campaign tell; NaN if neither does.
+double known_sd(const Campaign& campaign, Channel channel, const datasets::Series& series) {
+  if (std::isfinite(series.sd_of_mean) && series.sd_of_mean > 0.0) return series.sd_of_mean;
+  const auto sd = campaign.channels.at(channel).sd;
+  return sd && *sd > 0.0 ? *sd : std::numeric_limits<double>::quiet_NaN();
+}
+
+ProblemChannel make_channel(const Campaign& campaign, const ProblemCondition& condition,
+                            Channel channel) {
+  const datasets::Series& series = condition.record->channels.at(channel);
+  ProblemChannel result;
+  result.channel = channel;
+  for (const std::size_t row : condition.rows) {
+    const double value = series.mean.at(row);
+    if (!std::isfinite(value)) {
+      throw InputError(condition.condition->where,
+                       fmt::format("condition \"{}\": sample {} of channel {} at {} s is not a "
+                                   "finite number",
+                                   condition.condition->id, row, datasets::info(channel).key,
+                                   condition.record->time_s[row]));
+    }
+    result.measured.push_back(value);
+  }
+  const auto [low, high] = std::minmax_element(result.measured.begin(), result.measured.end());
+  result.peak_to_peak = *high - *low;
+  result.sd = known_sd(campaign, channel, series);
+  result.sd_known = std::isfinite(result.sd);
+  return result;
+}
+
+/// A channel of unknown noise starts from a share of its own peak-to-peak, or of the largest of
+/// that channel where it is constant.
+void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
+  std::map<Channel, double> largest;
+  for (const ProblemCondition& condition : conditions) {
+    for (const ProblemChannel& channel : condition.channels) {
+      double& range = largest[channel.channel];
+      range = std::max(range, channel.peak_to_peak);
+    }
+  }
+  for (ProblemCondition& condition : conditions) {
+    for (ProblemChannel& channel : condition.channels) {
+      if (channel.sd_known) continue;
+      const double range =
+          channel.peak_to_peak > 0.0 ? channel.peak_to_peak : largest[channel.channel];
+      if (!(range > 0.0)) {
+        throw InputError(
+            condition.condition->where,
+            fmt::format("condition \"{}\": channel {} is constant and neither repeats nor `sd` "
+                        "tell its noise, so it has no weight: expected `sd`, or role = \"ignore\"",
+                        condition.condition->id, datasets::info(channel.channel).key));
+      }
+      channel.sd = kGuessedNoise * range;
+    }
+  }
+}
+
+/// An error e of the simulation moves an estimate by up to e sqrt(n) / sd of its standard errors, n
+/// residuals: 0.3 keeps that below a tenth or so (the tolerance is an upper bound of e).
+double tolerance_from_noise(const std::vector<ProblemCondition>& conditions) {
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t residuals = 0;
+  for (const ProblemCondition& condition : conditions) {
+    residuals += condition.rows.size() * condition.channels.size();
+    for (const ProblemChannel& channel : condition.channels) {
+      if (channel.sd_known && channel.peak_to_peak > 0.0)
+        least = std::min(least, channel.sd / channel.peak_to_peak);
+    }
+  }
+  if (!std::isfinite(least)) return kDefaultTolerance;
+  return std::clamp(0.3 * least / std::sqrt(static_cast<double>(residuals)), 1e-8, 1e-5);
+}
+
+ProblemCondition make_condition(const Campaign& campaign, const std::vector<Record>& records,
+                                const Condition& condition,
+                                const std::vector<datasets::FittedValue>* fitted) {
+  ProblemCondition result;
+  result.condition = &condition;
+  result.record = &record_of(condition, records);
+  result.rig = campaign.rig;
+  result.values = fitted != nullptr ? values_with(campaign, condition, *fitted)
+                                    : datasets::values_in(campaign, condition);
+  result.inputs = datasets::inputs_of(campaign, condition, result.values, result.record);
+  result.rows = samples_that_count(condition, *result.record);
+  const auto channels = output_channels(campaign, *result.record);
+  if (channels.empty()) {
+    throw InputError(condition.where,
+                     fmt::format("condition \"{}\": no recorded channel can be compared with the "
+                                 "model: expected position, load_pressure, pressure_a, pressure_b "
+                                 "or force with role \"output\"",
+                                 condition.id));
+  }
+  for (const Channel channel : channels) {
+    result.channels.push_back(make_channel(campaign, result, channel));
+    result.outputs.push_back(output_of(channel));
+  }
+  // The start point is simulated with this budget; later points with one from the steps it took.
+  result.max_steps = 1'000'000 + 50 * static_cast<long>(result.record->time_s.size());
+  return result;
+}
+
+}  // namespace
+
+long Problem::residual_count() const {
+  std::size_t count = 0;
+  for (const ProblemCondition& condition : conditions)
+    count += condition.rows.size() * condition.channels.size();
+  for (const Unknown& unknown : map.unknowns()) count += unknown.prior ? 1 : 0;
+  return static_cast<long>(count);
+}
+
+bool Problem::has_estimated_sd() const {
+  return std::any_of(conditions.begin(), conditions.end(), [](const ProblemCondition& condition) {
+    return std::any_of(condition.channels.begin(), condition.channels.end(),
+                       [](const ProblemChannel& channel) { return !channel.sd_known; });
+  });
+}
+
+model::ParameterValues Problem::values_at(std::size_t condition, std::span<const double> z) const {
+  model::ParameterValues values = conditions[condition].values;
+  for (const int j : map.acting(condition)) {
+    const auto u = static_cast<std::size_t>(j);
+    values.set(map.unknowns()[u].index, map.to_physical(j, z[u]));
+  }
+  return values;
+}
+
+std::vector<double> Problem::to_physical(std::span<const double> z) const {
+  std::vector<double> values(z.size());
+  for (std::size_t j = 0; j < z.size(); ++j) values[j] = map.to_physical(static_cast<int>(j), z[j]);
+  return values;
+}
+
+std::vector<double> Problem::start() const {
+  std::vector<double> z(map.unknowns().size());
+  for (std::size_t j = 0; j < z.size(); ++j)
+    z[j] = map.to_unit(static_cast<int>(j), map.unknowns()[j].start);
+  return z;
+}
+
+std::string Problem::name(std::size_t unknown) const {
+  const Unknown& u = map.unknowns()[unknown];
+  const auto row = static_cast<std::size_t>(u.index);
+  const auto name = model::parameter_table(campaign->rig.plant)[row].name;
+  switch (u.scope) {
+    case datasets::Scope::rig:
+      break;
+    case datasets::Scope::leak_level:
+      return fmt::format("{} (leak level {})", name, u.level);
+    case datasets::Scope::condition:
+      return fmt::format("{} (condition {})", name, u.level);
+  }
+  return std::string(name);
+}
+
+std::vector<Channel> output_channels(const Campaign& campaign, const Record& record) {
+  std::vector<Channel> result;
+  for (const auto& [channel, series] : record.channels) {
+    const auto setting = campaign.channels.find(channel);
+    if (!datasets::info(channel).is_output || setting == campaign.channels.end() ||
+        setting->second.role != datasets::ChannelRole::output) {
+      continue;
+    }
+    const auto& listed = campaign.fit.outputs;
+    if (listed.empty() || std::find(listed.begin(), listed.end(), channel) != listed.end())
+      result.push_back(channel);
+  }
+  return result;
+}
+
+model::Output output_of(Channel channel) {
+  switch (channel) {
+    case Channel::position:
+      return model::Output::position;
+    case Channel::load_pressure:
+      return model::Output::load_pressure;
+    case Channel::pressure_a:
+      return model::Output::pressure_a;
+    case Channel::pressure_b:
+      return model::Output::pressure_b;
+    case Channel::force:
+      return model::Output::force;
+    default:
+      throw std::invalid_argument(
+          fmt::format("output_of: {} is no output of the model", datasets::info(channel).key));
+  }
+}
+
+std::vector<std::size_t> samples_that_count(const Condition& condition, const Record& record) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const double t = record.time_s[i];
+    const bool counts =
+        condition.windows.empty() ||
+        std::any_of(condition.windows.begin(), condition.windows.end(),
+                    [t](const datasets::TimeWindow& w) { return t >= w.start_s && t <= w.end_s; });
+    if (counts) rows.push_back(i);
+  }
+  if (rows.empty()) {
+    throw InputError(condition.where,
+                     fmt::format("condition \"{}\": no sample lies inside its windows; the record "
+                                 "goes from {:g} s to {:g} s",
+                                 condition.id, record.time_s.front(), record.time_s.back()));
+  }
+  return rows;
+}
+
+Problem make_problem(const Campaign& campaign, const std::vector<Record>& records,
+                     const std::vector<const Condition*>& conditions, bool nuisance_only,
+                     const std::vector<datasets::FittedValue>* fitted) {
+  std::vector<ProblemCondition> prepared;
+  std::vector<Unknown> initial_unknowns;
+  for (const Condition* condition : conditions) {
+    ProblemCondition& each =
+        prepared.emplace_back(make_condition(campaign, records, *condition, fitted));
+    const InitialPlan plan = plan_initial_state(campaign, *condition, *each.record);
+    each.rig.initial = plan.state;
+    for (const auto& [index, value] : plan.known) each.values.set(index, value);
+    initial_unknowns.insert(initial_unknowns.end(), plan.unknowns.begin(), plan.unknowns.end());
+  }
+  guess_unknown_sd(prepared);
+
+  Problem problem{&campaign, ParameterMap(campaign, conditions, nuisance_only, initial_unknowns),
+                  std::move(prepared), campaign.simulation.tolerance.value_or(0.0)};
+  if (!campaign.simulation.tolerance) problem.tolerance = tolerance_from_noise(problem.conditions);
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    for (const int j : problem.map.acting(i)) {
+      const auto u = static_cast<std::size_t>(j);
+      problem.conditions[i].free.push_back(problem.map.unknowns()[u].index);
+    }
+  }
+  return problem;
+}
+
+}  // namespace rigcal::calib

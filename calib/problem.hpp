@@ -1,0 +1,85 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/parameter_map.hpp"
+#include "datasets/campaign.hpp"
+#include "datasets/record.hpp"
+#include "model/simulate.hpp"
+
+namespace rigcal::calib {
+
+/// One recorded channel that the model is compared with.
+struct ProblemChannel {
+  datasets::Channel channel = datasets::Channel::position;
+  std::vector<double> measured;  ///< SI, samples that count
+  double sd = 0.0;               ///< what a residual is divided by, SI
+  bool sd_known = false;         ///< false: estimated from the residual of the fit
+  double peak_to_peak = 0.0;     ///< of `measured`
+};
+
+/// One condition with everything that its simulation needs. Borrows the campaign and the record.
+struct ProblemCondition {
+  const datasets::Condition* condition = nullptr;
+  const datasets::Record* record = nullptr;
+  model::Rig rig;
+  model::ParameterValues values;  ///< of what is not an unknown
+  model::SimulationInputs inputs;
+  std::vector<ProblemChannel> channels;
+  std::vector<model::Output> outputs;  ///< of the channels
+  std::vector<std::size_t> rows;       ///< samples that count (inside the windows)
+  std::vector<int> free;               ///< table indices of the acting unknowns
+  long max_steps = 0;                  ///< budget of one simulation
+
+  /// Sample times up to the last that counts.
+  std::span<const double> fit_times() const {
+    return std::span(record->time_s).first(rows.back() + 1);
+  }
+};
+
+/// What is to be solved: conditions with records, inputs and weights, and the unknowns.
+struct Problem {
+  const datasets::Campaign* campaign = nullptr;
+  ParameterMap map;
+  std::vector<ProblemCondition> conditions;
+  double tolerance = 0.0;  ///< of the simulations
+
+  /// Number of weighted residuals, priors included.
+  long residual_count() const;
+  bool has_estimated_sd() const;
+  /// Values of all parameters in a condition at unit-box coordinates z.
+  model::ParameterValues values_at(std::size_t condition, std::span<const double> z) const;
+  /// SI values of the unknowns.
+  std::vector<double> to_physical(std::span<const double> z) const;
+  /// Unit-box coordinates of the start values.
+  std::vector<double> start() const;
+  /// "mass_kg", "leakage_coefficient (leak level 33 %)".
+  std::string name(std::size_t unknown) const;
+};
+
+/// Channels of a record that count as outputs: recorded, role output, and listed in [fit] outputs
+/// if that is given.
+std::vector<datasets::Channel> output_channels(const datasets::Campaign& campaign,
+                                               const datasets::Record& record);
+model::Output output_of(datasets::Channel channel);
+
+/// Samples of a record that lie inside the condition's windows; all if it has none.
+std::vector<std::size_t> samples_that_count(const datasets::Condition& condition,
+                                            const datasets::Record& record);
+
+/// Sets up the problem of some conditions.
+///
+/// @param records        found by their `condition`
+/// @param nuisance_only  true: only nuisance parameters are unknown
+/// @param fitted         values of an earlier fit that hold in place of the rig's; may be null
+/// @throws InputError    a record is missing or has no output channel, no sample counts, a channel
+///                       that is constant and of unknown noise everywhere, a fitted level is
+///                       missing
+Problem make_problem(const datasets::Campaign& campaign,
+                     const std::vector<datasets::Record>& records,
+                     const std::vector<const datasets::Condition*>& conditions, bool nuisance_only,
+                     const std::vector<datasets::FittedValue>* fitted);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,203 @@
+#include "calib/scorecard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "calib/acceptance.hpp"
+#include "calib/parallel.hpp"
+#include "metrics/fundamental.hpp"
+#include "metrics/metric_table.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Condition;
+
+/// Samples [first, first + count) of the longest stretch of the record that counts without a gap.
+std::pair<std::size_t, std::size_t> longest_stretch(const std::vector<std::size_t>& rows) {
+  std::pair<std::size_t, std::size_t> best{0, 0};
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i > 0 && rows[i] != rows[i - 1] + 1) begin = i;
+    if (i + 1 - begin > best.second) best = {begin, i + 1 - begin};
+  }
+  return best;
+}
+
+void add_problem(ChannelScore& score, const std::string& text) {
+  score.problem += score.problem.empty() ? text : "; " + text;
+}
+
+void compare_at_fundamental(const ProblemCondition& condition, std::span<const double> measured,
+                            std::span<const double> simulated, ChannelScore& score) {
+  const Condition& c = *condition.condition;
+  const bool periodic =
+      c.waveform == datasets::Waveform::sine || c.waveform == datasets::Waveform::square;
+  if (!periodic || !c.frequency_hz) return;
+  const auto [first, count] = longest_stretch(condition.rows);
+  const auto time_s = std::span(condition.record->time_s).subspan(condition.rows[first], count);
+  try {
+    const auto found = metrics::compare_fundamentals(
+        time_s, measured.subspan(first, count), simulated.subspan(first, count), *c.frequency_hz);
+    score.gain_ratio = found.gain_ratio;
+    score.phase_deg = found.phase_deg;
+    score.delay_s = found.delay_s;
+  } catch (const std::logic_error& error) {  // no whole period, or no such component
+    add_problem(score, error.what());
+  }
+}
+
+ChannelScore score_channel(const ProblemCondition& condition, const ProblemChannel& channel,
+                           const std::vector<double>& simulated) {
+  ChannelScore score;
+  score.channel = channel.channel;
+  try {
+    score.agreement = metrics::agreement(channel.measured, simulated);
+  } catch (const std::logic_error& error) {  // constant, or fewer than two samples
+    add_problem(score, error.what());
+  }
+  if (channel.sd_known) {
+    try {
+      score.noise_floor = metrics::noise_floor(channel.measured, channel.sd);
+    } catch (const std::logic_error& error) {
+      add_problem(score, error.what());
+    }
+  }
+  compare_at_fundamental(condition, channel.measured, simulated, score);
+  return score;
+}
+
+ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<const double> z) {
+  const ProblemCondition& condition = problem.conditions[i];
+  ConditionScore score;
+  score.id = condition.condition->id;
+  score.use = condition.condition->use;
+  score.samples = static_cast<long>(condition.rows.size());
+  score.time_s = condition.record->time_s;
+  if (condition.rows.size() < score.time_s.size()) {
+    score.in_window.assign(score.time_s.size(), false);
+    for (const std::size_t row : condition.rows) score.in_window[row] = true;
+  }
+  model::SimulationOptions options;
+  options.method = problem.campaign->simulation.method;
+  options.tolerance = problem.tolerance;
+  options.max_seconds = problem.campaign->simulation.max_seconds;
+  const model::Simulation run =
+      model::simulate(condition.rig, problem.values_at(i, z), {}, condition.inputs, score.time_s,
+                      condition.outputs, options);
+  if (!run.ok()) {
+    score.failure =
+        fmt::format("{} at {:g} s ({})", run.reason, run.failed_at_s, model::to_string(run.status));
+  } else {
+    for (std::size_t k = 0; k < condition.channels.size(); ++k) {
+      const ProblemChannel& channel = condition.channels[k];
+      const auto column = run.outputs.col(static_cast<Eigen::Index>(k));
+      std::vector<double> whole(column.begin(), column.end());
+      std::vector<double> simulated;
+      for (const std::size_t row : condition.rows) simulated.push_back(whole[row]);
+      score.channels.push_back(score_channel(condition, channel, simulated));
+      score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean,
+                                       std::move(whole)};
+    }
+  }
+  judge(problem.campaign->acceptance, score);
+  return score;
+}
+
+std::string group_key(const Condition& condition, GroupBy by) {
+  switch (by) {
+    case GroupBy::waveform:
+      return std::string(datasets::to_string(condition.waveform));
+    case GroupBy::frequency:
+      return condition.frequency_hz ? fmt::format("{:g} Hz", *condition.frequency_hz) : "-";
+    case GroupBy::leak_level:
+      return condition.leak_level.value_or("-");
+  }
+  return "-";
+}
+
+}  // namespace
+
+std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
+                                             int threads) {
+  std::vector<ConditionScore> scores(problem.conditions.size());
+  parallel_for(scores.size(), threads,
+               [&](std::size_t i) { scores[i] = score_condition(problem, i, z); });
+  return scores;
+}
+
+std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>& scores) {
+  std::vector<std::string> warnings;
+  for (const ConditionScore& score : scores) {
+    for (const ChannelScore& channel : score.channels) {
+      if (!channel.agreement || !channel.noise_floor || score.samples < 2) continue;
+      // One draw of the noise scatters about its variance by sqrt(2 / n).
+      const double scatter = 5.0 * std::sqrt(2.0 / static_cast<double>(score.samples));
+      const double unexplained = 1.0 - channel.agreement->rho2;
+      const double least = 1.0 - channel.noise_floor->rho2;
+      if (unexplained >= least * (1.0 - std::max(0.2, scatter))) continue;
+      warnings.push_back(fmt::format(
+          "condition \"{}\": {} has rho2 = {:.6g}, better than the {:.6g} that its noise allows "
+          "any "
+          "model: the fit follows the noise (overfitting), or the noise is smaller than its stated "
+          "standard deviation",
+          score.id, datasets::info(channel.channel).key, channel.agreement->rho2,
+          channel.noise_floor->rho2));
+    }
+  }
+  return warnings;
+}
+
+std::string_view to_string(GroupBy by) {
+  switch (by) {
+    case GroupBy::waveform:
+      return "waveform";
+    case GroupBy::frequency:
+      return "frequency";
+    case GroupBy::leak_level:
+      return "leak_level";
+  }
+  return "";
+}
+
+std::vector<ScoreGroup> gather(const datasets::Campaign& campaign,
+                               const std::vector<ConditionScore>& scores, GroupBy by) {
+  std::vector<ScoreGroup> groups;
+  for (const ConditionScore& score : scores) {
+    const Condition* condition = campaign.find(score.id);
+    if (condition == nullptr) continue;
+    const std::string key = group_key(*condition, by);
+    for (const ChannelScore& channel : score.channels) {
+      if (!channel.agreement) continue;
+      auto group = std::find_if(groups.begin(), groups.end(), [&](const ScoreGroup& each) {
+        return each.key == key && each.channel == channel.channel;
+      });
+      if (group == groups.end()) {
+        ScoreGroup fresh;
+        fresh.by = by;
+        fresh.key = key;
+        fresh.channel = channel.channel;
+        group = groups.insert(groups.end(), fresh);
+      }
+      ++group->count;
+      for (const metrics::MetricSpec& spec : metrics::kMetrics) {
+        const std::string name(spec.name);
+        const double value = (*channel.agreement).*spec.value;
+        group->mean[name] += value;
+        const auto [worst, first] = group->worst.try_emplace(name, value);
+        if (!first)
+          worst->second = spec.higher_is_better ? std::min(worst->second, value)
+                                                : std::max(worst->second, value);
+      }
+    }
+  }
+  for (ScoreGroup& group : groups) {
+    for (auto& [name, value] : group.mean) value /= group.count;
+  }
+  return groups;
+}
+
+}  // namespace rigcal::calib

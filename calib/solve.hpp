@@ -1,0 +1,32 @@
+#pragma once
+
+#include "calib/evaluator.hpp"
+#include "calib/optimum.hpp"
+
+namespace rigcal::calib {
+
+/// End of one start: the best point is the evaluator's best().
+struct SolveResult {
+  FitStatus status = FitStatus::failed;
+  std::string message;  ///< in words
+  int iterations = 0;
+  OptimumCheck check;  ///< of the best point, if there is one
+};
+
+/// Least squares by Ceres from z in the unit box, until check_optimum() finds a point stationary:
+/// that is what `converged` means. Ceres' own tolerances end a call, but where the point is not
+/// stationary Ceres is called again from the best point with a fresh trust region, up to three
+/// times.
+///
+/// Parameters at a bound that the cost pushes outwards are held there in the next call, because a
+/// projected Gauss-Newton step is none for the others; those that it pushes inwards are let go.
+///
+/// @param iterations  budget of all calls together
+/// @param start       number of the start, for `options.progress`
+SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
+                  int iterations, int start, const FitOptions& options);
+
+/// The first condition that could not be simulated, with time, reason and values.
+std::string describe_failure(const Problem& problem, const Evaluation& evaluation);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace rigcal::calib {
+
+/// Replaces the many rows of [J r] by a square upper triangle R with R^T R = [J r]^T [J r]: cost,
+/// gradient and Gauss-Newton matrix of least squares stay what they were, to rounding and without
+/// squaring the condition number. Rows are taken in blocks, in the order given.
+class Triangle {
+ public:
+  explicit Triangle(Eigen::Index columns) : triangle_(Eigen::MatrixXd::Zero(columns, columns)) {}
+
+  /// @param rows  shape (any, columns)
+  void add(const Eigen::Ref<const Eigen::MatrixXd>& rows);
+
+  const Eigen::MatrixXd& get() const { return triangle_; }
+
+ private:
+  Eigen::MatrixXd triangle_;
+};
+
+}  // namespace rigcal::calib
