@@ -7,7 +7,8 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kLargestOffset = 1e-2;  // of a standard error
+constexpr double kStationary = 0.01;  // of a standard error
+constexpr double kNearlyStationary = 0.05;
 
 }  // namespace
 
@@ -20,7 +21,8 @@ double rank_threshold(double simulation_tolerance) {
   return std::clamp(simulation_tolerance, 1e-9, 1e-5);
 }
 
-bool OptimumCheck::stationary() const { return relative_offset <= kLargestOffset; }
+bool OptimumCheck::stationary() const { return relative_offset <= kStationary; }
+bool OptimumCheck::nearly_stationary() const { return relative_offset <= kNearlyStationary; }
 
 OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation) {
   const Linearisation system = linearise(problem, evaluation);

@@ -25,7 +25,10 @@ struct OptimumCheck {
   /// (relative offset of Bates and Watts, Technometrics 23, 1981). 0.01: the step that is left is a
   /// hundredth of what the noise leaves uncertain.
   double relative_offset = 0.0;
-  bool stationary() const;
+  bool stationary() const;  ///< at most 0.01
+  /// At most 0.05: what rounding of the simulations may leave where the optimiser's own tolerances
+  /// say that nothing is to be gained.
+  bool nearly_stationary() const;
 };
 
 OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation);

@@ -20,7 +20,8 @@ using datasets::Record;
 
 /// First guess of an unknown standard deviation, as a share of the peak-to-peak.
 constexpr double kGuessedNoise = 1e-2;
-/// Tolerance of the simulations where nothing tells the noise.
+/// Tolerance of the simulations where nothing tells the noise, and the largest: cost and gradient
+/// jump by about the tolerance when the steps of a simulation change, which stalls the optimiser.
 constexpr double kDefaultTolerance = 1e-6;
 
 const Record& record_of(const Condition& condition, const std::vector<Record>& records) {
@@ -105,7 +106,8 @@ double tolerance_from_noise(const std::vector<ProblemCondition>& conditions) {
     }
   }
   if (!std::isfinite(least)) return kDefaultTolerance;
-  return std::clamp(0.3 * least / std::sqrt(static_cast<double>(residuals)), 1e-8, 1e-5);
+  return std::clamp(0.3 * least / std::sqrt(static_cast<double>(residuals)), 1e-8,
+                    kDefaultTolerance);
 }
 
 ProblemCondition make_condition(const Campaign& campaign, const std::vector<Record>& records,

@@ -161,7 +161,8 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
     result.iterations += watcher.iterations();
     z = evaluator.best().z;
     result.check = check_optimum(problem, evaluator.best());
-    if (result.check.stationary()) {
+    const bool agreed = summary.termination_type == ceres::CONVERGENCE;
+    if (result.check.stationary() || (agreed && result.check.nearly_stationary())) {
       result.status = FitStatus::converged;
       result.message = fmt::format("converged after {} iterations", result.iterations);
       return result;

@@ -13,10 +13,9 @@ struct SolveResult {
   OptimumCheck check;  ///< of the best point, if there is one
 };
 
-/// Least squares by Ceres from z in the unit box, until check_optimum() finds a point stationary:
-/// that is what `converged` means. Ceres' own tolerances end a call, but where the point is not
-/// stationary Ceres is called again from the best point with a fresh trust region, up to three
-/// times.
+/// Least squares by Ceres from z in the unit box. `converged` is what check_optimum() finds
+/// stationary, or nearly so where Ceres says that it converged too. Where Ceres stops elsewhere it
+/// is called again from the best point with a fresh trust region, up to three times.
 ///
 /// Parameters at a bound that the cost pushes outwards are held there in the next call, because a
 /// projected Gauss-Newton step is none for the others; those that it pushes inwards are let go.

@@ -14,8 +14,10 @@
 namespace rigcal::calib {
 namespace {
 
-/// Share of a null direction above which a parameter counts as part of it.
-constexpr double kTakesPart = 0.1;
+/// Share of a null direction above which a parameter counts as part of it: in what the outputs feel
+/// of it, or in how far it moves in the box against the one that moves most.
+constexpr double kFelt = 0.1;
+constexpr double kMoves = 0.05;
 constexpr Eigen::Index kBlocksPerCondition = 20;
 
 /// J^T r of each block of one condition, shape (blocks, unknowns).
@@ -106,8 +108,10 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
   std::vector<std::vector<std::size_t>> directions;
   for (Eigen::Index k = rank; k < n; ++k) {
     std::vector<std::size_t>& members = directions.emplace_back();
+    const Eigen::VectorXd moves = (inverse_norms.array() * V.col(k).array()).abs();
     for (Eigen::Index j = 0; j < n; ++j) {
-      if (std::abs(V(j, k)) > kTakesPart) members.push_back(static_cast<std::size_t>(j));
+      if (std::abs(V(j, k)) > kFelt || moves(j) > kMoves * moves.maxCoeff())
+        members.push_back(static_cast<std::size_t>(j));
     }
   }
   result.standard_error.resize(optimum.z.size());

@@ -1,0 +1,165 @@
+#pragma once
+
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "calib/fit.hpp"
+#include "calib/problem.hpp"
+#include "datasets/campaign.hpp"
+#include "datasets/record.hpp"
+
+namespace rigcal::calib {
+
+/// A rig whose parameters are known: the paper's, with a servo valve that answers within a second.
+/// Its campaign starts away from the truth, its records are simulated at the truth plus noise.
+struct Twin {
+  datasets::Campaign campaign;
+  datasets::Campaign truth;
+  std::map<std::string, double> level_leakage;  ///< true leakage coefficient of each leak level
+  double noise_sd_m = 5e-5;
+  double tolerance = 1e-9;  ///< of the simulations that make the records
+  std::map<std::string, std::pair<int, double>> offsets;  ///< condition -> parameter, true value
+
+  Twin() {
+    campaign.file = "twin.toml";
+    campaign.rig = {model::PlantKind::load_pressure, model::ControllerKind::pid,
+                    model::InitialState::rest};
+    for (const auto& [key, value] : std::initializer_list<std::pair<std::string_view, double>>{
+             {"mass", 85.0},
+             {"damping", 1000.0},
+             {"stiffness", 2e4},
+             {"piston_area", 1.62e-3},
+             {"total_volume", 2.46888e-4},
+             {"supply_pressure", 6.2e6},
+             {"density", 847.0},
+             {"bulk_modulus", 689e6},
+             {"discharge_coefficient", 0.6},
+             {"area_gradient", 0.02075},
+             {"valve_gain", 0.0406e-3},
+             {"leakage_coefficient", 0.35},
+             {"leakage_area", 4.456e-6},
+             {"kp", 400.0},
+         }) {
+      datasets::ParameterSetting setting;
+      setting.index = index(key);
+      setting.value = value;
+      campaign.parameters.push_back(setting);
+    }
+    add_channel(datasets::Channel::position);
+    truth = campaign;
+  }
+
+  static int index(std::string_view key) {
+    return model::parameter_index(model::PlantKind::load_pressure, key);
+  }
+
+  void add_channel(datasets::Channel channel,
+                   datasets::ChannelRole role = datasets::ChannelRole::output) {
+    datasets::ChannelSetting setting;
+    setting.channel = channel;
+    setting.role = role;
+    campaign.channels[channel] = setting;
+  }
+
+  datasets::ParameterSetting& setting(std::string_view key) {
+    for (auto& each : campaign.parameters) {
+      if (each.index == index(key)) return each;
+    }
+    datasets::ParameterSetting added;
+    added.index = index(key);
+    campaign.parameters.push_back(added);
+    return campaign.parameters.back();
+  }
+
+  datasets::ParameterSetting& free(std::string_view key, double start, double lower, double upper,
+                                   datasets::Scope scope = datasets::Scope::rig) {
+    datasets::ParameterSetting& each = setting(key);
+    each.value = start;
+    each.lower = lower;
+    each.upper = upper;
+    each.fit = true;
+    each.scope = scope;
+    return each;
+  }
+
+  datasets::Condition& add(const std::string& id, datasets::Waveform waveform, double frequency_hz,
+                           double amplitude, const std::string& level = {},
+                           datasets::Use use = datasets::Use::fit) {
+    datasets::Condition condition;
+    condition.id = id;
+    condition.waveform = waveform;
+    condition.frequency_hz = frequency_hz;
+    condition.amplitude = amplitude;
+    if (!level.empty()) condition.leak_level = level;
+    condition.use = use;
+    campaign.conditions.push_back(condition);
+    return campaign.conditions.back();
+  }
+
+  model::ParameterValues true_values(const datasets::Condition& condition) const {
+    auto values = datasets::values_in(truth, condition);
+    if (condition.leak_level) {
+      const auto level = level_leakage.find(*condition.leak_level);
+      if (level != level_leakage.end()) values.set("leakage_coefficient", level->second);
+    }
+    const auto offset = offsets.find(condition.id);
+    if (offset != offsets.end()) values.set(offset->second.first, offset->second.second);
+    return values;
+  }
+
+  /// Records of all conditions, each of `samples` at `rate_hz`; noise of position from the seed.
+  std::vector<datasets::Record> records(int samples, double rate_hz, unsigned seed,
+                                        model::InitialState initial = model::InitialState::rest,
+                                        bool tell_sd = true) const {
+    std::vector<datasets::Record> result;
+    boost::random::mt19937_64 random(seed);
+    boost::random::normal_distribution<double> normal;
+    for (const datasets::Condition& condition : campaign.conditions) {
+      datasets::Record record;
+      record.condition = condition.id;
+      for (int i = 0; i < samples; ++i) record.time_s.push_back(i / rate_hz);
+      const auto values = true_values(condition);
+      std::vector<model::Output> outputs;
+      for (const auto& [channel, setting] : campaign.channels)
+        outputs.push_back(output_of(channel));
+      model::SimulationOptions options;
+      options.tolerance = tolerance;
+      model::Rig rig = campaign.rig;
+      rig.initial = initial;
+      const auto run = model::simulate(rig, values, {},
+                                       datasets::inputs_of(campaign, condition, values, nullptr),
+                                       record.time_s, outputs, options);
+      if (!run.ok()) throw std::runtime_error("twin: " + run.reason);
+      Eigen::Index column = 0;
+      for (const auto& [channel, setting] : campaign.channels) {
+        datasets::Series series;
+        const double sd = channel == datasets::Channel::position ? noise_sd_m : 2e4;
+        for (int i = 0; i < samples; ++i) {
+          const double noise = noise_sd_m > 0.0 ? sd * normal(random) : 0.0;
+          series.mean.push_back(run.outputs(i, column) + noise);
+        }
+        if (tell_sd) series.sd_of_mean = sd > 0.0 ? sd : 5e-5;
+        record.channels[channel] = series;
+        ++column;
+      }
+      result.push_back(record);
+    }
+    return result;
+  }
+};
+
+/// The parameter of a fit by key and level; throws if it is not there.
+inline const FittedParameter& parameter(const Fit& fit, std::string_view key,
+                                        const std::string& level = {}) {
+  for (const FittedParameter& each : fit.parameters) {
+    if (each.index == Twin::index(key) && each.level == level) return each;
+  }
+  throw std::runtime_error("no parameter " + std::string(key) + " " + level);
+}
+
+}  // namespace rigcal::calib
