@@ -1,0 +1,208 @@
+#include <catch2/catch.hpp>
+
+#include "calib/acceptance.hpp"
+#include "calib/fit.hpp"
+#include "calib/multi_start.hpp"
+#include "calib/scorecard.hpp"
+#include "common/error.hpp"
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::Contains;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using datasets::Scope;
+using datasets::Use;
+using datasets::Waveform;
+
+/// Leakage per level, a position offset per condition that is estimated anew in validation.
+Twin two_days() {
+  Twin twin;
+  twin.free("valve_gain", 0.03e-3, 0.01e-3, 0.2e-3);
+  twin.free("leakage_coefficient", 0.2, 0.0, 5.0, Scope::leak_level);
+  twin.free("position_offset", 0.0, -5e-3, 5e-3, Scope::condition).nuisance = true;
+  twin.level_leakage = {{"low", 0.2}, {"high", 0.6}};
+  twin.offsets["day1_low"] = {Twin::index("position_offset"), 1e-3};
+  twin.offsets["day2"] = {Twin::index("position_offset"), -2e-3};
+  twin.add("day1_low", Waveform::square, 2.0, 0.01, "low");
+  twin.add("day1_high", Waveform::sine, 2.0, 0.01, "high");
+  twin.add("day2", Waveform::sine, 3.0, 0.01, "low", Use::validate);
+  return twin;
+}
+
+std::vector<datasets::FittedValue> truth() {
+  return {{Twin::index("valve_gain"), Scope::rig, "", 0.0406e-3},
+          {Twin::index("leakage_coefficient"), Scope::leak_level, "low", 0.2},
+          {Twin::index("leakage_coefficient"), Scope::leak_level, "high", 0.6}};
+}
+
+ConditionScore scored(double rho2) {
+  ConditionScore score;
+  ChannelScore channel;
+  channel.agreement = metrics::Agreement{};
+  channel.agreement->rho2 = rho2;
+  channel.agreement->absolute_error_percent = 2.0;
+  score.channels.push_back(channel);
+  return score;
+}
+
+datasets::AcceptanceLimit limit(const std::string& metric, double fail, double warn) {
+  return {datasets::Channel::position, metric, fail, warn};
+}
+
+}  // namespace
+
+TEST_CASE("fit: validate conditions are scored with their own nuisance offset", "[calib]") {
+  const Twin twin = two_days();
+  const Fit found = fit(twin.campaign, twin.records(400, 500.0, 5), {});
+  REQUIRE(found.status == FitStatus::converged);
+  REQUIRE(found.conditions.size() == 3);
+  CHECK(found.conditions[2].id == "day2");
+  CHECK(found.conditions[2].use == Use::validate);
+  const FittedParameter& offset = parameter(found, "position_offset", "day2");
+  CHECK(offset.nuisance);
+  CHECK(std::abs(offset.value + 2e-3) < 3.5 * offset.standard_error.value());
+  const ChannelScore& score = found.conditions[2].channels.at(0);
+  CHECK(score.agreement->ccc > 0.999);  // blind to nothing: a wrong offset of 2 mm would show
+  REQUIRE(score.noise_floor.has_value());
+  CHECK_THAT(score.gain_ratio.value(), WithinAbs(1.0, 0.01));
+}
+
+TEST_CASE("validate: estimates nothing but nuisance parameters", "[calib]") {
+  const Twin twin = two_days();
+  const auto values = truth();
+  const Fit found = validate(twin.campaign, twin.records(400, 500.0, 5), &values, {});
+  CHECK(found.status == FitStatus::converged);
+  CHECK(found.conditions.size() == 3);
+  for (const FittedParameter& each : found.parameters) CHECK(each.fitted == each.nuisance);
+  const FittedParameter& offset = parameter(found, "position_offset", "day1_low");
+  CHECK(std::abs(offset.value - 1e-3) < 3.5 * offset.standard_error.value());
+}
+
+TEST_CASE("validate: without values, those of the campaign hold", "[calib]") {
+  Twin twin = two_days();
+  for (auto& each : twin.campaign.parameters) each.fit = false;
+  const Fit found = validate(twin.campaign, twin.records(400, 500.0, 5), nullptr, {});
+  CHECK(found.status == FitStatus::converged);
+  CHECK(found.evaluations == 0);
+  CHECK(found.conditions.at(0).channels.at(0).agreement->rho2 < 0.999);  // the start's valve gain
+}
+
+TEST_CASE("validate: a leak level that the fit does not have is an error", "[calib]") {
+  Twin twin = two_days();
+  auto values = truth();
+  values.pop_back();
+  const auto records = twin.records(50, 500.0, 5);
+  CHECK_THROWS_WITH(validate(twin.campaign, records, &values, {}),
+                    Contains("leak level \"high\"") && Contains("leakage_coefficient") &&
+                        Contains("only for \"low\""));
+  SECTION("unless the campaign knows its value") {
+    twin.campaign.leak_levels["high"].emplace_back(Twin::index("leakage_coefficient"), 0.6);
+    CHECK(validate(twin.campaign, records, &values, {}).conditions.size() == 3);
+  }
+}
+
+TEST_CASE("fit: a validate condition at a leak level of its own is an error", "[calib]") {
+  Twin twin = two_days();
+  twin.campaign.conditions[2].leak_level = "new";
+  CHECK_THROWS_AS(fit(twin.campaign, twin.records(50, 500.0, 5), {}), InputError);
+}
+
+TEST_CASE("validate: a parameter that the fit lacks is an error", "[calib]") {
+  const Twin twin = two_days();
+  auto values = truth();
+  values.erase(values.begin());
+  CHECK_THROWS_WITH(validate(twin.campaign, twin.records(50, 500.0, 5), &values, {}),
+                    Contains("no value for valve_gain"));
+}
+
+TEST_CASE("scorecard: a constant record has a problem in words, no number", "[calib]") {
+  Twin twin;
+  twin.noise_sd_m = 0.0;
+  twin.add("still", Waveform::sine, 2.0, 0.0);
+  const Fit found = validate(twin.campaign, twin.records(100, 500.0, 1), nullptr, {});
+  const ChannelScore& score = found.conditions.at(0).channels.at(0);
+  CHECK_FALSE(score.agreement.has_value());
+  CHECK_THAT(score.problem, Contains("constant"));
+}
+
+TEST_CASE("scorecard: better than the noise allows is called overfitting", "[calib]") {
+  ConditionScore score = scored(0.9999);
+  score.id = "a";
+  score.samples = 10000;
+  score.channels[0].noise_floor = metrics::NoiseFloor{0.999, 0.999, 0.1};
+  REQUIRE(overfitting_warnings({score}).size() == 1);
+  CHECK_THAT(overfitting_warnings({score})[0], Contains("\"a\"") && Contains("overfitting"));
+  score.channels[0].agreement->rho2 = 0.99901;
+  CHECK(overfitting_warnings({score}).empty());
+}
+
+TEST_CASE("acceptance: FAIL beyond the limit, WARN between, PASS above both", "[calib]") {
+  const std::vector<datasets::AcceptanceLimit> limits{limit("rho2", 0.99, 0.995)};
+  for (const auto& [rho2, verdict] :
+       {std::pair{0.98, Verdict::fail}, std::pair{0.992, Verdict::warn},
+        std::pair{0.995, Verdict::pass}}) {
+    ConditionScore score = scored(rho2);
+    judge(limits, score);
+    CHECK(score.verdict == verdict);
+    CHECK(score.reasons.empty() == (verdict == Verdict::pass));
+  }
+  ConditionScore failing = scored(0.98);
+  judge(limits, failing);
+  CHECK_THAT(failing.reasons.at(0), Contains("rho2 = 0.98") && Contains("0.99"));
+  CHECK(worst({failing, scored(1.0)}) == Verdict::fail);
+}
+
+TEST_CASE("acceptance: lower is better for errors; no limit, no verdict", "[calib]") {
+  ConditionScore score = scored(1.0);
+  judge({limit("absolute_error_percent", 1.0, 0.5)}, score);
+  CHECK(score.verdict == Verdict::fail);
+  CHECK_THAT(score.reasons.at(0), Contains("above 1"));
+  ConditionScore unjudged = scored(0.1);
+  judge({}, unjudged);
+  CHECK_FALSE(unjudged.verdict.has_value());
+}
+
+TEST_CASE("acceptance: what could not be simulated fails, what has no number warns", "[calib]") {
+  const std::vector<datasets::AcceptanceLimit> limits{limit("rho2", 0.99, 0.995)};
+  ConditionScore broken;
+  broken.failure = "too many steps";
+  judge(limits, broken);
+  CHECK(broken.verdict == Verdict::fail);
+  ConditionScore constant = scored(1.0);
+  constant.channels[0].agreement.reset();
+  constant.channels[0].problem = "constant";
+  judge(limits, constant);
+  CHECK(constant.verdict == Verdict::warn);
+}
+
+TEST_CASE("scorecard: gathers by waveform, frequency and leak level", "[calib]") {
+  const Twin twin = two_days();
+  std::vector<ConditionScore> scores{scored(0.9), scored(0.8), scored(1.0)};
+  scores[0].id = "day1_low";
+  scores[1].id = "day1_high";
+  scores[2].id = "day2";
+  const auto waves = gather(twin.campaign, scores, GroupBy::waveform);
+  REQUIRE(waves.size() == 2);
+  CHECK(waves[1].key == "sine");
+  CHECK(waves[1].count == 2);
+  CHECK_THAT(waves[1].mean.at("rho2"), WithinRel(0.9, 1e-14));
+  CHECK(waves[1].worst.at("rho2") == 0.8);
+  CHECK(gather(twin.campaign, scores, GroupBy::frequency).at(0).key == "2 Hz");
+  CHECK(gather(twin.campaign, scores, GroupBy::leak_level).at(0).count == 2);
+}
+
+TEST_CASE("latin hypercube: one point in every stratum, from the seed alone", "[calib]") {
+  const auto points = latin_hypercube(10, 3, 42);
+  for (std::size_t d = 0; d < 3; ++d) {
+    std::vector<int> hits(10);
+    for (const auto& point : points) ++hits.at(static_cast<std::size_t>(point[d] * 10.0));
+    CHECK(hits == std::vector<int>(10, 1));
+  }
+  CHECK(points == latin_hypercube(10, 3, 42));
+  CHECK(points != latin_hypercube(10, 3, 43));
+}
+
+}  // namespace rigcal::calib
