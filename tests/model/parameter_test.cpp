@@ -9,7 +9,6 @@
 
 using namespace rigcal::model;
 using Catch::Contains;
-using Catch::EndsWith;
 
 namespace {
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <cstddef>
+#include <initializer_list>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -38,8 +39,10 @@ inline ParameterValues paper_rig() {
 
 /// `count` times from `first` to `last`, both included.
 inline std::vector<double> grid(double first, double last, int count) {
-  std::vector<double> times;
-  for (int i = 0; i < count; ++i) times.push_back(first + (last - first) * i / (count - 1));
+  std::vector<double> times(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    times[static_cast<std::size_t>(i)] = first + (last - first) * i / (count - 1);
+  }
   return times;
 }
 

@@ -7,7 +7,6 @@
 
 using namespace rigcal::model;
 using Catch::WithinAbs;
-using Catch::WithinRel;
 
 namespace {
 

@@ -22,6 +22,7 @@ struct Scenario {
 
 Signal recorded(bool straight) {
   std::vector<double> value;
+  value.reserve(21);
   for (int i = 0; i < 21; ++i) value.push_back(0.004 * std::sin(0.9 * i) + 0.001 * (i % 3));
   const auto times = grid(0.0, 0.2, 21);
   return straight ? Signal::linear(times, value) : Signal::held(times, value);

@@ -4,7 +4,6 @@
 #include <cmath>
 
 using namespace rigcal::model;
-using Catch::WithinAbs;
 using Catch::WithinRel;
 
 namespace {
