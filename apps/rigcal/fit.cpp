@@ -25,6 +25,15 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
+/// Starts that were never made could have been better: a fit without them is not finished.
+void mark_unfinished(const calib::FitOptions& settings, calib::Fit& fit) {
+  const auto made = static_cast<int>(fit.starts.size());
+  if (fit.status != calib::FitStatus::converged || made >= settings.starts) return;
+  fit.status = calib::FitStatus::stopped;
+  fit.message = fmt::format("stopped after {} of {} starts; the best of these: {}", made,
+                            settings.starts, fit.message);
+}
+
 ExitCode run_fit(const Options& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
   const auto records = datasets::load_records(
@@ -44,6 +53,7 @@ ExitCode run_fit(const Options& options, const Invocation& invocation) {
     settings.progress = std::ref(progress);
     fit = calib::fit(campaign, records, settings);
   }
+  mark_unfinished(settings, fit);
   return write_and_print(options.common,
                          {report::ResultKind::fit, campaign, records, fit, provenance});
 }
@@ -56,7 +66,9 @@ Run add_fit(CLI::App& verb) {
   verb.add_option("--starts", options->starts,
                   "Number of starts (default: the campaign's, or 1); the best result counts")
       ->check(CLI::Range(1, kMostStarts));
-  verb.add_option("--seed", options->seed, "Seed of the further starts")->capture_default_str();
+  verb.add_option("--seed", options->seed, "Seed of the further starts")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   return [options](const Invocation& invocation) { return run_fit(*options, invocation); };
 }
 

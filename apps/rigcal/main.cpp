@@ -66,7 +66,11 @@ void check_verb(int argc, char** argv) {
     throw rigcal::UsageError(fmt::format("no verb; expected one of {}", fmt::join(known, ", ")));
   }
   const std::string verb = argv[1];
-  if (!verb.empty() && verb.front() == '-') return;
+  if (verb == "-h" || verb == "--help" || verb == "--version") return;
+  if (!verb.empty() && verb.front() == '-') {
+    throw rigcal::UsageError(
+        fmt::format("found {}, expected a verb first: one of {}", verb, fmt::join(known, ", ")));
+  }
   if (std::find(known.begin(), known.end(), verb) == known.end()) {
     throw rigcal::UsageError(rigcal::unknown_name_message("verb", verb, known));
   }

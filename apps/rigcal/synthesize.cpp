@@ -43,7 +43,9 @@ ExitCode run_synthesize(const Options& options, const Invocation& invocation) {
 Run add_synthesize(CLI::App& verb) {
   const auto options = std::make_shared<Options>();
   add_campaign_options(verb, options->common);
-  verb.add_option("--seed", options->seed, "Seed of the noise")->required();
+  verb.add_option("--seed", options->seed, "Seed of the noise")
+      ->required()
+      ->check(CLI::NonNegativeNumber);
   return [options](const Invocation& invocation) { return run_synthesize(*options, invocation); };
 }
 

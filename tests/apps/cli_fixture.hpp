@@ -1,0 +1,107 @@
+#pragma once
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/support/command.hpp"
+
+namespace rigcal::test {
+
+/// Replacements in a text: each `from` must be there.
+using Edits = std::vector<std::pair<std::string, std::string>>;
+
+inline std::string edited(std::string text, const Edits& edits) {
+  for (const auto& [from, to] : edits) {
+    const std::size_t at = text.find(from);
+    if (at == std::string::npos) throw std::logic_error("the fixture has no '" + from + "'");
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+/// A small campaign: the paper's rig in closed loop, two seconds of a 2 Hz sine at 200 Hz.
+inline const std::string kCampaign = R"(schema = "rigcal.campaign/1"
+name = "small rig"
+[rig]
+model = "load_pressure"
+[rig.parameters]
+supply_pressure = "6.2 MPa"
+mass = "60 kg"
+damping = { start = "2000 N s/m", lower = "10 N s/m", upper = "1e5 N s/m", fit = true }
+valve_gain = { start = "2e-5 m/V", lower = "1e-6 m/V", upper = "1e-3 m/V", fit = true }
+leakage_coefficient = 0.3
+stiffness = "0 N/m"
+piston_area = "633 mm2"
+total_volume = "468 cm3"
+density = "850 kg/m3"
+bulk_modulus = "689 MPa"
+discharge_coefficient = 0.6
+area_gradient = "20 mm"
+leakage_area = "1 mm2"
+[rig.controller]
+type = "pid"
+kp = "1000 V/m"
+[leak_level."none"]
+[recording.channels]
+time = { column = "t_s", unit = "s" }
+reference = { column = "ref_mm", unit = "mm" }
+position = { column = "x_mm", unit = "mm" }
+load_pressure = { column = "pl_bar", unit = "bar" }
+[acceptance]
+rho2 = 0.9
+[[condition]]
+id = "sine"
+waveform = "sine"
+frequency = "2 Hz"
+amplitude = "5 mm"
+leak_level = "none"
+use = "fit"
+repeats = ["records/sine_*.csv"]
+[[condition]]
+id = "square"
+waveform = "square"
+frequency = "1 Hz"
+amplitude = "4 mm"
+leak_level = "none"
+use = "validate"
+repeats = ["records/square_*.csv"]
+)";
+
+/// What makes kCampaign a truth that records are made from.
+inline const std::string kSynthetic = R"([synthetic]
+parameters = { damping = "1000 N s/m", valve_gain = "3e-5 m/V" }
+repeats = 3
+duration = "2 s"
+sample_rate = "200 Hz"
+noise = { position = "0.01 mm", load_pressure = "0.05 bar" }
+)";
+
+/// kCampaign with records that look like any recording, made by hand.
+inline void write_campaign(const CommandFolder& folder, const Edits& edits = {}) {
+  folder.write("campaign.toml", edited(kCampaign, edits));
+  for (const char* name : {"sine_1", "sine_2", "square_1", "square_2"}) {
+    std::ostringstream csv;
+    csv << "t_s,ref_mm,x_mm,pl_bar\n";
+    const double repeat = name[std::string(name).size() - 1] - '0';
+    for (int i = 0; i < 400; ++i) {
+      const double t = 0.005 * i;
+      const double angle = 12.566370614359172 * t;
+      const double wobble = 0.01 * std::sin(repeat * 17.0 * i);
+      csv << t << ',' << 5.0 * std::sin(angle) << ',' << 4.9 * std::sin(angle - 0.1) + wobble << ','
+          << std::cos(angle) + wobble << '\n';
+    }
+    folder.write(std::string("records/") + name + ".csv", csv.str());
+  }
+}
+
+/// Records of a known rig, made by the command itself, in `twin/`.
+inline Outcome write_twin(const CommandFolder& folder, const Edits& edits = {}) {
+  folder.write("truth.toml", edited(kCampaign, edits) + kSynthetic);
+  return folder.run({"synthesize", "truth.toml", "--seed", "3", "--out", "twin", "--quiet"});
+}
+
+}  // namespace rigcal::test

@@ -1,0 +1,541 @@
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/apps/cli_fixture.hpp"
+
+using namespace rigcal::test;
+using Catch::Contains;
+using Catch::EndsWith;
+using Catch::StartsWith;
+using nlohmann::json;
+
+namespace {
+
+/// Bad input: exit 2, one line on stderr that says where and what, and no file.
+void check_bad_input(const CommandFolder& folder, const CommandFolder::Arguments& arguments,
+                     const std::vector<std::string>& parts) {
+  const auto before = folder.files();
+  const Outcome outcome = folder.run(arguments);
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.out.empty());
+  CHECK_THAT(outcome.err, StartsWith("rigcal: "));
+  CHECK(std::count(outcome.err.begin(), outcome.err.end(), '\n') == 1);
+  for (const std::string& part : parts) CHECK_THAT(outcome.err, Contains(part));
+  CHECK(folder.files() == before);
+  CHECK_FALSE(folder.has("rigcal-out"));
+}
+
+struct BadCampaign {
+  const char* name;
+  Edits edits;
+  std::vector<std::string> message;
+};
+
+// The column is that of the value, or of the key where it has none.
+const std::vector<BadCampaign> kBadCampaigns{
+    {"not TOML", {{"name = \"small rig\"", "name = small rig"}}, {"campaign.toml:2:"}},
+    {"no schema", {{"schema = \"rigcal.campaign/1\"\n", ""}}, {"campaign.toml", "schema"}},
+    {"another schema", {{"campaign/1", "campaign/9"}}, {"campaign.toml:1:", "rigcal.campaign/1"}},
+    {"unknown key", {{"mass = ", "masss = "}}, {"campaign.toml:7:", "masss", "mass"}},
+    {"unknown table", {{"[acceptance]", "[acceptence]"}}, {"campaign.toml:28:", "acceptance"}},
+    {"unknown model",
+     {{"load_pressure\"", "loud_pressure\""}},
+     {"campaign.toml:4:", "load_pressure"}},
+    {"number without unit", {{"\"60 kg\"", "60"}}, {"campaign.toml:7:8", "mass"}},
+    {"wrong dimension", {{"\"60 kg\"", "\"60 m\""}}, {"campaign.toml:7:8", "mass", "kg"}},
+    {"unknown unit", {{"\"60 kg\"", "\"60 stones\""}}, {"campaign.toml:7:8", "stones"}},
+    {"decimal comma", {{"\"60 kg\"", "\"60,5 kg\""}}, {"campaign.toml:7:8", "mass"}},
+    {"not finite", {{"\"60 kg\"", "\"nan kg\""}}, {"campaign.toml:7:8", "mass"}},
+    {"outside the limits", {{"\"60 kg\"", "\"-60 kg\""}}, {"campaign.toml:7:8", "mass", "0.001"}},
+    {"unit on a plain number",
+     {{"leakage_coefficient = 0.3", "leakage_coefficient = \"0.3 m\""}},
+     {"campaign.toml:10:", "leakage_coefficient"}},
+    {"missing parameter", {{"density = \"850 kg/m3\"\n", ""}}, {"campaign.toml", "density"}},
+    {"rad/s for Hz, unit of another kind",
+     {{"\"2 Hz\"", "\"2 1/s\""}},
+     {"campaign.toml:33:", "frequency"}},
+    {"start outside its bounds",
+     {{"start = \"2000 N s/m\"", "start = \"1 N s/m\""}},
+     {"campaign.toml:8:", "damping", "bounds"}},
+    {"bounds the wrong way",
+     {{"lower = \"10 N s/m\"", "lower = \"1e6 N s/m\""}},
+     {"campaign.toml:8:", "lower"}},
+    {"unknown scope",
+     {{"upper = \"1e5 N s/m\"", "upper = \"1e5 N s/m\", scope = \"day\""}},
+     {"campaign.toml:8:", "scope", "leak_level"}},
+    {"prior without sd",
+     {{"upper = \"1e5 N s/m\"", "upper = \"1e5 N s/m\", prior = \"900 N s/m\""}},
+     {"campaign.toml:8:", "prior_sd"}},
+    {"controller unknown", {{"\"pid\"", "\"pidd\""}}, {"campaign.toml:20:", "pid"}},
+    {"gain without controller", {{"\"pid\"", "\"none\""}}, {"campaign.toml:21:", "kp"}},
+    {"unknown channel", {{"position = {", "postion = {"}}, {"campaign.toml:26:", "position"}},
+    {"channel without unit",
+     {{"column = \"x_mm\", unit = \"mm\"", "column = \"x_mm\""}},
+     {"campaign.toml:26:", "unit"}},
+    {"channel in a wrong unit",
+     {{"column = \"x_mm\", unit = \"mm\"", "column = \"x_mm\", unit = \"bar\""}},
+     {"campaign.toml:26:", "bar"}},
+    {"unknown metric", {{"rho2 = 0.9", "rho3 = 0.9"}}, {"campaign.toml:29:", "rho2"}},
+    {"metric out of range", {{"rho2 = 0.9", "rho2 = 1.9"}}, {"campaign.toml:29:", "rho2"}},
+    {"unknown waveform",
+     {{"waveform = \"sine\"", "waveform = \"sinus\""}},
+     {"campaign.toml:32:", "sine"}},
+    {"unknown use", {{"use = \"fit\"", "use = \"fitt\""}}, {"campaign.toml:36:", "validate"}},
+    {"sine without frequency", {{"frequency = \"2 Hz\"\n", ""}}, {"campaign.toml:", "frequency"}},
+    {"two conditions of one id",
+     {{"id = \"square\"", "id = \"sine\""}},
+     {"campaign.toml:39:", "sine"}},
+    {"id that is no file name",
+     {{"id = \"sine\"", "id = \"../sine\""}},
+     {"campaign.toml:31:", "id"}},
+    {"repeats that match nothing",
+     {{"records/sine_*.csv", "records/sinus_*.csv"}},
+     {"campaign.toml:", "sinus_*.csv", "records"}},
+    {"column that the file lacks",
+     {{"column = \"x_mm\"", "column = \"y_mm\""}},
+     {"sine_1.csv:1", "y_mm", "x_mm"}},
+    {"window the wrong way",
+     {{"use = \"fit\"", "use = \"fit\"\nwindow = [\"1 s\", \"0.5 s\"]"}},
+     {"campaign.toml:37:", "window"}},
+};
+
+struct BadRecord {
+  const char* name;
+  std::string content;
+  std::vector<std::string> message;
+};
+
+const std::vector<BadRecord> kBadRecords{
+    {"empty file", "", {"sine_1.csv"}},
+    {"header alone", "t_s,ref_mm,x_mm,pl_bar\n", {"sine_1.csv"}},
+    {"no number", "t_s,ref_mm,x_mm,pl_bar\n0,0,0,0\n0.1,0,oops,0\n", {"sine_1.csv:3:7:", "oops"}},
+    {"empty field", "t_s,ref_mm,x_mm,pl_bar\n0,0,0,0\n0.1,0,,0\n", {"sine_1.csv:3:7:"}},
+    {"not finite", "t_s,ref_mm,x_mm,pl_bar\n0,0,0,0\n0.1,0,nan,0\n", {"sine_1.csv:3:7:", "nan"}},
+    {"too few columns", "t_s,ref_mm,x_mm,pl_bar\n0,0,0,0\n0.1,0,0\n", {"sine_1.csv:3"}},
+    {"too many columns", "t_s,ref_mm,x_mm,pl_bar\n0,0,0,0\n0.1,0,0,0,0\n", {"sine_1.csv:3"}},
+    {"time that stands still",
+     "t_s,ref_mm,x_mm,pl_bar\n0,0,0,0\n0.1,0,0,0\n0.1,0,0,0\n",
+     {"sine_1.csv:4", "t_s"}},
+    {"column twice", "t_s,ref_mm,x_mm,x_mm,pl_bar\n0,0,0,0,0\n", {"sine_1.csv:1", "x_mm"}},
+    {"binary", std::string("t_s,ref_mm,x_mm,pl_bar\n0,0,0,\0\1\n", 32), {"sine_1.csv"}},
+    {"another length", "t_s,ref_mm,x_mm,pl_bar\n0,0,0,0\n7,0,1,0\n14,0,0,1\n", {"sine"}},
+};
+
+struct BadCall {
+  CommandFolder::Arguments arguments;
+  std::vector<std::string> message;
+};
+
+const std::vector<BadCall> kBadCalls{
+    {{}, {"check, average, simulate, fit, validate, synthesize, params"}},
+    {{"fitt", "campaign.toml"}, {"unknown verb 'fitt'", "'fit'"}},
+    {{""}, {"unknown verb ''"}},
+    {{"--quiet"}, {"--quiet", "a verb first"}},
+    {{"fit"}, {"fit: CAMPAIGN is required"}},
+    {{"fit", "campaign.toml", "other.toml"}, {"fit: ", "other.toml"}},
+    {{"fit", "nowhere.toml"}, {"nowhere.toml"}},
+    {{"fit", "records"}, {"records"}},
+    {{"fit", "campaign.toml", "--bootstrap", "10"}, {"--bootstrap"}},
+    {{"fit", "campaign.toml", "--resume"}, {"--resume"}},
+    {{"fit", "campaign.toml", "--threads", "0"}, {"--threads"}},
+    {{"fit", "campaign.toml", "--threads=-2"}, {"--threads"}},
+    {{"fit", "campaign.toml", "--threads", "many"}, {"--threads"}},
+    {{"fit", "campaign.toml", "--starts", "0"}, {"--starts"}},
+    {{"fit", "campaign.toml", "--seed", "-1"}, {"--seed"}},
+    {{"fit", "campaign.toml", "--seed"}, {"--seed"}},
+    {{"fit", "campaign.toml", "--set", "mass"}, {"--set mass", "name=\"value unit\""}},
+    {{"fit", "campaign.toml", "--set", "masss=3 kg"}, {"masss", "mass"}},
+    {{"fit", "campaign.toml", "--set", "mass=3 m"}, {"--set mass=3 m", "kg"}},
+    {{"fit", "campaign.toml", "--set", "mass=-3 kg"}, {"--set mass=-3 kg", "0.001"}},
+    {{"fit", "campaign.toml", "--set", "damping=2 N s/m"}, {"--set damping=2 N s/m", "bounds"}},
+    {{"fit", "campaign.toml", "--free", "mass,dampling"}, {"dampling", "damping"}},
+    {{"fit", "campaign.toml", "--free", "leakage_smoothing"}, {"leakage_smoothing"}},
+    {{"fit", "campaign.toml", "--data", "elsewhere"}, {"elsewhere"}},
+    {{"simulate", "campaign.toml", "--condition", "sinus"}, {"--condition", "sine"}},
+    {{"synthesize", "campaign.toml", "--seed", "1"}, {"campaign.toml", "[synthetic]"}},
+    {{"synthesize", "campaign.toml"}, {"--seed"}},
+    {{"validate", "campaign.toml", "--fit", "fit.json"}, {"fit.json", "cannot be read"}},
+    {{"params", "campaign.toml"}, {"params: ", "campaign.toml"}},
+};
+
+struct BadFit {
+  const char* name;
+  std::string content;
+  std::vector<std::string> message;
+};
+
+const std::vector<BadFit> kBadFits{
+    {"not JSON", "{\n  \"schema\": oops\n}\n", {"fit.json:2:", "not JSON"}},
+    {"a list", "[]", {"fit.json", "object"}},
+    {"another schema", R"({"schema": "rigcal.validation/1"})", {"schema", "rigcal.fit/1"}},
+    {"no status", R"({"schema": "rigcal.fit/1"})", {"status", "missing"}},
+    {"unknown status",
+     R"({"schema": "rigcal.fit/1", "status": "good", "message": ""})",
+     {"status", "good", "converged"}},
+    {"failed",
+     R"({"schema": "rigcal.fit/1", "status": "failed", "message": "no start"})",
+     {"failed", "no start"}},
+    {"no parameters",
+     R"({"schema": "rigcal.fit/1", "status": "converged", "message": ""})",
+     {"parameters", "missing"}},
+    {"unknown parameter",
+     R"({"schema": "rigcal.fit/1", "status": "converged", "message": "",
+         "parameters": [{"name": "mass_lb"}]})",
+     {"parameters[0].name", "mass_lb", "mass_kg"}},
+    {"value that is a text",
+     R"({"schema": "rigcal.fit/1", "status": "converged", "message": "",
+         "parameters": [{"name": "mass_kg", "scope": "rig", "level": null, "fitted": true,
+                         "nuisance": false, "value": "60"}]})",
+     {"parameters[0].value", "60", "a number"}},
+};
+
+const std::set<std::string> kFitFiles{"out/fit.json", "out/fitted.toml", "out/scorecard.csv",
+                                      "out/residuals/sine.csv", "out/residuals/square.csv"};
+
+std::set<std::string> files_in(const CommandFolder& folder, const std::string& prefix) {
+  std::set<std::string> found;
+  for (const std::string& name : folder.files()) {
+    if (name.rfind(prefix, 0) == 0) found.insert(name);
+  }
+  return found;
+}
+
+/// The part of a result that must not depend on threads or time.
+json reproducible(const CommandFolder& folder, const std::string& file) {
+  json result = json::parse(folder.read(file));
+  result.erase("wall_seconds");
+  result["provenance"].erase("command");
+  return result;
+}
+
+const Edits kNoRecords{
+    {"use = \"fit\"", "use = \"fit\"\nduration = \"1 s\"\nsample_rate = \"100 Hz\""},
+    {"repeats = [\"records/sine_*.csv\"]\n", ""},
+    {"use = \"validate\"", "use = \"ignore\""}};
+
+}  // namespace
+
+TEST_CASE("rigcal: a bad campaign is refused with its place", "[apps]") {
+  for (const BadCampaign& bad : kBadCampaigns) {
+    DYNAMIC_SECTION(bad.name) {
+      const CommandFolder folder;
+      write_campaign(folder, bad.edits);
+      check_bad_input(folder, {"fit", "campaign.toml"}, bad.message);
+    }
+  }
+}
+
+TEST_CASE("rigcal: a bad record is refused with its place", "[apps]") {
+  for (const BadRecord& bad : kBadRecords) {
+    DYNAMIC_SECTION(bad.name) {
+      const CommandFolder folder;
+      write_campaign(folder);
+      folder.write("records/sine_1.csv", bad.content);
+      for (const char* verb : {"check", "average", "fit"}) {
+        check_bad_input(folder, {verb, "campaign.toml"}, bad.message);
+      }
+    }
+  }
+}
+
+TEST_CASE("rigcal: a bad call is refused", "[apps]") {
+  for (const BadCall& bad : kBadCalls) {
+    std::string name = "rigcal";
+    for (const std::string& argument : bad.arguments) name += " " + argument;
+    DYNAMIC_SECTION(name) {
+      const CommandFolder folder;
+      write_campaign(folder);
+      check_bad_input(folder, bad.arguments, bad.message);
+    }
+  }
+}
+
+TEST_CASE("validate: a bad fit.json is refused with its place", "[apps]") {
+  for (const BadFit& bad : kBadFits) {
+    DYNAMIC_SECTION(bad.name) {
+      const CommandFolder folder;
+      write_campaign(folder);
+      folder.write("fit.json", bad.content);
+      check_bad_input(folder, {"validate", "campaign.toml", "--fit", "fit.json"}, bad.message);
+    }
+  }
+}
+
+TEST_CASE("fit: what cannot be fitted is refused", "[apps]") {
+  const CommandFolder folder;
+  SECTION("nothing is free") {
+    write_campaign(folder, {{"upper = \"1e5 N s/m\", fit = true", "upper = \"1e5 N s/m\""},
+                            {"upper = \"1e-3 m/V\", fit = true", "upper = \"1e-3 m/V\""}});
+    check_bad_input(folder, {"fit", "campaign.toml"}, {"campaign.toml", "fit = true"});
+  }
+  SECTION("no condition to fit") {
+    write_campaign(folder, {{"use = \"fit\"", "use = \"validate\""}});
+    check_bad_input(folder, {"fit", "campaign.toml"}, {"campaign.toml", "\"fit\""});
+  }
+  SECTION("a condition without a record") {
+    write_campaign(folder, {{"repeats = [\"records/sine_*.csv\"]\n", ""}});
+    check_bad_input(folder, {"fit", "campaign.toml"}, {"campaign.toml:30", "sine", "repeats"});
+  }
+}
+
+TEST_CASE("rigcal: --out that cannot be written is told before any work", "[apps]") {
+  for (const char* verb : {"average", "simulate", "fit", "validate"}) {
+    DYNAMIC_SECTION(verb) {
+      const CommandFolder folder;
+      write_campaign(folder);
+      folder.write("occupied", "a file");
+      const auto before = folder.files();
+      for (const char* out : {"occupied", "occupied/below", "/dev/null/below"}) {
+        const Outcome outcome = folder.run({verb, "campaign.toml", "--out", out});
+        CAPTURE(out, outcome.err);
+        CHECK(outcome.exit_code == 5);
+        CHECK_THAT(outcome.err, StartsWith("rigcal: ") && Contains(out) && Contains("cannot"));
+        CHECK(folder.files() == before);
+        CHECK(folder.read("occupied") == "a file");
+      }
+    }
+  }
+}
+
+TEST_CASE("rigcal: standard output that is full is an error", "[apps]") {
+  const CommandFolder folder;
+  const Outcome outcome = folder.run({"params"}, "/dev/full");
+  CHECK(outcome.exit_code == 5);
+  CHECK_THAT(outcome.err, Contains("standard output"));
+}
+
+TEST_CASE("rigcal: a result never replaces what it was made from", "[apps]") {
+  const CommandFolder folder;
+  write_campaign(folder);
+  folder.write("truth.toml", kCampaign + kSynthetic);
+  folder.write("campaign.toml", kCampaign + kSynthetic);
+  const auto before = folder.files();
+  const Outcome outcome = folder.run({"synthesize", "campaign.toml", "--seed", "1", "--out", "."});
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("would replace the input campaign.toml"));
+  CHECK(folder.files() == before);
+  CHECK(folder.read("campaign.toml") == kCampaign + kSynthetic);
+}
+
+TEST_CASE("rigcal: help and version", "[apps]") {
+  const CommandFolder folder;
+  const Outcome version = folder.run({"--version"});
+  CHECK(version.exit_code == 0);
+  CHECK_THAT(version.out, StartsWith("rigcal 0."));
+  const Outcome help = folder.run({"--help"});
+  CHECK(help.exit_code == 0);
+  for (const char* verb :
+       {"check", "average", "simulate", "fit", "validate", "synthesize", "params"}) {
+    CHECK_THAT(help.out, Contains(verb));
+    const Outcome of_verb = folder.run({verb, "--help"});
+    CHECK(of_verb.exit_code == 0);
+    CHECK_THAT(of_verb.out, Contains("--json"));
+    CHECK(of_verb.err.empty());
+  }
+  CHECK(folder.files().empty());
+}
+
+TEST_CASE("params: every parameter with unit and limits", "[apps]") {
+  const CommandFolder folder;
+  const Outcome text = folder.run({"params"});
+  CHECK(text.exit_code == 0);
+  CHECK_THAT(text.out, Contains("bulk_modulus") && Contains("V/(m s)") && Contains("eq. 13"));
+  const Outcome outcome = folder.run({"params", "--json"});
+  const json table = json::parse(outcome.out)["load_pressure"];
+  CHECK(table.size() > 30);
+  CHECK(table[0]["key"] == "mass");
+  CHECK(table[0]["name"] == "mass_kg");
+  CHECK(table[0]["default"].is_null());
+  CHECK(folder.run({"params", "--quiet"}).out.empty());
+}
+
+TEST_CASE("check: one line per record, and nothing written", "[apps]") {
+  const CommandFolder folder;
+  write_campaign(folder);
+  const auto before = folder.files();
+  const Outcome text = folder.run({"check", "campaign.toml"});
+  CHECK(text.exit_code == 0);
+  CHECK_THAT(text.out, Contains("sine: fit, 400 samples at 200 Hz, 1.995 s, 2 repeats") &&
+                           Contains("square: validate") && Contains("2 files"));
+  const json records = json::parse(folder.run({"check", "campaign.toml", "--json"}).out)["records"];
+  CHECK(records.size() == 2);
+  CHECK(records[0]["channels"]["position"]["repeats"] == 2);
+  CHECK(folder.run({"check", "campaign.toml", "--quiet"}).out.empty());
+  CHECK(folder.files() == before);
+}
+
+TEST_CASE("average: mean, sd and count, and the repeatability", "[apps]") {
+  const CommandFolder folder;
+  write_campaign(folder);
+  const Outcome outcome = folder.run({"average", "campaign.toml", "--out", "out"});
+  CHECK(outcome.exit_code == 0);
+  CHECK(files_in(folder, "out/") == std::set<std::string>{"out/averaged/sine.csv",
+                                                          "out/averaged/square.csv",
+                                                          "out/repeatability.csv"});
+  CHECK_THAT(folder.read("out/averaged/sine.csv"),
+             StartsWith("time_s,") && Contains("position_m_mean,position_m_sd,position_m_count"));
+  CHECK_THAT(folder.read("out/repeatability.csv"),
+             Contains("noise_floor_rho2") && Contains("\nsine,position,m,2,"));
+}
+
+TEST_CASE("simulate: runs without records", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kCampaign, kNoRecords));
+  const Outcome outcome = folder.run({"simulate", "campaign.toml", "--out", "out"});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 0);
+  CHECK(files_in(folder, "out/") == std::set<std::string>{"out/sine.csv"});
+  const std::string csv = folder.read("out/sine.csv");
+  CHECK_THAT(csv, StartsWith("time_s,reference_m,position_m,velocity_m_per_s,"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 102);  // header, and both ends of 1 s
+}
+
+TEST_CASE("simulate: what fails says so at its top, the others are written", "[apps]") {
+  const CommandFolder folder;
+  // A controller of this gain needs steps that the time limit does not allow.
+  folder.write("campaign.toml",
+               edited(kCampaign, kNoRecords) + "[simulation]\nmax_seconds = 1e-9\n");
+  const Outcome outcome = folder.run({"simulate", "campaign.toml", "--out", "out"});
+  CHECK(outcome.exit_code == 3);
+  CHECK_THAT(outcome.err, StartsWith("rigcal: sine: "));
+  CHECK_THAT(folder.read("out/sine.csv"), StartsWith("# status: failed: "));
+}
+
+TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  const Outcome outcome = folder.run({"fit", "twin/campaign.toml", "--out", "out"});
+  CAPTURE(outcome.err, outcome.out);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK(files_in(folder, "out/") == kFitFiles);
+  CHECK_THAT(outcome.out, Contains("verdict: PASS") && Contains("damping"));
+
+  const json fit = json::parse(folder.read("out/fit.json"));
+  CHECK(fit["schema"] == "rigcal.fit/1");
+  CHECK(fit["status"] == "converged");
+  CHECK(fit["verdict"] == "PASS");
+  CHECK(fit["synthetic"] == true);
+  for (const json& parameter : fit["parameters"]) {
+    if (parameter["name"] == "damping_n_s_per_m") {
+      // Noise of 0.2 % leaves less than 1 % to a parameter that the records tell well.
+      CHECK_THAT(parameter["value"].get<double>(), Catch::WithinRel(1000.0, 0.05));
+      CHECK(parameter["standard_error"].is_number());
+    }
+  }
+  CHECK(fit["provenance"]["inputs"].size() == 7);  // the campaign and 2 x 3 repeats
+  CHECK(fit["provenance"]["inputs"][0]["sha256"].get<std::string>().size() == 64);
+  CHECK_THAT(folder.read("out/residuals/sine.csv"), StartsWith("time_s,measured_position_m,"));
+
+  SECTION("the same numbers for any number of threads") {
+    folder.run({"fit", "twin/campaign.toml", "--out", "one", "--threads", "1", "--quiet"});
+    folder.run({"fit", "twin/campaign.toml", "--out", "four", "--threads", "4", "--quiet"});
+    CHECK(reproducible(folder, "one/fit.json") == reproducible(folder, "four/fit.json"));
+    CHECK(folder.read("one/fitted.toml") == folder.read("four/fitted.toml"));
+    CHECK(folder.read("one/scorecard.csv") == folder.read("four/scorecard.csv"));
+  }
+  SECTION("validation with the fit") {
+    const Outcome validation = folder.run(
+        {"validate", "twin/campaign.toml", "--fit", "out/fit.json", "--out", "val", "--json"});
+    CHECK(validation.exit_code == 0);
+    CHECK(json::parse(validation.out) == json::parse(folder.read("val/validation.json")));
+    CHECK_FALSE(folder.has("val/fitted.toml"));
+    CHECK_THAT(validation.out, Contains("rigcal.validation/1"));
+  }
+  SECTION("validation of what the fit does not cover is warned of") {
+    folder.write("twin/far.toml",
+                 edited(folder.read("twin/campaign.toml"), {{"\"5 mm\"", "\"9 mm\""}}));
+    const Outcome validation =
+        folder.run({"validate", "twin/far.toml", "--fit", "out/fit.json", "--out", "val"});
+    CHECK_THAT(validation.out, Contains("warning: amplitude"));
+  }
+  SECTION("the campaign that was fitted can be used at once") {
+    const Outcome validation = folder.run({"validate", "out/fitted.toml", "--out", "val"});
+    CAPTURE(validation.err);
+    CHECK(validation.exit_code == 0);
+  }
+  SECTION("a verdict of FAIL is an exit code") {
+    const Outcome validation = folder.run(
+        {"validate", "twin/campaign.toml", "--set", "valve_gain=1e-6 m/V", "--out", "val"});
+    CHECK(validation.exit_code == 1);
+    CHECK_THAT(validation.out, Contains("verdict: FAIL"));
+    CHECK(json::parse(folder.read("val/validation.json"))["verdict"] == "FAIL");
+  }
+  SECTION("quiet is quiet") {
+    const Outcome quiet = folder.run({"fit", "twin/campaign.toml", "--out", "q", "--quiet"});
+    CHECK(quiet.exit_code == 0);
+    CHECK(quiet.out.empty());
+    CHECK(quiet.err.empty());
+  }
+}
+
+TEST_CASE("validate: a leak level that the fit does not have is an error", "[apps]") {
+  const CommandFolder folder;
+  const Edits per_level{{"leakage_coefficient = 0.3",
+                         "leakage_coefficient = { start = 0.3, lower = 0, upper = 5, fit = true, "
+                         "scope = \"leak_level\" }"}};
+  REQUIRE(write_twin(folder, per_level).exit_code == 0);
+  REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "out"}).exit_code == 0);
+  std::string other = folder.read("twin/campaign.toml");
+  for (std::size_t at = other.find("none"); at != std::string::npos; at = other.find("none", at)) {
+    other.replace(at, 4, "open");
+  }
+  folder.write("twin/other.toml", other);
+  check_bad_input(folder, {"validate", "twin/other.toml", "--fit", "out/fit.json"},
+                  {"twin/other.toml:", "open", "none"});
+}
+
+TEST_CASE("fit: stopped by a signal it keeps the best so far", "[apps]") {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    DYNAMIC_SECTION("signal " << signal) {
+      const CommandFolder folder;
+      REQUIRE(write_twin(folder).exit_code == 0);
+      const Outcome outcome = folder.run_and_signal(
+          {"fit", "twin/campaign.toml", "--out", "out", "--starts", "5000"}, "iteration", signal);
+      CAPTURE(outcome.err);
+      CHECK(outcome.exit_code == 4);
+      CHECK(files_in(folder, "out/") == kFitFiles);
+      CHECK(json::parse(folder.read("out/fit.json"))["status"] == "stopped");
+      CHECK_THAT(folder.read("out/fit.json"), StartsWith("{\n  \"status\": \"stopped\""));
+      for (const char* file : {"out/scorecard.csv", "out/residuals/sine.csv", "out/fitted.toml"}) {
+        CHECK_THAT(folder.read(file), StartsWith("# status: stopped"));
+      }
+    }
+  }
+}
+
+TEST_CASE("fit: stopped by a limit of iterations it says so", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  folder.write("twin/short.toml",
+               folder.read("twin/campaign.toml") + "\n[fit]\nmax_iterations = 1\n");
+  const Outcome outcome = folder.run({"fit", "twin/short.toml", "--out", "out"});
+  CHECK(outcome.exit_code == 4);
+  CHECK(files_in(folder, "out/") == kFitFiles);
+  CHECK_THAT(outcome.out, Contains("status: stopped"));
+  const Outcome validation =
+      folder.run({"validate", "twin/campaign.toml", "--fit", "out/fit.json", "--out", "val"});
+  CHECK_THAT(validation.out, Contains("warning: the fit was stopped before it converged"));
+}
+
+TEST_CASE("fit: what cannot be simulated gives no parameters", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  folder.write("twin/hopeless.toml",
+               folder.read("twin/campaign.toml") + "\n[simulation]\nmax_seconds = 1e-9\n");
+  folder.write("out/fitted.toml", "of an earlier run");
+  const Outcome outcome = folder.run({"fit", "twin/hopeless.toml", "--out", "out"});
+  CAPTURE(outcome.err, outcome.out);
+  CHECK(outcome.exit_code == 3);
+  std::set<std::string> expected = kFitFiles;
+  expected.erase("out/fitted.toml");
+  CHECK(files_in(folder, "out/") == expected);
+  CHECK_THAT(folder.read("out/fit.json"), StartsWith("{\n  \"status\": \"failed\""));
+  CHECK_THAT(folder.read("out/scorecard.csv"), StartsWith("# status: failed: "));
+  CHECK_THAT(folder.read("out/residuals/sine.csv"), StartsWith("# status: failed: "));
+  CHECK_THAT(folder.read("out/fit.json"), !Contains("nan") && !Contains("inf,"));
+  check_bad_input(folder, {"validate", "twin/campaign.toml", "--fit", "out/fit.json"}, {"failed"});
+}

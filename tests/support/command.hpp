@@ -1,0 +1,124 @@
+#pragma once
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace rigcal::test {
+
+/// What a finished command left.
+struct Outcome {
+  int exit_code = -1;  ///< minus the signal if one ended it
+  std::string out;
+  std::string err;
+};
+
+/// A folder of its own in which the command runs as a user calls it.
+class CommandFolder {
+ public:
+  using Arguments = std::vector<std::string>;
+
+  CommandFolder() {
+    std::random_device seed;
+    root_ = std::filesystem::temp_directory_path() /
+            ("rigcal-cli-" + std::to_string(seed()) + "-" + std::to_string(seed()));
+    std::filesystem::create_directories(work());
+  }
+  CommandFolder(const CommandFolder&) = delete;
+  CommandFolder& operator=(const CommandFolder&) = delete;
+  ~CommandFolder() {
+    std::error_code ignored;  // a leftover in the temporary folder harms no test
+    std::filesystem::remove_all(root_, ignored);
+  }
+
+  /// The working folder of the command.
+  std::filesystem::path work() const { return root_ / "work"; }
+
+  void write(const std::string& name, const std::string& content) const {
+    const std::filesystem::path file = work() / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << content;
+  }
+  std::string read(const std::string& name) const { return text_of(work() / name); }
+  bool has(const std::string& name) const { return std::filesystem::exists(work() / name); }
+
+  /// Every file below the working folder, relative to it.
+  std::set<std::string> files() const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(work())) {
+      if (entry.is_regular_file()) {
+        names.insert(entry.path().lexically_relative(work()).generic_string());
+      }
+    }
+    return names;
+  }
+
+  /// @param out  where stdout goes in place of a file that is read back
+  Outcome run(const Arguments& arguments, const std::string& out = {}) const {
+    return finish(start(arguments, out));
+  }
+
+  /// Runs the command, sends `signal` once its stderr holds `sign`, and waits for the end.
+  Outcome run_and_signal(const Arguments& arguments, const std::string& sign, int signal) const {
+    const pid_t process = start(arguments, {});
+    for (int tries = 0; tries < 6000 && text_of(err_file()).find(sign) == std::string::npos;
+         ++tries) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ::kill(process, signal);
+    return finish(process);
+  }
+
+ private:
+  static std::string text_of(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  std::filesystem::path out_file() const { return root_ / "stdout"; }
+  std::filesystem::path err_file() const { return root_ / "stderr"; }
+
+  pid_t start(const Arguments& arguments, const std::string& out) const {
+    std::vector<char*> argv{const_cast<char*>("rigcal")};
+    for (const std::string& argument : arguments)
+      argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    const std::string folder = work().string();
+    const std::string out_path = out.empty() ? out_file().string() : out;
+    const std::string err_path = err_file().string();
+    const pid_t process = ::fork();
+    if (process < 0) throw std::runtime_error("fork failed");
+    if (process == 0) {
+      const int out_fd = ::open(out_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+      const int err_fd = ::open(err_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+      const bool ready = out_fd >= 0 && err_fd >= 0 && ::dup2(out_fd, STDOUT_FILENO) >= 0 &&
+                         ::dup2(err_fd, STDERR_FILENO) >= 0 && ::chdir(folder.c_str()) == 0;
+      if (ready) ::execv(RIGCAL_BINARY, argv.data());
+      ::_exit(127);
+    }
+    return process;
+  }
+
+  Outcome finish(pid_t process) const {
+    int status = 0;
+    if (::waitpid(process, &status, 0) != process) throw std::runtime_error("waitpid failed");
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    return {code, text_of(out_file()), text_of(err_file())};
+  }
+
+  std::filesystem::path root_;
+};
+
+}  // namespace rigcal::test
