@@ -249,7 +249,8 @@ Json result_json(const Result& result) {
   json["message"] = fit.message;
   json["campaign"] = result.campaign.name;
   json["synthetic"] = result.campaign.synthetic;
-  json["cost"] = number(fit.cost);
+  // A cost of zero would look like a perfect fit.
+  json["cost"] = status_of(fit) == calib::FitStatus::failed ? Json(nullptr) : number(fit.cost);
   json["residual_count"] = fit.residual_count;
   json["evaluations"] = fit.evaluations;
   json["wall_seconds"] = number(fit.wall_seconds);

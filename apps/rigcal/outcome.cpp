@@ -39,6 +39,16 @@ std::vector<report::ResultFile> files_of(const CampaignOptions& options,
     files.push_back({std::filesystem::path("residuals") / (score.id + ".csv"),
                      report::residuals_csv(result, score)});
   }
+  // A fit that failed early scored nothing; its files say so all the same.
+  for (const datasets::Condition& condition : result.campaign.conditions) {
+    const bool taken =
+        condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
+    if (!taken || !result.fit.conditions.empty()) continue;
+    calib::ConditionScore score;
+    score.id = condition.id;
+    files.push_back({std::filesystem::path("residuals") / (condition.id + ".csv"),
+                     report::residuals_csv(result, score)});
+  }
   files.push_back({"scorecard.csv", report::scorecard_csv(result)});
   if (is_fit && report::status_of(result.fit) != FitStatus::failed) {
     files.push_back({"fitted.toml", fitted_toml(options, result)});
