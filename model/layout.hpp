@@ -1,9 +1,19 @@
 #pragma once
 
+#include <algorithm>
+#include <span>
+
 #include "model/parameter.hpp"
 #include "model/simulate.hpp"
 
 namespace rigcal::model {
+
+/// Optional terms that take part; an absent one costs nothing.
+struct PresentTerms {
+  bool friction = false;      ///< Coulomb or breakaway friction was given
+  bool stribeck = false;      ///< breakaway friction was given
+  bool orifice_leak = false;  ///< the leakage coefficient is not zero, or free
+};
 
 /// Which states a rig has beside those of its plant, and where they stand in the state vector.
 struct Layout {
@@ -11,17 +21,19 @@ struct Layout {
   int valve_order = 0;  ///< 0: spool follows the command; 1, 2: lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
   bool pid = false;
-  int integral = -1;                    ///< integral action [V]
-  int filter = -1;                      ///< filtered error [m]
-  int held = -1;                        ///< output of a sampled controller, held [V]
-  bool friction = false;                ///< a dry-friction term was given
+  int integral = -1;  ///< integral action [V]
+  int filter = -1;    ///< filtered error [m]
+  int held = -1;      ///< output of a sampled controller, held [V]
+  PresentTerms terms;
   bool initial_pressure_given = false;  ///< else the load pressure starts in equilibrium
   int states = 0;
 
   bool sampled() const { return held >= 0; }
 };
 
-inline Layout layout_of(const Rig& rig, const ParameterValues& values, int plant_states) {
+/// @param free  table indices of the parameters whose sensitivities are wanted
+inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span<const int> free,
+                        int plant_states) {
   Layout layout;
   layout.plant_states = plant_states;
   int next = plant_states;
@@ -38,7 +50,11 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, int plant
     if (values.is_given("kd")) layout.filter = next++;
     if (values.is_given("sample_time")) layout.held = next++;
   }
-  layout.friction = values.is_given("coulomb_friction") || values.is_given("stribeck_friction");
+  layout.terms.stribeck = values.is_given("stribeck_friction");
+  layout.terms.friction = layout.terms.stribeck || values.is_given("coulomb_friction");
+  const int leak = parameter_index(values.plant, "leakage_coefficient");
+  layout.terms.orifice_leak = values["leakage_coefficient"] != 0.0 ||
+                              std::find(free.begin(), free.end(), leak) != free.end();
   layout.initial_pressure_given = values.is_given("initial_load_pressure");
   layout.states = next;
   return layout;

@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "model/layout.hpp"
 #include "model/parameter_values.hpp"
 #include "model/terms.hpp"
 
@@ -50,16 +51,18 @@ struct LoadPressurePlant {
 
   /// Internal leakage across the piston [m3/s]: orifice (eq. 11) and laminar path.
   template <typename X, typename C>
-  static X leakage_flow(const X& P_L, const Parameters<C>& p) {
-    return orifice_leakage(P_L, p.leakage_coefficient, p.leakage_area_m2, p.density_kg_per_m3,
-                           p.leakage_smoothing_pa) +
-           P_L * p.laminar_leakage_m3_per_s_pa;
+  static X leakage_flow(const X& P_L, const Parameters<C>& p, const PresentTerms& terms) {
+    const X laminar = P_L * p.laminar_leakage_m3_per_s_pa;
+    if (!terms.orifice_leak) return laminar;
+    return laminar + orifice_leakage(P_L, p.leakage_coefficient, p.leakage_area_m2,
+                                     p.density_kg_per_m3, p.leakage_smoothing_pa);
   }
 
-  /// Dry friction of piston and rod [N]; free of cost where it is absent.
+  /// Dry friction of piston and rod [N].
   template <typename X, typename C>
-  static X friction(const X& v, const Parameters<C>& p, bool has_friction) {
-    if (!has_friction) return X(0.0);
+  static X friction(const X& v, const Parameters<C>& p, const PresentTerms& terms) {
+    if (!terms.friction) return X(0.0);
+    if (!terms.stribeck) return p.coulomb_friction_n * smooth_sign(v, p.friction_smoothing_m_per_s);
     return dry_friction(v, p.coulomb_friction_n, p.stribeck_friction_n, p.stribeck_velocity_m_per_s,
                         p.friction_smoothing_m_per_s);
   }
@@ -67,13 +70,13 @@ struct LoadPressurePlant {
   /// Time derivative of the state [m/s, m/s2, Pa/s].
   template <typename X, typename C>
   static std::array<X, kStates> derivative(const std::array<X, kStates>& x, const PlantInput<X>& in,
-                                           const Parameters<C>& p, bool has_friction) {
+                                           const Parameters<C>& p, const PresentTerms& terms) {
     const X& v = x[velocity];
     const X& P_L = x[load_pressure];
     const C& A = p.piston_area_m2;
     const X force = P_L * A - v * p.damping_n_s_per_m - x[position] * p.stiffness_n_per_m -
-                    friction(v, p, has_friction) - in.external_force_n - p.external_force_n;
-    const X flow = servo_flow(P_L, in, p) - leakage_flow(P_L, p) - v * A;
+                    friction(v, p, terms) - in.external_force_n - p.external_force_n;
+    const X flow = servo_flow(P_L, in, p) - leakage_flow(P_L, p, terms) - v * A;
     const C stiffness = 4.0 * p.bulk_modulus_pa / p.total_volume_m3;
     return {v, force / p.mass_kg, flow * stiffness};
   }
@@ -81,8 +84,9 @@ struct LoadPressurePlant {
   /// What a load cell in the rod reads: the force that the rod passes to mass, damper and spring of
   /// the load, A P_L less the dry friction of the cylinder (docs/model.md).
   template <typename C>
-  static C rod_force(const std::array<C, kStates>& x, const Parameters<C>& p, bool has_friction) {
-    return x[load_pressure] * p.piston_area_m2 - friction(x[velocity], p, has_friction);
+  static C rod_force(const std::array<C, kStates>& x, const Parameters<C>& p,
+                     const PresentTerms& terms) {
+    return x[load_pressure] * p.piston_area_m2 - friction(x[velocity], p, terms);
   }
 
   /// Initial state: the recorded position less its sensor's offset; where no initial load pressure

@@ -48,92 +48,21 @@ class Run {
   /// Writes the outputs of every sample into `result` (matrices already sized); columns
   /// [first_column, first_column + columns) of the sensitivities.
   void operator()(InitialState initial, Simulation& result, int first_column, int columns) {
-    const double t_last = sample_time(times_s_.size() - 1);
-    double t = 0.0;
-    State x = system_.initial(initial, t);
-    if (system_.layout().sampled()) system_.tick(x, t);
-    norm_.see(x);
-    double h = first_step(x, t, t_last);
-    std::size_t next_sample = 0;
-    long tick_count = 1;
-
-    const auto emit = [&](const State& state, double time) {
-      system_.observe(state, time, outputs_, observed_);
-      store(result, next_sample++, first_column, columns);
-    };
-
-    while (next_sample < times_s_.size()) {
-      const double next_tick = static_cast<double>(tick_count) * period_s_;
-      double stop = std::min(t_last, next_tick);
-      for_each_track([&stop](InputTrack& track) { stop = std::min(stop, track.segment_end()); });
-
-      // Smooth stretch up to the next event.
-      while (t < stop) {
-        while (next_sample < times_s_.size() && at(sample_time(next_sample), t)) emit(x, t);
-        Linearisation<N, P> lin = system_.linearise(x, t);
-        double error = 0.0;
-        double t_new = t;
-        State x_new;
-        State x_err;
-        double step = 0.0;
-        for (bool accepted = false; !accepted;) {
-          if (!within_budget(result, t)) return;
-          step = std::min(h, h_max_);
-          t_new = t + step;
-          if (t_new > stop - 1e-3 * step) {
-            t_new = stop;
-            step = stop - t;
-          }
-          stepper_.do_step(system_, lin, x, t, x_new, step, x_err);
-          error = norm_(x_err, x_new);
-          accepted = error <= 1.0;
-          const bool finite = std::isfinite(error);
-          const double factor =
-              finite
-                  ? std::clamp(0.9 * std::pow(std::max(error, 1e-10), -1.0 / Stepper<N, P>::kOrder),
-                               0.2, 5.0)
-                  : 0.1;
-          if (accepted) {
-            ++result.steps;
-            // A step cut short by an event says nothing against the longer step planned before.
-            h = step < 0.99 * h ? std::max(h, step * factor) : step * factor;
-          } else {
-            ++result.rejected_steps;
-            h = step * std::min(factor, 0.9);
-            if (h < 16.0 * kEpsilon * std::max(t, 1e-3)) {
-              fail(result, finite ? SimulationStatus::step_too_small : SimulationStatus::not_finite,
-                   t,
-                   finite ? fmt::format("error control asks for steps below {:.1e} s", h)
-                          : std::string("the state is no longer finite"));
-              return;
-            }
-          }
-        }
-        const auto inside = [&] {
-          return next_sample < times_s_.size() && sample_time(next_sample) < t_new &&
-                 !at(sample_time(next_sample), t_new);
-        };
-        if (inside()) {
-          stepper_.prepare_dense_output();
-          State between;
-          while (inside()) {
-            const double time = sample_time(next_sample);
-            stepper_.calc_state(time, between, x, t, x_new, t_new);
-            emit(between, time);
-          }
-        }
-        x = x_new;
-        t = t_new;
-        norm_.see(x);
+    result_ = &result;
+    first_column_ = first_column;
+    columns_ = columns;
+    x_ = system_.initial(initial, t_);
+    if (system_.layout().sampled()) system_.tick(x_, t_);
+    norm_.see(x_);
+    h_ = first_step(sample_time(times_s_.size() - 1));
+    emit_present();
+    while (next_sample_ < times_s_.size()) {
+      const double stop = next_event();
+      while (t_ < stop) {
+        if (!step_towards(stop)) return;
       }
-
-      // Events at `stop`: inputs jump, then the controller ticks.
-      pass_breakpoints(x, t);
-      if (at(next_tick, t)) {
-        system_.tick(x, t);
-        ++tick_count;
-      }
-      while (next_sample < times_s_.size() && at(sample_time(next_sample), t)) emit(x, t);
+      pass_events();
+      emit_present();
     }
   }
 
@@ -170,25 +99,118 @@ class Run {
   bool at(double a, double b) const { return std::abs(a - b) <= same_instant_s_; }
 
   /// A first step from the slope of the state; the error control takes it from there.
-  double first_step(const State& x, double t, double span) const {
-    const State f = system_.derivative(x, t);
-    const double error = norm_(State(f * 1e-6), x);
+  double first_step(double span) const {
+    const State f = system_.derivative(x_, t_);
+    const double error = norm_(State(f * 1e-6), x_);
     const double h = error > 0.0 && std::isfinite(error) ? 1e-6 * std::pow(error, -0.25) : 1e-6;
     return std::clamp(h, 1e-9, std::max(1e-9, 1e-2 * span));
   }
 
-  /// Inputs that end a segment at t go to their next one. Where the jump's time depends on the
-  /// transport delay, the sensitivity to it jumps by f(before) - f(after).
-  void pass_breakpoints(State& x, double t) {
-    if constexpr (P > 0) {
-      const int delay = system_.delay_direction();
-      if (delay >= 0 && passed(system_.drive(), t)) {
-        const State before = system_.derivative(x, t);
-        advance(system_.drive(), t);
-        x.col(1 + delay) += (before - system_.derivative(x, t)).col(0);
+  /// The next breakpoint of an input, tick of the controller, or end of the run.
+  double next_event() {
+    double stop = std::min(sample_time(times_s_.size() - 1), next_tick());
+    for_each_track([&stop](InputTrack& track) { stop = std::min(stop, track.segment_end()); });
+    return stop;
+  }
+
+  double next_tick() const { return static_cast<double>(ticks_ + 1) * period_s_; }
+
+  /// One accepted step, at most to `stop`; false if the run has failed.
+  bool step_towards(double stop) {
+    const Linearisation<N, P> lin = system_.linearise(x_, t_);
+    while (true) {
+      if (!within_budget()) return false;
+      double step = std::min(h_, h_max_);
+      const bool cut_short = t_ + step > stop - 1e-3 * step;
+      if (cut_short) step = stop - t_;
+      const double t_new = cut_short ? stop : t_ + step;
+      State x_new;
+      State x_err;
+      stepper_.do_step(system_, lin, x_, t_, x_new, step, x_err);
+      const double error = norm_(x_err, x_new);
+      const double factor = step_factor(error);
+      if (error <= 1.0) {
+        ++result_->steps;
+        // A step cut short by an event says nothing against the longer step planned before.
+        h_ = cut_short ? std::max(h_, step * factor) : step * factor;
+        if (after_jump_) h_after_jump_ = step * factor;
+        after_jump_ = false;
+        emit_until(t_new, x_new);
+        x_ = x_new;
+        t_ = t_new;
+        norm_.see(x_);
+        return true;
+      }
+      ++result_->rejected_steps;
+      h_ = step * std::min(factor, 0.9);
+      if (h_ < 16.0 * kEpsilon * std::max(t_, 1e-3)) {
+        if (std::isfinite(error)) {
+          fail(SimulationStatus::step_too_small,
+               fmt::format("error control asks for steps below {:.1e} s", h_));
+        } else {
+          fail(SimulationStatus::not_finite, "the state is no longer finite");
+        }
+        return false;
       }
     }
-    for_each_track([this, t](InputTrack& track) { advance(track, t); });
+  }
+
+  static double step_factor(double error) {
+    if (!std::isfinite(error)) return 0.1;
+    constexpr double kExponent = -1.0 / Stepper<N, P>::kOrder;
+    return std::clamp(0.9 * std::pow(std::max(error, 1e-10), kExponent), 0.2, 5.0);
+  }
+
+  /// Samples at the present instant.
+  void emit_present() {
+    while (next_sample_ < times_s_.size() && at(sample_time(next_sample_), t_)) emit(x_, t_);
+  }
+
+  /// Samples strictly between the present and the end of the step just done.
+  void emit_until(double t_new, const State& x_new) {
+    const auto inside = [&] {
+      return next_sample_ < times_s_.size() && sample_time(next_sample_) < t_new &&
+             !at(sample_time(next_sample_), t_new);
+    };
+    if (inside()) stepper_.prepare_dense_output();
+    while (inside()) {
+      const double time = sample_time(next_sample_);
+      State between;
+      stepper_.calc_state(time, between, x_, t_, x_new, t_new);
+      emit(between, time);
+    }
+    // The sample at t_new itself waits: an event there may change what it reads.
+  }
+
+  void emit(const State& x, double time) {
+    system_.observe(x, time, outputs_, observed_);
+    store(next_sample_++);
+  }
+
+  /// Inputs that end a segment now go to their next one, then the controller ticks. Where the time
+  /// of a jump depends on the transport delay, the sensitivity to it jumps by f(before) - f(after).
+  void pass_events() {
+    bool jumped = false;
+    for_each_track([&](InputTrack& track) { jumped = jumped || passed(track, t_); });
+    if constexpr (P > 0) {
+      const int delay = system_.delay_direction();
+      if (delay >= 0 && passed(system_.drive(), t_)) {
+        const State before = system_.derivative(x_, t_);
+        advance(system_.drive(), t_);
+        x_.col(1 + delay) += (before - system_.derivative(x_, t_)).col(0);
+      }
+    }
+    for_each_track([this](InputTrack& track) { advance(track, t_); });
+    if (at(next_tick(), t_)) {
+      system_.tick(x_, t_);
+      ++ticks_;
+      jumped = true;
+    }
+    if (jumped) {
+      // What the last jump needed, this one will too: saves a rejection at each recorded sample.
+      h_ = std::min(h_, h_after_jump_);
+      after_jump_ = true;
+    }
   }
 
   void advance(InputTrack& track, double t) const {
@@ -200,21 +222,21 @@ class Run {
     return end <= t || at(end, t);
   }
 
-  bool within_budget(Simulation& result, double t) const {
-    const long taken = result.steps + result.rejected_steps;
+  bool within_budget() {
+    const long taken = result_->steps + result_->rejected_steps;
     if (taken >= options_.max_steps) {
-      fail(result, SimulationStatus::too_many_steps, t,
+      fail(SimulationStatus::too_many_steps,
            fmt::format("{} steps were not enough", options_.max_steps));
       return false;
     }
     if (taken % 256 == 0) {
       if (options_.cancel != nullptr && options_.cancel->load(std::memory_order_relaxed)) {
-        fail(result, SimulationStatus::cancelled, t, "stopped on request");
+        fail(SimulationStatus::cancelled, "stopped on request");
         return false;
       }
       const std::chrono::duration<double> used = std::chrono::steady_clock::now() - started_;
       if (used.count() > options_.max_seconds) {
-        fail(result, SimulationStatus::out_of_time, t,
+        fail(SimulationStatus::out_of_time,
              fmt::format("{:g} s of computing were not enough", options_.max_seconds));
         return false;
       }
@@ -222,20 +244,20 @@ class Run {
     return true;
   }
 
-  void fail(Simulation& result, SimulationStatus status, double t, std::string reason) const {
-    result.status = status;
-    result.failed_at_s = times_s_.front() + t;
-    result.reason = std::move(reason);
+  void fail(SimulationStatus status, std::string reason) {
+    result_->status = status;
+    result_->failed_at_s = times_s_.front() + t_;
+    result_->reason = std::move(reason);
   }
 
-  void store(Simulation& result, std::size_t sample, int first_column, int columns) const {
+  void store(std::size_t sample) {
     const auto row = static_cast<Eigen::Index>(sample);
     for (std::size_t k = 0; k < outputs_.size(); ++k) {
-      if (first_column == 0)
-        result.outputs(row, static_cast<Eigen::Index>(k)) = value_of(observed_[k]);
+      if (first_column_ == 0)
+        result_->outputs(row, static_cast<Eigen::Index>(k)) = value_of(observed_[k]);
       if constexpr (P > 0) {
-        for (int j = 0; j < columns; ++j) {
-          result.sensitivities[k](row, first_column + j) =
+        for (int j = 0; j < columns_; ++j) {
+          result_->sensitivities[k](row, first_column_ + j) =
               observed_[k].derivative[static_cast<std::size_t>(j)];
         }
       }
@@ -250,8 +272,18 @@ class Run {
   std::chrono::steady_clock::time_point started_;
   std::vector<C> observed_;
   Stepper<N, P> stepper_;
-  double period_s_ = 0.0;
+  Simulation* result_ = nullptr;  ///< of the caller, for the time of one run
+  int first_column_ = 0;
+  int columns_ = 0;
+  double period_s_ = 0.0;  ///< of the sampled controller; infinite if continuous
+  long ticks_ = 0;
   double h_max_ = 0.0;
+  double t_ = 0.0;
+  State x_;
+  double h_ = 0.0;  ///< planned step
+  double h_after_jump_ = std::numeric_limits<double>::infinity();
+  bool after_jump_ = false;
+  std::size_t next_sample_ = 0;
   double same_instant_s_ = same_instant();
 };
 

@@ -127,7 +127,7 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
   }
 
   Simulation result;
-  const Layout layout = layout_of(rig, parameters, LoadPressurePlant::kStates);
+  const Layout layout = layout_of(rig, parameters, free, LoadPressurePlant::kStates);
   result.reason = bad_parameter(parameters, layout);
   if (!result.reason.empty()) {
     result.status = SimulationStatus::bad_parameters;

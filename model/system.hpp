@@ -144,7 +144,7 @@ class System {
           result[k] = 0.5 * (in.supply_pressure_pa - P_L) + p.pressure_b_offset_pa;
           break;
         case Output::force:
-          result[k] = Plant::rod_force(plant, p, layout_.friction) + p.force_offset_n;
+          result[k] = Plant::rod_force(plant, p, layout_.terms) + p.force_offset_n;
           break;
         case Output::command:
           result[k] = command;
@@ -156,7 +156,7 @@ class System {
           result[k] = Plant::servo_flow(P_L, in, p);
           break;
         case Output::leakage_flow:
-          result[k] = Plant::leakage_flow(P_L, p);
+          result[k] = Plant::leakage_flow(P_L, p, layout_.terms);
           break;
         case Output::work_flow:
           result[k] = plant[Plant::velocity] * p.piston_area_m2;
@@ -279,8 +279,7 @@ class System {
     }
     std::array<X, Plant::kStates> plant;
     for (std::size_t i = 0; i < plant.size(); ++i) plant[i] = x[i];
-    const auto plant_dx =
-        Plant::derivative(plant, plant_input<X>(x, command, t), p, layout_.friction);
+    const auto plant_dx = Plant::derivative(plant, plant_input<X>(x, command, t), p, layout_.terms);
     for (std::size_t i = 0; i < plant.size(); ++i) dx[i] = plant_dx[i];
     return dx;
   }
