@@ -27,7 +27,7 @@ TEST_CASE("layout_of: states follow from what was given", "[model]") {
        }) {
     auto values = paper_rig();
     for (const char* key : row.given) values.set(key, 1.0);
-    const Layout layout = layout_of({PlantKind::load_pressure, row.controller, {}}, values, 3);
+    const Layout layout = layout_of({PlantKind::load_pressure, row.controller, {}}, values, {}, 3);
     CAPTURE(row.given);
     CHECK(layout.states == row.states);
     CHECK(layout.valve == row.valve);
@@ -35,7 +35,7 @@ TEST_CASE("layout_of: states follow from what was given", "[model]") {
     CHECK(layout.filter == row.filter);
     CHECK(layout.held == row.held);
     CHECK(layout.sampled() == (row.held >= 0));
-    CHECK_FALSE(layout.friction);
+    CHECK_FALSE(layout.terms.friction);
   }
 }
 
@@ -43,6 +43,18 @@ TEST_CASE("layout_of: either dry-friction term brings friction", "[model]") {
   for (const char* key : {"coulomb_friction", "stribeck_friction"}) {
     auto values = paper_rig();
     values.set(key, 1.0);
-    CHECK(layout_of({}, values, 3).friction);
+    const PresentTerms terms = layout_of({}, values, {}, 3).terms;
+    CHECK(terms.friction);
+    CHECK(terms.stribeck == values.is_given("stribeck_friction"));
   }
+}
+
+TEST_CASE("layout_of: a leak of zero takes part only where it is free", "[model]") {
+  auto values = paper_rig();
+  const std::vector<int> free{parameter_index(values.plant, "leakage_coefficient")};
+  values.set("leakage_coefficient", 0.0);
+  CHECK_FALSE(layout_of({}, values, {}, 3).terms.orifice_leak);
+  CHECK(layout_of({}, values, free, 3).terms.orifice_leak);
+  values.set("leakage_coefficient", 0.15);
+  CHECK(layout_of({}, values, {}, 3).terms.orifice_leak);
 }
