@@ -89,13 +89,13 @@ struct LoadPressurePlant {
     return x[load_pressure] * p.piston_area_m2 - friction(x[velocity], p, terms);
   }
 
-  /// Initial state: the recorded position less its sensor's offset; where no initial load pressure
-  /// is given, the one that holds load and spring in equilibrium.
+  /// Initial state: recorded position and load pressure less the offsets of their sensors; where no
+  /// initial load pressure is given, the one that holds load and spring in equilibrium.
   template <typename C>
   static std::array<C, kStates> initial(const Parameters<C>& p, bool pressure_given) {
     const C x = p.initial_position_m - p.position_offset_m;
     const C P_L = pressure_given
-                      ? p.initial_load_pressure_pa
+                      ? C(p.initial_load_pressure_pa - p.load_pressure_offset_pa)
                       : C((p.external_force_n + p.stiffness_n_per_m * x) / p.piston_area_m2);
     return {x, p.initial_velocity_m_per_s, P_L};
   }
