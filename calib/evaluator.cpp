@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/parallel.hpp"
+#include "common/parallel.hpp"
 
 namespace rigcal::calib {
 namespace {

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "calib/acceptance.hpp"
-#include "calib/parallel.hpp"
+#include "common/parallel.hpp"
 #include "metrics/fundamental.hpp"
 #include "metrics/metric_table.hpp"
 

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "calib/optimum.hpp"
-#include "calib/parallel.hpp"
+#include "common/parallel.hpp"
 
 namespace rigcal::calib {
 namespace {

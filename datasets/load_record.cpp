@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "common/parallel.hpp"
 #include "datasets/average.hpp"
 #include "datasets/load_csv.hpp"
-#include "datasets/parallel.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -83,8 +83,8 @@ std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use
     if (std::find(uses.begin(), uses.end(), condition.use) != uses.end())
       wanted.push_back(&condition);
   std::vector<Record> records(wanted.size());
-  for_each_index(wanted.size(), threads,
-                 [&](std::size_t i) { records[i] = load_record(campaign, *wanted[i]); });
+  parallel_for(wanted.size(), threads,
+               [&](std::size_t i) { records[i] = load_record(campaign, *wanted[i]); });
   return records;
 }
 

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "common/file.hpp"
+#include "common/parallel.hpp"
 #include "datasets/load_record.hpp"
-#include "datasets/parallel.hpp"
 #include "datasets/synthetic_files.hpp"
 #include "datasets/synthetic_repeat.hpp"
 
@@ -39,7 +39,7 @@ SynthesisReport synthesize(const Campaign& campaign, std::uint64_t seed,
   const Campaign truth = true_campaign(campaign);
   std::vector<std::vector<RepeatFate>> fates(truth.conditions.size());
   std::atomic<long> samples{0};
-  for_each_index(truth.conditions.size(), threads, [&](std::size_t c) {
+  parallel_for(truth.conditions.size(), threads, [&](std::size_t c) {
     const Condition& condition = truth.conditions[c];
     const auto record = driving_record(campaign, condition);
     for (const SyntheticRepeat& repeat :

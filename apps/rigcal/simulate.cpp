@@ -10,7 +10,7 @@
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "calib/initial_state.hpp"
-#include "calib/parallel.hpp"
+#include "common/parallel.hpp"
 #include "common/suggest.hpp"
 #include "datasets/load_record.hpp"
 #include "report/csv.hpp"
@@ -131,7 +131,7 @@ ExitCode run_simulate(const Options& options, const Invocation& invocation) {
   settings.max_seconds = campaign.simulation.max_seconds;
   settings.cancel = &invocation.cancel;
   std::vector<model::Simulation> simulations(tasks.size());
-  calib::parallel_for(tasks.size(), options.common.threads, [&](std::size_t i) {
+  parallel_for(tasks.size(), options.common.threads, [&](std::size_t i) {
     const Task& task = tasks[i];
     simulations[i] = model::simulate(task.rig, task.values, {}, task.inputs, task.time_s,
                                      model::kAllOutputs, settings);

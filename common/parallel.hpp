@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace rigcal::calib {
+namespace rigcal {
 
 /// Calls task(i) once for each i in [0, count) on up to `threads` threads, the caller's included.
 /// Each task must write to a place of its own and read nothing that another writes: then the
@@ -37,4 +37,4 @@ void parallel_for(std::size_t count, int threads, Task task) {
   }
 }
 
-}  // namespace rigcal::calib
+}  // namespace rigcal
