@@ -79,7 +79,7 @@ void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
         "the residuals are {:.3g} times as large as the noise (reduced chi-square {:.4g}): the "
         "model does not explain all of the records; standard errors are scaled up by that factor",
         std::sqrt(chi), chi));
-  } else if (chi < 1.0 - std::max(0.5, scatter)) {
+  } else if (!problem.has_estimated_sd() && chi < 1.0 - std::max(0.5, scatter)) {
     fit.warnings.push_back(
         fmt::format("the residuals are only {:.3g} times as large as the noise (reduced chi-square "
                     "{:.4g}): the stated standard deviations are too large",
@@ -128,9 +128,12 @@ Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOption
   fit.status = found.result.status;
   fit.message = found.result.message;
   fit.starts = std::move(found.starts);
-  if (static_cast<int>(fit.starts.size()) < options.starts) {
-    fit.warnings.push_back(fmt::format("only {} of {} starts were made before the fit was stopped",
-                                       fit.starts.size(), options.starts));
+  const auto made = static_cast<int>(fit.starts.size());
+  if (made < options.starts && fit.status == FitStatus::converged) {
+    // Starts that were never made could have been better.
+    fit.status = FitStatus::stopped;
+    fit.message = fmt::format("stopped after {} of {} starts; the best of these {}", made,
+                              options.starts, fit.message);
   }
   fit.best_start = found.best;
   fit.evaluations = evaluator.evaluations();

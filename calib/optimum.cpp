@@ -50,8 +50,7 @@ OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation)
   const double freedom = std::max(1.0, static_cast<double>(problem.residual_count() - rank));
   const double unexplained =
       std::sqrt(std::max(0.0, system.residual.squaredNorm() - explained.squaredNorm()));
-  const double noise =
-      std::max(1.0, unexplained / std::sqrt(freedom));  // as standard errors have it
+  const double noise = std::max(problem.least_noise(), unexplained / std::sqrt(freedom));
   const double offset =
       explained.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(rank, 1)));
   check.relative_offset = offset / noise;

@@ -23,6 +23,10 @@ constexpr double kGuessedNoise = 1e-2;
 /// Tolerance of the simulations where nothing tells the noise, and the largest: cost and gradient
 /// jump by about the tolerance when the steps of a simulation change, which stalls the optimiser.
 constexpr double kDefaultTolerance = 1e-6;
+constexpr double kLeastTolerance = 1e-8;
+/// Residuals below this share of the peak-to-peak are no noise: a sensor of 20 bits resolves as
+/// much.
+constexpr double kLeastShare = 1e-6;
 
 const Record& record_of(const Condition& condition, const std::vector<Record>& records) {
   const auto found = std::find_if(records.begin(), records.end(), [&](const Record& record) {
@@ -93,23 +97,6 @@ void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   }
 }
 
-/// An error e of the simulation moves an estimate by up to e sqrt(n) / sd of its standard errors, n
-/// residuals: 0.3 keeps that below a tenth or so (the tolerance is an upper bound of e).
-double tolerance_from_noise(const std::vector<ProblemCondition>& conditions) {
-  double least = std::numeric_limits<double>::infinity();
-  std::size_t residuals = 0;
-  for (const ProblemCondition& condition : conditions) {
-    residuals += condition.rows.size() * condition.channels.size();
-    for (const ProblemChannel& channel : condition.channels) {
-      if (channel.sd_known && channel.peak_to_peak > 0.0)
-        least = std::min(least, channel.sd / channel.peak_to_peak);
-    }
-  }
-  if (!std::isfinite(least)) return kDefaultTolerance;
-  return std::clamp(0.3 * least / std::sqrt(static_cast<double>(residuals)), 1e-8,
-                    kDefaultTolerance);
-}
-
 ProblemCondition make_condition(const Campaign& campaign, const std::vector<Record>& records,
                                 const Condition& condition,
                                 const std::vector<datasets::FittedValue>* fitted) {
@@ -153,6 +140,22 @@ bool Problem::has_estimated_sd() const {
     return std::any_of(condition.channels.begin(), condition.channels.end(),
                        [](const ProblemChannel& channel) { return !channel.sd_known; });
   });
+}
+
+double Problem::least_sd(const ProblemChannel& channel) const {
+  const double range = channel.peak_to_peak > 0.0 ? channel.peak_to_peak : channel.sd;
+  // Here the errors of the simulations move an estimate by one of its standard errors at most.
+  const double resolved = tolerance * std::sqrt(static_cast<double>(residual_count()));
+  return std::max(kLeastShare, resolved) * range;
+}
+
+double Problem::least_noise() const {
+  double least = 0.0;
+  for (const ProblemCondition& condition : conditions) {
+    for (const ProblemChannel& channel : condition.channels)
+      least = std::max(least, channel.sd_known ? 1.0 : least_sd(channel) / channel.sd);
+  }
+  return least;
 }
 
 model::ParameterValues Problem::values_at(std::size_t condition, std::span<const double> z) const {
@@ -244,6 +247,23 @@ std::vector<std::size_t> samples_that_count(const Condition& condition, const Re
   return rows;
 }
 
+/// An error e of the simulation moves an estimate by up to e sqrt(n) / sd of its standard errors, n
+/// residuals: 0.3 keeps that below a tenth or so (the tolerance is an upper bound of e).
+double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, bool estimated) {
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t residuals = 0;
+  for (const ProblemCondition& condition : conditions) {
+    residuals += condition.rows.size() * condition.channels.size();
+    for (const ProblemChannel& channel : condition.channels) {
+      if ((channel.sd_known || estimated) && channel.peak_to_peak > 0.0)
+        least = std::min(least, channel.sd / channel.peak_to_peak);
+    }
+  }
+  if (!std::isfinite(least)) return kDefaultTolerance;
+  return std::clamp(0.3 * least / std::sqrt(static_cast<double>(residuals)), kLeastTolerance,
+                    kDefaultTolerance);
+}
+
 Problem make_problem(const Campaign& campaign, const std::vector<Record>& records,
                      const std::vector<const Condition*>& conditions, bool nuisance_only,
                      const std::vector<datasets::FittedValue>* fitted) {
@@ -260,8 +280,9 @@ Problem make_problem(const Campaign& campaign, const std::vector<Record>& record
   guess_unknown_sd(prepared);
 
   Problem problem{&campaign, ParameterMap(campaign, conditions, nuisance_only, initial_unknowns),
-                  std::move(prepared), campaign.simulation.tolerance.value_or(0.0)};
-  if (!campaign.simulation.tolerance) problem.tolerance = tolerance_from_noise(problem.conditions);
+                  std::move(prepared), campaign.simulation.tolerance.value_or(0.0),
+                  campaign.simulation.tolerance.has_value()};
+  if (!problem.tolerance_fixed) problem.tolerance = tolerance_from_noise(problem.conditions, false);
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     for (const int j : problem.map.acting(i)) {
       const auto u = static_cast<std::size_t>(j);

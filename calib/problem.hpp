@@ -44,11 +44,17 @@ struct Problem {
   const datasets::Campaign* campaign = nullptr;
   ParameterMap map;
   std::vector<ProblemCondition> conditions;
-  double tolerance = 0.0;  ///< of the simulations
+  double tolerance = 0.0;        ///< of the simulations
+  bool tolerance_fixed = false;  ///< by the campaign
 
   /// Number of weighted residuals, priors included.
   long residual_count() const;
   bool has_estimated_sd() const;
+  /// The least standard deviation that may be estimated for a channel, SI.
+  double least_sd(const ProblemChannel& channel) const;
+  /// Least rms of weighted residuals that is to be believed: 1 where the noise of a channel is
+  /// known, else what least_sd() allows.
+  double least_noise() const;
   /// Values of all parameters in a condition at unit-box coordinates z.
   model::ParameterValues values_at(std::size_t condition, std::span<const double> z) const;
   /// SI values of the unknowns.
@@ -68,6 +74,11 @@ model::Output output_of(datasets::Channel channel);
 /// Samples of a record that lie inside the condition's windows; all if it has none.
 std::vector<std::size_t> samples_that_count(const datasets::Condition& condition,
                                             const datasets::Record& record);
+
+/// Tolerance of the simulations that the noise of the channels asks for, between 1e-8 and 1e-6.
+///
+/// @param estimated  count channels of estimated noise too
+double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, bool estimated);
 
 /// Sets up the problem of some conditions.
 ///

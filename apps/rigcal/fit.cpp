@@ -25,15 +25,6 @@ struct Options {
   std::uint64_t seed = 1;
 };
 
-/// Starts that were never made could have been better: a fit without them is not finished.
-void mark_unfinished(const calib::FitOptions& settings, calib::Fit& fit) {
-  const auto made = static_cast<int>(fit.starts.size());
-  if (fit.status != calib::FitStatus::converged || made >= settings.starts) return;
-  fit.status = calib::FitStatus::stopped;
-  fit.message = fmt::format("stopped after {} of {} starts; the best of these: {}", made,
-                            settings.starts, fit.message);
-}
-
 ExitCode run_fit(const Options& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
   const auto records = datasets::load_records(
@@ -49,11 +40,10 @@ ExitCode run_fit(const Options& options, const Invocation& invocation) {
 
   calib::Fit fit;
   {
-    Progress progress(options.common.print.quiet, settings.starts);
+    Progress progress(options.common.print.quiet, fmt::format("start {{}} of {}", settings.starts));
     settings.progress = std::ref(progress);
     fit = calib::fit(campaign, records, settings);
   }
-  mark_unfinished(settings, fit);
   return write_and_print(options.common,
                          {report::ResultKind::fit, campaign, records, fit, provenance});
 }

@@ -5,11 +5,12 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace rigcal::app {
 
-Progress::Progress(bool quiet, int starts)
-    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), starts_(starts) {}
+Progress::Progress(bool quiet, std::string work)
+    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), work_(std::move(work)) {}
 
 Progress::~Progress() {
   if (line_is_open_) std::fputs("\n", stderr);
@@ -26,8 +27,8 @@ void Progress::operator()(int start, int iteration, double cost, double relative
   const std::string change =
       std::isfinite(relative_change) ? fmt::format("{:.1e}", relative_change) : "-";
   const std::string line =
-      fmt::format("start {} of {}, iteration {}: cost {:.6g}, change {}, {:.1f} s", start, starts_,
-                  iteration, cost, change, seconds);
+      fmt::format("{}, iteration {}: cost {:.6g}, change {}, {:.1f} s",
+                  fmt::format(fmt::runtime(work_), start), iteration, cost, change, seconds);
   if (terminal_) {
     std::fputs(fmt::format("\r\x1b[K{}", line).c_str(), stderr);
     line_is_open_ = true;

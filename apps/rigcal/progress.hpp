@@ -10,8 +10,8 @@ namespace rigcal::app {
 /// about every second elsewhere. Silent for the first second.
 class Progress {
  public:
-  /// @param starts  how many there are in all
-  Progress(bool quiet, int starts);
+  /// @param work  what is told of: "start {} of 3"; braces stand for the number of the start
+  Progress(bool quiet, std::string work);
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
   ~Progress();
@@ -25,7 +25,7 @@ class Progress {
   std::mutex mutex_;
   bool quiet_;
   bool terminal_;
-  int starts_;
+  std::string work_;
   bool line_is_open_ = false;
   Clock::time_point last_shown_ = Clock::now();
 };

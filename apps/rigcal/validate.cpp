@@ -73,7 +73,7 @@ ExitCode run_validate(const Options& options, const Invocation& invocation) {
 
   calib::Fit fit;
   {
-    Progress progress(options.common.print.quiet, 1);
+    Progress progress(options.common.print.quiet, "nuisance parameters");
     settings.progress = std::ref(progress);
     fit = calib::validate(campaign, records, earlier ? &earlier->values : nullptr, settings);
   }
