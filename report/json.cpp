@@ -54,7 +54,7 @@ Json parameter_json(const calib::FittedParameter& p, const model::ParameterSpec&
   json["fitted"] = p.fitted;
   json["nuisance"] = p.nuisance;
   json["standard_error"] = number(p.standard_error);
-  json["robust_standard_error"] = nullptr;
+  json["robust_standard_error"] = number(p.robust_standard_error);
   json["ci95"] =
       p.ci95 ? Json::array({number(p.ci95->first), number(p.ci95->second)}) : Json(nullptr);
   json["at_bound"] = p.at_bound;
@@ -193,8 +193,9 @@ Json starts_json(const calib::Fit& fit) {
     json["message"] = start.message;
     json["start_values"] = numbers(start.start_values);
     json["end_values"] = numbers(start.end_values);
-    json["initial_cost"] = number(start.initial_cost);
-    json["final_cost"] = number(start.final_cost);
+    const bool simulated = !start.end_values.empty();
+    json["initial_cost"] = simulated ? number(start.initial_cost) : Json(nullptr);
+    json["final_cost"] = simulated ? number(start.final_cost) : Json(nullptr);
     json["iterations"] = start.iterations;
     list.push_back(std::move(json));
   }

@@ -1,6 +1,7 @@
 #include "report/terminal.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +39,16 @@ std::optional<Channel> shown_channel(const calib::Fit& fit) {
   return first;
 }
 
-std::string fraction(double value) { return fmt::format("{:.5f}", value); }
+/// A fraction as percent, with so many decimals that what is missing to 100 shows 2 digits.
+std::string fraction(double value) {
+  const double missing = 100.0 * std::abs(1.0 - value);
+  if (!(missing > 0.0)) return fmt::format("{:.4f}", 100.0 * value);
+  constexpr int kLeastDecimals = 4;
+  constexpr int kMostDecimals = 10;  // beyond, a double of about 1 holds no more
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(missing)));
+  return fmt::format("{:.{}f}", 100.0 * value, std::clamp(decimals, kLeastDecimals, kMostDecimals));
+}
+
 std::string percent(double value) { return fmt::format("{:.3f}", value); }
 
 TextTable condition_table(const Result& result, Channel channel) {
@@ -47,9 +57,9 @@ TextTable condition_table(const Result& result, Channel channel) {
                    {"waveform"},
                    {"frequency", Align::right},
                    {"leak level"},
-                   {"rho2", Align::right},
-                   {"R", Align::right},
-                   {"CCC", Align::right},
+                   {"rho2 %", Align::right},
+                   {"R %", Align::right},
+                   {"CCC %", Align::right},
                    {"error %", Align::right},
                    {"floor %", Align::right},
                    {"verdict"}});
@@ -83,11 +93,11 @@ TextTable group_table(const Result& result, Channel channel) {
   TextTable table({{"by"},
                    {"group"},
                    {"conditions", Align::right},
-                   {"rho2", Align::right},
-                   {"R", Align::right},
-                   {"CCC", Align::right},
+                   {"rho2 %", Align::right},
+                   {"R %", Align::right},
+                   {"CCC %", Align::right},
                    {"error %", Align::right},
-                   {"worst rho2", Align::right},
+                   {"worst rho2 %", Align::right},
                    {"worst error %", Align::right}});
   for (const Group& group : groups(result.campaign, result.fit)) {
     const auto found = group.channels.find(channel);
@@ -110,6 +120,26 @@ std::string in_unit(double si_value, const ReadableUnit& unit, int digits) {
 
 std::string limits(double low, double high, const ReadableUnit& unit, int digits) {
   return fmt::format("{} .. {}", in_unit(low, unit, digits), in_unit(high, unit, digits));
+}
+
+/// One line per reason, led by all that it holds for; "all" where that is more than one and every
+/// one.
+std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& reasons,
+                       std::size_t parameters) {
+  std::string text;
+  for (std::size_t i = 0; i < reasons.size(); ++i) {
+    const auto same = [&](const auto& other) { return other.second == reasons[i].second; };
+    const auto here = reasons.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::any_of(reasons.begin(), here, same)) continue;  // told already
+    std::vector<std::string> whose;
+    for (const auto& reason : reasons) {
+      if (same(reason)) whose.push_back(reason.first);
+    }
+    const bool all = whose.size() > 1 && whose.size() == parameters;
+    text += fmt::format("  {}: {}\n", all ? "all" : fmt::format("{}", fmt::join(whose, ", ")),
+                        reasons[i].second);
+  }
+  return text;
 }
 
 }  // namespace
@@ -137,7 +167,7 @@ std::string parameters_text(const Result& result, const Style& style) {
                   {"bounds", Align::right},
                   {"at bound"},
                   {"identifiability"}});
-  std::string reasons;
+  std::vector<std::pair<std::string, std::string>> reasons;  // whose, why
   for (const calib::FittedParameter& p : result.fit.parameters) {
     if (!p.fitted) continue;
     const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
@@ -149,10 +179,13 @@ std::string parameters_text(const Result& result, const Style& style) {
               p.ci95 ? limits(p.ci95->first, p.ci95->second, unit, 5) : "-",
               limits(p.lower, p.upper, unit, 4), p.at_bound ? "yes" : "no",
               std::string(to_string(p.identifiability))});
-    if (!p.reason.empty()) reasons += fmt::format("  {} ({}): {}\n", spec.key, whose, p.reason);
+    if (!p.reason.empty()) reasons.emplace_back(fmt::format("{} ({})", spec.key, whose), p.reason);
   }
-  if (text.empty()) return "No parameter was estimated.\n";
-  return coloured("Parameters", "1", style) + "\n" + text.text() + reasons;
+  if (text.empty()) {
+    return result.kind == ResultKind::validation ? "All parameters as given.\n"
+                                                 : "No parameter was estimated.\n";
+  }
+  return coloured("Parameters", "1", style) + "\n" + text.text() + foot_notes(reasons, text.rows());
 }
 
 std::string verdict_text(const Result& result, const Style& style) {

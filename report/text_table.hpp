@@ -22,6 +22,7 @@ class TextTable {
   /// @param row  shape (columns)
   void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
   bool empty() const { return rows_.empty(); }
+  std::size_t rows() const { return rows_.size(); }
   /// Title line and rows, two blanks between columns, without blanks at line ends.
   std::string text() const;
 

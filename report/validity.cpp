@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "model/parameter.hpp"
+#include "report/readable.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -53,14 +54,27 @@ double value_in(const Campaign& campaign, const Condition& condition, const cali
   return value;
 }
 
+/// How far a range may leave what is covered before it matters, as a share of the bound it leaves.
+constexpr double kSlack = 0.1;
+
+/// "5 mm", "0.1 to 10 Hz": both ends in the unit of the upper one.
+std::string in_words(const Range& range, std::string_view unit) {
+  const ReadableUnit readable = readable_unit(range.high, unit);
+  const auto number = [&](double value) { return fmt::format("{:.4g}", value / readable.si); };
+  const std::string low = number(range.low);
+  const std::string high = number(range.high);
+  const std::string suffix = readable.name.empty() ? "" : fmt::format(" {}", readable.name);
+  return low == high ? high + suffix : fmt::format("{} to {}{}", low, high, suffix);
+}
+
 void compare(std::vector<std::string>& result, std::string_view what, std::string_view unit,
              const std::optional<Range>& asked, const std::optional<Range>& covered) {
   if (!asked || !covered) return;
-  const double slack = 0.01 * std::max(std::abs(covered->low), std::abs(covered->high));
-  if (asked->low >= covered->low - slack && asked->high <= covered->high + slack) return;
-  result.push_back(
-      fmt::format("{} {:.4g} to {:.4g}{} lies outside what the fit covers, {:.4g} to {:.4g}{}",
-                  what, asked->low, asked->high, unit, covered->low, covered->high, unit));
+  const bool below = asked->low < covered->low - kSlack * std::abs(covered->low);
+  const bool above = asked->high > covered->high + kSlack * std::abs(covered->high);
+  if (!below && !above) return;
+  result.push_back(fmt::format("{} {} is used, but the fit covers only {}", what,
+                               in_words(*asked, unit), in_words(*covered, unit)));
 }
 
 }  // namespace
@@ -70,6 +84,7 @@ Validity coverage(const Campaign& campaign, const std::vector<Record>& records,
   const Channel drive =
       campaign.rig.controller == model::ControllerKind::pid ? Channel::reference : Channel::command;
   Validity result;
+  result.amplitude_unit = info(drive).unit;
   for (const Condition& condition : campaign.conditions) {
     if (std::find(uses.begin(), uses.end(), condition.use) == uses.end()) continue;
     const Record* record = record_of(records, condition.id);
@@ -97,10 +112,10 @@ Validity coverage(const Campaign& campaign, const std::vector<Record>& records,
 
 std::vector<std::string> outside(const Validity& asked, const Validity& covered) {
   std::vector<std::string> result;
-  compare(result, "frequency", " Hz", asked.frequency_hz, covered.frequency_hz);
-  compare(result, "amplitude", " (SI)", asked.amplitude, covered.amplitude);
-  compare(result, "supply pressure", " Pa", asked.supply_pressure_pa, covered.supply_pressure_pa);
-  compare(result, "leakage coefficient", "", asked.leakage_coefficient,
+  compare(result, "frequency", "Hz", asked.frequency_hz, covered.frequency_hz);
+  compare(result, "amplitude", asked.amplitude_unit, asked.amplitude, covered.amplitude);
+  compare(result, "supply pressure", "Pa", asked.supply_pressure_pa, covered.supply_pressure_pa);
+  compare(result, "leakage coefficient", "1", asked.leakage_coefficient,
           covered.leakage_coefficient);
   return result;
 }

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/fit.hpp"
@@ -19,6 +20,7 @@ struct Range {
 struct Validity {
   std::optional<Range> frequency_hz;
   std::optional<Range> amplitude;  ///< half of peak to peak of the drive: [m], or [V] in open loop
+  std::string_view amplitude_unit = "m";
   std::optional<Range> supply_pressure_pa;
   std::optional<Range> leakage_coefficient;
   std::vector<std::string> leak_levels;
@@ -31,7 +33,8 @@ struct Validity {
 Validity coverage(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
                   const calib::Fit& fit, const std::vector<datasets::Use>& uses);
 
-/// In words, each way in which `asked` leaves `covered`, by more than 1 % of the bound.
+/// In words and in readable units, each way in which `asked` leaves `covered` by more than 10 % of
+/// the bound.
 std::vector<std::string> outside(const Validity& asked, const Validity& covered);
 
 }  // namespace rigcal::report
