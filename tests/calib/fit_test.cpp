@@ -1,6 +1,8 @@
 #include "calib/fit.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstring>
 
 #include "common/error.hpp"
@@ -271,6 +273,50 @@ TEST_CASE("fit: unknown noise is estimated and said so", "[calib]") {
   // sd of 500 samples is known to 3 %; four times that.
   CHECK_THAT(parameter(found, "mass").standard_error.value(),
              WithinRel(parameter(told, "mass").standard_error.value(), 0.13));
+}
+
+TEST_CASE("fit: records without noise converge to the truth", "[calib]") {
+  Twin twin = small_twin();
+  twin.noise_sd_m = 0.0;
+  const auto records = twin.records(250, 500.0, 3, model::InitialState::rest, false);
+  double tolerance = 0.3e-6 / std::sqrt(250.0);  // what a noise of 1e-6 asks for
+  SECTION("the tolerance follows the noise") {}
+  SECTION("the campaign fixes the tolerance") {
+    tolerance = 1e-6;
+    twin.campaign.simulation.tolerance = tolerance;
+  }
+  for (const double mass_kg : {45.0, 170.0}) {
+    for (const double valve_gain : {0.02e-3, 0.08e-3}) {
+      CAPTURE(tolerance, mass_kg, valve_gain);
+      twin.setting("mass").value = mass_kg;
+      twin.setting("valve_gain").value = valve_gain;
+      const Fit found = fit(twin.campaign, records, {});
+      CAPTURE(found.message);
+      CHECK(found.status == FitStatus::converged);
+      CHECK_THAT(found.tolerance, WithinRel(tolerance, 1e-12));
+      CHECK(mentions(found.warnings, "resolve"));
+      // An error of the simulation of the order of its tolerance moves the mass by a multiple.
+      CHECK_THAT(parameter(found, "mass").value, WithinRel(85.0, 1e3 * tolerance));
+      CHECK_THAT(parameter(found, "valve_gain").value, WithinRel(0.0406e-3, 1e2 * tolerance));
+    }
+  }
+}
+
+TEST_CASE("fit: with starts that were never made it is stopped, not converged", "[calib]") {
+  const Twin twin = small_twin();
+  std::atomic<bool> cancel{false};
+  FitOptions options;
+  options.starts = 3;
+  options.cancel = &cancel;
+  options.progress = [&](int start, int, double, double, double) {
+    if (start == 2) cancel = true;
+  };
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  REQUIRE(found.starts.size() == 2);
+  CHECK(found.starts[0].status == FitStatus::converged);
+  CHECK(found.status == FitStatus::stopped);
+  CHECK_FALSE(found.usable());
+  CHECK_THAT(found.message, Contains("2 of 3 starts"));
 }
 
 TEST_CASE("fit: an initial state is recovered", "[calib]") {
