@@ -354,6 +354,29 @@ TEST_CASE("simulate: equilibria stay put", "[model]") {
   CHECK(peak(run.outputs.col(0).array() - 0.023) < 1e-12);
 }
 
+TEST_CASE("simulate: without an initial load pressure it starts in equilibrium", "[model]") {
+  Experiment e = paper(Signal::constant(0.02));
+  e.rig.initial = InitialState::given;
+  e.set("leakage_coefficient", 0.0).set("stiffness", 5e4).set("external_force", 200.0);
+  e.set("initial_position", 0.02);
+  const Simulation run = ok(e);
+  CHECK(peak(run.outputs.col(0).array() - 0.02) < 1e-12);
+  CHECK_THAT(run.outputs(0, 1), WithinRel((5e4 * 0.02 + 200.0) / 1.62e-3, 1e-14));
+}
+
+TEST_CASE("simulate: initial values are readings, their sensors' offsets included", "[model]") {
+  Experiment e = paper(Signal::constant(0.0));
+  e.times_s = {0.0};
+  e.rig.initial = InitialState::given;
+  e.outputs = {Output::position, Output::load_pressure, Output::pressure_a};
+  e.set("initial_position", 0.01).set("position_offset", 0.002);
+  e.set("initial_load_pressure", 2e5).set("load_pressure_offset", 1e4);
+  const Simulation run = ok(e);
+  CHECK_THAT(run.outputs(0, 0), WithinRel(0.01, 1e-14));
+  CHECK_THAT(run.outputs(0, 1), WithinRel(2e5, 1e-14));
+  CHECK_THAT(run.outputs(0, 2), WithinRel(0.5 * (6.2e6 + 1.9e5), 1e-14));
+}
+
 TEST_CASE("simulate: a closed loop that starts in motion gets no kick", "[model]") {
   // Filter and valve start in step with the loop: no jump of command or spool at the first sample.
   for (const bool sampled : {false, true}) {
