@@ -295,12 +295,12 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
                      "parameter, or --free");
   }
   // A leak level that only validation has must be told before the hours of a fit, not after.
-  std::vector<FittedValue> placeholder;
+  std::vector<FittedValue> starts;
   for (const Unknown& unknown : problem.map.unknowns()) {
     if (!unknown.nuisance)
-      placeholder.push_back({unknown.index, unknown.scope, unknown.level, unknown.start});
+      starts.push_back({unknown.index, unknown.scope, unknown.level, unknown.start});
   }
-  for (const Condition* condition : validated) values_with(campaign, *condition, placeholder);
+  for (const Condition* condition : validated) values_with(campaign, *condition, starts);
 
   Fit result;
   Evaluator evaluator(problem, evaluator_options(campaign, options, began));

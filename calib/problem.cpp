@@ -9,6 +9,7 @@
 
 #include "calib/initial_state.hpp"
 #include "calib/known_values.hpp"
+#include "datasets/model_output.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -118,7 +119,7 @@ ProblemCondition make_condition(const Campaign& campaign, const std::vector<Reco
   }
   for (const Channel channel : channels) {
     result.channels.push_back(make_channel(campaign, result, channel));
-    result.outputs.push_back(output_of(channel));
+    result.outputs.push_back(datasets::model_output(channel).value());
   }
   // The start point is simulated with this budget; later points with one from the steps it took.
   result.max_steps = 1'000'000 + 50 * static_cast<long>(result.record->time_s.size());
@@ -208,24 +209,6 @@ std::vector<Channel> output_channels(const Campaign& campaign, const Record& rec
       result.push_back(channel);
   }
   return result;
-}
-
-model::Output output_of(Channel channel) {
-  switch (channel) {
-    case Channel::position:
-      return model::Output::position;
-    case Channel::load_pressure:
-      return model::Output::load_pressure;
-    case Channel::pressure_a:
-      return model::Output::pressure_a;
-    case Channel::pressure_b:
-      return model::Output::pressure_b;
-    case Channel::force:
-      return model::Output::force;
-    default:
-      throw std::invalid_argument(
-          fmt::format("output_of: {} is no output of the model", datasets::info(channel).key));
-  }
 }
 
 std::vector<std::size_t> samples_that_count(const Condition& condition, const Record& record) {

@@ -69,7 +69,6 @@ struct Problem {
 /// if that is given.
 std::vector<datasets::Channel> output_channels(const datasets::Campaign& campaign,
                                                const datasets::Record& record);
-model::Output output_of(datasets::Channel channel);
 
 /// Samples of a record that lie inside the condition's windows; all if it has none.
 std::vector<std::size_t> samples_that_count(const datasets::Condition& condition,

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "datasets/model_output.hpp"
 #include "datasets/noise.hpp"
 
 namespace rigcal::datasets {
@@ -15,28 +16,6 @@ constexpr double kTolerance = 1e-8;
 constexpr double kRoomTemperatureK = 293.15;
 
 using Channels = std::map<Channel, std::vector<double>>;
-
-std::optional<model::Output> output_of(Channel channel) {
-  switch (channel) {
-    case Channel::position:
-      return model::Output::position;
-    case Channel::load_pressure:
-      return model::Output::load_pressure;
-    case Channel::pressure_a:
-      return model::Output::pressure_a;
-    case Channel::pressure_b:
-      return model::Output::pressure_b;
-    case Channel::force:
-      return model::Output::force;
-    case Channel::command:
-      return model::Output::command;
-    case Channel::reference:
-    case Channel::supply_pressure:
-    case Channel::temperature:
-      break;
-  }
-  return std::nullopt;
-}
 
 /// Whether a force channel holds the load that acts on the rig, not what a load cell reads.
 bool is_external_force(const Campaign& campaign, Channel channel) {
@@ -122,7 +101,7 @@ Channels clean_channels(const Campaign& truth, const Condition& condition, const
 
   std::vector<model::Output> outputs;
   for (const Channel channel : channels)
-    if (const auto output = output_of(channel)) outputs.push_back(*output);
+    if (const auto output = model_output(channel)) outputs.push_back(*output);
   if (outputs.empty()) outputs.push_back(model::Output::position);
   const RunTimes times = run_times(time_s, fate.late_s);
   model::SimulationOptions options;
@@ -141,7 +120,7 @@ Channels clean_channels(const Campaign& truth, const Condition& condition, const
     const double run_s = times.run_s[times.sample[i]];
     if (is_external_force(truth, channel))
       return inputs.external_force_n ? inputs.external_force_n->value(run_s) : 0.0;
-    if (const auto output = output_of(channel)) {
+    if (const auto output = model_output(channel)) {
       const auto column = std::find(outputs.begin(), outputs.end(), *output) - outputs.begin();
       return run.outputs(static_cast<Eigen::Index>(times.sample[i]), column);
     }
