@@ -107,18 +107,6 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
   return score;
 }
 
-std::string group_key(const Condition& condition, GroupBy by) {
-  switch (by) {
-    case GroupBy::waveform:
-      return std::string(datasets::to_string(condition.waveform));
-    case GroupBy::frequency:
-      return condition.frequency_hz ? fmt::format("{:g} Hz", *condition.frequency_hz) : "-";
-    case GroupBy::leak_level:
-      return condition.leak_level.value_or("-");
-  }
-  return "-";
-}
-
 }  // namespace
 
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
@@ -149,55 +137,6 @@ std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>&
     }
   }
   return warnings;
-}
-
-std::string_view to_string(GroupBy by) {
-  switch (by) {
-    case GroupBy::waveform:
-      return "waveform";
-    case GroupBy::frequency:
-      return "frequency";
-    case GroupBy::leak_level:
-      return "leak_level";
-  }
-  return "";
-}
-
-std::vector<ScoreGroup> gather(const datasets::Campaign& campaign,
-                               const std::vector<ConditionScore>& scores, GroupBy by) {
-  std::vector<ScoreGroup> groups;
-  for (const ConditionScore& score : scores) {
-    const Condition* condition = campaign.find(score.id);
-    if (condition == nullptr) continue;
-    const std::string key = group_key(*condition, by);
-    for (const ChannelScore& channel : score.channels) {
-      if (!channel.agreement) continue;
-      auto group = std::find_if(groups.begin(), groups.end(), [&](const ScoreGroup& each) {
-        return each.key == key && each.channel == channel.channel;
-      });
-      if (group == groups.end()) {
-        ScoreGroup fresh;
-        fresh.by = by;
-        fresh.key = key;
-        fresh.channel = channel.channel;
-        group = groups.insert(groups.end(), fresh);
-      }
-      ++group->count;
-      for (const metrics::MetricSpec& spec : metrics::kMetrics) {
-        const std::string name(spec.name);
-        const double value = (*channel.agreement).*spec.value;
-        group->mean[name] += value;
-        const auto [worst, first] = group->worst.try_emplace(name, value);
-        if (!first)
-          worst->second = spec.higher_is_better ? std::min(worst->second, value)
-                                                : std::max(worst->second, value);
-      }
-    }
-  }
-  for (ScoreGroup& group : groups) {
-    for (auto& [name, value] : group.mean) value /= group.count;
-  }
-  return groups;
 }
 
 }  // namespace rigcal::calib

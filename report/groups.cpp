@@ -62,13 +62,16 @@ std::vector<Group> groups(const datasets::Campaign& campaign, const calib::Fit& 
   std::vector<Group> result;
   gather(
       result, "use", [](const Condition& c) { return std::string(to_string(c.use)); }, scores);
-  gather(
-      result, "frequency",
-      [](const Condition& c) -> std::optional<std::string> {
-        if (!c.frequency_hz) return std::nullopt;
-        return fmt::format("{:.6g} Hz", *c.frequency_hz);
-      },
-      by_frequency);
+  const auto frequency = [](const Condition& c) -> std::optional<std::string> {
+    if (!c.frequency_hz) return std::nullopt;
+    return fmt::format("{:.6g} Hz", *c.frequency_hz);
+  };
+  const auto signal = [&](const Condition& c) -> std::optional<std::string> {
+    if (!c.frequency_hz) return std::nullopt;
+    return fmt::format("{} {}", to_string(c.waveform), *frequency(c));
+  };
+  gather(result, "signal", signal, by_frequency);
+  gather(result, "frequency", frequency, by_frequency);
   gather(
       result, "waveform", [](const Condition& c) { return std::string(to_string(c.waveform)); },
       scores);

@@ -10,6 +10,7 @@
 
 #include "calib/fit.hpp"
 #include "calib/problem.hpp"
+#include "datasets/model_output.hpp"
 #include "datasets/campaign.hpp"
 #include "datasets/record.hpp"
 
@@ -126,7 +127,7 @@ struct Twin {
       const auto values = true_values(condition);
       std::vector<model::Output> outputs;
       for (const auto& [channel, setting] : campaign.channels)
-        outputs.push_back(output_of(channel));
+        outputs.push_back(datasets::model_output(channel).value());
       model::SimulationOptions options;
       options.tolerance = tolerance;
       model::Rig rig = campaign.rig;

@@ -178,22 +178,6 @@ TEST_CASE("acceptance: what could not be simulated fails, what has no number war
   CHECK(constant.verdict == Verdict::warn);
 }
 
-TEST_CASE("scorecard: gathers by waveform, frequency and leak level", "[calib]") {
-  const Twin twin = two_days();
-  std::vector<ConditionScore> scores{scored(0.9), scored(0.8), scored(1.0)};
-  scores[0].id = "day1_low";
-  scores[1].id = "day1_high";
-  scores[2].id = "day2";
-  const auto waves = gather(twin.campaign, scores, GroupBy::waveform);
-  REQUIRE(waves.size() == 2);
-  CHECK(waves[1].key == "sine");
-  CHECK(waves[1].count == 2);
-  CHECK_THAT(waves[1].mean.at("rho2"), WithinRel(0.9, 1e-14));
-  CHECK(waves[1].worst.at("rho2") == 0.8);
-  CHECK(gather(twin.campaign, scores, GroupBy::frequency).at(0).key == "2 Hz");
-  CHECK(gather(twin.campaign, scores, GroupBy::leak_level).at(0).count == 2);
-}
-
 TEST_CASE("latin hypercube: one point in every stratum, from the seed alone", "[calib]") {
   const auto points = latin_hypercube(10, 3, 42);
   for (std::size_t d = 0; d < 3; ++d) {
