@@ -10,8 +10,8 @@
 
 #include "calib/fit.hpp"
 #include "calib/problem.hpp"
-#include "datasets/model_output.hpp"
 #include "datasets/campaign.hpp"
+#include "datasets/model_output.hpp"
 #include "datasets/record.hpp"
 
 namespace rigcal::calib {
