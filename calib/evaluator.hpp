@@ -31,8 +31,8 @@ class Evaluator final : public ceres::EvaluationCallback {
   };
 
   /// Borrows the problem, whose weights may change between solves: call forget() then.
-  Evaluator(const Problem& problem, Options options)
-      : problem_(problem), options_(std::move(options)) {}
+  Evaluator(const Problem& problem, const Options& options)
+      : problem_(problem), options_(options) {}
 
   /// The evaluation at z; not ok where a condition could not be simulated, which is recorded.
   const Evaluation& evaluate(std::span<const double> z);

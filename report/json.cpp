@@ -12,7 +12,6 @@
 namespace rigcal::report {
 namespace {
 
-using datasets::Channel;
 using datasets::Scope;
 
 template <typename Enum>
