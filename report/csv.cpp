@@ -10,7 +10,6 @@
 namespace rigcal::report {
 namespace {
 
-using datasets::Channel;
 
 /// Shortest text that reads back to the same bits; empty for what is not a number.
 std::string number(double value) {
