@@ -10,7 +10,6 @@
 namespace rigcal::report {
 namespace {
 
-
 /// Shortest text that reads back to the same bits; empty for what is not a number.
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : std::string();
