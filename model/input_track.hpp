@@ -21,7 +21,6 @@ class InputTrack {
   void next_segment() { ++segment_; }
   SignalSample sample(double t) const { return signal_.sample(segment_, t + shift_s_); }
   double max_step() const { return signal_.max_step(); }
-  double peak() const { return signal_.peak(); }
 
  private:
   Signal signal_;

@@ -203,12 +203,4 @@ double Signal::max_step() const {
   }
 }
 
-double Signal::peak() const {
-  double peak = std::abs(offset_) + std::abs(amplitude_);
-  if (value_) {
-    for (const double v : *value_) peak = std::max(peak, std::abs(v));
-  }
-  return peak;
-}
-
 }  // namespace rigcal::model

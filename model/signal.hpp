@@ -43,8 +43,6 @@ class Signal {
   double value(double t) const { return sample(segment_at(t), t).value; }
   /// Longest step that cannot skip an oscillation; infinity if the segments are that.
   double max_step() const;
-  /// Largest absolute value, for error scales.
-  double peak() const;
 
  private:
   enum class Kind { constant, sine, square, chirp, held, linear };
