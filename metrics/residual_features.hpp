@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+
+namespace rigcal::metrics {
+
+/// Features of a residual by which the source paper classifies leaks (Table 4), in the unit of the
+/// residual.
+struct ResidualFeatures {
+  double mean = 0.0;  ///< mean |r|
+  double rms = 0.0;   ///< sqrt(mean r^2)
+  double std = 0.0;   ///< population standard deviation of |r|: sqrt(rms^2 - mean^2)
+};
+
+/// @param residual  shape (n), n >= 2: leaking minus healthy position, eq. 14
+/// @throws std::invalid_argument  n < 2, or a value is not finite
+/// @throws std::domain_error      a feature is beyond the largest double
+ResidualFeatures residual_features(std::span<const double> residual);
+
+}  // namespace rigcal::metrics

@@ -1,0 +1,91 @@
+#include "metrics/leak_share.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+using Catch::WithinRel;
+using rigcal::metrics::leak_share;
+using rigcal::metrics::mean_absolute;
+
+namespace {
+
+constexpr double kRounding = 1e-14;  // relative, a few units in the last place
+
+/// One period of 1 s, both ends included.
+std::vector<double> times(std::size_t intervals) {
+  std::vector<double> t;
+  for (std::size_t i = 0; i <= intervals; ++i) {
+    t.push_back(static_cast<double>(i) / static_cast<double>(intervals));
+  }
+  return t;
+}
+
+std::vector<double> sine(const std::vector<double>& t, double amplitude, double phase_rad) {
+  std::vector<double> y;
+  for (const double x : t)
+    y.push_back(amplitude * std::sin(2.0 * std::numbers::pi * x + phase_rad));
+  return y;
+}
+
+}  // namespace
+
+TEST_CASE("mean_absolute: straight lines are exact, whatever the spacing", "[metrics]") {
+  CHECK_THAT(mean_absolute(std::vector{0.0, 1.0, 4.0}, std::vector{2.0, 2.0, 6.0}),
+             WithinRel((2.0 + 3.0 * 4.0) / 4.0, kRounding));
+  // From -1 to 3 the line is below zero for a quarter of the time: (0.25 0.5 + 0.75 1.5).
+  CHECK_THAT(mean_absolute(std::vector{0.0, 2.0}, std::vector{-1.0, 3.0}),
+             WithinRel(1.25, kRounding));
+  CHECK(mean_absolute(std::vector{0.0, 1.0, 2.0}, std::vector{0.0, 0.0, 0.0}) == 0.0);
+  // A sign change at a sample, and through a sample of zero.
+  CHECK_THAT(mean_absolute(std::vector{0.0, 1.0, 2.0}, std::vector{-2.0, 0.0, 2.0}),
+             WithinRel(1.0, kRounding));
+}
+
+TEST_CASE("mean_absolute: of a sine is 2/pi, with a square-law error wherever the zero falls",
+          "[metrics]") {
+  for (const double phase_rad : {0.0, 0.1, 0.02}) {
+    const auto t = times(100);
+    const double mean = mean_absolute(t, sine(t, 2.0, phase_rad));
+    // (2 pi / 100)^2 / 12 = 3.3e-4 of the trapezoidal rule.
+    CHECK_THAT(mean, WithinRel(4.0 / std::numbers::pi, 4e-4));
+    CHECK(mean < 4.0 / std::numbers::pi);  // chords lie inside the arc
+  }
+}
+
+TEST_CASE("leak_share: ratio of the means of the absolute values", "[metrics]") {
+  const auto t = times(400);
+  const auto servo = sine(t, 3.0, 0.0);
+  // A leak in quadrature counts as much as one in phase.
+  CHECK_THAT(leak_share(t, servo, sine(t, 0.6, 0.0)), WithinRel(0.2, kRounding));
+  CHECK_THAT(leak_share(t, servo, sine(t, -0.6, std::numbers::pi / 2)), WithinRel(0.2, 1e-4));
+  CHECK(leak_share(t, servo, std::vector<double>(t.size(), 0.0)) == 0.0);
+}
+
+TEST_CASE("leak_share: the unit of the flows does not count", "[metrics]") {
+  const auto t = times(50);
+  const auto servo = sine(t, 1.0, 0.3);
+  const auto leak = sine(t, 0.1, 0.4);
+  auto small_servo = servo;
+  auto small_leak = leak;
+  for (double& q : small_servo) q *= 1e-200;
+  for (double& q : small_leak) q *= 1e-200;
+  CHECK_THAT(leak_share(t, small_servo, small_leak), WithinRel(leak_share(t, servo, leak), 1e-13));
+}
+
+TEST_CASE("leak_share: what cannot be is said", "[metrics]") {
+  const std::vector<double> t{0.0, 1.0, 2.0};
+  const std::vector<double> q{1.0, 2.0, 1.0};
+  CHECK_THROWS_WITH(leak_share(t, std::vector{0.0, 0.0, 0.0}, q),
+                    Catch::Contains("servo flow is zero"));
+  CHECK_THROWS_AS(leak_share(t, std::vector{0.0, 0.0, 0.0}, q), std::domain_error);
+  CHECK_THROWS_WITH(leak_share(t, q, std::vector{1.0, 2.0}),
+                    Catch::Contains("3 times but 2 samples of the leakage flow"));
+  CHECK_THROWS_WITH(leak_share(std::vector{0.0, 1.0, 1.0}, q, q),
+                    Catch::Contains("time[2] = 1 does not come after 1"));
+  CHECK_THROWS_WITH(leak_share(t, std::vector{1.0, std::nan(""), 1.0}, q),
+                    Catch::Contains("servo flow[1]"));
+  CHECK_THROWS_AS(mean_absolute(std::vector{0.0}, std::vector{1.0}), std::invalid_argument);
+}
