@@ -212,13 +212,14 @@ std::vector<Channel> output_channels(const Campaign& campaign, const Record& rec
 }
 
 std::vector<std::size_t> samples_that_count(const Condition& condition, const Record& record) {
+  const auto& windows = condition.moving_windows ? record.windows : condition.windows;
   std::vector<std::size_t> rows;
   for (std::size_t i = 0; i < record.time_s.size(); ++i) {
     const double t = record.time_s[i];
-    const bool counts =
-        condition.windows.empty() ||
-        std::any_of(condition.windows.begin(), condition.windows.end(),
-                    [t](const datasets::TimeWindow& w) { return t >= w.start_s && t <= w.end_s; });
+    const bool counts = windows.empty() || std::any_of(windows.begin(), windows.end(),
+                                                       [t](const datasets::TimeWindow& w) {
+                                                         return t >= w.start_s && t <= w.end_s;
+                                                       });
     if (counts) rows.push_back(i);
   }
   if (rows.empty()) {

@@ -70,7 +70,8 @@ struct Problem {
 std::vector<datasets::Channel> output_channels(const datasets::Campaign& campaign,
                                                const datasets::Record& record);
 
-/// Samples of a record that lie inside the condition's windows; all if it has none.
+/// Samples of a record that lie inside the condition's windows, or those found from the record; all
+/// if it has none.
 std::vector<std::size_t> samples_that_count(const datasets::Condition& condition,
                                             const datasets::Record& record);
 

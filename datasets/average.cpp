@@ -66,6 +66,19 @@ Span covered_span(const std::map<Channel, Stack>& stacks, std::size_t samples) {
   return longest;
 }
 
+/// Value of the first row that has sample i.
+double value_at(const Stack& stack, std::size_t i) {
+  const auto found = std::find_if(stack.rows.begin(), stack.rows.end(),
+                                  [i](const auto& row) { return !std::isnan(row[i]); });
+  return (*found)[i];
+}
+
+bool all_equal(const Stack& stack, std::size_t i) {
+  const double value = value_at(stack, i);
+  return std::all_of(stack.rows.begin(), stack.rows.end(),
+                     [&](const auto& row) { return std::isnan(row[i]) || row[i] == value; });
+}
+
 /// Mean, sd and count at each sample of a span.
 Series moments(const Stack& stack, Span span) {
   Series series;
@@ -81,7 +94,9 @@ Series moments(const Stack& stack, Span span) {
       sum += row[i];
       ++count;
     }
-    const double mean = sum / count;
+    // Of equal values the sum rounds, and a command that all repeats share would seem to have
+    // noise.
+    const double mean = all_equal(stack, i) ? value_at(stack, i) : sum / count;
     series.mean.push_back(mean);
     series.count.push_back(count);
     if (!several) continue;
@@ -106,7 +121,7 @@ void conclude_sd(Series& series, Channel channel, const AverageOptions& options,
     series.sd_of_mean = series.pooled_sd / std::sqrt(series.repeats);
     return;
   }
-  if (series.pooled_sd == 0.0)
+  if (series.pooled_sd == 0.0 && info(channel).is_output)
     warnings.push_back(fmt::format(
         "{}: the repeats are identical, so they tell nothing about the noise", info(channel).key));
   series.pooled_sd = known == options.known_sd.end() ? kNan : known->second;

@@ -71,11 +71,6 @@ struct RepeatPattern {
   std::map<Channel, std::string> columns;  ///< over the columns of the channels; {n} replaced
 };
 
-struct TimeWindow {
-  double start_s = 0.0;
-  double end_s = 0.0;
-};
-
 struct Condition {
   std::string id;
   Waveform waveform = Waveform::recorded;
@@ -91,6 +86,7 @@ struct Condition {
   std::optional<std::string> averaged;  ///< file that is averaged already
   int repeats_averaged = 1;
   std::vector<TimeWindow> windows;  ///< empty: the whole record counts
+  bool moving_windows = false;      ///< `windows = "moving"`: found from the record
   std::optional<double> duration_s;
   std::optional<double> sample_rate_hz;
   std::optional<double> temperature_k;
@@ -102,6 +98,7 @@ struct Condition {
 
 enum class InitialMode { rest, record, fit };
 enum class Alignment { correlate, none };
+enum class SpikeTreatment { report, exclude };
 
 /// Limit of one metric: FAIL beyond `limit`, WARN between it and `warn`.
 struct AcceptanceLimit {
@@ -159,6 +156,8 @@ struct Campaign {
   InitialMode initial = InitialMode::rest;
   double initial_window_s = 0.1;
   char separator = 0;
+  std::optional<double> decimate_to_hz;
+  SpikeTreatment spikes = SpikeTreatment::report;
   std::string time_column;
   UnitConversion time_to_s;
   std::map<Channel, ChannelSetting> channels;

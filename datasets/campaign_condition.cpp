@@ -232,10 +232,15 @@ void read_time(const TomlNode& node, Condition& condition) {
   }
   if (const auto window = node.find("window")) condition.windows = read_windows(*window);
   if (const auto windows = node.find("windows")) {
-    windows->choice<int>({{"moving", 0}});
-    windows->fail(
-        "\"moving\" is not supported yet: expected the parts that count as "
-        "window = [\"0.5 s\", \"12 s\"]");
+    condition.moving_windows = windows->choice<bool>({{"moving", true}});
+    if (!condition.windows.empty()) {
+      windows->fail("stands together with window: expected one of them");
+    }
+    if (!condition.has_record()) {
+      windows->fail(
+          "are found from the record, but the condition has none: expected repeats or "
+          "averaged, or window = [\"0.5 s\", \"12 s\"]");
+    }
   }
 }
 

@@ -7,7 +7,10 @@
 
 #include "common/parallel.hpp"
 #include "datasets/average.hpp"
+#include "datasets/campaign_sections.hpp"
 #include "datasets/load_csv.hpp"
+#include "datasets/load_mat.hpp"
+#include "datasets/moving_windows.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -19,6 +22,58 @@ AverageOptions options_of(const Campaign& campaign, const Condition& condition) 
   for (const auto& [channel, setting] : campaign.channels)
     if (setting.sd) options.known_sd[channel] = *setting.sd;
   return options;
+}
+
+[[noreturn]] void fail(const Condition& condition, const std::string& message) {
+  throw InputError(condition.where, fmt::format("condition \"{}\": {}", condition.id, message));
+}
+
+/// Columns of a CSV or MAT file, the time first.
+std::vector<std::vector<double>> read_columns(const Campaign& campaign,
+                                              const std::filesystem::path& path,
+                                              std::vector<std::string> names) {
+  if (is_mat_file(path)) return load_mat(path, {std::move(names), campaign.time_column});
+  CsvRequest request;
+  request.separator = campaign.separator;
+  request.time_column = campaign.time_column;
+  request.columns = std::move(names);
+  return load_csv(path, request).columns;
+}
+
+/// What drives the rig at each sample of the record.
+std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& condition,
+                                     const Record& record) {
+  const auto drive = inputs_of(campaign, condition, values_in(campaign, condition), &record).drive;
+  std::vector<double> result(record.time_s.size());
+  std::transform(record.time_s.begin(), record.time_s.end(), result.begin(),
+                 [&](double t) { return drive.value(t); });
+  return result;
+}
+
+/// Enters the windows of `windows = "moving"`.
+void find_moving_windows(const Campaign& campaign, const Condition& condition, Record& record) {
+  const auto position = record.channels.find(Channel::position);
+  if (position == record.channels.end())
+    fail(condition,
+         "windows = \"moving\" are found from the position, which its records do not carry: "
+         "expected a position channel, or window = [\"0.5 s\", \"12 s\"]");
+  const Series& x = position->second;
+  const auto motions =
+      find_motions(record.time_s, drive_at_samples(campaign, condition, record), x.mean, x.sd);
+  if (motions.empty())
+    fail(condition,
+         fmt::format("windows = \"moving\": no step of the {} moves the piston in its record; "
+                     "expected a command that steps and is held, or window = [\"0.5 s\", \"12 "
+                     "s\"]",
+                     info(drive_channel(campaign)).key));
+  for (const Motion& motion : motions) {
+    record.windows.push_back(motion.window);
+    record.notes.push_back(fmt::format(
+        "moving window {}: {:.6g} s to {:.6g} s, {:.5g} mm to {:.5g} mm, {}", record.windows.size(),
+        motion.window.start_s, motion.window.end_s, 1e3 * motion.from_m, 1e3 * motion.to_m,
+        motion.arrived ? fmt::format("ends {:.3g} mm before the stop", 1e3 * motion.margin_m)
+                       : "still moving at its end"));
+  }
 }
 
 }  // namespace
@@ -33,15 +88,12 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
                      fmt::format("no channel of '{}' is declared; expected at least one, such as "
                                  "recording.channels.position",
                                  source.label));
-  CsvRequest request;
-  request.separator = campaign.separator;
-  request.time_column = campaign.time_column;
-  request.columns.push_back(campaign.time_column);
-  for (const auto& [channel, column] : source.columns) request.columns.push_back(column);
-  const CsvTable table = load_csv(source.path, request);
+  std::vector<std::string> names{campaign.time_column};
+  for (const auto& [channel, column] : source.columns) names.push_back(column);
+  auto columns = read_columns(campaign, source.path, std::move(names));
 
   const auto converted = [&](std::size_t column, const UnitConversion& to_si) {
-    std::vector<double> values = table.columns[column];
+    std::vector<double> values = std::move(columns[column]);
     std::transform(values.begin(), values.end(), values.begin(), to_si);
     return values;
   };
@@ -62,17 +114,15 @@ Record load_record(const Campaign& campaign, const Condition& condition) {
     const std::string file = source.path.string();
     if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   }
-  if (repeats.empty())
-    throw InputError(condition.where, fmt::format("condition \"{}\" has no record: expected "
-                                                  "repeats or averaged",
-                                                  condition.id));
+  if (repeats.empty()) fail(condition, "has no record: expected repeats or averaged");
   try {
     Record record = average(condition.id, repeats, options_of(campaign, condition));
     record.files = std::move(files);
+    record.windows = condition.windows;
+    if (condition.moving_windows) find_moving_windows(campaign, condition, record);
     return record;
   } catch (const std::invalid_argument& error) {
-    throw InputError(condition.where,
-                     fmt::format("condition \"{}\": {}", condition.id, error.what()));
+    fail(condition, error.what());
   }
 }
 

@@ -66,6 +66,11 @@ struct RepeatReport {
   bool outlier = false;
 };
 
+struct TimeWindow {
+  double start_s = 0.0;
+  double end_s = 0.0;
+};
+
 /// The averaged record of one condition: what the model is compared with.
 struct Record {
   std::string condition;
@@ -73,7 +78,10 @@ struct Record {
   std::map<Channel, Series> channels;
   int repeats = 1;
   std::vector<RepeatReport> repeat_reports;
-  std::vector<std::string> warnings;  ///< in words: outliers, single repeats, gaps
+  /// What counts, in order: the campaign's windows, or those found; empty: all of it.
+  std::vector<TimeWindow> windows;
+  std::vector<std::string> notes;     ///< in words: what was done to it, such as decimation
+  std::vector<std::string> warnings;  ///< in words: outliers, single repeats, gaps, spikes
   std::vector<std::string> files;     ///< every file read for it
 };
 

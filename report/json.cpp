@@ -133,6 +133,15 @@ Json noise_floor_json(const std::optional<metrics::NoiseFloor>& floor) {
   return json;
 }
 
+/// [start, end] in seconds of each part that counts; empty: the whole record.
+Json windows_json(const datasets::Record& record) {
+  Json list = Json::array();
+  for (const datasets::TimeWindow& window : record.windows) {
+    list.push_back(Json::array({number(window.start_s), number(window.end_s)}));
+  }
+  return list;
+}
+
 Json condition_json(const Result& result, const calib::ConditionScore& score) {
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
   const datasets::Condition* condition = result.campaign.find(score.id);
@@ -151,6 +160,12 @@ Json condition_json(const Result& result, const calib::ConditionScore& score) {
   }
   if (condition != nullptr && condition->date) json["date"] = *condition->date;
   json["samples"] = score.samples;
+  const auto record = std::find_if(result.records.begin(), result.records.end(),
+                                   [&](const auto& r) { return r.condition == score.id; });
+  if (record != result.records.end()) {
+    json["windows_s"] = windows_json(*record);
+    json["notes"] = record->notes;
+  }
   json["failure"] = score.failure.empty() ? Json(nullptr) : Json(score.failure);
   json["metrics"] = Json::object();
   json["noise_floor"] = Json::object();
@@ -310,6 +325,8 @@ Json record_json(const datasets::Condition& condition, const datasets::Record& r
     entry["outlier"] = repeat.outlier;
     json["repeat_reports"].push_back(std::move(entry));
   }
+  json["windows_s"] = windows_json(record);
+  json["notes"] = record.notes;
   json["warnings"] = record.warnings;
   return json;
 }

@@ -222,7 +222,8 @@ std::string record_text(const datasets::Condition& condition, const datasets::Re
   for (const auto& [channel, series] : record.channels) {
     const datasets::ChannelInfo& about = info(channel);
     channels += fmt::format(
-        "{}{} (sd {})", channels.empty() ? "" : ", ", about.key,
+        "{}{} ({}sd {})", channels.empty() ? "" : ", ", about.key,
+        series.repeats == record.repeats ? "" : fmt::format("{} repeats, ", series.repeats),
         std::isfinite(series.pooled_sd) ? readable(series.pooled_sd, about.unit, 3) : "unknown");
   }
   std::string text =
@@ -230,6 +231,7 @@ std::string record_text(const datasets::Condition& condition, const datasets::Re
                   condition.id, to_string(condition.use), record.time_s.size(), rate_hz, duration_s,
                   record.repeats, record.repeats == 1 ? "" : "s", channels, record.files.size(),
                   record.files.size() == 1 ? "" : "s");
+  for (const std::string& note : record.notes) text += fmt::format("  note: {}\n", note);
   for (const std::string& warning : record.warnings) {
     text += fmt::format("  warning: {}\n", warning);
   }

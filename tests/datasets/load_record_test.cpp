@@ -1,5 +1,6 @@
 #include "datasets/load_record.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -153,4 +154,66 @@ TEST_CASE("load_records: the campaign's order, the uses asked for, any threads",
     CHECK(records[2].condition == "a");
   }
   CHECK(load_records(campaign, {Use::diagnose}, 2).empty());
+}
+
+TEST_CASE("load_record: repeats that carry different channels, each with its own count",
+          "[datasets]") {
+  const Files files("rigcal_load_record_channels");
+  files.write("a.csv", "t,x1,p1,x2,p2,x3\n0,1,10,3,20,5\n10,2,12,4,22,6\n20,3,14,5,24,7\n");
+  Condition condition = condition_of("a", "a.csv");
+  condition.repeats = {
+      {"a.csv", {"1", "2"}, {{Channel::position, "x{n}"}, {Channel::pressure_a, "p{n}"}}},
+      {"a.csv", {"3"}, {{Channel::position, "x{n}"}}}};
+  const Record record = load_record(campaign_in(files), condition);
+  CHECK(record.repeats == 3);
+  const Series& position = record.channels.at(Channel::position);
+  const Series& pressure = record.channels.at(Channel::pressure_a);
+  CHECK(position.repeats == 3);
+  CHECK(position.count == std::vector<int>{3, 3, 3});
+  CHECK_THAT(position.mean[0], WithinAbs(0.503, 1e-15));
+  CHECK(pressure.repeats == 2);
+  CHECK(pressure.count == std::vector<int>{2, 2, 2});
+  CHECK_THAT(pressure.mean[1], WithinAbs(17e5, 1e-6));
+  CHECK_THAT(pressure.sd_of_mean, WithinRel(pressure.pooled_sd / std::sqrt(2.0), 1e-12));
+  CHECK(record.files.size() == 1);
+}
+
+TEST_CASE("load_record: moving windows of a recorded command", "[datasets]") {
+  const Files files("rigcal_load_record_moving");
+  std::string text = "t,u,x,still\n";
+  for (int i = 0; i < 2000; ++i) {  // steps at 100 ms and 1000 ms, 0.2 mm per ms
+    const double x = i < 100    ? 0.0
+                     : i < 1000 ? std::min(100.0, 0.2 * (i - 100))
+                                : std::max(0.0, 100.0 - 0.2 * (i - 1000));
+    text += std::to_string(i) +
+            (i < 100    ? ",0,"
+             : i < 1000 ? ",2,"
+                        : ",-2,") +
+            std::to_string(x) + ",7\n";
+  }
+  files.write("a.csv", text);
+  Campaign campaign = campaign_in(files);
+  ChannelSetting command;
+  command.channel = Channel::command;
+  command.column = "u";
+  command.to_si = {1.0, 0.0};
+  command.role = ChannelRole::input;
+  campaign.channels[Channel::command] = command;
+  campaign.rig.controller = rigcal::model::ControllerKind::none;
+  Condition condition = condition_of("a", "a.csv");
+  condition.moving_windows = true;
+  const Record record = load_record(campaign, condition);
+  REQUIRE(record.windows.size() == 2);
+  CHECK_THAT(record.windows[0].start_s, WithinAbs(0.1, 1e-9));
+  CHECK_THAT(record.windows[0].end_s, WithinAbs(0.595, 2e-3));
+  CHECK_THAT(record.windows[1].start_s, WithinAbs(1.0, 1e-9));
+  CHECK_THAT(record.windows[1].end_s, WithinAbs(1.495, 2e-3));
+  REQUIRE(record.notes.size() == 2);
+  CHECK_THAT(record.notes[0], Contains("moving window 1: 0.1 s to 0.59"));
+
+  campaign.channels[Channel::position].column = "still";
+  CHECK_THROWS_WITH(load_record(campaign, condition),
+                    Contains("no step of the command moves the piston"));
+  campaign.channels.erase(Channel::position);
+  CHECK_THROWS_WITH(load_record(campaign, condition), Contains("are found from the position"));
 }

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace rigcal::datasets {
+
+/// Whether a file is to be read as a MAT file: by its name (.mat) or its first bytes.
+bool is_mat_file(const std::filesystem::path& path);
+
+/// Which columns of a MAT file are wanted.
+struct MatRequest {
+  std::vector<std::string> columns;  ///< as MATLAB names them (mat_path.hpp), order of the result
+  std::string time_column;           ///< among `columns`; checked to increase; may be empty
+};
+
+/// Reads vectors out of a MAT file of version 5 (also compressed: "v6", "v7") or 7.3, strictly.
+///
+/// A column is a vector variable, a vector field of a struct, or a row or column of a matrix:
+/// "x", "log.time", "log.signals(2).values", "data(:,3)". Arrays of one element are vectors too;
+/// dimensions of length 1 do not count. Every real number class is accepted. Everything else is an
+/// error: complex, sparse, text, cells, objects (a timeseries is one), NaN and infinity, integers
+/// that a double cannot hold, time that does not increase, vectors of different lengths, files
+/// that end early or whose compressed data are damaged. At most 12 million numbers are read.
+///
+/// Calls from several threads wait for each other: HDF5 is not made for threads.
+///
+/// @return             one vector per column, of the same length
+/// @throws InputError  file, column and element, what was found and what was expected
+/// @throws std::invalid_argument  time_column is not among the columns
+std::vector<std::vector<double>> load_mat(const std::filesystem::path& path,
+                                          const MatRequest& request);
+
+/// Every column that load_mat() could read: vectors, and columns of matrices of up to 100 columns,
+/// in the order of the file.
+///
+/// @throws InputError  as load_mat
+std::vector<std::string> mat_columns(const std::filesystem::path& path);
+
+}  // namespace rigcal::datasets
