@@ -19,8 +19,9 @@ constexpr double kLeastTravel_m = 1e-6;
 constexpr double kLeastSpeed_m_per_s = 1e-6;
 constexpr double kLeastPressure_pa = 1e3;
 
-/// Recorded load pressure, from both chamber pressures if need be; empty if neither is there.
-std::vector<double> load_pressure(const Record& record) {
+/// What a sensor of the load pressure reads, from those of both chambers if need be; empty if
+/// neither is there.
+std::vector<double> load_pressure(const Record& record, const model::ParameterValues& values) {
   if (const auto found = record.channels.find(Channel::load_pressure);
       found != record.channels.end()) {
     return found->second.mean;
@@ -28,10 +29,13 @@ std::vector<double> load_pressure(const Record& record) {
   const auto a = record.channels.find(Channel::pressure_a);
   const auto b = record.channels.find(Channel::pressure_b);
   if (a == record.channels.end() || b == record.channels.end()) return {};
-  std::vector<double> difference(a->second.mean.size());
+  const double offset_pa =
+      values["load_pressure_offset"] - (values["pressure_a_offset"] - values["pressure_b_offset"]);
+  std::vector<double> reading(a->second.mean.size());
   std::transform(a->second.mean.begin(), a->second.mean.end(), b->second.mean.begin(),
-                 difference.begin(), std::minus<>());
-  return difference;
+                 reading.begin(),
+                 [offset_pa](double p_a, double p_b) { return p_a - p_b + offset_pa; });
+  return reading;
 }
 
 double initial_mean(const Record& record, const std::vector<double>& signal, double window_s) {
@@ -69,7 +73,7 @@ struct Guess {
 }  // namespace
 
 InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condition,
-                               const Record& record) {
+                               const Record& record, const model::ParameterValues& values) {
   InitialPlan plan;
   if (campaign.initial == InitialMode::rest) return plan;
   plan.state = model::InitialState::given;
@@ -83,8 +87,8 @@ InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condit
   }
   const auto& x = position->second.mean;
   const double window_s = campaign.initial_window_s;
-  const double supply_pa = datasets::values_in(campaign, condition)["supply_pressure"];
-  const std::vector<double> P_L = load_pressure(record);
+  const double supply_pa = values["supply_pressure"];
+  const std::vector<double> P_L = load_pressure(record, values);
   const std::vector<Guess> guesses{
       {"initial_position", initial_mean(record, x, window_s),
        std::max(peak_to_peak(x), kLeastTravel_m)},

@@ -24,11 +24,13 @@ struct InitialPlan {
 ///   one
 ///           peak-to-peak about the mean of the window, the fastest change between two samples, the
 ///           supply pressure (or one peak-to-peak of the recorded load pressure).
-/// Values that the campaign gives or fits itself stay as they are.
+/// Values that the campaign gives or fits itself stay as they are. A load pressure that comes from
+/// both chamber pressures is told without the offsets of their sensors, as `values` has them.
 ///
+/// @param values  of the condition: known, fitted before, or the start of an estimate
 /// @throws InputError  record or fit without a recorded position
 InitialPlan plan_initial_state(const datasets::Campaign& campaign,
-                               const datasets::Condition& condition,
-                               const datasets::Record& record);
+                               const datasets::Condition& condition, const datasets::Record& record,
+                               const model::ParameterValues& values);
 
 }  // namespace rigcal::calib

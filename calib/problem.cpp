@@ -256,7 +256,7 @@ Problem make_problem(const Campaign& campaign, const std::vector<Record>& record
   for (const Condition* condition : conditions) {
     ProblemCondition& each =
         prepared.emplace_back(make_condition(campaign, records, *condition, fitted));
-    const InitialPlan plan = plan_initial_state(campaign, *condition, *each.record);
+    const InitialPlan plan = plan_initial_state(campaign, *condition, *each.record, each.values);
     each.rig.initial = plan.state;
     for (const auto& [index, value] : plan.known) each.values.set(index, value);
     initial_unknowns.insert(initial_unknowns.end(), plan.unknowns.begin(), plan.unknowns.end());

@@ -12,6 +12,10 @@ namespace {
 // Lags beyond the search that the interpolation of its outermost peak needs.
 constexpr int kMargin = 4;
 
+// Of the sample rate. A faster sinusoid has its peaks so close together, and so few samples on
+// each, that noise decides which is the nearest.
+constexpr double kFastest = 0.35;
+
 Eigen::VectorXd without_mean(const std::vector<double>& x) {
   const Eigen::Map<const Eigen::VectorXd> map(x.data(), static_cast<Eigen::Index>(x.size()));
   return map.array() - map.mean();
@@ -60,38 +64,54 @@ Correlation correlate(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int fi
   return result;
 }
 
-/// Height of the peak around a lag that is higher than its neighbours, exact for a sinusoid: a peak
-/// half way between two samples must not look lower than one that a sample hits.
-double peak_height(const Correlation& c, int lag) {
+/// Cosine of the phase that a sinusoid of this correlation passes per sample.
+double cosine_at(const Correlation& c, int lag) {
+  return (c.at(lag - 1) + c.at(lag + 1)) / (2.0 * c.at(lag));
+}
+
+/// A maximum between the samples.
+struct Peak {
+  double lag = 0.0;
+  double height = 0.0;
+};
+
+/// The peak around a lag that is higher than its neighbours, exact for a sinusoid: one half way
+/// between two samples must look neither lower nor nearer than one that a sample hits.
+Peak peak_at(const Correlation& c, int lag) {
   const double r = c.at(lag);
-  if (lag == c.first_lag || lag == c.last_lag()) return r;
+  const Peak sample{static_cast<double>(lag), r};
+  if (lag == c.first_lag || lag == c.last_lag()) return sample;
   const double before = c.at(lag - 1);
   const double after = c.at(lag + 1);
-  if (r <= 0.0 || r < before || r < after) return r;
-  const double cosine = (before + after) / (2.0 * r);
+  if (r <= 0.0 || r < before || r < after) return sample;
+  const double cosine = cosine_at(c, lag);
   const double sine_squared = 1.0 - cosine * cosine;
-  if (sine_squared < 1e-12) return r;
-  return std::min(1.0, std::sqrt(r * r + (after - before) * (after - before) / 4.0 / sine_squared));
+  if (sine_squared < 1e-12) return sample;
+  const double quadrature = (after - before) / (2.0 * std::sqrt(sine_squared));
+  return {lag + std::atan2(quadrature, r) / std::acos(cosine),
+          std::min(1.0, std::hypot(r, quadrature))};
 }
 
 /// The whole lag to trust: of the peaks that are as good as the highest, the one nearest to zero.
 /// Two maxima are different peaks only with a real valley between them, which the ripple that noise
 /// leaves on a flat top is not.
-int peak_lag(const Correlation& c) {
-  std::vector<double> height;
-  for (int lag = c.first_lag; lag <= c.last_lag(); ++lag) height.push_back(peak_height(c, lag));
-  const Correlation peaks{c.first_lag, std::move(height)};
-  const double highest = *std::max_element(peaks.r.begin(), peaks.r.end());
-  const double tolerance = 0.5 * (1.0 - highest) + 1e-4;
+int peak_lag(const Correlation& c, int samples) {
+  std::vector<Peak> peaks;
+  for (int lag = c.first_lag; lag <= c.last_lag(); ++lag) peaks.push_back(peak_at(c, lag));
+  const auto peak = [&](int lag) { return peaks[static_cast<std::size_t>(lag - c.first_lag)]; };
+  double highest = -1.0;
+  for (const Peak& each : peaks) highest = std::max(highest, each.height);
+  // The ends of the overlap, which hold parts of periods, change a height by 1 / samples or so.
+  const double tolerance = 0.5 * (1.0 - highest) + std::max(1e-4, 2.0 / samples);
   std::optional<int> nearest;
   std::optional<int> top;
   const auto close_peak = [&] {
-    if (top && (!nearest || std::abs(*top) < std::abs(*nearest))) nearest = top;
+    if (top && (!nearest || std::abs(peak(*top).lag) < std::abs(peak(*nearest).lag))) nearest = top;
     top.reset();
   };
   for (int lag = c.first_lag; lag <= c.last_lag(); ++lag) {
-    if (peaks.at(lag) < highest - 3.0 * tolerance) close_peak();
-    if (peaks.at(lag) < highest - tolerance) continue;
+    if (peak(lag).height < highest - 3.0 * tolerance) close_peak();
+    if (peak(lag).height < highest - tolerance) continue;
     if (!top || c.at(lag) > c.at(*top)) top = lag;
   }
   close_peak();
@@ -187,10 +207,11 @@ std::optional<Lag> find_lag(const std::vector<double>& a, const std::vector<doub
       y.norm() <= rounding * std::sqrt(shorter) * std::abs(b.front()))
     return std::nullopt;
   const Correlation coarse = correlate(x, y, -max_lag - kMargin, max_lag + kMargin);
-  const int peak = peak_lag(coarse);
-  const double r = peak_height(coarse, peak);
+  const int peak = peak_lag(coarse, shorter);
+  const double r = peak_at(coarse, peak).height;
   // Six standard deviations of what unrelated noise correlates by chance.
   if (std::abs(peak) >= max_lag || r < 6.0 / std::sqrt(shorter)) return std::nullopt;
+  if (cosine_at(coarse, peak) < std::cos(2.0 * std::numbers::pi * kFastest)) return std::nullopt;
 
   // Smoothing takes noise away and, where the record has edges, the signal with it.
   std::optional<Lag> best;

@@ -21,8 +21,10 @@ struct Lag {
 ///
 /// @param a, b     same sampling, any lengths; values finite
 /// @param max_lag  [samples], > 0; no more than a third of the shorter record is searched
-/// @return         empty: a record is constant, too short (64 samples), unlike the other, or the
-///                 maximum lies at the edge of the search
+/// @return         empty: a record is constant, too short (64 samples), unlike the other, a
+/// sinusoid
+///                 above 0.35 of the sample rate (its periods cannot be told apart), or the maximum
+///                 lies at the edge of the search
 std::optional<Lag> find_lag(const std::vector<double>& a, const std::vector<double>& b,
                             int max_lag);
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -140,10 +141,13 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
       outputs.size(), Eigen::MatrixXd::Zero(samples, static_cast<Eigen::Index>(free.size())));
   dispatch({layout, rig.initial, parameters, free, inputs, times_s, outputs, options, started},
            result);
-  if (result.ok() && !result.outputs.allFinite()) {
+  const bool finite = result.outputs.allFinite() &&
+                      std::all_of(result.sensitivities.begin(), result.sensitivities.end(),
+                                  [](const Eigen::MatrixXd& s) { return s.allFinite(); });
+  if (result.ok() && !finite) {
     result.status = SimulationStatus::not_finite;
     result.failed_at_s = times_s.back();
-    result.reason = "an output is not finite";
+    result.reason = "an output or a sensitivity is not finite";
   }
   if (!result.ok()) {
     result.outputs.resize(0, 0);

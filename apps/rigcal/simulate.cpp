@@ -70,7 +70,8 @@ Task prepare(const Campaign& campaign, const Condition& condition) {
                          condition.duration_s && condition.sample_rate_hz;
   if (!generated && condition.has_record()) {
     task.record = datasets::load_record(campaign, condition);
-    const calib::InitialPlan plan = calib::plan_initial_state(campaign, condition, *task.record);
+    const calib::InitialPlan plan =
+        calib::plan_initial_state(campaign, condition, *task.record, task.values);
     task.rig.initial = plan.state;
     for (const auto& [index, value] : plan.known) task.values.set(index, value);
   } else if (condition.waveform == datasets::Waveform::recorded) {

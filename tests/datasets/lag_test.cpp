@@ -105,6 +105,29 @@ TEST_CASE("lag: a period is never jumped", "[datasets]") {
   }
 }
 
+TEST_CASE("lag: of two peaks in one period the nearer counts", "[datasets]") {
+  for (const double frequency : {0.1, 0.25, 0.31, 0.34}) {
+    for (const double part : {-0.48, -0.3, 0.45, 0.48}) {
+      for (const double noise : {0.0, 0.02}) {
+        const double delay = part / frequency;
+        CAPTURE(frequency, delay, noise);
+        const auto a = sampled(sine(frequency), 2000, 0.0, noise, 7);
+        const auto b = sampled(sine(frequency), 2000, delay, noise, 8);
+        CHECK_THAT(lag_in_samples(a, b, 200).value(), WithinAbs(delay, 0.01));
+      }
+    }
+  }
+}
+
+TEST_CASE("lag: a sine too fast to tell its periods apart tells nothing", "[datasets]") {
+  for (const double frequency : {0.37, 0.42, 0.48}) {
+    CAPTURE(frequency);
+    const auto a = sampled(sine(frequency), 2000, 0.0, 0.02, 7);
+    const auto b = sampled(sine(frequency), 2000, 0.3, 0.02, 8);
+    CHECK_FALSE(lag_in_samples(a, b, 200).has_value());
+  }
+}
+
 TEST_CASE("lag: nothing is told by constant, unrelated or far shifted records", "[datasets]") {
   const std::vector<double> constant(500, 3.1);
   const auto noise = sampled([](double) { return 0.0; }, 500, 0.0, 1.0, 5);
