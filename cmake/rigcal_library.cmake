@@ -1,3 +1,8 @@
+# What computes is optimised under the sanitizers too, or the tests would crawl. Everything else
+# is not: it compiles in half the time so.
+set(rigcal_optimised $<$<BOOL:${RIGCAL_SANITIZE}>:-O1>)
+set(rigcal_computing common model metrics calib)
+
 # rigcal_library(name SOURCES ... LINKS ...): one layer as a static library, alias rigcal::name.
 function(rigcal_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS;PRIVATE_LINKS" ${ARGN})
@@ -5,6 +10,17 @@ function(rigcal_library name)
   add_library(rigcal::${name} ALIAS rigcal_${name})
   target_compile_features(rigcal_${name} PUBLIC cxx_std_20)
   target_include_directories(rigcal_${name} PUBLIC ${PROJECT_SOURCE_DIR})
+  if(name IN_LIST rigcal_computing)
+    target_compile_options(rigcal_${name} PRIVATE ${rigcal_optimised})
+  endif()
   target_link_libraries(rigcal_${name} PUBLIC ${ARG_LINKS}
     PRIVATE ${ARG_PRIVATE_LINKS} $<BUILD_INTERFACE:rigcal_warnings>)
+endfunction()
+
+# rigcal_precompile(target headers...): headers of packages that most of its sources include. Sources
+# include what they need all the same: scripts/lint reads each of them alone.
+function(rigcal_precompile target)
+  if(RIGCAL_PCH)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+  endif()
 endfunction()
