@@ -278,7 +278,7 @@ TEST_CASE("load_campaign: conditions", "[datasets]") {
        {"window[2]", "in order"}},
       {"window = [\"0.5 s\", \"12 s\"]", "window = [\"0.5 s\"]", "window", {"start and end"}},
       {"window = [\"0.5 s\", \"12 s\"]", "window = [0.5, 12]", "window", {"\"0.5 s\""}},
-      {"window = [\"0.5 s\", \"12 s\"]", "windows = \"all\"", "windows", {"\"moving\""}},
+      {"window = [\"0.5 s\", \"12 s\"]", "windows = \"all\"", "windows", {"known: moving"}},
       {"temperature = \"38 degC\"",
        "windows = \"moving\"",
        "windows",
