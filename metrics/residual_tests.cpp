@@ -1,0 +1,292 @@
+#include "metrics/residual_tests.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <stdexcept>
+#include <unsupported/Eigen/FFT>
+
+namespace rigcal::metrics {
+namespace {
+
+using Complex = std::complex<double>;
+
+constexpr double kLevel = 0.05;
+constexpr std::size_t kLeastSamples = 16;
+constexpr int kTestedLags = 25;
+
+double normal_quantile(double probability) {
+  return boost::math::quantile(boost::math::normal_distribution<double>(), probability);
+}
+
+double two_sided_p(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
+
+std::vector<double> centred(std::span<const double> values) {
+  double mean = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  std::vector<double> result(values.begin(), values.end());
+  for (double& value : result) value -= mean;
+  return result;
+}
+
+double mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// Transform of `values`, filled up with zeros to a power of two that keeps correlations apart.
+std::vector<Complex> padded_transform(std::vector<double> values) {
+  std::size_t length = 1;
+  while (length < 2 * values.size()) length *= 2;
+  values.resize(length, 0.0);
+  Eigen::FFT<double> fft;
+  std::vector<Complex> result;
+  fft.fwd(result, values);
+  return result;
+}
+
+/// sum_t a(t) b(t - lag) at [lag modulo the length], from the transforms of a and b.
+std::vector<double> lagged_products(const std::vector<Complex>& a, const std::vector<Complex>& b) {
+  std::vector<Complex> product(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) product[i] = a[i] * std::conj(b[i]);
+  Eigen::FFT<double> fft;
+  std::vector<double> result;
+  fft.inv(result, product);
+  return result;
+}
+
+/// Lags that a plot of the correlations shows: four times the first fall into the band.
+std::size_t shown_lags(const std::vector<double>& rho, double band) {
+  const std::size_t most = rho.size() / 2;
+  std::size_t fall = 1;
+  while (fall < most && rho[fall] > band) ++fall;
+  return std::min(most, std::max<std::size_t>(4 * fall, 50));
+}
+
+Autocorrelation test_autocorrelation(const std::vector<double>& e, const std::vector<double>& rho,
+                                     double interval_s) {
+  const auto n = static_cast<double>(e.size());
+  Autocorrelation result;
+  result.band = 1.96 / std::sqrt(n);
+  const std::size_t lags = shown_lags(rho, result.band);
+  result.values.assign(rho.begin(), rho.begin() + static_cast<std::ptrdiff_t>(lags) + 1);
+  result.tested_lags = std::min<int>(kTestedLags, static_cast<int>(e.size() / 5));
+  double sum = 0.0;
+  for (int k = 1; k <= result.tested_lags; ++k) {
+    const double r = rho[static_cast<std::size_t>(k)];
+    sum += r * r / (n - k);
+  }
+  result.ljung_box = n * (n + 2.0) * sum;
+  result.p_value = boost::math::cdf(boost::math::complement(
+      boost::math::chi_squared_distribution<double>(result.tested_lags), result.ljung_box));
+  double steps = 0.0;
+  for (std::size_t i = 1; i < e.size(); ++i) steps += (e[i] - e[i - 1]) * (e[i] - e[i - 1]);
+  result.durbin_watson = steps / (n * mean_square(e));
+  std::size_t fall = 1;
+  while (fall < e.size() && rho[fall] > result.band) ++fall;
+  result.correlation_time_s = fall == 1 ? 0.0 : static_cast<double>(fall) * interval_s;
+  result.passed = result.p_value >= kLevel;
+  return result;
+}
+
+/// n / (1 + 2 sum of rho) up to the first that is not positive (Geyer, Statistical Science 7,
+/// 1992, without his pairs).
+double effective_samples(const std::vector<double>& rho, double band) {
+  double sum = 0.0;
+  for (std::size_t k = 1; k < rho.size() && rho[k] > 0.0; ++k) {
+    // What white noise alone may show is no correlation.
+    if (k == 1 && rho[k] <= band) break;
+    sum += rho[k];
+  }
+  const auto n = static_cast<double>(rho.size());
+  return std::max(1.0, n / (1.0 + 2.0 * sum));
+}
+
+std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>& e,
+                                                       const std::vector<double>& u,
+                                                       std::size_t lags, double effective,
+                                                       double interval_s) {
+  const double scale =
+      static_cast<double>(e.size()) * std::sqrt(mean_square(e)) * std::sqrt(mean_square(u));
+  if (!(scale > 0.0) || !std::isfinite(scale)) return std::nullopt;
+  const std::vector<double> products = lagged_products(padded_transform(e), padded_transform(u));
+  CrossCorrelation result;
+  result.band = 1.96 / std::sqrt(effective);
+  result.values.resize(2 * lags + 1);
+  for (std::size_t i = 0; i < result.values.size(); ++i) {
+    const std::size_t at = i >= lags ? i - lags : products.size() + i - lags;
+    result.values[i] = products[at] / scale;
+    if (std::abs(result.values[i]) > std::abs(result.peak)) {
+      result.peak = result.values[i];
+      result.peak_lag_s = (static_cast<double>(i) - static_cast<double>(lags)) * interval_s;
+    }
+  }
+  const double tests = std::min(static_cast<double>(result.values.size()), effective);
+  result.band_of_peak = normal_quantile(1.0 - 0.5 * kLevel / tests) / std::sqrt(effective);
+  result.passed = std::abs(result.peak) <= result.band_of_peak;
+  return result;
+}
+
+/// Power of each line, from the first above zero to half the sampling rate.
+std::vector<double> line_powers(const std::vector<double>& e) {
+  std::vector<double> values = e;
+  // Few lengths are powers of two: the transform of Eigen takes any length of small primes, and a
+  // few samples less do not change a spectrum.
+  const auto smooth = [](std::size_t n) {
+    for (const std::size_t prime : {2U, 3U, 5U}) {
+      while (n % prime == 0) n /= prime;
+    }
+    return n == 1;
+  };
+  while (!smooth(values.size())) values.pop_back();
+  Eigen::FFT<double> fft;
+  std::vector<Complex> spectrum;
+  fft.fwd(spectrum, values);
+  std::vector<double> power(values.size() / 2);
+  for (std::size_t k = 1; k <= power.size(); ++k) power[k - 1] = std::norm(spectrum[k]);
+  return power;
+}
+
+Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
+  const std::vector<double> power = line_powers(e);
+  const double lines = static_cast<double>(power.size());
+  const double line_hz = 0.5 / (interval_s * lines);
+  double total = 0.0;
+  for (const double p : power) total += p;
+  Periodogram result;
+  double sum = 0.0;
+  for (std::size_t k = 0; k < power.size(); ++k) {
+    sum += power[k];
+    const double share = sum / total;
+    const auto rank = static_cast<double>(k + 1);
+    result.distance = std::max(result.distance, std::abs(share - rank / lines));
+    if (share >= 0.5 && result.median_frequency_hz == 0.0)
+      result.median_frequency_hz = rank * line_hz;
+  }
+  // Bartlett, An Introduction to Stochastic Processes, 1955: Kolmogorov and Smirnov's distance.
+  result.limit = 1.358 / std::sqrt(std::max(1.0, lines - 1.0));
+  result.passed = result.distance <= result.limit;
+  const auto peak = static_cast<std::size_t>(
+      std::distance(power.begin(), std::max_element(power.begin(), power.end())));
+  result.peak_frequency_hz = static_cast<double>(peak + 1) * line_hz;
+  for (std::size_t k = peak > 0 ? peak - 1 : 0; k <= std::min(peak + 1, power.size() - 1); ++k)
+    result.peak_share += power[k] / total;
+  // By Parseval the mean line stands for the mean square spread over half the sampling rate.
+  const double density = mean_square(e) * lines / total / (0.5 / interval_s);
+  constexpr double kBinsPerDecade = 30.0;
+  for (std::size_t k = 0; k < power.size();) {
+    const double upper = static_cast<double>(k + 1) * std::pow(10.0, 1.0 / kBinsPerDecade);
+    double mean = 0.0;
+    std::size_t last = k;
+    while (last < power.size() && (last == k || static_cast<double>(last + 1) < upper))
+      mean += power[last++];
+    const auto count = static_cast<double>(last - k);
+    result.frequency_hz.push_back(static_cast<double>(k + 1 + last) * 0.5 * line_hz);
+    result.density.push_back(mean / count * density);
+    k = last;
+  }
+  return result;
+}
+
+Normality test_normality(const std::vector<double>& e, double effective) {
+  const double sd = std::sqrt(mean_square(e));
+  const auto n = static_cast<double>(e.size());
+  Normality result;
+  for (const double value : e) {
+    const double z = value / sd;
+    result.skewness += z * z * z / n;
+    result.excess_kurtosis += z * z * z * z / n;
+  }
+  result.excess_kurtosis -= 3.0;
+  result.jarque_bera =
+      effective / 6.0 *
+      (result.skewness * result.skewness + 0.25 * result.excess_kurtosis * result.excess_kurtosis);
+  result.p_value = std::exp(-0.5 * result.jarque_bera);
+  result.passed = result.p_value >= kLevel;
+  std::vector<double> sorted = e;
+  std::sort(sorted.begin(), sorted.end());
+  // Equal steps of the normal quantile show the tails as well as the middle.
+  const double last = -normal_quantile(0.5 / n);
+  constexpr int kPoints = 61;
+  for (int i = 0; i < kPoints; ++i) {
+    const double q = last * (2.0 * i / (kPoints - 1) - 1.0);
+    const double rank = 0.5 * std::erfc(-q / std::sqrt(2.0)) * n - 0.5;
+    const auto at = static_cast<std::size_t>(std::clamp(std::round(rank), 0.0, n - 1.0));
+    result.normal_quantile.push_back(q);
+    result.residual_quantile.push_back(sorted[at] / sd);
+  }
+  return result;
+}
+
+Drift test_drift(std::span<const double> residual, const std::vector<double>& e, double effective,
+                 double interval_s) {
+  const auto n = static_cast<double>(e.size());
+  const double sd = std::sqrt(mean_square(e));
+  Drift result;
+  result.mean = residual[0] - e[0];
+  double slope = 0.0;
+  for (std::size_t i = 0; i < e.size(); ++i)
+    slope += e[i] * (static_cast<double>(i) - 0.5 * (n - 1.0));
+  const double variance_of_time = (n * n - 1.0) / 12.0;
+  slope /= n * variance_of_time;
+  result.slope_per_s = slope / interval_s;
+  const double error_of_mean = sd / std::sqrt(effective);
+  result.mean_p_value = two_sided_p(result.mean / error_of_mean);
+  result.slope_p_value = two_sided_p(slope * std::sqrt(variance_of_time) / error_of_mean);
+  // Two tests, so each at half the level.
+  result.passed = result.mean_p_value >= 0.5 * kLevel && result.slope_p_value >= 0.5 * kLevel;
+  return result;
+}
+
+}  // namespace
+
+ResidualTests residual_tests(std::span<const double> residual, std::span<const double> input,
+                             double sample_interval_s) {
+  if (residual.size() < kLeastSamples)
+    throw std::invalid_argument("residual_tests: fewer than 16 samples");
+  if (!input.empty() && input.size() != residual.size())
+    throw std::invalid_argument("residual_tests: input and residual differ in size");
+  if (!(sample_interval_s > 0.0) || !std::isfinite(sample_interval_s))
+    throw std::invalid_argument("residual_tests: the sample interval must be positive");
+  const auto finite = [](std::span<const double> values) {
+    return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+  };
+  if (!finite(residual) || !finite(input))
+    throw std::invalid_argument("residual_tests: a value is not finite");
+
+  const std::vector<double> e = centred(residual);
+  double largest = 0.0;
+  for (const double value : residual) largest = std::max(largest, std::abs(value));
+  const double variance = mean_square(e);
+  // Below this the spread is rounding of the mean.
+  const double least = 8.0 * std::numeric_limits<double>::epsilon() * largest;
+  if (!(variance > least * least)) throw std::domain_error("the residual is constant");
+
+  ResidualTests result;
+  result.samples = static_cast<long>(e.size());
+  result.std = std::sqrt(variance);
+  result.sample_interval_s = sample_interval_s;
+  const std::vector<Complex> transform = padded_transform(e);
+  std::vector<double> rho = lagged_products(transform, transform);
+  rho.resize(e.size());
+  for (double& value : rho) value /= static_cast<double>(e.size()) * variance;
+
+  result.autocorrelation = test_autocorrelation(e, rho, sample_interval_s);
+  result.effective_samples = effective_samples(rho, result.autocorrelation.band);
+  if (!input.empty()) {
+    result.cross_correlation =
+        test_cross_correlation(e, centred(input), result.autocorrelation.values.size() - 1,
+                               result.effective_samples, sample_interval_s);
+  }
+  result.periodogram = test_periodogram(e, sample_interval_s);
+  result.normality = test_normality(e, result.effective_samples);
+  result.drift = test_drift(residual, e, result.effective_samples, sample_interval_s);
+  return result;
+}
+
+}  // namespace rigcal::metrics

@@ -1,0 +1,141 @@
+#include "metrics/residual_tests.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+namespace {
+
+using rigcal::metrics::residual_tests;
+using rigcal::metrics::ResidualTests;
+
+std::vector<double> white(std::size_t n, unsigned seed) {
+  std::mt19937_64 engine(seed);
+  std::normal_distribution<double> normal;
+  std::vector<double> values(n);
+  for (double& value : values) value = normal(engine);
+  return values;
+}
+
+std::vector<double> first_order(std::vector<double> values, double phi) {
+  for (std::size_t i = 1; i < values.size(); ++i)
+    values[i] = phi * values[i - 1] + std::sqrt(1.0 - phi * phi) * values[i];
+  return values;
+}
+
+std::vector<double> sine(std::size_t n, double frequency_hz, double interval_s) {
+  std::vector<double> values(n);
+  for (std::size_t i = 0; i < n; ++i)
+    values[i] =
+        std::sin(2.0 * std::numbers::pi * frequency_hz * interval_s * static_cast<double>(i));
+  return values;
+}
+
+}  // namespace
+
+TEST_CASE("residual_tests: each is passed by white noise about as often as its level says",
+          "[metrics]") {
+  const std::vector<double> input = sine(1000, 2.0, 0.01);
+  int colour = 0, cross = 0, spectrum = 0, shape = 0, drift = 0;
+  constexpr int kDraws = 200;
+  for (unsigned seed = 0; seed < kDraws; ++seed) {
+    const ResidualTests tests = residual_tests(white(1000, seed + 1), input, 0.01);
+    colour += tests.autocorrelation.passed ? 0 : 1;
+    cross += tests.cross_correlation->passed ? 0 : 1;
+    spectrum += tests.periodogram.passed ? 0 : 1;
+    shape += tests.normality.passed ? 0 : 1;
+    drift += tests.drift.passed ? 0 : 1;
+  }
+  // 5 % of 200 is 10 with a standard deviation of 3.1; Bonferroni keeps the cross test below.
+  CHECK(colour <= 22);
+  CHECK(colour >= 2);
+  CHECK(cross <= 22);
+  CHECK(spectrum <= 22);
+  CHECK(shape <= 22);
+  CHECK(drift <= 22);
+  CHECK(drift >= 1);
+}
+
+TEST_CASE("residual_tests: a first-order process has its known autocorrelation", "[metrics]") {
+  const double phi = 0.95;
+  const ResidualTests tests = residual_tests(first_order(white(20000, 7), phi), {}, 0.001);
+  CHECK_FALSE(tests.autocorrelation.passed);
+  CHECK_FALSE(tests.periodogram.passed);
+  CHECK_FALSE(tests.cross_correlation.has_value());
+  for (const std::size_t lag : {1U, 5U, 20U}) {
+    // Bartlett's standard deviation at these lags is below 0.045.
+    CHECK_THAT(tests.autocorrelation.values[lag],
+               Catch::WithinAbs(std::pow(phi, static_cast<double>(lag)), 0.12));
+  }
+  CHECK_THAT(tests.autocorrelation.durbin_watson, Catch::WithinAbs(2.0 * (1.0 - phi), 0.01));
+  // n (1 - phi) / (1 + phi)
+  CHECK_THAT(tests.effective_samples, Catch::WithinRel(20000.0 * 0.05 / 1.95, 0.35));
+}
+
+TEST_CASE("residual_tests: what follows the input late is found at its lag", "[metrics]") {
+  const std::vector<double> input = first_order(white(4000, 3), 0.5);
+  std::vector<double> residual = white(4000, 4);
+  for (std::size_t i = 7; i < residual.size(); ++i) residual[i] += 0.5 * input[i - 7];
+  const ResidualTests tests = residual_tests(residual, input, 0.01);
+  REQUIRE(tests.cross_correlation.has_value());
+  CHECK_FALSE(tests.cross_correlation->passed);
+  CHECK_THAT(tests.cross_correlation->peak_lag_s, Catch::WithinAbs(0.07, 1e-12));
+  CHECK_THAT(tests.cross_correlation->peak, Catch::WithinAbs(0.5 / std::sqrt(1.25), 0.05));
+}
+
+TEST_CASE("residual_tests: the periodogram finds a line and keeps the power", "[metrics]") {
+  std::vector<double> residual = white(5000, 5);
+  const std::vector<double> line = sine(5000, 10.0, 0.001);
+  for (std::size_t i = 0; i < line.size(); ++i) residual[i] += 2.0 * line[i];
+  const ResidualTests tests = residual_tests(residual, {}, 0.001);
+  CHECK_FALSE(tests.periodogram.passed);
+  CHECK_THAT(tests.periodogram.peak_frequency_hz, Catch::WithinAbs(10.0, 0.21));
+  // 2 of 3 units of variance
+  CHECK_THAT(tests.periodogram.peak_share, Catch::WithinAbs(2.0 / 3.0, 0.05));
+  // White noise of variance 1 at 1 kHz: one-sided density 2 / 1000
+  const ResidualTests noise = residual_tests(white(5000, 6), {}, 0.001);
+  CHECK_THAT(noise.periodogram.density.back(), Catch::WithinRel(0.002, 0.2));
+}
+
+TEST_CASE("residual_tests: heavy tails and trends are named", "[metrics]") {
+  std::vector<double> cubed = white(2000, 8);
+  for (double& value : cubed) value = value * value * value;
+  const ResidualTests heavy = residual_tests(cubed, {}, 0.01);
+  CHECK_FALSE(heavy.normality.passed);
+  CHECK(heavy.normality.excess_kurtosis > 5.0);
+  CHECK(heavy.normality.residual_quantile.back() > heavy.normality.normal_quantile.back());
+
+  std::vector<double> trend = white(2000, 9);
+  for (std::size_t i = 0; i < trend.size(); ++i) trend[i] += 0.02 * 0.01 * static_cast<double>(i);
+  const ResidualTests drift = residual_tests(trend, {}, 0.01);
+  CHECK_FALSE(drift.drift.passed);
+  // Standard error of the slope: 1 / (sqrt(2000) * 5.77 s) = 0.004 per s
+  CHECK_THAT(drift.drift.slope_per_s, Catch::WithinAbs(0.02, 0.016));
+}
+
+TEST_CASE("residual_tests: does not depend on the unit", "[metrics]") {
+  std::vector<double> residual = first_order(white(999, 10), 0.6);
+  const std::vector<double> input = sine(999, 1.0, 0.01);
+  const ResidualTests one = residual_tests(residual, input, 0.01);
+  for (double& value : residual) value *= 1e-6;
+  const ResidualTests other = residual_tests(residual, input, 0.01);
+  CHECK_THAT(other.autocorrelation.ljung_box,
+             Catch::WithinRel(one.autocorrelation.ljung_box, 1e-9));
+  CHECK_THAT(other.cross_correlation->peak, Catch::WithinRel(one.cross_correlation->peak, 1e-9));
+  CHECK_THAT(other.periodogram.distance, Catch::WithinRel(one.periodogram.distance, 1e-9));
+  CHECK_THAT(other.normality.jarque_bera, Catch::WithinRel(one.normality.jarque_bera, 1e-9));
+}
+
+TEST_CASE("residual_tests: refuses what has no tests", "[metrics]") {
+  const std::vector<double> few(15, 1.0);
+  const std::vector<double> constant(100, 0.1);
+  std::vector<double> broken = white(100, 1);
+  CHECK_THROWS_AS(residual_tests(few, {}, 0.01), std::invalid_argument);
+  CHECK_THROWS_AS(residual_tests(constant, {}, 0.01), std::domain_error);
+  CHECK_THROWS_AS(residual_tests(broken, few, 0.01), std::invalid_argument);
+  CHECK_THROWS_AS(residual_tests(broken, {}, 0.0), std::invalid_argument);
+  broken[3] = std::numeric_limits<double>::quiet_NaN();
+  CHECK_THROWS_AS(residual_tests(broken, {}, 0.01), std::invalid_argument);
+}
