@@ -106,7 +106,7 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
 }  // namespace
 
 void read_recording(const TomlNode& node, Campaign& campaign) {
-  node.allow_only({"initial", "initial_window", "separator", "channels"});
+  node.allow_only({"initial", "initial_window", "separator", "decimate_to", "spikes", "channels"});
   if (const auto initial = node.find("initial")) {
     campaign.initial = initial->choice<InitialMode>(
         {{"rest", InitialMode::rest}, {"record", InitialMode::record}, {"fit", InitialMode::fit}});
@@ -122,6 +122,13 @@ void read_recording(const TomlNode& node, Campaign& campaign) {
   }
   if (const auto separator = node.find("separator")) {
     campaign.separator = separator->choice<char>({{",", ','}, {";", ';'}, {"\t", '\t'}});
+  }
+  if (const auto rate = node.find("decimate_to")) {
+    campaign.decimate_to_hz = rate->positive_quantity("Hz");
+  }
+  if (const auto spikes = node.find("spikes")) {
+    campaign.spikes = spikes->choice<SpikeTreatment>(
+        {{"report", SpikeTreatment::report}, {"exclude", SpikeTreatment::exclude}});
   }
   if (const auto channels = node.find("channels")) read_channels(*channels, campaign);
 }

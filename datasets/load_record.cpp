@@ -8,6 +8,7 @@
 #include "common/parallel.hpp"
 #include "datasets/average.hpp"
 #include "datasets/campaign_sections.hpp"
+#include "datasets/condition_repeats.hpp"
 #include "datasets/load_csv.hpp"
 #include "datasets/load_mat.hpp"
 #include "datasets/moving_windows.hpp"
@@ -116,8 +117,13 @@ Record load_record(const Campaign& campaign, const Condition& condition) {
   }
   if (repeats.empty()) fail(condition, "has no record: expected repeats or averaged");
   try {
-    Record record = average(condition.id, repeats, options_of(campaign, condition));
+    const Conditioning done = condition_repeats(campaign, repeats);
+    AverageOptions options = options_of(campaign, condition);
+    for (auto& [channel, sd] : options.known_sd) sd *= done.noise_gain;
+    Record record = average(condition.id, repeats, options);
     record.files = std::move(files);
+    record.notes = done.notes;
+    record.warnings.insert(record.warnings.end(), done.warnings.begin(), done.warnings.end());
     record.windows = condition.windows;
     if (condition.moving_windows) find_moving_windows(campaign, condition, record);
     return record;

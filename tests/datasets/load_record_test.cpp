@@ -217,3 +217,34 @@ TEST_CASE("load_record: moving windows of a recorded command", "[datasets]") {
   campaign.channels.erase(Channel::position);
   CHECK_THROWS_WITH(load_record(campaign, condition), Contains("are found from the position"));
 }
+
+TEST_CASE("load_record: the moving windows of a real step test", "[datasets]") {
+  const fs::path folder = fs::path(RIGCAL_RECORDINGS_DIR) / "festo_tp511_servo_cylinder";
+  if (!fs::exists(folder / "steps_4V_1kHz.csv")) {
+    WARN("skipped: no recordings in " << folder.string());
+    return;
+  }
+  Campaign campaign = campaign_in(Files("rigcal_load_record_festo"));
+  campaign.data_dir = folder;
+  campaign.time_column = "t_s";
+  campaign.time_to_s = {1.0, 0.0};
+  campaign.channels[Channel::position].column = "";
+  campaign.channels[Channel::position].to_si = {1e-3, 0.0};
+  ChannelSetting command;
+  command.channel = Channel::command;
+  command.column = "u_V";
+  command.role = ChannelRole::input;
+  campaign.channels[Channel::command] = command;
+  campaign.rig.controller = rigcal::model::ControllerKind::none;
+  Condition condition = condition_of("steps_4V", "");
+  condition.moving_windows = true;
+  condition.repeats = {
+      {"steps_4V_1kHz.csv", {"01", "02", "03"}, {{Channel::position, "x_mm_A{n}"}}}};
+  const Record record = load_record(campaign, condition);
+  REQUIRE(record.windows.size() == 2);
+  // The description of the data: steps after 0.1 s and 5.1 s; 200 mm at 205 and 146 mm/s.
+  CHECK_THAT(record.windows[0].start_s, WithinAbs(0.10045, 1e-9));
+  CHECK_THAT(record.windows[0].end_s, WithinAbs(1.05, 0.03));
+  CHECK_THAT(record.windows[1].start_s, WithinAbs(5.10045, 1e-9));
+  CHECK_THAT(record.windows[1].end_s, WithinAbs(6.45, 0.05));
+}

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace rigcal::datasets {
+
+/// A run of one or two samples that stands out of its neighbours on both sides.
+struct Spike {
+  std::size_t sample = 0;  ///< first of the run, from 0
+  std::size_t length = 1;
+  double height = 0.0;  ///< of the farthest sample, over the line between its neighbours; signed
+};
+
+/// Spikes of a signal: runs of up to two samples that lie off the line between the samples around
+/// them, on the same side, by more than ten standard deviations of what single samples do so in
+/// this signal (from the median, so that spikes do not count), more than four times the median of
+/// the differences of neighbours (those that are not zero: the step of a coarse converter), and
+/// more than three times as far as these neighbours differ. An edge is none: there the neighbours
+/// differ.
+///
+/// White noise of 10^6 samples has none; noise with long tails may have some.
+///
+/// @param x  shape (n), evenly sampled, finite
+/// @return   in order; empty for fewer than 16 samples
+std::vector<Spike> find_spikes(const std::vector<double>& x);
+
+/// `x` with each spike replaced by the line between the samples around it.
+std::vector<double> without_spikes(std::vector<double> x, const std::vector<Spike>& spikes);
+
+}  // namespace rigcal::datasets
