@@ -299,4 +299,12 @@ std::vector<std::string> csv_header(const std::filesystem::path& path, char sepa
   return short_names(read_header(lines, path.string(), separator));
 }
 
+std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator) {
+  CsvLines lines(path, CsvRequest{}.max_bytes);
+  std::vector<std::string> names;
+  for (const CsvName& name : read_header(lines, path.string(), separator).names)
+    names.push_back(name.full);
+  return names;
+}
+
 }  // namespace rigcal::datasets

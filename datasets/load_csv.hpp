@@ -35,10 +35,15 @@ struct CsvTable {
 /// @throws std::invalid_argument  time_column is not among the columns
 CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request);
 
-/// Header names of a CSV file, for `init` and for messages: without units, except where only the
+/// Header names of a CSV file, for messages: without units, except where only the
 /// unit tells two columns apart.
 ///
 /// @throws InputError  as load_csv
 std::vector<std::string> csv_header(const std::filesystem::path& path, char separator = 0);
+
+/// Header names as they stand in the file, with their units.
+///
+/// @throws InputError  as load_csv
+std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator = 0);
 
 }  // namespace rigcal::datasets

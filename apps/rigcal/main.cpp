@@ -35,6 +35,7 @@ constexpr std::array kVerbs{
     VerbRow{"validate", "Score the conditions with the parameters of a fit",
             rigcal::app::add_validate},
     VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},
+    VerbRow{"init", "Draft a campaign file from recordings", rigcal::app::add_init},
     VerbRow{"params", "List every parameter", rigcal::app::add_params},
 };
 

@@ -24,6 +24,7 @@ Run add_simulate(CLI::App& verb);
 Run add_fit(CLI::App& verb);
 Run add_validate(CLI::App& verb);
 Run add_synthesize(CLI::App& verb);
+Run add_init(CLI::App& verb);
 Run add_params(CLI::App& verb);
 
 }  // namespace rigcal::app

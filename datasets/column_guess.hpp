@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "datasets/record.hpp"
+
+namespace rigcal::datasets {
+
+/// What a column seems to hold, by its name alone.
+struct ColumnGuess {
+  bool is_time = false;
+  std::optional<Channel> channel;
+  std::string unit;  ///< as the name tells it: "mm" of "x_mm", "x [mm]"; empty if it does not
+};
+
+/// "t_s", "ref_mm", "x [mm]", "pA_bar_03", "log.time", "u_V": a known word, with a unit behind it
+/// in brackets or between underscores.
+ColumnGuess guess_column(const std::string& name);
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,365 @@
+#include "datasets/draft_campaign.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "common/error.hpp"
+#include "common/quantity.hpp"
+#include "datasets/column_guess.hpp"
+#include "datasets/load_csv.hpp"
+#include "datasets/load_mat.hpp"
+#include "datasets/toml_reader.hpp"
+#include "datasets/waveform_guess.hpp"
+#include "model/parameter.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "run_03" -> "run_" and "03".
+struct Numbered {
+  std::string stem;
+  std::string number;
+};
+
+Numbered split_number(const std::string& text) {
+  std::size_t at = text.size();
+  while (at > 0 && text[at - 1] >= '0' && text[at - 1] <= '9') --at;
+  return {text.substr(0, at), text.substr(at)};
+}
+
+std::vector<std::string> column_names(const fs::path& file) {
+  return is_mat_file(file) ? mat_columns(file) : csv_full_header(file);
+}
+
+std::vector<std::vector<double>> read(const fs::path& file, const std::string& time,
+                                      const std::string& column) {
+  if (is_mat_file(file)) return load_mat(file, {{time, column}, time});
+  CsvRequest request;
+  request.columns = {time, column};
+  request.time_column = time;
+  return load_csv(file, request).columns;
+}
+
+// ---- Columns -------------------------------------------------------------------------------
+
+/// A channel of a file: one column, or numbered ones that are repeats.
+struct ChannelColumns {
+  Channel channel = Channel::position;
+  std::string stem;                  ///< the name, without its number if there are several
+  std::vector<std::string> numbers;  ///< empty: a single column
+  std::string unit;
+};
+
+struct FileColumns {
+  std::string time;
+  std::string time_unit;
+  std::vector<ChannelColumns> channels;
+  std::vector<std::string> unknown;
+};
+
+FileColumns columns_of(const fs::path& file) {
+  const auto names = column_names(file);
+  std::map<std::string, std::vector<std::string>> numbers;  // by stem
+  for (const std::string& name : names) {
+    const Numbered numbered = split_number(name);
+    if (!numbered.number.empty()) numbers[numbered.stem].push_back(numbered.number);
+  }
+  FileColumns found;
+  for (const std::string& name : names) {
+    const Numbered numbered = split_number(name);
+    const bool several = !numbered.number.empty() && numbers[numbered.stem].size() > 1;
+    // "p1", "p2" are two pressures, not two repeats.
+    const bool own_word = guess_column(name).channel && !guess_column(numbered.stem).channel;
+    const bool repeated = several && !own_word;
+    const std::string shown = repeated ? numbered.stem : name;
+    const ColumnGuess guess = guess_column(shown);
+    if (guess.is_time && found.time.empty()) {
+      found.time = name;
+      found.time_unit = guess.unit;
+    } else if (guess.channel) {
+      const bool known = std::any_of(found.channels.begin(), found.channels.end(),
+                                     [&](const ChannelColumns& c) { return c.stem == shown; });
+      if (!known)
+        found.channels.push_back({*guess.channel, shown,
+                                  repeated ? numbers[numbered.stem] : std::vector<std::string>{},
+                                  guess.unit});
+    } else {
+      found.unknown.push_back(name);
+    }
+  }
+  if (found.time.empty())
+    throw InputError({file.string()},
+                     fmt::format("no column looks like a time (t, time, ...); the columns are {}",
+                                 fmt::join(names, ", ")));
+  if (found.channels.empty())
+    throw InputError({file.string()},
+                     fmt::format("no column looks like a channel (reference, command, position, "
+                                 "pressure_a, ...); the columns are {}",
+                                 fmt::join(names, ", ")));
+  return found;
+}
+
+/// Columns that a single repeat carries: a new set begins where a channel comes again.
+std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns) {
+  std::vector<std::vector<ChannelColumns>> sets;
+  for (const ChannelColumns& column : columns.channels) {
+    if (column.numbers.empty()) continue;
+    const bool again =
+        !sets.empty() &&
+        (sets.back().front().numbers != column.numbers ||
+         std::any_of(sets.back().begin(), sets.back().end(),
+                     [&](const ChannelColumns& c) { return c.channel == column.channel; }));
+    if (sets.empty() || again) sets.emplace_back();
+    sets.back().push_back(column);
+  }
+  return sets;
+}
+
+// ---- Text ----------------------------------------------------------------------------------
+
+std::string comment(const std::string& text) { return "  # " + text; }
+
+/// One line of [recording.channels]; a column of another dimension than the channel needs a gain.
+std::string channel_line(Channel channel, const std::string& column, const std::string& unit) {
+  const ChannelInfo& about = info(channel);
+  std::string shown_unit = unit.empty() ? kBlank : unit;
+  std::string remark;
+  if (unit.empty()) {
+    remark = comment(fmt::format("the unit of the column, such as \"{}\"", about.unit));
+  } else {
+    try {
+      unit_conversion(unit, about.unit);
+    } catch (const QuantityError&) {
+      shown_unit = kBlank;
+      remark = comment(fmt::format(
+          "the column is in {0}: a unit such as \"{1}\", with gain = ... in that unit per {0}",
+          unit, about.unit));
+    }
+  }
+  const std::string name = column.empty() ? "" : fmt::format("column = {}, ", toml_quoted(column));
+  return fmt::format("{} = {{ {}unit = {} }}{}\n", about.key, name, toml_quoted(shown_unit),
+                     remark);
+}
+
+std::string channels_text(const FileColumns& columns) {
+  std::string text = "[recording.channels]\n";
+  text += fmt::format("time = {{ column = {}, unit = {} }}{}\n", toml_quoted(columns.time),
+                      toml_quoted(columns.time_unit.empty() ? "s" : columns.time_unit),
+                      columns.time_unit.empty() ? comment("assumed: its name tells no unit") : "");
+  std::vector<Channel> done;
+  for (const ChannelColumns& column : columns.channels) {
+    const bool again = std::find(done.begin(), done.end(), column.channel) != done.end();
+    if (!again) {
+      done.push_back(column.channel);
+      text += channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit);
+    } else if (column.numbers.empty()) {
+      text += fmt::format("# '{}' also looks like {}\n", column.stem, info(column.channel).key);
+    }
+  }
+  if (!columns.unknown.empty())
+    text += fmt::format("# not used: {}\n", fmt::join(columns.unknown, ", "));
+  return text;
+}
+
+std::string rig_text(bool closed_loop) {
+  std::string text =
+      "[rig]\n"
+      "model = \"load_pressure\"  # a symmetric cylinder on one servo-valve\n"
+      "# What a data sheet does not tell is fitted: { start = ..., lower = ..., upper = ..., fit = "
+      "true }\n"
+      "[rig.parameters]\n";
+  for (const model::ParameterSpec& spec : model::parameter_table(model::PlantKind::load_pressure)) {
+    if (spec.kind != model::ParameterKind::plant || spec.default_value) continue;
+    const std::string blank = spec.unit == "1"
+                                  ? toml_quoted(kBlank)
+                                  : toml_quoted(fmt::format("{} {}", kBlank, spec.unit));
+    text += fmt::format("{} = {}{}\n", spec.key, blank,
+                        comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
+                                            spec.unit == "1" ? " (a plain number)" : "")));
+  }
+  return text + (closed_loop
+                     ? "[rig.controller]\ntype = \"pid\"\n" +
+                           fmt::format("kp = \"{} V/m\"{}\n", kBlank,
+                                       comment("proportional gain; ki, kd if there are any"))
+                     : "[rig.controller]\ntype = \"none\"  # the recorded command drives the "
+                       "valve\n");
+}
+
+std::string relative_text(const fs::path& file, const fs::path& folder) {
+  const fs::path absolute = fs::weakly_canonical(fs::absolute(file));
+  const fs::path relative = absolute.lexically_relative(fs::weakly_canonical(fs::absolute(folder)));
+  return toml_quoted((relative.empty() ? absolute : relative).generic_string());
+}
+
+std::string numbers_text(const std::vector<std::string>& numbers) {
+  bool consecutive = true;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const bool same_width = numbers[i].size() == numbers[0].size();
+    consecutive = consecutive && same_width && numbers[0].size() < 9 &&
+                  std::stol(numbers[i]) == std::stol(numbers[0]) + static_cast<long>(i);
+  }
+  if (consecutive) return toml_quoted(numbers.front() + ".." + numbers.back());
+  std::vector<std::string> quoted;
+  for (const std::string& number : numbers) quoted.push_back(toml_quoted(number));
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+std::string repeats_text(const std::vector<fs::path>& files, const FileColumns& columns,
+                         const fs::path& folder) {
+  std::vector<std::string> entries;
+  for (const fs::path& file : files) {
+    const auto sets = column_sets(columns);
+    if (sets.empty()) entries.push_back(relative_text(file, folder));
+    for (const auto& set : sets) {
+      std::vector<std::string> named;
+      for (const ChannelColumns& column : set)
+        named.push_back(
+            fmt::format("{} = {}", info(column.channel).key, toml_quoted(column.stem + "{n}")));
+      entries.push_back(fmt::format("{{ file = {}, n = {}, columns = {{ {} }} }}",
+                                    relative_text(file, folder), numbers_text(set.front().numbers),
+                                    fmt::join(named, ", ")));
+    }
+  }
+  return fmt::format("repeats = [ {} ]\n", fmt::join(entries, ",\n            "));
+}
+
+// ---- Conditions ----------------------------------------------------------------------------
+
+std::string id_of(const std::string& stem) {
+  std::string id;
+  for (const char c : stem) {
+    const bool allowed = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                         (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
+    id += allowed ? c : '_';
+  }
+  while (!id.empty() && (id.back() == '_' || id.back() == '-' || id.back() == '.')) id.pop_back();
+  return id.empty() ? "record" : id;
+}
+
+const ChannelColumns* find(const FileColumns& columns, Channel channel) {
+  const auto found = std::find_if(columns.channels.begin(), columns.channels.end(),
+                                  [&](const ChannelColumns& c) { return c.channel == channel; });
+  return found == columns.channels.end() ? nullptr : &*found;
+}
+
+/// What drives the rig, as far as it is recorded.
+const ChannelColumns* drive_of(const FileColumns& columns) {
+  const ChannelColumns* reference = find(columns, Channel::reference);
+  return reference != nullptr ? reference : find(columns, Channel::command);
+}
+
+std::string waveform_text(const fs::path& file, const FileColumns& columns) {
+  const ChannelColumns* drive = drive_of(columns);
+  if (drive == nullptr)
+    return fmt::format(
+        "waveform = \"{}\"{}\n", kBlank,
+        comment("sine or square, with frequency and amplitude: neither reference nor "
+                "command was recorded"));
+  const std::string column =
+      drive->numbers.empty() ? drive->stem : drive->stem + drive->numbers.front();
+  const auto data = read(file, columns.time, column);
+  double to_s = 1.0;
+  try {
+    to_s = unit_conversion(columns.time_unit.empty() ? "s" : columns.time_unit, "s").scale;
+  } catch (const QuantityError&) {
+    return fmt::format("waveform = \"recorded\"{}\n", comment("its time has no unit of time"));
+  }
+  std::vector<double> time_s = data[0];
+  for (double& t : time_s) t *= to_s;
+  const double rate_hz =
+      time_s.size() < 2 ? 0.0
+                        : static_cast<double>(time_s.size() - 1) / (time_s.back() - time_s.front());
+  const WaveformGuess guess = guess_waveform(time_s, data[1]);
+  const bool periodic = guess.waveform == Waveform::sine || guess.waveform == Waveform::square;
+  std::string text =
+      fmt::format("# {}: {}; {} samples at {:.6g} Hz, {:.6g} s\n", info(drive->channel).key,
+                  guess.description, time_s.size(), rate_hz, time_s.back() - time_s.front());
+  text += fmt::format(
+      "waveform = \"{}\"{}\n",
+      to_string(periodic && guess.can_be_generated ? guess.waveform : Waveform::recorded),
+      periodic && !guess.can_be_generated ? comment("not generated: it has an offset or a phase")
+                                          : "");
+  if (!guess.frequency_hz || !guess.amplitude) return text;
+  text += fmt::format("frequency = \"{:.4g} Hz\"\n", *guess.frequency_hz);
+  const std::string_view wanted = drive->channel == Channel::reference ? "m" : "V";
+  std::string unit = drive->unit.empty() ? kBlank : drive->unit;
+  try {
+    if (!drive->unit.empty()) unit_conversion(drive->unit, wanted);
+  } catch (const QuantityError&) {
+    unit = kBlank;
+  }
+  const bool known = unit != kBlank;
+  return text +
+         fmt::format("amplitude = \"{:.4g} {}\"{}\n", *guess.amplitude, unit,
+                     known ? "" : comment("half of peak to peak, after the gain, with unit"));
+}
+
+/// Files of one condition: their names differ in the last number only.
+struct FileGroup {
+  std::string id;
+  std::vector<fs::path> files;
+};
+
+std::vector<FileGroup> groups_of(const std::vector<fs::path>& files) {
+  std::vector<std::pair<std::pair<fs::path, std::string>, FileGroup>> groups;
+  for (const fs::path& file : files) {
+    const std::string stem = split_number(file.stem().string()).stem;
+    const std::pair key{file.parent_path(), stem + file.extension().string()};
+    auto found = std::find_if(groups.begin(), groups.end(),
+                              [&](const auto& group) { return group.first == key; });
+    if (found == groups.end()) found = groups.insert(groups.end(), {key, {id_of(stem), {}}});
+    found->second.files.push_back(file);
+  }
+  std::vector<FileGroup> result;
+  std::vector<std::string> ids;
+  for (auto& [key, group] : groups) {
+    if (group.files.size() == 1) group.id = id_of(group.files[0].stem().string());
+    const auto same = std::count(ids.begin(), ids.end(), group.id);
+    ids.push_back(group.id);
+    if (same > 0) group.id += fmt::format("-{}", same + 1);
+    result.push_back(group);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string draft_campaign(const std::vector<fs::path>& files, const fs::path& folder) {
+  const auto groups = groups_of(files);
+  const FileColumns columns = columns_of(files.at(0));
+  const bool closed_loop = find(columns, Channel::reference) != nullptr;
+  std::string text = fmt::format(
+      "# Draft by rigcal init. Replace every \"{}\", delete what does not apply, then run\n"
+      "# rigcal check on this file. docs/campaign-file.md explains every key.\n"
+      "schema = \"rigcal.campaign/1\"\nname = \"New rig\"\n\n",
+      kBlank);
+  text += rig_text(closed_loop);
+  text +=
+      "\n[recording]\n"
+      "initial = \"record\"  # start as the record does; \"rest\": from zero; \"fit\": estimate "
+      "it\n"
+      "# decimate_to = \"1 kHz\"  # if the records are denser than the model needs\n";
+  text += channels_text(columns);
+  text +=
+      "\n[averaging]\n"
+      "align = \"correlate\"  # or \"none\" if all repeats share one trigger\n"
+      "\n# [acceptance]  # what PASS means\n# rho2 = 0.99\n# absolute_error_percent = 1.0\n";
+  for (const FileGroup& group : groups) {
+    const FileColumns own = columns_of(group.files.front());
+    text += fmt::format("\n[[condition]]\nid = {}\n", toml_quoted(group.id));
+    text += waveform_text(group.files.front(), own);
+    text += "use = \"fit\"  # or \"validate\": keep some back that the fit does not see\n";
+    text += "# leak_level = \"none\"  # names the state of the rig, if there are several\n";
+    text += repeats_text(group.files, own, folder);
+  }
+  return text;
+}
+
+}  // namespace rigcal::datasets

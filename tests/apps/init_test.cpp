@@ -1,0 +1,62 @@
+#include <catch2/catch.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/apps/cli_fixture.hpp"
+
+using namespace rigcal::test;
+using Catch::Contains;
+
+namespace {
+
+/// Values for the blanks of a draft of the load-pressure plant.
+const Edits kValues{
+    {"\"FILL IN kg\"", "\"60 kg\""},        {"\"FILL IN N s/m\"", "\"2000 N s/m\""},
+    {"\"FILL IN N/m\"", "\"0 N/m\""},       {"\"FILL IN m2\"", "\"633 mm2\""},
+    {"\"FILL IN m3\"", "\"468 cm3\""},      {"\"FILL IN Pa\"", "\"6.2 MPa\""},
+    {"\"FILL IN kg/m3\"", "\"850 kg/m3\""}, {"\"FILL IN Pa\"", "\"689 MPa\""},
+    {"\"FILL IN\"  # C_d", "0.6  # C_d"},   {"\"FILL IN m\"", "\"20 mm\""},
+    {"\"FILL IN m/V\"", "\"2e-5 m/V\""},    {"\"FILL IN\"  # C_leak", "0.3  # C_leak"},
+    {"\"FILL IN m2\"", "\"1 mm2\""},        {"\"FILL IN V/m\"", "\"1000 V/m\""}};
+
+}  // namespace
+
+TEST_CASE("init: a draft that check accepts once its blanks are filled", "[apps]") {
+  const CommandFolder folder;
+  write_campaign(folder);
+  const Outcome made = folder.run({"init", "records/sine_1.csv", "records/sine_2.csv",
+                                   "records/square_1.csv", "records/square_2.csv", "--out", "new"});
+  REQUIRE(made.exit_code == 0);
+  CHECK_THAT(made.out, Contains("new/campaign.toml") && Contains("blanks marked \"FILL IN\""));
+  const std::string draft = folder.read("new/campaign.toml");
+  CHECK_THAT(draft, Contains("frequency = \"2 Hz\"") && Contains("amplitude = \"5 mm\"") &&
+                        Contains("id = \"square\"") && Contains("\"../records/sine_2.csv\""));
+
+  const Outcome empty = folder.run({"check", "new/campaign.toml"});
+  CHECK(empty.exit_code == 2);
+  CHECK_THAT(empty.err, Contains("FILL IN"));
+
+  folder.write("new/campaign.toml", edited(draft, kValues));
+  const Outcome checked = folder.run({"check", "new/campaign.toml"});
+  CHECK(checked.err.empty());
+  CHECK(checked.exit_code == 0);
+  CHECK_THAT(checked.out, Contains("sine: fit, 400 samples at 200 Hz") && Contains("2 repeats"));
+}
+
+TEST_CASE("init: what it refuses", "[apps]") {
+  const CommandFolder folder;
+  write_campaign(folder);
+  CHECK(folder.run({"init"}).exit_code == 2);
+  const Outcome missing = folder.run({"init", "records/none.csv"});
+  CHECK(missing.exit_code == 2);
+  CHECK_THAT(missing.err, Contains("records/none.csv: cannot be opened"));
+  folder.write("odd.csv", "a,b\n1,2\n");
+  CHECK_THAT(folder.run({"init", "odd.csv"}).err, Contains("odd.csv: no column looks like a time"));
+  CHECK_FALSE(folder.has("rigcal-out/campaign.toml"));
+
+  REQUIRE(folder.run({"init", "records/sine_1.csv", "--out", "new", "--quiet"}).exit_code == 0);
+  const Outcome again = folder.run({"init", "records/sine_1.csv", "--out", "new"});
+  CHECK(again.exit_code == 2);
+  CHECK_THAT(again.err, Contains("is there already"));
+}

@@ -1,0 +1,48 @@
+#include "datasets/column_guess.hpp"
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+using namespace rigcal::datasets;
+
+TEST_CASE("guess_column: channels and units by name", "[datasets]") {
+  struct Case {
+    std::string name;
+    std::optional<Channel> channel;
+    std::string unit;
+  };
+  const std::vector<Case> cases{{"ref_mm", Channel::reference, "mm"},
+                                {"x [mm]", Channel::position, "mm"},
+                                {"Position (cm)", Channel::position, "cm"},
+                                {"x_mm_A", Channel::position, "mm"},
+                                {"pA_bar_", Channel::pressure_a, "bar"},
+                                {"p_b_bar", Channel::pressure_b, "bar"},
+                                {"P1_psi", Channel::pressure_a, "psi"},
+                                {"pl_bar", Channel::load_pressure, "bar"},
+                                {"supply_pressure", Channel::supply_pressure, ""},
+                                {"u_V", Channel::command, "V"},
+                                {"cmd_mm", Channel::reference, "mm"},
+                                {"log.position", Channel::position, ""},
+                                {"F_kN", Channel::force, "kN"},
+                                {"temp_C", Channel::temperature, "degC"},
+                                {"block", std::nullopt, ""},
+                                {"data(:,2)", std::nullopt, ""},
+                                {"", std::nullopt, ""}};
+  for (const Case& each : cases) {
+    CAPTURE(each.name);
+    const ColumnGuess guess = guess_column(each.name);
+    CHECK_FALSE(guess.is_time);
+    CHECK(guess.channel == each.channel);
+    CHECK(guess.unit == each.unit);
+  }
+}
+
+TEST_CASE("guess_column: the time", "[datasets]") {
+  for (const char* name : {"t", "t_s", "Time [s]", "log.time", "tout"}) {
+    CAPTURE(name);
+    CHECK(guess_column(name).is_time);
+    CHECK_FALSE(guess_column(name).channel);
+  }
+  CHECK(guess_column("t_ms").unit == "ms");
+}

@@ -1,0 +1,132 @@
+#include "datasets/draft_campaign.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "common/error.hpp"
+#include "datasets/load_record.hpp"
+#include "model/parameter.hpp"
+#include "tests/datasets/campaign_fixture.hpp"
+#include "tests/datasets/mat_fixture.hpp"
+
+using namespace rigcal;
+using namespace rigcal::datasets;
+using namespace rigcal::test;
+using Catch::Contains;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A loop that follows a sine of 2 Hz and 5 mm.
+std::string sine_csv(double phase) {
+  std::string text = "t_s,ref_mm,x_mm,note\n";
+  for (int i = 0; i < 400; ++i) {
+    const double t = 0.005 * i;
+    const double angle = 12.566370614359172 * t;
+    text += fmt::format("{},{},{},0\n", t, 5.0 * std::sin(angle),
+                        4.8 * std::sin(angle - phase) + 0.01 * std::sin(31.0 * i));
+  }
+  return text;
+}
+
+/// What a user would do: a value for every blank.
+std::string filled(std::string text) {
+  const auto fill = [&](const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from))
+      text.replace(at, from.size(), to);
+  };
+  for (const model::ParameterSpec& spec : model::parameter_table(model::PlantKind::load_pressure)) {
+    if (spec.kind != model::ParameterKind::plant || spec.default_value) continue;
+    const double value = spec.lower > 0.0 ? std::sqrt(spec.lower * spec.upper) : spec.lower;
+    const std::string unit = spec.unit == "1" ? "" : " " + std::string(spec.unit);
+    fill(fmt::format("{} = \"FILL IN{}\"", spec.key, unit),
+         spec.unit == "1" ? fmt::format("{} = {:.1f}", spec.key, value)
+                          : fmt::format("{} = \"{:e}{}\"", spec.key, value, unit));
+  }
+  fill("kp = \"FILL IN V/m\"", "kp = \"100 V/m\"");
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("draft_campaign: repeats, waveform and columns; loads once it is filled", "[datasets]") {
+  const TemporaryFolder folder;
+  for (const std::string n : {"1", "2", "3"})
+    folder.write("records/sine_" + n + ".csv", sine_csv(0.1));
+  const fs::path records = folder.path() / "records";
+  const std::string draft =
+      draft_campaign({records / "sine_1.csv", records / "sine_2.csv", records / "sine_3.csv"},
+                     folder.path() / "draft");
+  CHECK_THAT(draft, Contains("time = { column = \"t_s\", unit = \"s\" }"));
+  CHECK_THAT(draft, Contains("reference = { column = \"ref_mm\", unit = \"mm\" }"));
+  CHECK_THAT(draft, Contains("position = { column = \"x_mm\", unit = \"mm\" }"));
+  CHECK_THAT(draft, Contains("# not used: note"));
+  CHECK_THAT(draft, Contains("id = \"sine\"") && Contains("waveform = \"sine\""));
+  CHECK_THAT(draft, Contains("frequency = \"2 Hz\"") && Contains("amplitude = \"5 mm\""));
+  CHECK_THAT(draft, Contains("400 samples at 200 Hz"));
+  CHECK_THAT(draft, Contains("\"../records/sine_1.csv\"") && Contains("type = \"pid\""));
+
+  const fs::path file = folder.write("draft/campaign.toml", draft);
+  CHECK_THROWS_WITH(load_campaign(file), Contains("FILL IN"));
+  const Campaign campaign = load_campaign(folder.write("draft/campaign.toml", filled(draft)));
+  const Record record = load_record(campaign, campaign.conditions.at(0));
+  CHECK(record.repeats == 3);
+  CHECK(record.channels.contains(Channel::position));
+}
+
+TEST_CASE("draft_campaign: one column per repeat, two sets, no loop", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text =
+      "t_s,u_V,x_mm_A01,pA_bar_01,x_mm_A02,pA_bar_02,x_mm_B01,pB_bar_01,x_mm_B02,"
+      "pB_bar_02\n";
+  for (int i = 0; i < 300; ++i) {
+    const double x = std::clamp(0.5 * (i - 50), 0.0, 60.0);
+    text += fmt::format("{},{},{},1{},{},1{},{},2{},{},2{}\n", 0.01 * i, i < 50 ? 0 : 2, x, i, x, i,
+                        x, i, x, i);
+  }
+  const fs::path file = folder.write("steps_2V.csv", text);
+  const std::string draft = draft_campaign({file}, folder.path());
+  CHECK_THAT(draft, Contains("position = { unit = \"mm\" }"));
+  CHECK_THAT(draft, Contains("command = { column = \"u_V\", unit = \"V\" }"));
+  CHECK_THAT(draft, Contains("{ file = \"steps_2V.csv\", n = \"01..02\", columns = { position = "
+                             "\"x_mm_A{n}\", pressure_a = \"pA_bar_{n}\" } }"));
+  CHECK_THAT(draft, Contains("position = \"x_mm_B{n}\", pressure_b = \"pB_bar_{n}\""));
+  CHECK_THAT(draft, Contains("waveform = \"recorded\"") && Contains("type = \"none\""));
+  const Campaign campaign = load_campaign(folder.write("campaign.toml", filled(draft)));
+  const Record record = load_record(campaign, campaign.conditions.at(0));
+  CHECK(record.repeats == 4);
+  CHECK(record.channels.at(Channel::pressure_b).repeats == 2);
+}
+
+TEST_CASE("draft_campaign: a MAT file, and a column in volts", "[datasets]") {
+  const TemporaryFolder folder;
+  std::vector<double> t;
+  std::vector<double> u;
+  for (int i = 0; i < 200; ++i) {
+    t.push_back(0.01 * i);
+    u.push_back(3.0 * std::sin(0.2 * i) + 1.0);
+  }
+  write_mat(folder.path() / "run.mat", MatFormat::v7,
+            {mat_struct(
+                "log", {{mat_array("time", t), mat_array("u_V", u), mat_array("position_V", u)}})});
+  const std::string draft = draft_campaign({folder.path() / "run.mat"}, folder.path());
+  CHECK_THAT(draft, Contains("time = { column = \"log.time\""));
+  CHECK_THAT(draft, Contains("command = { column = \"log.u_V\", unit = \"V\" }"));
+  CHECK_THAT(draft, Contains("position = { column = \"log.position_V\", unit = \"FILL IN\" }") &&
+                        Contains("the column is in V"));
+  CHECK_THAT(draft, Contains("not generated: it has an offset or a phase"));
+}
+
+TEST_CASE("draft_campaign: files that tell nothing", "[datasets]") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_WITH(draft_campaign({folder.write("a.csv", "block,x_mm\n1,2\n")}, folder.path()),
+                    Contains("a.csv: no column looks like a time") && Contains("block, x_mm"));
+  CHECK_THROWS_WITH(draft_campaign({folder.write("b.csv", "t,q\n1,2\n")}, folder.path()),
+                    Contains("b.csv: no column looks like a channel"));
+  CHECK_THROWS_AS(draft_campaign({folder.path() / "none.csv"}, folder.path()), InputError);
+}
