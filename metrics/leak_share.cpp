@@ -17,8 +17,22 @@ Extended mean_along_line(Extended a, Extended b) {
   return 0.5L * (square(a) + square(b)) / ends;
 }
 
-Extended checked_mean(std::span<const double> time_s, std::span<const double> signal,
-                      std::string_view function, std::string_view name) {
+/// Its derivative where a and b change by da and db.
+Extended slope_along_line(Extended a, Extended b, Extended da, Extended db) {
+  const Extended sign_a = a < 0.0L ? -1.0L : 1.0L;
+  const Extended sign_b = b < 0.0L ? -1.0L : 1.0L;
+  const Extended d_ends = sign_a * da + sign_b * db;
+  if (a * b >= 0.0L) {
+    // From zero on |y| grows with the sign of the other end.
+    const Extended sign = a + b < 0.0L ? -1.0L : 1.0L;
+    return 0.5L * sign * (da + db);
+  }
+  const Extended ends = std::abs(a) + std::abs(b);
+  return (a * da + b * db) / ends - 0.5L * (square(a) + square(b)) / square(ends) * d_ends;
+}
+
+void check(std::span<const double> time_s, std::span<const double> signal,
+           std::string_view function, std::string_view name) {
   if (time_s.size() != signal.size()) {
     throw std::invalid_argument(fmt::format("{}: {} times but {} samples of the {} signal",
                                             function, time_s.size(), signal.size(), name));
@@ -31,6 +45,11 @@ Extended checked_mean(std::span<const double> time_s, std::span<const double> si
                                               i, time_s[i], time_s[i - 1]));
     }
   }
+}
+
+Extended checked_mean(std::span<const double> time_s, std::span<const double> signal,
+                      std::string_view function, std::string_view name) {
+  check(time_s, signal, function, name);
   const std::size_t lines = signal.size() - 1;
   const auto line = [&](std::size_t i) {
     return (wide(time_s[i + 1]) - wide(time_s[i])) *
@@ -44,6 +63,21 @@ Extended checked_mean(std::span<const double> time_s, std::span<const double> si
 
 double mean_absolute(std::span<const double> time_s, std::span<const double> signal) {
   return to_double(checked_mean(time_s, signal, "mean_absolute", "given"), "mean_absolute");
+}
+
+double mean_absolute_slope(std::span<const double> time_s, std::span<const double> signal,
+                           std::span<const double> slope) {
+  constexpr std::string_view kFunction = "mean_absolute_slope";
+  check(time_s, signal, kFunction, "given");
+  check(time_s, slope, kFunction, "slope");
+  const std::size_t lines = signal.size() - 1;
+  const auto line = [&](std::size_t i) {
+    return (wide(time_s[i + 1]) - wide(time_s[i])) *
+           slope_along_line(wide(signal[i]), wide(signal[i + 1]), wide(slope[i]),
+                            wide(slope[i + 1]));
+  };
+  const Extended duration = wide(time_s.back()) - wide(time_s.front());
+  return to_double(mean_of(lines, line) * static_cast<Extended>(lines) / duration, kFunction);
 }
 
 double leak_share(std::span<const double> time_s, std::span<const double> servo_flow,

@@ -13,6 +13,14 @@ namespace rigcal::metrics {
 /// @throws std::domain_error      the mean is beyond the largest double
 double mean_absolute(std::span<const double> time_s, std::span<const double> signal);
 
+/// Derivative of mean_absolute() where the signal changes along `slope`: exact for the lines, sign
+/// changes included.
+///
+/// @param slope  shape (n): d signal / d (some parameter)
+/// @throws       as mean_absolute()
+double mean_absolute_slope(std::span<const double> time_s, std::span<const double> signal,
+                           std::span<const double> slope);
+
 /// Share of the servo flow that leaks: mean |Q_leak| / mean |Q_servo|, which is how the source
 /// paper's percentages come out (it says "of the work flow"). Over whole periods of a periodic run;
 /// which part of a run that is, is the caller's to choose.

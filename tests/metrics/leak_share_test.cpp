@@ -9,6 +9,7 @@
 using Catch::WithinRel;
 using rigcal::metrics::leak_share;
 using rigcal::metrics::mean_absolute;
+using rigcal::metrics::mean_absolute_slope;
 
 namespace {
 
@@ -53,6 +54,25 @@ TEST_CASE("mean_absolute: of a sine is 2/pi, with a square-law error wherever th
     CHECK_THAT(mean, WithinRel(4.0 / std::numbers::pi, 4e-4));
     CHECK(mean < 4.0 / std::numbers::pi);  // chords lie inside the arc
   }
+}
+
+TEST_CASE("mean_absolute_slope: against central differences, through sign changes", "[metrics]") {
+  const auto t = times(40);
+  const auto y = sine(t, 2.0, 0.1);
+  const auto direction = sine(t, 1.0, 1.2);
+  const double h = 1e-6;
+  auto ahead = y;
+  auto behind = y;
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    ahead[i] += h * direction[i];
+    behind[i] -= h * direction[i];
+  }
+  const double difference = (mean_absolute(t, ahead) - mean_absolute(t, behind)) / (2.0 * h);
+  // Rounding of the difference: 1e-16 / 1e-6.
+  CHECK_THAT(mean_absolute_slope(t, y, direction), WithinRel(difference, 1e-8));
+  // Scaling the signal scales its mean.
+  CHECK_THAT(mean_absolute_slope(t, y, y), WithinRel(mean_absolute(t, y), 1e-13));
+  CHECK_THROWS_AS(mean_absolute_slope(t, y, std::vector{1.0}), std::invalid_argument);
 }
 
 TEST_CASE("leak_share: ratio of the means of the absolute values", "[metrics]") {
