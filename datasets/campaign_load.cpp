@@ -5,6 +5,7 @@
 #include "datasets/campaign.hpp"
 #include "datasets/campaign_parameters.hpp"
 #include "datasets/campaign_sections.hpp"
+#include "datasets/leak_table_settings.hpp"
 #include "datasets/toml_reader.hpp"
 
 namespace rigcal::datasets {
@@ -123,7 +124,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   const TomlNode root(parsed, file.string(), "");
   check_schema(root);
   root.allow_only({"schema", "name", "synthetic", "rig", "leak_level", "recording", "averaging",
-                   "acceptance", "fit", "simulation", "condition"});
+                   "acceptance", "fit", "simulation", "leak_table", "condition"});
   Campaign campaign;
   campaign.file = file;
   campaign.data_dir = data_dir.empty() ? file.parent_path() : data_dir;
@@ -142,6 +143,8 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   if (const auto node = root.find("synthetic")) read_synthetic_entry(*node, campaign);
   if (const auto node = root.find("condition")) read_conditions(*node, campaign);
   fill_times(campaign);
+  // Only its verbs use it, but whoever checks a campaign wants to know that all of it is right.
+  if (const auto node = root.find("leak_table")) read_leak_table(*node, campaign);
   check_campaign(campaign, {file.string(), 1, 0});
   return campaign;
 }

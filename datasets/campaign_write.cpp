@@ -4,6 +4,7 @@
 
 #include "datasets/campaign.hpp"
 #include "datasets/campaign_parameters.hpp"
+#include "datasets/leak_table_settings.hpp"
 #include "datasets/toml_reader.hpp"
 #include "datasets/toml_writer.hpp"
 
@@ -185,6 +186,29 @@ std::string fitted_campaign_text(const Campaign& campaign, const std::vector<Fit
   return fmt::format(
       "# Written by rigcal fit from {}: the fitted values stand in place of the starts.\n"
       "# Nuisance parameters stay free. Record paths start at the folder of this file.\n\n{}",
+      toml_quoted(campaign.file.filename().string()), toml_text(root));
+}
+
+std::string fitted_leak_table_text(const Campaign& campaign, const LeakTableSettings& settings,
+                                   const fs::path& out_dir) {
+  toml::table root = parse_toml_file(campaign.file);
+  write_changed_values(root, campaign);
+  toml::table& assumptions = child(child(root, "leak_table", false), "assumptions", false);
+  for (const Assumption& assumption : settings.assumptions) {
+    const model::ParameterSpec& spec = assumption_spec(campaign.rig.plant, assumption.index);
+    toml::table& entry = child(assumptions, spec.key, true);
+    put(entry, spec, "value", assumption.value);
+    entry.insert_or_assign("source", assumption.source);
+    if (!assumption.fit) continue;
+    entry.insert_or_assign("fit", true);
+    put(entry, spec, "start", assumption.start);
+    put(entry, spec, "lower", assumption.lower);
+    put(entry, spec, "upper", assumption.upper);
+  }
+  rebase_records(root, resolved(campaign.data_dir), resolved(out_dir));
+  return fmt::format(
+      "# Written by rigcal fit-tables from {}: the estimated values stand in\n"
+      "# [leak_table.assumptions]. Record paths start at the folder of this file.\n\n{}",
       toml_quoted(campaign.file.filename().string()), toml_text(root));
 }
 

@@ -231,6 +231,12 @@ Json failures_json(const calib::Fit& fit) {
   return list;
 }
 
+}  // namespace
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+
 Json provenance_json(const Provenance& provenance) {
   Json json;
   json["version"] = std::string(version());
@@ -248,12 +254,6 @@ Json provenance_json(const Provenance& provenance) {
   }
   return json;
 }
-
-}  // namespace
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
 
 Json result_json(const Result& result) {
   const calib::Fit& fit = result.fit;

@@ -23,6 +23,9 @@ inline constexpr const char* kValidationSchema = "rigcal.validation/1";
 Json number(double value);
 Json number(const std::optional<double>& value);
 
+/// What a result was made from, as every result file holds it.
+Json provenance_json(const Provenance& provenance);
+
 /// fit.json or validation.json as docs/command-line.md describes them; `status` comes first.
 Json result_json(const Result& result);
 

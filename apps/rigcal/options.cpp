@@ -1,9 +1,12 @@
 #include "apps/rigcal/options.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <system_error>
 #include <thread>
 
@@ -55,6 +58,12 @@ datasets::Campaign load(const CampaignOptions& options) {
 std::vector<std::pair<std::string, std::string>> recorded(const CampaignOptions& options) {
   return {{"set", fmt::format("{}", fmt::join(options.set, ", "))},
           {"free", fmt::format("{}", fmt::join(options.free, ","))}};
+}
+
+report::Style terminal_style() {
+  const char* no_colour = std::getenv("NO_COLOR");
+  const bool wanted = no_colour == nullptr || std::strlen(no_colour) == 0;
+  return {wanted && ::isatty(STDOUT_FILENO) == 1};
 }
 
 void print(const PrintOptions& options, const std::string& text, const report::Json& json) {

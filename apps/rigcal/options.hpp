@@ -8,6 +8,7 @@
 #include "datasets/campaign.hpp"
 #include "report/json.hpp"
 #include "report/provenance.hpp"
+#include "report/terminal.hpp"
 
 namespace rigcal::app {
 
@@ -38,6 +39,9 @@ datasets::Campaign load(const CampaignOptions& options);
 
 /// The options that change numbers, for the provenance.
 std::vector<std::pair<std::string, std::string>> recorded(const CampaignOptions& options);
+
+/// Colour on a terminal, unless NO_COLOR is set.
+report::Style terminal_style();
 
 /// Prints a result on stdout, as text or as JSON.
 ///

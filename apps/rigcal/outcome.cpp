@@ -1,10 +1,6 @@
 #include "apps/rigcal/outcome.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
-
-#include <cstdlib>
-#include <cstring>
 
 #include "report/csv.hpp"
 #include "report/folder.hpp"
@@ -14,12 +10,6 @@ namespace rigcal::app {
 namespace {
 
 using calib::FitStatus;
-
-report::Style terminal_style() {
-  const char* no_colour = std::getenv("NO_COLOR");
-  const bool wanted = no_colour == nullptr || std::strlen(no_colour) == 0;
-  return {wanted && ::isatty(STDOUT_FILENO) == 1};
-}
 
 std::string fitted_toml(const CampaignOptions& options, const report::Result& result) {
   std::vector<datasets::FittedValue> values;

@@ -1,0 +1,62 @@
+#include "calib/fit_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/leak_table_files.hpp"
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "report/fit_tables.hpp"
+#include "report/folder.hpp"
+
+namespace rigcal::app {
+namespace {
+
+using calib::FitStatus;
+
+ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invocation) {
+  const LeakTableInput input = load_leak_table(options);
+  report::require_writable(options.out);
+  stop_if(invocation.cancel);
+  const calib::LeakTableOptions settings = leak_table_options(options, input.campaign, invocation);
+  const calib::TablesFit fit = calib::fit_tables(input.campaign, input.settings, settings);
+
+  report::Provenance provenance;
+  provenance.command = invocation.command;
+  provenance.options = recorded(options);
+  provenance.inputs = report::hash_inputs(input.campaign, {});
+  const report::TablesFitResult result{input.campaign, fit, provenance};
+  std::string text = report::tables_fit_text(result, terminal_style());
+  std::vector<report::ResultFile> files;
+  if (fit.status == FitStatus::converged) {
+    const calib::LeakTable table = calib::leak_table(input.campaign, fit.settings, settings);
+    const report::LeakTableResult tables{input.campaign, fit.settings, table, provenance};
+    files = leak_table_files(tables);
+    text = report::leak_table_text(tables, terminal_style()) + "\n" + text;
+    files.push_back(
+        {"fitted.toml", fitted_leak_table_text(input.campaign, fit.settings, options.out)});
+  }
+  files.push_back({"fit.json", report::json_text(report::tables_fit_json(result))});
+  report::write_results(options.out, files, provenance.inputs);
+  if (fit.status != FitStatus::converged) {
+    // Of an earlier run: they would contradict this one.
+    report::remove_stale(options.out / "fitted.toml");
+    report::remove_stale(options.out / "leak_table.json");
+  }
+  print(options.print, text + fmt::format("files: {}\n", (options.out / "fit.json").string()),
+        report::tables_fit_json(result));
+  if (fit.status == FitStatus::failed) return ExitCode::no_result;
+  return fit.status == FitStatus::stopped ? ExitCode::stopped : ExitCode::done;
+}
+
+}  // namespace
+
+Run add_fit_tables(CLI::App& verb) {
+  const auto options = std::make_shared<CampaignOptions>();
+  add_campaign_options(verb, *options);
+  return [options](const Invocation& invocation) { return run_fit_tables(*options, invocation); };
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,93 @@
+#include "calib/leak_table.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/leak_table_files.hpp"
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "report/folder.hpp"
+#include "report/leak_table.hpp"
+
+namespace rigcal::app {
+namespace {
+
+struct Options {
+  CampaignOptions common;
+  std::vector<double> targets_percent;
+  std::vector<std::string> signals;
+};
+
+void choose_targets(const Options& options, datasets::LeakTableSettings& settings) {
+  if (options.targets_percent.empty()) return;
+  settings.targets_percent = options.targets_percent;
+  std::sort(settings.targets_percent.begin(), settings.targets_percent.end());
+  const auto last = std::unique(settings.targets_percent.begin(), settings.targets_percent.end());
+  settings.targets_percent.erase(last, settings.targets_percent.end());
+}
+
+void choose_signals(const Options& options, const datasets::Campaign& campaign,
+                    datasets::LeakTableSettings& settings) {
+  if (options.signals.empty()) return;
+  std::vector<datasets::LeakSignal> chosen;
+  for (const std::string& text : options.signals) {
+    chosen.push_back(signal_from_text(campaign, settings, text));
+  }
+  settings.signals = std::move(chosen);
+}
+
+ExitCode run_leak_table(const Options& options, const Invocation& invocation) {
+  LeakTableInput input = load_leak_table(options.common);
+  choose_targets(options, input.settings);
+  choose_signals(options, input.campaign, input.settings);
+  report::require_writable(options.common.out);
+  stop_if(invocation.cancel);
+  calib::LeakTableOptions settings = leak_table_options(options.common, input.campaign, invocation);
+  const calib::LeakTable table = [&] {
+    try {
+      return calib::leak_table(input.campaign, input.settings, settings);
+    } catch (const NoResultError&) {
+      stop_if(invocation.cancel);  // what failed is what was stopped
+      throw;
+    }
+  }();
+  report::Provenance provenance;
+  provenance.command = invocation.command;
+  provenance.options = recorded(options.common);
+  provenance.options.emplace_back("targets",
+                                  fmt::format("{}", fmt::join(options.targets_percent, ",")));
+  provenance.options.emplace_back("signals", fmt::format("{}", fmt::join(options.signals, ",")));
+  provenance.inputs = report::hash_inputs(input.campaign, {});
+  const report::LeakTableResult result{input.campaign, input.settings, table, provenance};
+  const auto files = leak_table_files(result);
+  report::write_results(options.common.out, files, provenance.inputs);
+  print(options.common.print,
+        report::leak_table_text(result, terminal_style()) +
+            fmt::format("files: {} {}\n", (options.common.out / "leak_table.csv").string(),
+                        (options.common.out / "leak_table.json").string()),
+        report::leak_table_json(result));
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Run add_leak_table(CLI::App& verb) {
+  const auto options = std::make_shared<Options>();
+  add_campaign_options(verb, options->common);
+  verb.add_option("--targets", options->targets_percent,
+                  "Shares of the servo flow in percent: 5,15,25 (default: the campaign's)")
+      ->delimiter(',')
+      ->check(CLI::Range(1e-3, 1000.0))
+      ->allow_extra_args(false);
+  verb.add_option("--signals", options->signals,
+                  "Drives: sine@0.1Hz,square@10Hz@20mm (default: the campaign's)")
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  return [options](const Invocation& invocation) { return run_leak_table(*options, invocation); };
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,69 @@
+#include "apps/rigcal/leak_table_files.hpp"
+
+#include <algorithm>
+
+namespace rigcal::app {
+namespace {
+
+constexpr std::string_view kResidualScale = "residual_scale=";
+
+/// A level as the name of a file.
+std::string file_name(const std::string& level) {
+  std::string name;
+  for (const char c : level) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '.' || c == '-';
+    name += plain ? c : '_';
+  }
+  return name + ".csv";
+}
+
+}  // namespace
+
+LeakTableInput load_leak_table(const CampaignOptions& options) {
+  CampaignOptions of_campaign = options;
+  // The residual's scale is no parameter of the rig: only the leak table knows it.
+  std::erase_if(of_campaign.set,
+                [](const std::string& text) { return text.starts_with(kResidualScale); });
+  of_campaign.free.clear();  // of the tables, not of the records
+  LeakTableInput input{load(of_campaign), {}};
+  input.settings = leak_table_settings(input.campaign);
+  for (const std::string& assignment : options.set) {
+    override_assumption(input.settings, input.campaign, assignment);
+  }
+  if (!options.free.empty()) free_assumptions(input.settings, input.campaign, options.free);
+  return input;
+}
+
+calib::LeakTableOptions leak_table_options(const CampaignOptions& options,
+                                           const datasets::Campaign& campaign,
+                                           const Invocation& invocation) {
+  calib::LeakTableOptions result;
+  model::SimulationOptions& simulation = result.periodic.simulation;
+  simulation.method = campaign.simulation.method;
+  simulation.tolerance = campaign.simulation.tolerance.value_or(simulation.tolerance);
+  simulation.max_seconds = campaign.simulation.max_seconds;
+  simulation.cancel = &invocation.cancel;
+  result.threads = options.threads;
+  return result;
+}
+
+std::vector<report::ResultFile> leak_table_files(const report::LeakTableResult& result) {
+  const calib::LeakTable& table = result.table;
+  std::vector<report::ResultFile> files;
+  files.push_back({"leak_table.csv", report::leak_table_csv(result)});
+  if (table.healthy) {
+    const datasets::LeakSignal& signal = *result.settings.feature_signal;
+    const std::filesystem::path levels = "levels";
+    files.push_back({"features.csv", report::features_csv(result)});
+    files.push_back({levels / "healthy.csv", report::level_csv(signal, *table.healthy, nullptr)});
+    for (const calib::FeatureRow& row : table.features) {
+      files.push_back({levels / file_name(row.printed.level),
+                       report::level_csv(signal, row.series, &*table.healthy)});
+    }
+  }
+  files.push_back({"leak_table.json", report::json_text(report::leak_table_json(result))});
+  return files;
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "calib/leak_table.hpp"
+#include "datasets/leak_table_settings.hpp"
+#include "report/folder.hpp"
+#include "report/leak_table.hpp"
+
+namespace rigcal::app {
+
+/// A campaign and its [leak_table], both with the values of --set.
+struct LeakTableInput {
+  datasets::Campaign campaign;
+  datasets::LeakTableSettings settings;
+};
+
+/// @throws InputError, UsageError
+LeakTableInput load_leak_table(const CampaignOptions& options);
+
+calib::LeakTableOptions leak_table_options(const CampaignOptions& options,
+                                           const datasets::Campaign& campaign,
+                                           const Invocation& invocation);
+
+/// leak_table.csv, and what else there is to it; leak_table.json last.
+std::vector<report::ResultFile> leak_table_files(const report::LeakTableResult& result);
+
+}  // namespace rigcal::app

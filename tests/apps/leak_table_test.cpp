@@ -1,0 +1,202 @@
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/apps/cli_fixture.hpp"
+
+using namespace rigcal::test;
+using Catch::Contains;
+using Catch::StartsWith;
+using Catch::WithinRel;
+using nlohmann::json;
+
+namespace {
+
+/// Tables of kCampaign's rig that its own `leak-table` printed at kp = 1000 V/m and 1 mm2.
+const std::string kTables = R"([leak_table]
+targets = [10, 30]
+[leak_table.assumptions]
+kp = { value = "1000 V/m", source = "a guess", fit = true, start = "700 V/m", lower = "100 V/m", upper = "5000 V/m" }
+leakage_area = { value = "1 mm2", source = "a guess", fit = true, start = "2 mm2", lower = "0.1 mm2", upper = "10 mm2" }
+[[leak_table.signal]]
+waveform = "sine"
+frequency = "2 Hz"
+amplitude = "5 mm"
+printed = ["C10", "C30"]
+[leak_table.features]
+waveform = "sine"
+frequency = "2 Hz"
+amplitude = "5 mm"
+[[leak_table.features.row]]
+level = "some"
+coefficient = 0.3
+servo_flow = "QS m3/s"
+leak_flow = "QL m3/s"
+)";
+
+/// A number for a campaign file, with all its digits and without an exponent.
+std::string fmt_number(double value) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(15) << value;
+  return text.str();
+}
+
+void write_rig(const CommandFolder& folder, const std::string& section = "") {
+  write_campaign(folder);
+  folder.write("campaign.toml", kCampaign + section);
+}
+
+void check_refused(const CommandFolder& folder, const CommandFolder::Arguments& arguments,
+                   const std::string& part) {
+  const Outcome outcome = folder.run(arguments);
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, StartsWith("rigcal: ") && Contains(part));
+  CHECK_FALSE(folder.has("rigcal-out"));
+}
+
+}  // namespace
+
+TEST_CASE("leak-table: any rig, without records, writes table and JSON", "[apps]") {
+  const CommandFolder folder;
+  write_rig(folder);
+  const Outcome outcome = folder.run({"leak-table", "campaign.toml", "--targets", "10,30",
+                                      "--signals", "sine@2Hz@5mm", "--out", "out"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("small rig") && Contains("10 %") && Contains("sine 2 Hz"));
+  const json table = json::parse(folder.read("out/leak_table.json"));
+  CHECK(table["schema"] == "rigcal.leak_table/1");
+  REQUIRE(table["entries"].size() == 2);
+  for (const json& entry : table["entries"]) {
+    CHECK(entry["waveform"] == "sine");
+    CHECK(entry["frequency_hz"] == 2.0);
+    REQUIRE(entry["coefficients"].size() == 1);
+    CHECK(entry["coefficients"][0].get<double>() > 0.0);
+    CHECK(entry["published_coefficient"].is_null());
+    CHECK(entry["grade"] == "not published");
+    CHECK(entry["log_slope"].get<double>() > 0.0);
+  }
+  CHECK(table["entries"][0]["coefficients"][0].get<double>() <
+        table["entries"][1]["coefficients"][0].get<double>());
+  CHECK_FALSE(table["assumptions"].empty());
+  CHECK_FALSE(table["fixed_combinations"].empty());
+  CHECK(table["provenance"]["options"]["targets"] == "10,30");
+  const std::string csv = folder.read("out/leak_table.csv");
+  CHECK_THAT(csv, StartsWith("waveform,frequency_hz,amplitude_m,target_percent,coefficients"));
+  CHECK(std::count(csv.begin(), csv.end(), '\n') == 3);
+  CHECK_FALSE(folder.has("out/features.csv"));
+}
+
+TEST_CASE("leak-table: --set reaches it, a rig with a tenfold volume has a table too", "[apps]") {
+  const CommandFolder folder;
+  write_rig(folder);
+  const Outcome outcome =
+      folder.run({"leak-table", "campaign.toml", "--targets", "20", "--signals", "sine@2Hz@5mm",
+                  "--set", "total_volume=4680 cm3", "--out", "out", "--json"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  const json table = json::parse(outcome.out);
+  REQUIRE(table["entries"][0]["coefficients"].size() == 1);
+  const auto volume = std::find_if(table["assumptions"].begin(), table["assumptions"].end(),
+                                   [](const json& a) { return a["name"] == "total_volume_m3"; });
+  REQUIRE(volume != table["assumptions"].end());
+  CHECK_THAT((*volume)["value"].get<double>(), WithinRel(4.68e-3, 1e-12));
+  CHECK((*volume)["source"] == "--set");
+}
+
+TEST_CASE("leak-table: a share out of reach is told, with what it gets to", "[apps]") {
+  const CommandFolder folder;
+  write_rig(folder, "[leak_table]\ncoefficients = [0.001, 0.01]\n");
+  const Outcome outcome =
+      folder.run({"leak-table", "campaign.toml", "--targets", "50", "--signals", "sine@2Hz@5mm",
+                  "--set", "output_limit=0.5 V", "--out", "out"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out,
+             Contains("not reached: at most") && Contains("valve command is at its limit"));
+  const json table = json::parse(folder.read("out/leak_table.json"));
+  CHECK(table["entries"][0]["coefficients"].empty());
+  CHECK_THAT(table["entries"][0]["note"].get<std::string>(), Contains("not reached"));
+}
+
+TEST_CASE("leak-table: bad input is refused before any work", "[apps]") {
+  const CommandFolder folder;
+  write_rig(folder);
+  check_refused(folder, {"leak-table"}, "CAMPAIGN");
+  check_refused(folder, {"leak-table", "none.toml"}, "none.toml");
+  check_refused(folder, {"leak-table", "campaign.toml", "--targets", "0"}, "targets");
+  check_refused(folder, {"leak-table", "campaign.toml", "--targets", "ten"}, "targets");
+  check_refused(folder, {"leak-table", "campaign.toml", "--signals", "saw@1Hz"}, "saw");
+  check_refused(folder, {"leak-table", "campaign.toml", "--signals", "sine@3Hz"},
+                "differ in amplitude");
+  check_refused(folder, {"leak-table", "campaign.toml", "--set", "leakage_area=0 m2"},
+                "leakage_area is zero");
+  check_refused(folder, {"leak-table", "campaign.toml", "--set", "residual_scale=1 kg"},
+                "residual_scale");
+  folder.write("campaign.toml", kCampaign + "[leak_table]\ntarget = [10]\n");
+  check_refused(folder, {"leak-table", "campaign.toml"}, "did you mean 'targets'");
+  check_refused(folder, {"check", "campaign.toml"}, "did you mean 'targets'");
+}
+
+TEST_CASE("leak-table: what cannot be simulated is no table", "[apps]") {
+  const CommandFolder folder;
+  write_rig(folder, "[simulation]\nmax_seconds = 1e-6\n");
+  const Outcome outcome = folder.run({"leak-table", "campaign.toml", "--out", "out"});
+  CHECK(outcome.exit_code == 3);
+  CHECK_THAT(outcome.err, Contains("leakage_coefficient = ") && Contains("out of time"));
+  CHECK_FALSE(folder.has("out/leak_table.json"));
+}
+
+TEST_CASE("fit-tables: finds the values behind tables that leak-table made", "[apps]") {
+  const CommandFolder folder;
+  write_rig(folder);
+  REQUIRE(folder
+              .run({"leak-table", "campaign.toml", "--targets", "10,30", "--signals",
+                    "sine@2Hz@5mm", "--out", "truth", "--quiet"})
+              .exit_code == 0);
+  const json truth = json::parse(folder.read("truth/leak_table.json"));
+  const auto coefficient = [&](std::size_t i) {
+    return fmt_number(truth["entries"][i]["coefficients"][0].get<double>());
+  };
+  // Flows of the true rig, by the table itself.
+  const std::string guess = edited(
+      kTables, {{"C10", coefficient(0)}, {"C30", coefficient(1)}, {"QS", "1e-5"}, {"QL", "1e-6"}});
+  folder.write("flows.toml", kCampaign + guess);
+  REQUIRE(folder.run({"leak-table", "flows.toml", "--out", "flows", "--quiet"}).exit_code == 0);
+  const json flows = json::parse(folder.read("flows/leak_table.json"))["features"][0];
+  const auto flow = [&](const char* key) { return fmt_number(flows[key].get<double>() / 60e3); };
+  folder.write("campaign.toml", kCampaign + edited(kTables, {{"C10", coefficient(0)},
+                                                             {"C30", coefficient(1)},
+                                                             {"QS", flow("servo_flow_l_per_min")},
+                                                             {"QL", flow("leak_flow_l_per_min")}}));
+  const Outcome outcome = folder.run({"fit-tables", "campaign.toml", "--out", "out"});
+  CAPTURE(outcome.err, outcome.out);
+  REQUIRE(outcome.exit_code == 0);
+  const json fit = json::parse(folder.read("out/fit.json"));
+  CHECK(fit["status"] == "converged");
+  CHECK(fit["residual_count"] == 4);
+  REQUIRE(fit["parameters"].size() == 2);
+  // The flows are good to a few 1e-4.
+  CHECK_THAT(fit["parameters"][0]["value"].get<double>(), WithinRel(1000.0, 0.01));
+  CHECK_THAT(fit["parameters"][1]["value"].get<double>(), WithinRel(1e-6, 0.01));
+  CHECK(fit["parameters"][1]["name"] == "leakage_area_m2");
+  // What it writes is a campaign that gives the same table.
+  REQUIRE(folder.run({"leak-table", "out/fitted.toml", "--out", "again", "--quiet"}).exit_code ==
+          0);
+  CHECK(json::parse(folder.read("again/leak_table.json"))["entries"] ==
+        json::parse(folder.read("out/leak_table.json"))["entries"]);
+}
+
+TEST_CASE("fit-tables: bad input is refused", "[apps]") {
+  const CommandFolder folder;
+  write_rig(folder);
+  check_refused(folder, {"fit-tables", "campaign.toml"}, "no assumption of [leak_table]");
+  check_refused(folder, {"fit-tables", "campaign.toml", "--free", "kp"},
+                "0 published numbers cannot tell 1 values");
+  check_refused(folder, {"fit-tables", "campaign.toml", "--free", "kpp"}, "did you mean 'kp'");
+}

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "calib/leak_table.hpp"
+#include "datasets/campaign.hpp"
+#include "datasets/leak_table_settings.hpp"
+
+namespace rigcal::test {
+
+inline std::string shake_table_file() {
+  return std::string(RIGCAL_SOURCE_DIR) + "/datasets/uis_shake_table/campaign.toml";
+}
+
+/// The source paper's rig with its published tables.
+struct LeakRig {
+  datasets::Campaign campaign = datasets::load_campaign(shake_table_file());
+  datasets::LeakTableSettings settings = datasets::leak_table_settings(campaign);
+
+  model::ParameterValues values() const { return leak_table_values(campaign, settings); }
+  calib::PeriodicDrive drive(datasets::Waveform waveform, double frequency_hz) const {
+    calib::PeriodicDrive result{campaign.rig, {}};
+    result.signal.waveform = waveform;
+    result.signal.frequency_hz = frequency_hz;
+    result.signal.amplitude = 0.0508;
+    return result;
+  }
+  model::ParameterValues leaking(double coefficient) const {
+    model::ParameterValues result = values();
+    result.set("leakage_coefficient", coefficient);
+    return result;
+  }
+};
+
+}  // namespace rigcal::test
