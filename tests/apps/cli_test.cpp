@@ -171,7 +171,7 @@ struct BadCall {
 };
 
 const std::vector<BadCall> kBadCalls{
-    {{}, {"check, average, simulate, fit, validate, synthesize, params"}},
+    {{}, {"expected one of check, average", "leak-table, fit-tables", ", params"}},
     {{"fitt", "campaign.toml"}, {"unknown verb 'fitt'", "'fit'"}},
     {{""}, {"unknown verb ''"}},
     {{"--quiet"}, {"--quiet", "a verb first"}},
@@ -368,8 +368,8 @@ TEST_CASE("rigcal: help and version", "[apps]") {
   CHECK_THAT(version.out, StartsWith("rigcal 0."));
   const Outcome help = folder.run({"--help"});
   CHECK(help.exit_code == 0);
-  for (const char* verb :
-       {"check", "average", "simulate", "fit", "validate", "synthesize", "params"}) {
+  for (const char* verb : {"check", "average", "simulate", "fit", "validate", "leak-table",
+                           "fit-tables", "synthesize", "init", "params"}) {
     CHECK_THAT(help.out, Contains(verb));
     const Outcome of_verb = folder.run({verb, "--help"});
     CHECK(of_verb.exit_code == 0);
