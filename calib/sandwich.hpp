@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "metrics/autoregression.hpp"
+
+namespace rigcal::calib {
+
+/// Weighted residuals r and their Jacobian J of one condition at the optimum. Jacobian rows are in
+/// coordinates in which the sum of J^T J over all conditions and priors is the identity.
+struct ScoreRows {
+  Eigen::MatrixXd jacobian;  ///< shape (channels * samples, directions), channel after channel
+  Eigen::VectorXd residual;  ///< shape (channels * samples)
+  Eigen::Index channels = 1;
+};
+
+/// What one condition adds to the long-run covariance of the score J^T r.
+struct ScoreScatter {
+  Eigen::MatrixXd covariance;  ///< shape (directions)^2, positive semidefinite
+  Eigen::VectorXd freedom;     ///< with which its variance of each combination is known
+  std::vector<metrics::Autoregression> noise;  ///< of the weighted residuals, per channel
+  double effective_samples = 0.0;              ///< of all channels
+};
+
+/// Covariance of the score of every condition where residuals may be correlated in time and between
+/// channels, and their size may change with time (heteroscedasticity and autocorrelation
+/// consistent, HAC; Andrews, Econometrica 59, 1991).
+///
+/// An autoregression, of an order that the data choose, whitens the residuals of each channel:
+/// r = L u with L unit lower triangular, hence J^T r = (L^T J)^T u exactly. The contributions
+/// (L^T J)_t u_t of the samples, summed over channels, are all but uncorrelated; what correlation
+/// is left is taken in by a Parzen kernel of Andrews' automatic bandwidth. Whitening the residuals
+/// rather than the scores keeps the changing Jacobian out of the estimate of the correlation.
+///
+/// The fit has removed a part of the noise, most of it slow, where the Jacobian lives: the
+/// autocovariances are corrected by the bias that (I - H) Sigma (I - H) has at the covariance
+/// Sigma found, H = J J^T.
+///
+/// So are the squares of u_t, which are smaller where few samples tell a parameter (as HC2 corrects
+/// them where nothing is correlated; MacKinnon and White, Journal of Econometrics 29, 1985).
+///
+/// Degrees of freedom: Satterthwaite's, from the scatter of a sum of squares with the weights of
+/// each combination, and 4 / effective samples of a whitened long-run variance.
+///
+/// @param rows          all conditions of the fit
+/// @param priors        J^T J of the priors, whose errors have the variance that they state
+/// @param combinations  of the directions, one per row
+std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
+                                        const Eigen::MatrixXd& priors,
+                                        const Eigen::MatrixXd& combinations);
+
+/// Variance c^T (sum of all covariances + priors) c of a combination.
+struct RobustVariance {
+  double variance = 0.0;
+  double freedom = 0.0;  ///< Satterthwaite's over the conditions; infinite if the priors tell all
+};
+RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter,
+                               const Eigen::MatrixXd& priors, const Eigen::MatrixXd& combinations,
+                               Eigen::Index combination);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace rigcal::metrics {
+
+/// Autoregressive model of a series about zero: x[t] = sum_k phi[k] x[t - 1 - k] + u[t], u white.
+struct Autoregression {
+  std::vector<double> phi;  ///< shape (order); always stationary
+  double variance = 0.0;    ///< of u, in the square of the series' unit
+
+  /// How many independent samples tell the mean as well as `samples` of the series do:
+  /// samples * variance of a sample / long-run variance, from 1 to `samples`.
+  double effective_samples(double samples) const;
+};
+
+/// Autocovariances about zero, sum_t x[t] x[t + h] / n for h = 0..lags (0 beyond the series).
+std::vector<double> autocovariance(std::span<const double> series, int lags);
+
+/// Autocovariances of the model itself for lags 0..lags.
+std::vector<double> autocovariance(const Autoregression& model, int lags);
+
+/// The model of the order up to gamma.size() - 1 with the least Bayesian information criterion
+/// n ln(variance) + order ln(n), by the recursion of Levinson and Durbin (Brockwell and Davis, Time
+/// Series, 1991, 5.2 and 9.2). Partial autocorrelations are cut at 1 - 10 / n, so that no model
+/// remembers more than the series can tell.
+///
+/// @param gamma    autocovariances from lag 0, gamma[0] >= 0; white of variance 0 if it is 0
+/// @param samples  n, length of the series, >= 1
+Autoregression fit_autoregression(std::span<const double> gamma, double samples);
+
+}  // namespace rigcal::metrics

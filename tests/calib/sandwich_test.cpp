@@ -1,0 +1,139 @@
+#include "calib/sandwich.hpp"
+
+#include <Eigen/Cholesky>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// A linear model whose columns oscillate slowly, as those of a rig do, in orthonormal coordinates.
+MatrixXd slow_model(Index samples) {
+  MatrixXd columns(samples, 3);
+  for (Index t = 0; t < samples; ++t) {
+    const double phase = 12.0 * static_cast<double>(t) / static_cast<double>(samples);
+    columns.row(t) << std::sin(phase), 1.0, std::cos(phase) * (1.0 + phase);
+  }
+  const MatrixXd factor = MatrixXd((columns.transpose() * columns).llt().matrixL());
+  return factor.triangularView<Eigen::Lower>().solve(columns.transpose()).transpose();
+}
+
+class Noise {
+ public:
+  explicit Noise(unsigned seed) : random_(seed) {}
+  VectorXd draw(Index samples, double rho, double jump_at = 2.0) {
+    VectorXd noise(samples);
+    double state = normal_(random_);
+    for (Index t = 0; t < samples; ++t) {
+      const bool louder = static_cast<double>(t) > jump_at * static_cast<double>(samples);
+      noise(t) = state * (louder ? 4.0 : 1.0);
+      state = rho * state + std::sqrt(1.0 - rho * rho) * normal_(random_);
+    }
+    return noise;
+  }
+
+ private:
+  boost::random::mt19937_64 random_;
+  boost::random::normal_distribution<double> normal_;
+};
+
+/// Share of draws in which the 95 % intervals of all directions hold the truth, 0.
+double coverage(const MatrixXd& model, double rho, int draws, double jump_at = 2.0) {
+  const MatrixXd none = MatrixXd::Zero(model.cols(), model.cols());
+  Noise noise(11);
+  int covered = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    const VectorXd measured = noise.draw(model.rows(), rho, jump_at);
+    const VectorXd found = model.transpose() * measured;
+    const MatrixXd each = MatrixXd::Identity(model.cols(), model.cols());
+    const auto scatter = score_scatter({{model, measured - model * found, 1}}, none, each);
+    for (Index j = 0; j < model.cols(); ++j) {
+      const auto robust = robust_variance(scatter, none, each, j);
+      const boost::math::students_t law(robust.freedom);
+      const double half = boost::math::quantile(law, 0.975) * std::sqrt(robust.variance);
+      covered += std::abs(found(j)) <= half ? 1 : 0;
+    }
+  }
+  return covered / static_cast<double>(draws * model.cols());
+}
+
+}  // namespace
+
+TEST_CASE("sandwich: white noise gives the plain covariance", "[calib]") {
+  const MatrixXd model = slow_model(4000);
+  const VectorXd noise = Noise(2).draw(4000, 0.0);
+  const VectorXd residual = noise - model * (model.transpose() * noise);
+  const MatrixXd none = MatrixXd::Zero(3, 3);
+  const auto scatter = score_scatter({{model, residual, 1}}, none, MatrixXd::Identity(3, 3));
+  REQUIRE(scatter.size() == 1);
+  // A sum of 4000 squares scatters by 2 %; the kernel doubles that; four times.
+  CHECK((scatter[0].covariance - MatrixXd::Identity(3, 3)).cwiseAbs().maxCoeff() < 0.16);
+  CHECK(scatter[0].noise.at(0).phi.empty());
+  CHECK(scatter[0].effective_samples == 4000.0);
+  CHECK(scatter[0].freedom.minCoeff() > 500.0);
+}
+
+TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", "[calib]") {
+  const MatrixXd model = slow_model(1500);
+  // Binomial, the three directions of a draw independent: 600 at 95 % scatter by 0.9 %; 3.5 times.
+  CHECK_THAT(coverage(model, 0.0, 200), WithinAbs(0.95, 0.031));
+  // 38 effective samples tell their own correlation to a fifth; t is then not quite its law.
+  CHECK_THAT(coverage(model, 0.95, 200), WithinAbs(0.95, 0.035));
+  CHECK_THAT(coverage(model, 0.0, 200, 0.8), WithinAbs(0.95, 0.031));
+}
+
+TEST_CASE("sandwich: two channels with the same noise count once", "[calib]") {
+  const MatrixXd half = slow_model(2000) / std::sqrt(2.0);
+  MatrixXd model(4000, 3);
+  model << half, half;
+  const VectorXd noise = Noise(5).draw(2000, 0.3);
+  VectorXd both(4000);
+  both << noise, noise;
+  const VectorXd residual = both - model * (model.transpose() * both);
+  const MatrixXd none = MatrixXd::Zero(3, 3);
+  const MatrixXd each = MatrixXd::Identity(3, 3);
+  const auto shared = score_scatter({{model, residual, 2}}, none, each);
+  const auto single = score_scatter({{slow_model(2000), residual.head(2000), 1}}, none, each);
+  // Twice that of one channel in these coordinates; 5 %: the small-sample corrections differ.
+  CHECK_THAT(robust_variance(shared, none, each, 0).variance,
+             WithinRel(2.0 * robust_variance(single, none, each, 0).variance, 0.05));
+}
+
+TEST_CASE("sandwich: the freedom of conditions adds up, that of priors has no end", "[calib]") {
+  ScoreScatter one;
+  one.covariance = MatrixXd::Identity(1, 1);
+  one.freedom = VectorXd::Constant(1, 10.0);
+  const MatrixXd none = MatrixXd::Zero(1, 1);
+  const MatrixXd each = MatrixXd::Identity(1, 1);
+  CHECK_THAT(robust_variance({one, one}, none, each, 0).freedom, WithinRel(20.0, 1e-12));
+  CHECK_THAT(robust_variance({one}, none, each, 0).freedom, WithinRel(10.0, 1e-12));
+  const auto prior = robust_variance({}, MatrixXd::Identity(1, 1), each, 0);
+  CHECK(prior.variance == 1.0);
+  CHECK(std::isinf(prior.freedom));
+}
+
+TEST_CASE("sandwich: residuals of zero and records of few samples stay finite", "[calib]") {
+  const MatrixXd none = MatrixXd::Zero(3, 3);
+  const MatrixXd each = MatrixXd::Identity(3, 3);
+  const auto silent = score_scatter({{slow_model(50), VectorXd::Zero(50), 1}}, none, each);
+  CHECK(silent[0].covariance.isZero());
+  const auto few = score_scatter({{slow_model(4), VectorXd::Constant(4, 0.1), 1}}, none, each);
+  CHECK(few[0].covariance.allFinite());
+  CHECK(std::isfinite(robust_variance(few, none, each, 1).freedom));
+  // A residual that is all drift: no correlation time, but a number all the same.
+  const auto drift =
+      score_scatter({{slow_model(200), VectorXd::LinSpaced(200, -1.0, 1.0), 1}}, none, each);
+  CHECK(drift[0].covariance.allFinite());
+  CHECK(drift[0].effective_samples >= 1.0);
+}
+
+}  // namespace rigcal::calib
