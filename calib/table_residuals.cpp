@@ -41,10 +41,7 @@ Quantity feature_of(Feature feature, const PeriodicSeries& leaking, const Period
 TableResiduals::TableResiduals(const datasets::Campaign& campaign,
                                const datasets::LeakTableSettings& settings, std::vector<int> free,
                                LeakTableOptions options)
-    : campaign_(campaign),
-      settings_(settings),
-      free_(std::move(free)),
-      options_(std::move(options)) {
+    : campaign_(campaign), settings_(settings), free_(std::move(free)), options_(options) {
   add_shares();
   add_features();
 }
