@@ -1,7 +1,7 @@
 # What computes is optimised under the sanitizers too, or the tests would crawl. Everything else
 # is not: it compiles in half the time so.
 set(rigcal_optimised $<$<BOOL:${RIGCAL_SANITIZE}>:-O1>)
-set(rigcal_computing common model metrics calib)
+set(rigcal_computing common model metrics datasets calib)
 
 # rigcal_library(name SOURCES ... LINKS ...): one layer as a static library, alias rigcal::name.
 function(rigcal_library name)
@@ -15,12 +15,4 @@ function(rigcal_library name)
   endif()
   target_link_libraries(rigcal_${name} PUBLIC ${ARG_LINKS}
     PRIVATE ${ARG_PRIVATE_LINKS} $<BUILD_INTERFACE:rigcal_warnings>)
-endfunction()
-
-# rigcal_precompile(target headers...): headers of packages that most of its sources include. Sources
-# include what they need all the same: scripts/lint reads each of them alone.
-function(rigcal_precompile target)
-  if(RIGCAL_PCH)
-    target_precompile_headers(${target} PRIVATE ${ARGN})
-  endif()
 endfunction()

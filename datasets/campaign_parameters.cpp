@@ -161,6 +161,11 @@ std::vector<ParameterSetting> read_settings(const TomlNode& table, model::PlantK
   return settings;
 }
 
+bool has_entry(const Overrides& overrides, int index) {
+  return std::any_of(overrides.begin(), overrides.end(),
+                     [&](const auto& entry) { return entry.first == index; });
+}
+
 Overrides read_overrides(const TomlNode& table, model::PlantKind plant, ParameterGroup group) {
   Overrides overrides;
   for (const auto& [key, node] : table.entries()) {

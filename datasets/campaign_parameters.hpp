@@ -46,6 +46,9 @@ std::vector<ParameterSetting> read_settings(const TomlNode& table, model::PlantK
 /// @throws InputError
 Overrides read_overrides(const TomlNode& table, model::PlantKind plant, ParameterGroup group);
 
+/// Whether a table of known values has one for the parameter of this table index.
+bool has_entry(const Overrides& overrides, int index);
+
 /// Parameters that contradict or miss one another.
 struct ParameterConflict {
   std::string key;

@@ -86,10 +86,10 @@ Expansion expand(const fs::path& base, const std::string& pattern) {
 }
 
 std::string filled_in(std::string text, const std::string& number) {
-  constexpr std::string_view kPlaceholder = "{n}";
-  for (std::size_t at = text.find(kPlaceholder); at != std::string::npos;
-       at = text.find(kPlaceholder, at + number.size())) {
-    text.replace(at, kPlaceholder.size(), number);
+  constexpr std::string_view kNumber = "{n}";
+  for (std::size_t at = text.find(kNumber); at != std::string::npos;
+       at = text.find(kNumber, at + number.size())) {
+    text.replace(at, kNumber.size(), number);
   }
   return text;
 }

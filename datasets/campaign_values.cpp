@@ -42,11 +42,6 @@ ParameterSetting& setting_or_new(Campaign& campaign, int index, double value) {
   return campaign.parameters.back();
 }
 
-bool has_entry(const Overrides& overrides, int index) {
-  return std::any_of(overrides.begin(), overrides.end(),
-                     [&](const auto& entry) { return entry.first == index; });
-}
-
 const Overrides* level_overrides(const Campaign& campaign, const Condition& condition) {
   if (!condition.leak_level) return nullptr;
   const auto level = campaign.leak_levels.find(*condition.leak_level);

@@ -74,11 +74,6 @@ void write_value(toml::table& root, const model::ParameterSpec& spec, const Fitt
   }
 }
 
-bool has_entry(const Overrides& overrides, int index) {
-  return std::any_of(overrides.begin(), overrides.end(),
-                     [&](const auto& entry) { return entry.first == index; });
-}
-
 /// Whether a condition has a value besides the rig's: a known one of its own or of its leak level,
 /// or a fitted one.
 bool has_own_value(const Campaign& campaign, const Condition& condition, int index,

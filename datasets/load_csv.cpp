@@ -13,12 +13,11 @@
 #include "common/suggest.hpp"
 #include "datasets/csv_lines.hpp"
 #include "datasets/csv_text.hpp"
+#include "datasets/limits.hpp"
 
 namespace rigcal::datasets {
 namespace {
 
-// 96 MB of numbers. With the 48 MB of the window on the file, loading stays below 200 MB.
-constexpr std::size_t kMostValues = 12'000'000;
 constexpr std::size_t kMostColumns = 10'000;
 
 struct Header {

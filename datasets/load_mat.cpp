@@ -16,14 +16,13 @@
 
 #include "common/error.hpp"
 #include "common/suggest.hpp"
+#include "datasets/limits.hpp"
 #include "datasets/mat_integrity.hpp"
 #include "datasets/mat_path.hpp"
 
 namespace rigcal::datasets {
 namespace {
 
-// 96 MB of numbers, as for a CSV file; one column more is in memory while it is converted.
-constexpr std::size_t kMostValues = 12'000'000;
 constexpr std::size_t kMostListedColumns = 100;
 constexpr int kDeepestListing = 8;
 
@@ -331,7 +330,7 @@ void list(matvar_t& variable, const std::string& path, int depth,
     const std::string own = count == 1 ? path : fmt::format("{}({})", path, element + 1);
     for (const std::string& name : field_names(variable)) {
       matvar_t* field = Mat_VarGetStructFieldByName(&variable, name.c_str(), element);
-      if (field != nullptr) list(*field, own + "." + name, depth + 1, columns);
+      if (field != nullptr) list(*field, fmt::format("{}.{}", own, name), depth + 1, columns);
     }
   }
 }

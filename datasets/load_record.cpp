@@ -25,7 +25,7 @@ AverageOptions options_of(const Campaign& campaign, const Condition& condition) 
   return options;
 }
 
-[[noreturn]] void fail(const Condition& condition, const std::string& message) {
+[[noreturn]] void refuse(const Condition& condition, const std::string& message) {
   throw InputError(condition.where, fmt::format("condition \"{}\": {}", condition.id, message));
 }
 
@@ -55,18 +55,18 @@ std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& 
 void find_moving_windows(const Campaign& campaign, const Condition& condition, Record& record) {
   const auto position = record.channels.find(Channel::position);
   if (position == record.channels.end())
-    fail(condition,
-         "windows = \"moving\" are found from the position, which its records do not carry: "
-         "expected a position channel, or window = [\"0.5 s\", \"12 s\"]");
+    refuse(condition,
+           "windows = \"moving\" are found from the position, which its records do not carry: "
+           "expected a position channel, or window = [\"0.5 s\", \"12 s\"]");
   const Series& x = position->second;
   const auto motions =
       find_motions(record.time_s, drive_at_samples(campaign, condition, record), x.mean, x.sd);
   if (motions.empty())
-    fail(condition,
-         fmt::format("windows = \"moving\": no step of the {} moves the piston in its record; "
-                     "expected a command that steps and is held, or window = [\"0.5 s\", \"12 "
-                     "s\"]",
-                     info(drive_channel(campaign)).key));
+    refuse(condition,
+           fmt::format("windows = \"moving\": no step of the {} moves the piston in its record; "
+                       "expected a command that steps and is held, or window = [\"0.5 s\", \"12 "
+                       "s\"]",
+                       info(drive_channel(campaign)).key));
   for (const Motion& motion : motions) {
     record.windows.push_back(motion.window);
     record.notes.push_back(fmt::format(
@@ -115,7 +115,7 @@ Record load_record(const Campaign& campaign, const Condition& condition) {
     const std::string file = source.path.string();
     if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   }
-  if (repeats.empty()) fail(condition, "has no record: expected repeats or averaged");
+  if (repeats.empty()) refuse(condition, "has no record: expected repeats or averaged");
   try {
     const Conditioning done = condition_repeats(campaign, repeats);
     AverageOptions options = options_of(campaign, condition);
@@ -128,7 +128,7 @@ Record load_record(const Campaign& campaign, const Condition& condition) {
     if (condition.moving_windows) find_moving_windows(campaign, condition, record);
     return record;
   } catch (const std::invalid_argument& error) {
-    fail(condition, error.what());
+    refuse(condition, error.what());
   }
 }
 

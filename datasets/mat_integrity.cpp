@@ -25,7 +25,7 @@ constexpr std::uint32_t kMatrix = 14;
 constexpr std::uint32_t kCompressed = 15;
 constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
 
-using Header = std::array<char, kHeaderBytes>;
+using MatHeader = std::array<char, kHeaderBytes>;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& message) {
   throw InputError({path.string()}, message);
@@ -83,8 +83,8 @@ class Inflater {
   bool usable_ = false;
 };
 
-void check_version_5(const std::filesystem::path& path, std::ifstream& file, const Header& header,
-                     std::uintmax_t file_bytes) {
+void check_version_5(const std::filesystem::path& path, std::ifstream& file,
+                     const MatHeader& header, std::uintmax_t file_bytes) {
   const std::string_view order(header.data() + 126, 2);
   if (order != "IM" && order != "MI")
     fail(path, "is damaged: its header does not tell the order of the bytes");
@@ -140,7 +140,7 @@ void check_version_73(const std::filesystem::path& path) {
 
 }  // namespace
 
-static_assert(std::is_same_v<hid_t, std::int64_t> && std::is_same_v<std::int64_t, long>);
+static_assert(std::is_same_v<hid_t, long>);
 
 QuietHdf5::QuietHdf5() {
   H5Eget_auto2(H5E_DEFAULT, &handler_, &data_);
@@ -155,7 +155,7 @@ void require_intact_mat_file(const std::filesystem::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(path, "cannot be opened: " + std::generic_category().message(errno));
   const auto bytes = std::filesystem::file_size(path, error);
-  Header header{};
+  MatHeader header{};
   if (error || !file.read(header.data(), header.size()))
     fail(path, "is shorter than the header of a MAT file: it is empty, truncated or no MAT file");
   const std::string_view text(header.data(), header.size());

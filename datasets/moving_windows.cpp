@@ -20,13 +20,13 @@ constexpr double kTailShare = 0.05;         // of a held command, to judge where
 constexpr std::size_t kFewestHeld = 5;      // samples
 
 /// Samples [begin, end).
-struct Span {
+struct SampleSpan {
   std::size_t begin = 0;
   std::size_t end = 0;
   std::size_t size() const { return end - begin; }
 };
 
-double median_over(std::span<const double> x, Span span) {
+double median_over(std::span<const double> x, SampleSpan span) {
   return median({x.begin() + static_cast<std::ptrdiff_t>(span.begin),
                  x.begin() + static_cast<std::ptrdiff_t>(span.end)});
 }
@@ -58,10 +58,10 @@ double noise_sd(std::span<const double> x) {
 }
 
 /// Stretches in which the command stays at one level.
-std::vector<Span> held_levels(std::span<const double> command) {
+std::vector<SampleSpan> held_levels(std::span<const double> command) {
   const std::vector<double> clean = smoothed(command, 2);  // without spikes, edges kept
   const double tolerance = std::max(kHeldShare * range_of(clean), kNoiseFactor * noise_sd(command));
-  std::vector<Span> levels;
+  std::vector<SampleSpan> levels;
   for (std::size_t begin = 0; begin < clean.size();) {
     std::size_t end = begin + 1;
     while (end < clean.size() && std::abs(clean[end] - clean[begin]) <= tolerance) ++end;
@@ -72,18 +72,19 @@ std::vector<Span> held_levels(std::span<const double> command) {
 }
 
 /// Held levels that a step leads to, from the first sample off the level before.
-std::vector<Span> stepped_levels(std::span<const double> time_s, std::span<const double> command) {
+std::vector<SampleSpan> stepped_levels(std::span<const double> time_s,
+                                       std::span<const double> command) {
   const double least =
       std::max(kStepShare * range_of(smoothed(command, 2)), 2.0 * kNoiseFactor * noise_sd(command));
-  std::vector<Span> stepped;
+  std::vector<SampleSpan> stepped;
   const auto levels = held_levels(command);
   for (std::size_t k = 0; k < levels.size(); ++k) {
-    const Span level = levels[k];
+    const SampleSpan level = levels[k];
     if (k == 0) {
       if (level.begin == 0) stepped.push_back(level);
       continue;
     }
-    const Span before = levels[k - 1];
+    const SampleSpan before = levels[k - 1];
     const double held_s = time_s[level.end - 1] - time_s[level.begin];
     const double rise_s = time_s[level.begin] - time_s[before.end];
     const double step = std::abs(median_over(command, level) - median_over(command, before));
@@ -93,7 +94,7 @@ std::vector<Span> stepped_levels(std::span<const double> time_s, std::span<const
 }
 
 /// Where the piston went under one held command; empty if it stayed.
-std::vector<Motion> motion_in(Span held, std::span<const double> time_s,
+std::vector<Motion> motion_in(SampleSpan held, std::span<const double> time_s,
                               std::span<const double> position_m, std::span<const double> spread_m,
                               double least_travel_m, double noise_m) {
   const auto tail = std::max<std::size_t>(
@@ -115,8 +116,8 @@ std::vector<Motion> motion_in(Span held, std::span<const double> time_s,
   if (motion.arrived) {
     const auto spread = [&](std::size_t i) {
       if (spread_m.empty()) return 0.0;
-      const Span around{held.begin + (i > 2 ? i - 2 : 0),
-                        std::min(held.begin + i + 3, spread_m.size())};
+      const SampleSpan around{held.begin + (i > 2 ? i - 2 : 0),
+                              std::min(held.begin + i + 3, spread_m.size())};
       std::vector<double> known;
       for (std::size_t j = around.begin; j < around.end; ++j)
         if (std::isfinite(spread_m[j])) known.push_back(spread_m[j]);
@@ -146,7 +147,7 @@ std::vector<Motion> find_motions(std::span<const double> time_s, std::span<const
   const double least_travel_m =
       std::max(kLeastTravelShare * range_of(smoothed(position_m, 2)), kNoiseFactor * noise_m);
   std::vector<Motion> motions;
-  for (const Span held : stepped_levels(time_s, command)) {
+  for (const SampleSpan held : stepped_levels(time_s, command)) {
     const auto found = motion_in(held, time_s, position_m, spread_m, least_travel_m, noise_m);
     motions.insert(motions.end(), found.begin(), found.end());
   }

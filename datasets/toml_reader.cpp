@@ -90,7 +90,7 @@ std::string read_file(const std::filesystem::path& path) {
   return text;
 }
 
-std::string shown(std::string_view text) {
+std::string quoted_start(std::string_view text) {
   if (text.size() <= kLongestShown) return toml_quoted(text);
   std::size_t end = kLongestShown;
   // Never cut a UTF-8 character in two.
@@ -99,7 +99,7 @@ std::string shown(std::string_view text) {
 }
 
 std::string described(const toml::node& node) {
-  if (const auto* value = node.as_string()) return "the text " + shown(value->get());
+  if (const auto* value = node.as_string()) return "the text " + quoted_start(value->get());
   if (const auto* value = node.as_integer()) return fmt::format("the number {}", value->get());
   if (const auto* value = node.as_floating_point()) {
     return fmt::format("the number {}", value->get());
@@ -309,7 +309,7 @@ void TomlNode::fail_unknown(std::string_view key, std::string_view what,
                             const std::vector<std::string>& known) const {
   const auto entry = table().find(key);
   const Location place = entry == table().end() ? where() : location((*entry).first.source());
-  const std::string name = shown(key);
+  const std::string name = quoted_start(key);
   throw InputError(place,
                    fmt::format("{}{}", path_.empty() ? "" : fmt::format("key '{}': ", path_),
                                unknown_name_message(what, name.substr(1, name.size() - 2), known)));
@@ -326,12 +326,12 @@ Location TomlNode::location(const toml::source_region& source) const {
 }
 
 TomlNode TomlNode::child(std::string_view key, const toml::node& node) const {
-  const std::string name = key.size() > kLongestShown ? shown(key) : toml_key(key);
+  const std::string name = key.size() > kLongestShown ? quoted_start(key) : toml_key(key);
   return {node, file_, path_.empty() ? name : fmt::format("{}.{}", path_, name)};
 }
 
 void TomlNode::fail_choice(const std::string& found, const std::vector<std::string>& names) const {
-  const std::string text = shown(found);
+  const std::string text = quoted_start(found);
   fail(unknown_name_message("value", text.substr(1, text.size() - 2), names));
 }
 

@@ -11,12 +11,12 @@ namespace rigcal::report {
 namespace {
 
 /// Shortest text that reads back to the same bits; empty for what is not a number.
-std::string number(double value) {
+std::string csv_number(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : std::string();
 }
 
-std::string number(const std::optional<double>& value) {
-  return value ? number(*value) : std::string();
+std::string csv_number(const std::optional<double>& value) {
+  return value ? csv_number(*value) : std::string();
 }
 
 std::string quoted(const std::string& text) {
@@ -50,15 +50,16 @@ std::string status_line(const calib::Fit& fit) {
 std::vector<std::string> score_fields(const calib::ChannelScore& score) {
   std::vector<std::string> fields;
   for (const metrics::MetricSpec& metric : metrics::kMetrics) {
-    fields.push_back(score.agreement ? number((*score.agreement).*metric.value) : std::string());
+    fields.push_back(score.agreement ? csv_number((*score.agreement).*metric.value)
+                                     : std::string());
   }
   const auto& floor = score.noise_floor;
-  fields.push_back(floor ? number(floor->rho2) : std::string());
-  fields.push_back(floor ? number(floor->ccc) : std::string());
-  fields.push_back(floor ? number(floor->absolute_error_percent) : std::string());
-  fields.push_back(number(score.gain_ratio));
-  fields.push_back(number(score.phase_deg));
-  fields.push_back(number(score.delay_s));
+  fields.push_back(floor ? csv_number(floor->rho2) : std::string());
+  fields.push_back(floor ? csv_number(floor->ccc) : std::string());
+  fields.push_back(floor ? csv_number(floor->absolute_error_percent) : std::string());
+  fields.push_back(csv_number(score.gain_ratio));
+  fields.push_back(csv_number(score.phase_deg));
+  fields.push_back(csv_number(score.delay_s));
   return fields;
 }
 
@@ -90,8 +91,8 @@ std::string scorecard_csv(const Result& result) {
         score.id,
         std::string(to_string(score.use)),
         std::string(to_string(condition->waveform)),
-        number(condition->frequency_hz),
-        number(condition->amplitude),
+        csv_number(condition->frequency_hz),
+        csv_number(condition->amplitude),
         quoted(condition->leak_level.value_or("")),
         fmt::format("{}", score.samples),
         score.verdict ? std::string(to_string(*score.verdict)) : std::string()};
@@ -126,15 +127,15 @@ std::string residuals_csv(const Result& result, const calib::ConditionScore& sco
   titles.emplace_back("in_window");
   text += row(titles);
   for (std::size_t i = 0; i < score.time_s.size(); ++i) {
-    std::vector<std::string> fields{number(score.time_s[i])};
+    std::vector<std::string> fields{csv_number(score.time_s[i])};
     for (const auto& [channel, series] : score.series) {
       // A condition that could not be simulated has a measured side alone.
       const auto& [measured, simulated] = series;
       const double y = i < measured.size() ? measured[i] : std::nan("");
       const double s = i < simulated.size() ? simulated[i] : std::nan("");
-      fields.push_back(number(y));
-      fields.push_back(number(s));
-      fields.push_back(number(y - s));
+      fields.push_back(csv_number(y));
+      fields.push_back(csv_number(s));
+      fields.push_back(csv_number(y - s));
     }
     fields.emplace_back(score.in_window.empty() || score.in_window[i] ? "1" : "0");
     text += row(fields);
@@ -151,10 +152,10 @@ std::string averaged_csv(const datasets::Record& record) {
   }
   std::string text = row(titles);
   for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-    std::vector<std::string> fields{number(record.time_s[i])};
+    std::vector<std::string> fields{csv_number(record.time_s[i])};
     for (const auto& [channel, series] : record.channels) {
-      fields.push_back(number(series.mean[i]));
-      fields.push_back(series.sd.empty() ? std::string() : number(series.sd[i]));
+      fields.push_back(csv_number(series.mean[i]));
+      fields.push_back(series.sd.empty() ? std::string() : csv_number(series.sd[i]));
       fields.push_back(series.count.empty() ? std::string() : fmt::format("{}", series.count[i]));
     }
     text += row(fields);
@@ -171,20 +172,20 @@ std::string repeatability_csv(const std::vector<datasets::Record>& records) {
     std::vector<std::string> offsets;
     std::vector<std::string> deviations;
     for (const datasets::RepeatReport& report : record.repeat_reports) {
-      offsets.push_back(number(report.offset_s));
-      deviations.push_back(number(report.deviation));
+      offsets.push_back(csv_number(report.offset_s));
+      deviations.push_back(csv_number(report.deviation));
     }
     for (const datasets::Repeatability& r : datasets::repeatability(record)) {
       const datasets::ChannelInfo& about = info(r.channel);
       const auto& floor = r.noise_floor;
-      text +=
-          row({record.condition, std::string(about.key), std::string(about.unit),
-               fmt::format("{}", r.repeats), number(r.pooled_sd), number(r.sd_of_mean),
-               floor ? number(floor->rho2) : "", floor ? number(floor->ccc) : "",
-               floor ? number(floor->absolute_error_percent) : "",
-               number(datasets::offset_range_s(record)), fmt::format("{}", fmt::join(offsets, " ")),
-               fmt::format("{}", fmt::join(deviations, " ")),
-               quoted(fmt::format("{}", fmt::join(datasets::outliers(record), "; ")))});
+      text += row({record.condition, std::string(about.key), std::string(about.unit),
+                   fmt::format("{}", r.repeats), csv_number(r.pooled_sd), csv_number(r.sd_of_mean),
+                   floor ? csv_number(floor->rho2) : "", floor ? csv_number(floor->ccc) : "",
+                   floor ? csv_number(floor->absolute_error_percent) : "",
+                   csv_number(datasets::offset_range_s(record)),
+                   fmt::format("{}", fmt::join(offsets, " ")),
+                   fmt::format("{}", fmt::join(deviations, " ")),
+                   quoted(fmt::format("{}", fmt::join(datasets::outliers(record), "; ")))});
     }
   }
   return text;
@@ -207,11 +208,11 @@ std::string simulation_csv(std::span<const double> time_s, std::span<const doubl
   text += row(titles);
   if (!simulation.ok()) return text;
   for (std::size_t i = 0; i < time_s.size(); ++i) {
-    std::vector<std::string> fields{number(time_s[i])};
-    if (!reference_m.empty()) fields.push_back(number(reference_m[i]));
+    std::vector<std::string> fields{csv_number(time_s[i])};
+    if (!reference_m.empty()) fields.push_back(csv_number(reference_m[i]));
     for (std::size_t k = 0; k < outputs.size(); ++k) {
-      fields.push_back(
-          number(simulation.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k))));
+      fields.push_back(csv_number(
+          simulation.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k))));
     }
     text += row(fields);
   }

@@ -30,22 +30,22 @@ constexpr std::array kRelatives{
 
 }  // namespace
 
-ReadableUnit readable_unit(double si_value, std::string_view si_unit) {
+ReadableUnit readable_unit(double value_si, std::string_view si_unit) {
   ReadableUnit found{si_unit == "1" ? std::string_view{} : si_unit, 1.0};
   for (const Relative& relative : kRelatives) {
     if (relative.si_unit != si_unit) continue;
     // Zero has no size of its own.
-    if (si_value == 0.0) return {si_unit, 1.0};
+    if (value_si == 0.0) return {si_unit, 1.0};
     found = relative.unit;
-    if (std::abs(si_value) >= 0.9999999 * found.si) break;
+    if (std::abs(value_si) >= 0.9999999 * found.si) break;
   }
   return found;
 }
 
-std::string readable(double si_value, std::string_view si_unit, int digits) {
-  if (!std::isfinite(si_value)) return "-";
-  const ReadableUnit unit = readable_unit(si_value, si_unit);
-  std::string text = fmt::format("{:.{}g}", si_value / unit.si, digits);
+std::string readable(double value_si, std::string_view si_unit, int digits) {
+  if (!std::isfinite(value_si)) return "-";
+  const ReadableUnit unit = readable_unit(value_si, si_unit);
+  std::string text = fmt::format("{:.{}g}", value_si / unit.si, digits);
   if (!unit.name.empty()) text.append(" ").append(unit.name);
   return text;
 }

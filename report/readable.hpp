@@ -13,9 +13,9 @@ struct ReadableUnit {
 
 /// The usual engineering unit in which a value is a number of few digits: 6.2e6 Pa -> MPa,
 /// 0.0508 m -> mm. Units that have no such relatives stay SI; "1" has an empty name.
-ReadableUnit readable_unit(double si_value, std::string_view si_unit);
+ReadableUnit readable_unit(double value_si, std::string_view si_unit);
 
 /// "6.2 MPa", "0.35", "-": `digits` significant digits; "-" where the value is not finite.
-std::string readable(double si_value, std::string_view si_unit, int digits = 6);
+std::string readable(double value_si, std::string_view si_unit, int digits = 6);
 
 }  // namespace rigcal::report

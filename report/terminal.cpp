@@ -113,9 +113,9 @@ TextTable group_table(const Result& result, Channel channel) {
 }
 
 /// Numbers of one parameter, all in the unit of its value.
-std::string in_unit(double si_value, const ReadableUnit& unit, int digits) {
-  if (!std::isfinite(si_value)) return "-";
-  return fmt::format("{:.{}g}", si_value / unit.si, digits);
+std::string in_unit(double value_si, const ReadableUnit& unit, int digits) {
+  if (!std::isfinite(value_si)) return "-";
+  return fmt::format("{:.{}g}", value_si / unit.si, digits);
 }
 
 std::string limits(double low, double high, const ReadableUnit& unit, int digits) {

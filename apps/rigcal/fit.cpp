@@ -19,13 +19,13 @@ namespace {
 
 constexpr int kMostStarts = 100'000;
 
-struct Options {
+struct FitRequest {
   CampaignOptions common;
   std::optional<int> starts;
   std::uint64_t seed = 1;
 };
 
-ExitCode run_fit(const Options& options, const Invocation& invocation) {
+ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
   const auto records = datasets::load_records(
       campaign, {datasets::Use::fit, datasets::Use::validate}, options.common.threads);
@@ -51,7 +51,7 @@ ExitCode run_fit(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Run add_fit(CLI::App& verb) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<FitRequest>();
   add_campaign_options(verb, options->common);
   verb.add_option("--starts", options->starts,
                   "Number of starts (default: the campaign's, or 1); the best result counts")

@@ -23,7 +23,7 @@ using datasets::Campaign;
 using datasets::Condition;
 using datasets::Record;
 
-struct Options {
+struct SimulateRequest {
   CampaignOptions common;
   std::vector<std::string> conditions;
 };
@@ -115,7 +115,7 @@ report::Json json_of(const Task& task, const model::Simulation& simulation) {
   return json;
 }
 
-ExitCode run_simulate(const Options& options, const Invocation& invocation) {
+ExitCode run_simulate(const SimulateRequest& options, const Invocation& invocation) {
   const Campaign campaign = load(options.common);
   std::vector<Task> tasks;
   std::vector<Record> records;
@@ -159,7 +159,7 @@ ExitCode run_simulate(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Run add_simulate(CLI::App& verb) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SimulateRequest>();
   add_campaign_options(verb, options->common);
   verb.add_option("--condition", options->conditions,
                   "Only this condition; repeatable (default: all that are not ignored)")

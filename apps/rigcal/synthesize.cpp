@@ -13,12 +13,12 @@
 namespace rigcal::app {
 namespace {
 
-struct Options {
+struct SynthesizeRequest {
   CampaignOptions common;
   std::uint64_t seed = 1;
 };
 
-ExitCode run_synthesize(const Options& options, const Invocation& invocation) {
+ExitCode run_synthesize(const SynthesizeRequest& options, const Invocation& invocation) {
   const CampaignOptions& common = options.common;
   const datasets::Campaign campaign = load(common);
   report::require_inputs_kept(common.out, {"campaign.toml"}, report::hash_inputs(campaign, {}));
@@ -41,7 +41,7 @@ ExitCode run_synthesize(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Run add_synthesize(CLI::App& verb) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SynthesizeRequest>();
   add_campaign_options(verb, options->common);
   verb.add_option("--seed", options->seed, "Seed of the noise")
       ->required()

@@ -19,7 +19,7 @@ namespace {
 using datasets::Campaign;
 using datasets::Use;
 
-struct Options {
+struct ValidateRequest {
   CampaignOptions common;
   std::filesystem::path fit;
 };
@@ -55,7 +55,7 @@ std::vector<std::string> warnings_of(const Campaign& campaign,
   return warnings;
 }
 
-ExitCode run_validate(const Options& options, const Invocation& invocation) {
+ExitCode run_validate(const ValidateRequest& options, const Invocation& invocation) {
   const Campaign campaign = load(options.common);
   std::optional<report::EarlierFit> earlier;
   std::vector<std::filesystem::path> more_inputs;
@@ -88,7 +88,7 @@ ExitCode run_validate(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Run add_validate(CLI::App& verb) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ValidateRequest>();
   add_campaign_options(verb, options->common);
   verb.add_option("--fit", options->fit,
                   "fit.json of an earlier fit (default: the campaign's own values)");

@@ -9,10 +9,13 @@
 #include <random>
 #include <stdexcept>
 
+#include "position_of.hpp"
+
 using namespace rigcal::datasets;
 using Catch::Contains;
 using Catch::WithinAbs;
 using Catch::WithinRel;
+using rigcal::test::position_of;
 
 namespace {
 
@@ -56,8 +59,6 @@ double rms(const std::vector<double>& x, std::size_t begin, std::size_t end) {
   return std::sqrt(squares / static_cast<double>(end - begin));
 }
 
-const Series& position(const Record& record) { return record.channels.at(Channel::position); }
-
 }  // namespace
 
 TEST_CASE("average: mean, sd and count of three numbers", "[datasets]") {
@@ -67,13 +68,13 @@ TEST_CASE("average: mean, sd and count of three numbers", "[datasets]") {
   const Record record = average("c", repeats, {.align = false, .known_sd = {}});
   CHECK(record.condition == "c");
   CHECK(record.repeats == 3);
-  CHECK_THAT(position(record).mean[0], WithinAbs(3.0, 1e-15));
-  CHECK_THAT(position(record).mean[1], WithinAbs(-3.0, 1e-15));
+  CHECK_THAT(position_of(record).mean[0], WithinAbs(3.0, 1e-15));
+  CHECK_THAT(position_of(record).mean[1], WithinAbs(-3.0, 1e-15));
   // Sample variance (4 + 1 + 9) / 2 at both samples.
-  CHECK_THAT(position(record).sd[0], WithinRel(std::sqrt(7.0), 1e-14));
-  CHECK_THAT(position(record).pooled_sd, WithinRel(std::sqrt(7.0), 1e-14));
-  CHECK_THAT(position(record).sd_of_mean, WithinRel(std::sqrt(7.0 / 3.0), 1e-14));
-  CHECK(position(record).count == std::vector<int>{3, 3});
+  CHECK_THAT(position_of(record).sd[0], WithinRel(std::sqrt(7.0), 1e-14));
+  CHECK_THAT(position_of(record).pooled_sd, WithinRel(std::sqrt(7.0), 1e-14));
+  CHECK_THAT(position_of(record).sd_of_mean, WithinRel(std::sqrt(7.0 / 3.0), 1e-14));
+  CHECK(position_of(record).count == std::vector<int>{3, 3});
   // 6 against the mean 1.5 of the others.
   CHECK_THAT(record.repeat_reports[2].deviation, WithinRel(4.5 / std::sqrt(7.0), 1e-14));
 }
@@ -84,9 +85,9 @@ TEST_CASE("average: pooled standard deviation is that of the noise", "[datasets]
     const auto repeats = jittered(sine_response, std::vector<double>(n, 0.0), 0.05);
     const Record record = average("c", repeats, {});
     // 2000 (n - 1) degrees of freedom: 1.6 % at n = 2.
-    CHECK_THAT(position(record).pooled_sd, WithinRel(0.05, 0.05));
-    CHECK_THAT(position(record).sd_of_mean, WithinRel(0.05 / std::sqrt(n), 0.05));
-    CHECK(position(record).repeats == n);
+    CHECK_THAT(position_of(record).pooled_sd, WithinRel(0.05, 0.05));
+    CHECK_THAT(position_of(record).sd_of_mean, WithinRel(0.05 / std::sqrt(n), 0.05));
+    CHECK(position_of(record).repeats == n);
     CHECK(record.warnings.empty());
     for (const auto& report : record.repeat_reports) CHECK_FALSE(report.outlier);
   }
@@ -101,17 +102,17 @@ TEST_CASE("average: jittered repeats keep their amplitude and their noise", "[da
     std::vector<double> truth;
     for (const double t : aligned.time_s) truth.push_back(shape(t));
     const double size = rms(truth, 100, 1900);
-    CHECK_THAT(rms(position(aligned).mean, 100, 1900) / size, WithinAbs(1.0, 0.002));
-    CHECK(rms(position(plain).mean, 100, 1900) / size < 0.9);  // what alignment saves
+    CHECK_THAT(rms(position_of(aligned).mean, 100, 1900) / size, WithinAbs(1.0, 0.002));
+    CHECK(rms(position_of(plain).mean, 100, 1900) / size < 0.9);  // what alignment saves
     // Interpolation takes up to 3 % of the standard deviation of white noise.
-    CHECK_THAT(position(aligned).pooled_sd, WithinRel(0.01, 0.05));
+    CHECK_THAT(position_of(aligned).pooled_sd, WithinRel(0.01, 0.05));
     for (std::size_t r = 0; r < late_s.size(); ++r) {
       CAPTURE(r);
       CHECK_THAT(aligned.repeat_reports[r].offset_s, WithinAbs(late_s[r], 2e-5));  // 0.02 samples
     }
     // The mean offset is nought, so the mean lies on the truth.
     for (std::size_t i = 100; i < 1900; ++i)
-      CHECK_THAT(position(aligned).mean[i], WithinAbs(truth[i], 0.03));
+      CHECK_THAT(position_of(aligned).mean[i], WithinAbs(truth[i], 0.03));
   }
 }
 
@@ -121,7 +122,7 @@ TEST_CASE("average: aligning neither invents nor removes a common delay", "[data
   double worst = 0.0;
   for (std::size_t i = 100; i < 1900; ++i)
     worst = std::max(
-        worst, std::abs(position(record).mean[i] - square_response(record.time_s[i] - 0.005)));
+        worst, std::abs(position_of(record).mean[i] - square_response(record.time_s[i] - 0.005)));
   CHECK(worst < 0.02);
   CHECK_THAT(record.repeat_reports[0].offset_s, WithinAbs(0.002, 2e-5));
   CHECK_THAT(record.repeat_reports[1].offset_s, WithinAbs(-0.002, 2e-5));
@@ -139,19 +140,19 @@ TEST_CASE("average: repeats that start together are not interpolated", "[dataset
   const Record aligned = average("c", repeats, {});
   const Record plain = average("c", repeats, {.align = false, .known_sd = {}});
   REQUIRE(aligned.time_s.size() == plain.time_s.size());
-  CHECK(position(aligned).mean == position(plain).mean);
-  CHECK(position(aligned).count == std::vector<int>(2000, 3));
+  CHECK(position_of(aligned).mean == position_of(plain).mean);
+  CHECK(position_of(aligned).count == std::vector<int>(2000, 3));
 }
 
 TEST_CASE("average: ends that not every repeat covers count fewer", "[datasets]") {
   const Record record = average("c", jittered(sine_response, {0.004, -0.001, -0.003}, 0.001), {});
   REQUIRE(record.time_s.size() == 2000);
-  CHECK(position(record).count.front() == 1);  // only the late one has the start
-  CHECK(position(record).count[5] == 3);
-  CHECK(position(record).count[1000] == 3);
-  CHECK(position(record).count.back() == 2);
-  CHECK(std::isnan(position(record).sd.front()));
-  CHECK_THAT(position(record).pooled_sd, WithinRel(0.001, 0.06));
+  CHECK(position_of(record).count.front() == 1);  // only the late one has the start
+  CHECK(position_of(record).count[5] == 3);
+  CHECK(position_of(record).count[1000] == 3);
+  CHECK(position_of(record).count.back() == 2);
+  CHECK(std::isnan(position_of(record).sd.front()));
+  CHECK_THAT(position_of(record).pooled_sd, WithinRel(0.001, 0.06));
 }
 
 TEST_CASE("average: an outlier is named and stays in the mean", "[datasets]") {
@@ -164,7 +165,8 @@ TEST_CASE("average: an outlier is named and stays in the mean", "[datasets]") {
     REQUIRE(record.warnings.size() == 1);
     CHECK_THAT(record.warnings[0], Contains("position: r1.csv") && Contains("stays in the mean"));
     const double mean =
-        std::accumulate(position(record).mean.begin(), position(record).mean.end(), 0.0) / 2000.0;
+        std::accumulate(position_of(record).mean.begin(), position_of(record).mean.end(), 0.0) /
+        2000.0;
     CHECK_THAT(mean, WithinAbs(0.2 / n, 0.002));
   }
 }
@@ -182,19 +184,19 @@ TEST_CASE("average: of two repeats that disagree neither is named the wrong one"
 TEST_CASE("average: a single repeat has no false standard deviation", "[datasets]") {
   const auto repeats = jittered(sine_response, {0.0}, 0.01);
   const Record unknown = average("c", repeats, {});
-  CHECK(position(unknown).sd.empty());
-  CHECK(std::isnan(position(unknown).pooled_sd));
-  CHECK(std::isnan(position(unknown).sd_of_mean));
-  CHECK(position(unknown).mean == repeats[0].values.at(Channel::position));
+  CHECK(position_of(unknown).sd.empty());
+  CHECK(std::isnan(position_of(unknown).pooled_sd));
+  CHECK(std::isnan(position_of(unknown).sd_of_mean));
+  CHECK(position_of(unknown).mean == repeats[0].values.at(Channel::position));
   REQUIRE(unknown.warnings.size() == 1);
 
   AverageOptions options;
   options.known_sd[Channel::position] = 0.02;
   options.repeats_averaged = 5;  // sd is that of the samples in the file
   const Record known = average("c", repeats, options);
-  CHECK(position(known).pooled_sd == 0.02);
-  CHECK(position(known).sd_of_mean == 0.02);
-  CHECK(position(known).repeats == 5);
+  CHECK(position_of(known).pooled_sd == 0.02);
+  CHECK(position_of(known).sd_of_mean == 0.02);
+  CHECK(position_of(known).repeats == 5);
   CHECK(known.repeats == 5);
   CHECK(known.warnings.empty());
 }
@@ -202,7 +204,7 @@ TEST_CASE("average: a single repeat has no false standard deviation", "[datasets
 TEST_CASE("average: identical repeats tell no noise", "[datasets]") {
   const auto one = jittered(sine_response, {0.0}, 0.0);
   const Record record = average("c", {one[0], one[0]}, {});
-  CHECK(std::isnan(position(record).sd_of_mean));
+  CHECK(std::isnan(position_of(record).sd_of_mean));
   CHECK_THAT(record.warnings.at(0), Contains("identical"));
 }
 
@@ -212,7 +214,7 @@ TEST_CASE("average: channels of different repeats are averaged over their carrie
   repeats[1].values[Channel::pressure_a] = std::vector<double>(2000, 3e5);
   repeats[2].values[Channel::pressure_b] = std::vector<double>(2000, 7e5);
   const Record record = average("c", repeats, {});
-  CHECK(position(record).repeats == 3);
+  CHECK(position_of(record).repeats == 3);
   CHECK(record.channels.at(Channel::pressure_a).repeats == 2);
   CHECK(record.channels.at(Channel::pressure_a).mean[5] == 2e5);
   CHECK(record.channels.at(Channel::pressure_b).repeats == 1);
@@ -242,10 +244,10 @@ TEST_CASE("average: time columns that start apart are put on the first", "[datas
     second.values[Channel::position][i] = sine_response(second.time_s[i]);
   }
   const Record record = average("c", repeats, {.align = false, .known_sd = {}});
-  CHECK(position(record).count.front() == 1);
-  CHECK(position(record).count[11] == 2);
+  CHECK(position_of(record).count.front() == 1);
+  CHECK(position_of(record).count[11] == 2);
   for (std::size_t i = 30; i < 2000; ++i)
-    CHECK_THAT(position(record).mean[i], WithinAbs(sine_response(record.time_s[i]), 2e-4));
+    CHECK_THAT(position_of(record).mean[i], WithinAbs(sine_response(record.time_s[i]), 2e-4));
 }
 
 TEST_CASE("average: a short repeat is used as far as it goes and named", "[datasets]") {
@@ -253,8 +255,8 @@ TEST_CASE("average: a short repeat is used as far as it goes and named", "[datas
   repeats[2].time_s.resize(1500);
   repeats[2].values[Channel::position].resize(1500);
   const Record record = average("c", repeats, {});
-  CHECK(position(record).count[1400] == 3);
-  CHECK(position(record).count[1600] == 2);
+  CHECK(position_of(record).count[1400] == 3);
+  CHECK(position_of(record).count[1600] == 2);
   REQUIRE(record.warnings.size() == 1);
   CHECK_THAT(record.warnings[0], Contains("r2.csv covers 75 %"));
 }

@@ -12,12 +12,14 @@
 #include "common/file.hpp"
 #include "datasets/load_record.hpp"
 #include "datasets/synthetic_repeat.hpp"
+#include "position_of.hpp"
 
 using namespace rigcal::datasets;
 using Catch::Contains;
 using Catch::StartsWith;
 using Catch::WithinAbs;
 using Catch::WithinRel;
+using rigcal::test::position_of;
 namespace fs = std::filesystem;
 
 namespace {
@@ -100,8 +102,6 @@ Campaign campaign_in(const Folder& folder, const std::string& synthetic) {
   return load_campaign(folder.path() / "in.toml");
 }
 
-const Series& position(const Record& record) { return record.channels.at(Channel::position); }
-
 constexpr const char* kQuiet = "repeats = 1\n";
 
 }  // namespace
@@ -170,7 +170,7 @@ TEST_CASE("synthesize: a record read back is the simulation in SI", "[datasets]"
     // Ten digits of about 3 mm and of some bar.
     for (Eigen::Index i = 0; i < 501; ++i) {
       const auto at = static_cast<std::size_t>(i);
-      CHECK_THAT(position(record).mean[at], WithinAbs(run.outputs(i, 0), 1e-11));
+      CHECK_THAT(position_of(record).mean[at], WithinAbs(run.outputs(i, 0), 1e-11));
       CHECK_THAT(record.channels.at(Channel::load_pressure).mean[at],
                  WithinAbs(run.outputs(i, 1), 1e-2));
     }
@@ -192,9 +192,9 @@ ar1_coefficient = 0.5
   const Campaign made = load_campaign(report.campaign_file);
   const Record record = load_record(made, made.conditions[0]);
   // 3500 degrees of freedom, somewhat fewer for AR(1).
-  CHECK_THAT(position(record).pooled_sd, WithinRel(0.02e-3, 0.05));
+  CHECK_THAT(position_of(record).pooled_sd, WithinRel(0.02e-3, 0.05));
   CHECK_THAT(record.channels.at(Channel::load_pressure).pooled_sd, WithinRel(0.5e5, 0.07));
-  CHECK(position(record).repeats == 8);
+  CHECK(position_of(record).repeats == 8);
 }
 
 TEST_CASE("synthesize: channels and repeats have streams of their own", "[datasets]") {
@@ -223,7 +223,7 @@ TEST_CASE("synthesize: quantised samples lie on the converter's steps", "[datase
                  folder.path() / "out", 1);
   const Campaign made = load_campaign(report.campaign_file);
   const Record record = load_record(made, made.conditions[0]);
-  for (const double x : position(record).mean) {
+  for (const double x : position_of(record).mean) {
     const double steps = x / 0.05e-3;
     CHECK_THAT(steps, WithinAbs(std::round(steps), 1e-6));
   }
@@ -239,7 +239,7 @@ TEST_CASE("synthesize: drift grows to its size at the end", "[datasets]") {
   const Record plain = make(kQuiet, "plain");
   const Record drifting = make("repeats = 1\ndrift = { position = \"0.3 mm\" }\n", "drift");
   const auto difference = [&](std::size_t i) {
-    return std::abs(position(drifting).mean[i] - position(plain).mean[i]);
+    return std::abs(position_of(drifting).mean[i] - position_of(plain).mean[i]);
   };
   CHECK_THAT(difference(0), WithinAbs(0.0, 1e-11));
   CHECK_THAT(difference(250), WithinAbs(0.15e-3, 1e-11));
@@ -279,7 +279,7 @@ TEST_CASE("synthesize: supply ripple and variation make repeats differ", "[datas
     const auto report = synthesize(campaign_in(folder, settings), 2, folder.path() / "out", 1);
     const Campaign made = load_campaign(report.campaign_file);
     const Record record = load_record(made, made.conditions[0]);
-    CHECK(position(record).pooled_sd > 1e-7);
+    CHECK(position_of(record).pooled_sd > 1e-7);
   }
   const auto truth = nlohmann::json::parse(text_of(folder.path() / "out/truth.json"));
   const auto& repeats = truth["conditions"][0]["repeats"];
@@ -332,8 +332,8 @@ TEST_CASE("synthesize: true values move the rig, the campaign keeps its starts",
   const Campaign truth = make("repeats = 1\nparameters = { mass = \"60 kg\" }\n", "truth");
   const int mass = rigcal::model::parameter_index(truth.rig.plant, "mass");
   CHECK(truth.setting(mass)->value == 15.0);
-  CHECK(position(load_record(starts, starts.conditions[0])).mean !=
-        position(load_record(truth, truth.conditions[0])).mean);
+  CHECK(position_of(load_record(starts, starts.conditions[0])).mean !=
+        position_of(load_record(truth, truth.conditions[0])).mean);
 }
 
 TEST_CASE("synthesize: what is missing is named", "[datasets]") {
@@ -375,5 +375,5 @@ TEST_CASE("synthesize: a recorded drive is driven again", "[datasets]") {
   const auto repeated = load_record(made, made.conditions[0]);
   // A held square reference is the square itself; edges lie on samples up to rounding.
   for (std::size_t i = 0; i < original.time_s.size(); ++i)
-    CHECK_THAT(position(repeated).mean[i], WithinAbs(position(original).mean[i], 1e-8));
+    CHECK_THAT(position_of(repeated).mean[i], WithinAbs(position_of(original).mean[i], 1e-8));
 }

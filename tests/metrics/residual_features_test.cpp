@@ -12,16 +12,16 @@ using rigcal::metrics::residual_features;
 
 namespace {
 
-constexpr double kRounding = 1e-14;  // relative, a few units in the last place
+constexpr double kFeatureRounding = 1e-14;  // relative, a few units in the last place
 
 }  // namespace
 
 TEST_CASE("residual_features: by hand", "[metrics]") {
   // |r| = 1, 2, 2, 3: mean 2, mean square 18/4, variance 1/2.
   const auto f = residual_features(std::vector{1.0, -2.0, 2.0, -3.0});
-  CHECK_THAT(f.mean, WithinRel(2.0, kRounding));
-  CHECK_THAT(f.rms, WithinRel(std::sqrt(4.5), kRounding));
-  CHECK_THAT(f.std, WithinRel(std::sqrt(0.5), kRounding));
+  CHECK_THAT(f.mean, WithinRel(2.0, kFeatureRounding));
+  CHECK_THAT(f.rms, WithinRel(std::sqrt(4.5), kFeatureRounding));
+  CHECK_THAT(f.std, WithinRel(std::sqrt(0.5), kFeatureRounding));
 }
 
 TEST_CASE("residual_features: a sine over whole periods has 2/pi, 1/sqrt(2) and their difference",
@@ -47,9 +47,9 @@ TEST_CASE("residual_features: sign does not count, scale does, and a constant ha
   for (const double value : r) other.push_back(-1e6 * value);
   const auto f = residual_features(r);
   const auto g = residual_features(other);
-  CHECK_THAT(g.mean, WithinRel(1e6 * f.mean, kRounding));
-  CHECK_THAT(g.rms, WithinRel(1e6 * f.rms, kRounding));
-  CHECK_THAT(g.std, WithinRel(1e6 * f.std, kRounding));
+  CHECK_THAT(g.mean, WithinRel(1e6 * f.mean, kFeatureRounding));
+  CHECK_THAT(g.rms, WithinRel(1e6 * f.rms, kFeatureRounding));
+  CHECK_THAT(g.std, WithinRel(1e6 * f.std, kFeatureRounding));
   CHECK_THAT(f.std * f.std, WithinRel(f.rms * f.rms - f.mean * f.mean, 1e-12));
 
   const auto constant = residual_features(std::vector{0.1, -0.1, 0.1});

@@ -2,7 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
+
+#include "rig.hpp"
 
 using namespace rigcal::model;
 using Catch::WithinRel;
@@ -54,8 +55,6 @@ TEST_CASE("error_norm: the worst of state and sensitivities rules", "[model]") {
 }
 
 TEST_CASE("error_norm: what is not a number is not accepted", "[model]") {
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double bad : {kNaN, kInfinity}) {
     CHECK_FALSE(std::isfinite(norm()(state(bad, 0.0, 0.0, 0.0), State::Zero())));
     CHECK_FALSE(std::isfinite(norm()(state(0.0, 0.0, 0.0, bad), State::Zero())));

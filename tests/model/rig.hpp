@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
+#include <limits>
+#include <numbers>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -11,6 +13,10 @@
 #include "model/simulate.hpp"
 
 namespace rigcal::model {
+
+inline constexpr double kPi = std::numbers::pi;
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The rig that reproduces the paper's tables, its internal leak at a medium opening.
 inline ParameterValues paper_rig() {

@@ -2,19 +2,15 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <limits>
-#include <numbers>
 #include <stdexcept>
+
+#include "rig.hpp"
 
 using namespace rigcal::model;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 struct Named {
   const char* name;

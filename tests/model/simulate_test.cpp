@@ -4,8 +4,6 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <numbers>
 #include <stdexcept>
 
 #include "rig.hpp"
@@ -16,10 +14,6 @@ using Catch::WithinAbs;
 using Catch::WithinRel;
 
 namespace {
-
-constexpr double kPi = std::numbers::pi;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Experiment paper(const Signal& drive, double seconds = 1.0) {
   Experiment e;
@@ -36,7 +30,7 @@ Experiment open_loop(const Signal& command_v, double seconds = 1.0) {
 }
 
 /// 40 samples in a second; `scale` -1 mirrors them.
-Signal recorded(bool straight, double scale = 1.0) {
+Signal forty_samples(bool straight, double scale = 1.0) {
   std::vector<double> value;
   value.reserve(40);
   for (int i = 0; i < 40; ++i)
@@ -64,8 +58,8 @@ TEST_CASE("simulate: two methods agree on every waveform", "[model]") {
            Row{"square", Signal::square(0.005, 5.0)},
            Row{"chirp", Signal::chirp(0.01, 0.5, 10.0, 0.8, false)},
            Row{"logarithmic chirp", Signal::chirp(0.01, 0.5, 10.0, 0.8, true)},
-           Row{"held", recorded(false)},
-           Row{"linear", recorded(true)},
+           Row{"held", forty_samples(false)},
+           Row{"linear", forty_samples(true)},
        }) {
     CAPTURE(row.name);
     Experiment e = paper(row.drive);
@@ -162,10 +156,10 @@ TEST_CASE("simulate: the mirrored reference gives the mirrored run", "[model]") 
     if (std::string(term.name) == "valve offset" || std::string(term.name) == "external force") {
       continue;  // these two have a side
     }
-    Experiment e = with(paper(recorded(false)), term.values);
+    Experiment e = with(paper(forty_samples(false)), term.values);
     e.outputs = {Output::position, Output::load_pressure, Output::servo_flow, Output::command};
     const Simulation run = ok(e);
-    e.inputs.drive = recorded(false, -1.0);
+    e.inputs.drive = forty_samples(false, -1.0);
     CHECK(run.outputs == -ok(e).outputs);  // rounding is symmetric too
   }
 }

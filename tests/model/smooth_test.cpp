@@ -8,21 +8,22 @@ using Catch::WithinRel;
 
 namespace {
 using D = Dual<double, 1>;
-constexpr double kEps = 100.0;
+constexpr double kRootEps = 100.0;
+
 }  // namespace
 
 TEST_CASE("signed_sqrt: odd, straight at zero, a root far away", "[model]") {
   for (const double p : {0.1, 30.0, 100.0, 5e3, 6.2e6}) {
     CAPTURE(p);
-    CHECK(signed_sqrt(-p, kEps) == -signed_sqrt(p, kEps));
+    CHECK(signed_sqrt(-p, kRootEps) == -signed_sqrt(p, kRootEps));
     // (1 + (eps/P)^2)^(-1/4) expanded: the relative distance to a root is (eps/P)^2 / 4 at most.
-    const double below = 0.25 * (kEps / p) * (kEps / p);
-    CHECK(signed_sqrt(p, kEps) <= std::sqrt(p));
-    CHECK(signed_sqrt(p, kEps) >= std::sqrt(p) * (1.0 - below - 1e-15));
+    const double below = 0.25 * (kRootEps / p) * (kRootEps / p);
+    CHECK(signed_sqrt(p, kRootEps) <= std::sqrt(p));
+    CHECK(signed_sqrt(p, kRootEps) >= std::sqrt(p) * (1.0 - below - 1e-15));
   }
-  CHECK(signed_sqrt(0.0, kEps) == 0.0);
-  CHECK_THAT(signed_sqrt(D::variable(0.0, 0), kEps).derivative[0],
-             WithinRel(1.0 / std::sqrt(kEps), 1e-15));
+  CHECK(signed_sqrt(0.0, kRootEps) == 0.0);
+  CHECK_THAT(signed_sqrt(D::variable(0.0, 0), kRootEps).derivative[0],
+             WithinRel(1.0 / std::sqrt(kRootEps), 1e-15));
 }
 
 TEST_CASE("smooth_sign: odd, slope 1 / width at zero, 1 far away", "[model]") {
