@@ -10,7 +10,7 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr std::size_t kFewestSamples = 16;
+constexpr std::size_t kFewestForSpikes = 16;
 constexpr std::size_t kLongestRun = 2;
 constexpr double kDeviations = 10.0;
 constexpr double kSteps = 4.0;              // of neighbours
@@ -58,7 +58,7 @@ double limit_of(const std::vector<double>& x) {
 
 std::vector<Spike> find_spikes(const std::vector<double>& x) {
   std::vector<Spike> spikes;
-  if (x.size() < kFewestSamples) return spikes;
+  if (x.size() < kFewestForSpikes) return spikes;
   const double limit = limit_of(x);
   if (!(limit > 0.0)) return spikes;
   for (std::size_t i = 2; i + 3 < x.size(); ++i) {

@@ -12,13 +12,13 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kHysteresis = 0.2;      // of the amplitude
-constexpr double kSteadyPeriods = 0.03;  // largest relative distance from their mean
-constexpr double kSineVariance = 0.98;   // explained by the fundamental
-constexpr double kSquareShare = 0.9;     // of samples at the two levels
-constexpr double kChirpRatio = 1.3;      // of the longest period to the shortest
-constexpr double kLeastStep = 0.1;       // of the amplitude, between two samples
-constexpr std::size_t kFewestHeld = 50;  // samples per step, on average
+constexpr double kHysteresis = 0.2;         // of the amplitude
+constexpr double kSteadyPeriods = 0.03;     // largest relative distance from their mean
+constexpr double kSineVariance = 0.98;      // explained by the fundamental
+constexpr double kSquareShare = 0.9;        // of samples at the two levels
+constexpr double kChirpRatio = 1.3;         // of the longest period to the shortest
+constexpr double kLeastStep = 0.1;          // of the amplitude, between two samples
+constexpr std::size_t kFewestPlateau = 50;  // samples per step, on average
 constexpr double kPhaseTolerance_rad = 0.1;
 constexpr double kOffsetTolerance = 0.02;  // of the amplitude
 
@@ -95,7 +95,7 @@ std::string steps_text(std::span<const double> signal, const Level& level) {
   std::size_t steps = 0;
   for (std::size_t i = 1; i < signal.size(); ++i)
     steps += std::abs(signal[i] - signal[i - 1]) > kLeastStep * level.amplitude ? 1 : 0;
-  const bool held = steps > 0 && steps <= signal.size() / kFewestHeld;
+  const bool held = steps > 0 && steps <= signal.size() / kFewestPlateau;
   return held ? fmt::format("{} step{}", steps, steps == 1 ? "" : "s")
               : std::string("no waveform that rigcal knows");
 }

@@ -15,11 +15,11 @@ using Catch::WithinRel;
 
 namespace {
 
-constexpr double kRate_hz = 500.0;
+constexpr double kGuessRate_hz = 500.0;
 
 std::vector<double> times(double duration_s) {
   std::vector<double> t;
-  for (int i = 0; i <= duration_s * kRate_hz; ++i) t.push_back(i / kRate_hz);
+  for (int i = 0; i <= duration_s * kGuessRate_hz; ++i) t.push_back(i / kGuessRate_hz);
   return t;
 }
 
