@@ -23,7 +23,7 @@ namespace {
 constexpr int kMostIterations = 100;
 constexpr int kMostCalls = 10;
 /// All but a full Gauss-Newton step would leave the box at once from a far start.
-constexpr double kFirstTrustRadius = 10.0;
+constexpr double kTablesTrustRadius = 10.0;
 constexpr double kRankThreshold = 1e-6;  ///< of the singular values, columns scaled to length 1
 
 /// One unknown between its bounds, as z in [0, 1]: by its logarithm where that exists.
@@ -145,7 +145,7 @@ Descent descend(TableResiduals& residuals, const std::vector<Axis>& axes, Tables
     solver.linear_solver_type = ceres::DENSE_QR;
     solver.logging_type = ceres::SILENT;
     solver.max_num_iterations = kMostIterations - descent.iterations;
-    solver.initial_trust_region_radius = kFirstTrustRadius;
+    solver.initial_trust_region_radius = kTablesTrustRadius;
     // The flows themselves are good to 2e-4 only.
     solver.function_tolerance = 1e-6;
     solver.parameter_tolerance = 1e-6;

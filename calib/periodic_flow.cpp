@@ -15,7 +15,7 @@ namespace {
 
 using model::Output;
 constexpr std::array kOutputs{Output::servo_flow, Output::leakage_flow, Output::command};
-enum Column { kServo, kLeak, kCommand };
+enum FlowColumn { kServo, kLeak, kCommand };
 
 /// Of a mean flow that is as good as none, so that a relative change means something.
 constexpr double kNoFlow = 1e-9;
@@ -56,11 +56,11 @@ struct Run {
     const std::size_t n = grid.offset_s.size();
     return {matrix.col(column).data() + static_cast<std::size_t>(matrix.rows()) - n, n};
   }
-  double mean(Column column, std::size_t stride = 1) const {
+  double mean(FlowColumn column, std::size_t stride = 1) const {
     return mean_absolute(grid, last(simulation.outputs, column), stride);
   }
   /// Of period n/4 (0) or n/2 (1).
-  double early_mean(Column column, std::size_t which) const {
+  double early_mean(FlowColumn column, std::size_t which) const {
     const std::size_t n = early_grid.offset_s.size();
     const double* first = simulation.outputs.col(column).data() +
                           static_cast<std::size_t>(simulation.outputs.rows()) -
@@ -95,7 +95,7 @@ Run make_run(const PeriodicDrive& drive, const model::ParameterValues& values,
 double sampling_error(const Run& run) {
   const double servo = run.mean(kServo);
   double worst = 0.0;
-  for (const Column column : {kServo, kLeak}) {
+  for (const FlowColumn column : {kServo, kLeak}) {
     const double fine = run.mean(column);
     const double coarse = run.mean(column, 2);
     worst = std::max(worst, std::abs(fine - coarse) / (3.0 * std::max(fine, kNoFlow * servo)));
@@ -105,7 +105,7 @@ double sampling_error(const Run& run) {
 
 /// What is left of the transient of one flow, relative to it: see the header. `noise` is what
 /// the simulation's own tolerance makes of two equal periods.
-double transient_left(const Run& run, Column column, double noise) {
+double transient_left(const Run& run, FlowColumn column, double noise) {
   const double last = run.mean(column, kEarlyStride);
   const double scale = std::max(last, kNoFlow * run.mean(kServo, kEarlyStride));
   const double early = std::abs(run.early_mean(column, 1) - run.early_mean(column, 0)) / scale;
@@ -131,7 +131,7 @@ double saturated_part(const Run& run, const model::ParameterValues& values) {
   return at_limit / offset.back();
 }
 
-Eigen::VectorXd slopes(const Run& run, Column column) {
+Eigen::VectorXd slopes(const Run& run, FlowColumn column) {
   const auto& matrix = run.simulation.sensitivities[column];
   const auto y = run.last(run.simulation.outputs, column);
   Eigen::VectorXd result(matrix.cols());

@@ -15,7 +15,7 @@ namespace {
 using datasets::Feature;
 
 constexpr std::array kPosition{model::Output::position};
-constexpr int kMorePeriods = 2;  ///< for the position, which settles more slowly than the flows
+constexpr int kSettlingPeriods = 2;  ///< for the position, which settles more slowly than the flows
 
 /// A positive quantity and its derivatives by the free parameters of the rig.
 struct Quantity {
@@ -98,7 +98,7 @@ TableResiduals::Outcome TableResiduals::simulate(Run& run, const model::Paramete
   run.options.intervals = outcome.flow.intervals;
   if (!run.with_series) return outcome;
   outcome.series =
-      periodic_series(run.drive, at, free, kPosition, kMorePeriods * outcome.flow.periods,
+      periodic_series(run.drive, at, free, kPosition, kSettlingPeriods * outcome.flow.periods,
                       options_.series_samples, options_.periodic.simulation);
   if (!outcome.series.run.ok()) outcome.flow.failure = outcome.series.run.reason;
   return outcome;

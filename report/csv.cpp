@@ -6,32 +6,10 @@
 #include <optional>
 
 #include "metrics/metric_table.hpp"
+#include "report/csv_fields.hpp"
 
 namespace rigcal::report {
 namespace {
-
-/// Shortest text that reads back to the same bits; empty for what is not a number.
-std::string csv_number(double value) {
-  return std::isfinite(value) ? fmt::format("{}", value) : std::string();
-}
-
-std::string csv_number(const std::optional<double>& value) {
-  return value ? csv_number(*value) : std::string();
-}
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + "\"";
-}
-
-std::string row(const std::vector<std::string>& fields) {
-  return fmt::format("{}\n", fmt::join(fields, ","));
-}
 
 /// A text as a comment must stay in one line.
 std::string comment(std::string text) {
@@ -83,7 +61,7 @@ std::string scorecard_csv(const Result& result) {
         "phase_deg", "delay_s", "problem"}) {
     titles.emplace_back(title);
   }
-  std::string text = status_line(result.fit) + row(titles);
+  std::string text = status_line(result.fit) + csv_row(titles);
   for (const calib::ConditionScore& score : result.fit.conditions) {
     const datasets::Condition* condition = result.campaign.find(score.id);
     if (condition == nullptr) continue;
@@ -93,7 +71,7 @@ std::string scorecard_csv(const Result& result) {
         std::string(to_string(condition->waveform)),
         csv_number(condition->frequency_hz),
         csv_number(condition->amplitude),
-        quoted(condition->leak_level.value_or("")),
+        csv_text(condition->leak_level.value_or("")),
         fmt::format("{}", score.samples),
         score.verdict ? std::string(to_string(*score.verdict)) : std::string()};
     const auto add = [&](const std::string& channel, const std::string& unit,
@@ -102,8 +80,8 @@ std::string scorecard_csv(const Result& result) {
       fields.push_back(channel);
       fields.push_back(unit);
       for (std::string& field : score_fields(values)) fields.push_back(std::move(field));
-      fields.push_back(quoted(problem));
-      text += row(fields);
+      fields.push_back(csv_text(problem));
+      text += csv_row(fields);
     };
     if (score.channels.empty()) add("", "", {}, score.failure);
     for (const calib::ChannelScore& channel : score.channels) {
@@ -125,7 +103,7 @@ std::string residuals_csv(const Result& result, const calib::ConditionScore& sco
     }
   }
   titles.emplace_back("in_window");
-  text += row(titles);
+  text += csv_row(titles);
   for (std::size_t i = 0; i < score.time_s.size(); ++i) {
     std::vector<std::string> fields{csv_number(score.time_s[i])};
     for (const auto& [channel, series] : score.series) {
@@ -138,7 +116,7 @@ std::string residuals_csv(const Result& result, const calib::ConditionScore& sco
       fields.push_back(csv_number(y - s));
     }
     fields.emplace_back(score.in_window.empty() || score.in_window[i] ? "1" : "0");
-    text += row(fields);
+    text += csv_row(fields);
   }
   return text;
 }
@@ -150,7 +128,7 @@ std::string averaged_csv(const datasets::Record& record) {
       titles.push_back(fmt::format("{}_{}", info(channel).name, what));
     }
   }
-  std::string text = row(titles);
+  std::string text = csv_row(titles);
   for (std::size_t i = 0; i < record.time_s.size(); ++i) {
     std::vector<std::string> fields{csv_number(record.time_s[i])};
     for (const auto& [channel, series] : record.channels) {
@@ -158,16 +136,16 @@ std::string averaged_csv(const datasets::Record& record) {
       fields.push_back(series.sd.empty() ? std::string() : csv_number(series.sd[i]));
       fields.push_back(series.count.empty() ? std::string() : fmt::format("{}", series.count[i]));
     }
-    text += row(fields);
+    text += csv_row(fields);
   }
   return text;
 }
 
 std::string repeatability_csv(const std::vector<datasets::Record>& records) {
   std::string text =
-      row({"condition", "channel", "unit", "repeats", "pooled_sd", "sd_of_mean", "noise_floor_rho2",
-           "noise_floor_ccc", "noise_floor_absolute_error_percent", "offset_range_s",
-           "repeat_offsets_s", "repeat_deviations", "outliers"});
+      csv_row({"condition", "channel", "unit", "repeats", "pooled_sd", "sd_of_mean",
+               "noise_floor_rho2", "noise_floor_ccc", "noise_floor_absolute_error_percent",
+               "offset_range_s", "repeat_offsets_s", "repeat_deviations", "outliers"});
   for (const datasets::Record& record : records) {
     std::vector<std::string> offsets;
     std::vector<std::string> deviations;
@@ -178,14 +156,14 @@ std::string repeatability_csv(const std::vector<datasets::Record>& records) {
     for (const datasets::Repeatability& r : datasets::repeatability(record)) {
       const datasets::ChannelInfo& about = info(r.channel);
       const auto& floor = r.noise_floor;
-      text += row({record.condition, std::string(about.key), std::string(about.unit),
-                   fmt::format("{}", r.repeats), csv_number(r.pooled_sd), csv_number(r.sd_of_mean),
-                   floor ? csv_number(floor->rho2) : "", floor ? csv_number(floor->ccc) : "",
-                   floor ? csv_number(floor->absolute_error_percent) : "",
-                   csv_number(datasets::offset_range_s(record)),
-                   fmt::format("{}", fmt::join(offsets, " ")),
-                   fmt::format("{}", fmt::join(deviations, " ")),
-                   quoted(fmt::format("{}", fmt::join(datasets::outliers(record), "; ")))});
+      text += csv_row(
+          {record.condition, std::string(about.key), std::string(about.unit),
+           fmt::format("{}", r.repeats), csv_number(r.pooled_sd), csv_number(r.sd_of_mean),
+           floor ? csv_number(floor->rho2) : "", floor ? csv_number(floor->ccc) : "",
+           floor ? csv_number(floor->absolute_error_percent) : "",
+           csv_number(datasets::offset_range_s(record)), fmt::format("{}", fmt::join(offsets, " ")),
+           fmt::format("{}", fmt::join(deviations, " ")),
+           csv_text(fmt::format("{}", fmt::join(datasets::outliers(record), "; ")))});
     }
   }
   return text;
@@ -205,7 +183,7 @@ std::string simulation_csv(std::span<const double> time_s, std::span<const doubl
   std::vector<std::string> titles{"time_s"};
   if (!reference_m.empty()) titles.emplace_back("reference_m");
   for (const model::Output output : outputs) titles.emplace_back(output_name(output));
-  text += row(titles);
+  text += csv_row(titles);
   if (!simulation.ok()) return text;
   for (std::size_t i = 0; i < time_s.size(); ++i) {
     std::vector<std::string> fields{csv_number(time_s[i])};
@@ -214,7 +192,7 @@ std::string simulation_csv(std::span<const double> time_s, std::span<const doubl
       fields.push_back(csv_number(
           simulation.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k))));
     }
-    text += row(fields);
+    text += csv_row(fields);
   }
   return text;
 }

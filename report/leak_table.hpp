@@ -10,6 +10,7 @@
 
 namespace rigcal::report {
 
+inline constexpr double kLitrePerMinute = 1e-3 / 60.0;  ///< [m3/s]
 inline constexpr const char* kLeakTableSchema = "rigcal.leak_table/1";
 
 /// A leak table with all that its files are made from. Borrows everything.

@@ -5,29 +5,13 @@
 #include <cmath>
 #include <optional>
 
+#include "report/csv_fields.hpp"
 #include "report/leak_table.hpp"
 
 namespace rigcal::report {
 namespace {
 
 using datasets::Feature;
-
-constexpr double kLitrePerMinute = 1e-3 / 60.0;  // [m3/s]
-
-std::string field(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? fmt::format("{}", *value) : std::string();
-}
-
-std::string quoted(std::string text) {
-  for (std::size_t at = text.find('"'); at != std::string::npos; at = text.find('"', at + 2)) {
-    text.insert(at, "\"");
-  }
-  return "\"" + text + "\"";
-}
-
-std::string row(const std::vector<std::string>& fields) {
-  return fmt::format("{}\n", fmt::join(fields, ","));
-}
 
 template <typename Value>
 std::string list(const std::vector<calib::LeakRoot>& roots, Value value) {
@@ -41,45 +25,45 @@ std::string list(const std::vector<calib::LeakRoot>& roots, Value value) {
 std::string leak_table_csv(const LeakTableResult& result) {
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
   std::string text =
-      row({"waveform", "frequency_hz", closed_loop ? "amplitude_m" : "amplitude_v",
-           "target_percent", "coefficients", "log_slopes", "published_coefficient",
-           "relative_error_percent", "share_at_published_percent", "share_by_rounding_low_percent",
-           "share_by_rounding_high_percent", "grade", "note"});
+      csv_row({"waveform", "frequency_hz", closed_loop ? "amplitude_m" : "amplitude_v",
+               "target_percent", "coefficients", "log_slopes", "published_coefficient",
+               "relative_error_percent", "share_at_published_percent",
+               "share_by_rounding_low_percent", "share_by_rounding_high_percent", "grade", "note"});
   for (const calib::LeakEntry& entry : result.table.entries) {
     const auto& c = entry.comparison;
-    const auto of = [&](auto member) { return c ? field((*c).*member) : std::string(); };
-    text += row(
-        {std::string(to_string(entry.signal.waveform)), field(entry.signal.frequency_hz),
-         field(entry.signal.amplitude), field(entry.target_percent),
+    const auto of = [&](auto member) { return c ? csv_number((*c).*member) : std::string(); };
+    text += csv_row(
+        {std::string(to_string(entry.signal.waveform)), csv_number(entry.signal.frequency_hz),
+         csv_number(entry.signal.amplitude), csv_number(entry.target_percent),
          list(entry.roots, &calib::LeakRoot::coefficient),
          list(entry.roots, &calib::LeakRoot::log_slope), of(&calib::LeakComparison::published),
          of(&calib::LeakComparison::relative_error_percent),
          of(&calib::LeakComparison::share_percent), of(&calib::LeakComparison::share_low_percent),
          of(&calib::LeakComparison::share_high_percent), std::string(to_string(entry.grade)),
-         quoted(entry.note)});
+         csv_text(entry.note)});
   }
   return text;
 }
 
 std::string features_csv(const LeakTableResult& result) {
   std::string text =
-      row({"level", "coefficient", "servo_flow_l_per_min", "published_servo_flow_l_per_min",
-           "leak_flow_l_per_min", "published_leak_flow_l_per_min", "mean", "published_mean", "rms",
-           "published_rms", "std", "published_std"});
+      csv_row({"level", "coefficient", "servo_flow_l_per_min", "published_servo_flow_l_per_min",
+               "leak_flow_l_per_min", "published_leak_flow_l_per_min", "mean", "published_mean",
+               "rms", "published_rms", "std", "published_std"});
   for (const calib::FeatureRow& each : result.table.features) {
     const auto printed = [&](Feature feature, double unit) -> std::optional<double> {
       const auto found = each.printed.printed.find(feature);
       if (found == each.printed.printed.end()) return std::nullopt;
       return found->second / unit;
     };
-    text += row({quoted(each.printed.level), field(each.printed.coefficient),
-                 field(each.servo_flow_m3_per_s / kLitrePerMinute),
-                 field(printed(Feature::servo_flow, kLitrePerMinute)),
-                 field(each.leak_flow_m3_per_s / kLitrePerMinute),
-                 field(printed(Feature::leak_flow, kLitrePerMinute)), field(each.features.mean),
-                 field(printed(Feature::mean, 1.0)), field(each.features.rms),
-                 field(printed(Feature::rms, 1.0)), field(each.features.std),
-                 field(printed(Feature::std, 1.0))});
+    text += csv_row({csv_text(each.printed.level), csv_number(each.printed.coefficient),
+                     csv_number(each.servo_flow_m3_per_s / kLitrePerMinute),
+                     csv_number(printed(Feature::servo_flow, kLitrePerMinute)),
+                     csv_number(each.leak_flow_m3_per_s / kLitrePerMinute),
+                     csv_number(printed(Feature::leak_flow, kLitrePerMinute)),
+                     csv_number(each.features.mean), csv_number(printed(Feature::mean, 1.0)),
+                     csv_number(each.features.rms), csv_number(printed(Feature::rms, 1.0)),
+                     csv_number(each.features.std), csv_number(printed(Feature::std, 1.0))});
   }
   return text;
 }
@@ -92,17 +76,18 @@ std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicS
   std::vector<std::string> names{"time_s", "drive"};
   for (const model::Output output : calib::kFeatureOutputs) names.emplace_back(output_name(output));
   if (healthy != nullptr) names.emplace_back("residual_m");
-  std::string text = row(names);
+  std::string text = csv_row(names);
   for (std::size_t i = 0; i < series.time_s.size(); ++i) {
     const auto sample = static_cast<Eigen::Index>(i);
-    std::vector<std::string> fields{field(series.time_s[i]), field(drive.value(series.time_s[i]))};
+    std::vector<std::string> fields{csv_number(series.time_s[i]),
+                                    csv_number(drive.value(series.time_s[i]))};
     for (Eigen::Index k = 0; k < series.run.outputs.cols(); ++k) {
-      fields.push_back(field(series.run.outputs(sample, k)));
+      fields.push_back(csv_number(series.run.outputs(sample, k)));
     }
     if (healthy != nullptr) {
-      fields.push_back(field(series.run.outputs(sample, 0) - healthy->run.outputs(sample, 0)));
+      fields.push_back(csv_number(series.run.outputs(sample, 0) - healthy->run.outputs(sample, 0)));
     }
-    text += row(fields);
+    text += csv_row(fields);
   }
   return text;
 }

@@ -5,8 +5,6 @@ namespace {
 
 using datasets::Feature;
 
-constexpr double kLitrePerMinute = 1e-3 / 60.0;  // [m3/s]
-
 /// Every value that the computation used; those that no section states are the campaign's.
 Json assumptions_json(const LeakTableResult& result) {
   const auto values = datasets::leak_table_values(result.campaign, result.settings);

@@ -13,8 +13,6 @@ namespace {
 using datasets::Feature;
 using Align = TextTable::Align;
 
-constexpr double kLitrePerMinute = 1e-3 / 60.0;  // [m3/s]
-
 std::string heading(const std::string& text, const Style& style) {
   return style.colour ? fmt::format("\x1b[1m{}\x1b[0m\n", text) : text + "\n";
 }

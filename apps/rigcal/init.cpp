@@ -13,7 +13,7 @@
 namespace rigcal::app {
 namespace {
 
-struct Options {
+struct InitRequest {
   std::vector<std::filesystem::path> files;
   std::filesystem::path out = "rigcal-out";
   PrintOptions print;
@@ -26,7 +26,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-ExitCode run_init(const Options& options) {
+ExitCode run_init(const InitRequest& options) {
   const auto path = options.out / "campaign.toml";
   if (std::filesystem::exists(path)) {
     throw UsageError(fmt::format("--out {}: {} is there already; choose another folder",
@@ -49,7 +49,7 @@ ExitCode run_init(const Options& options) {
 }  // namespace
 
 Run add_init(CLI::App& verb) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InitRequest>();
   verb.add_option("FILE", options->files, "Recordings, CSV or MAT")->required();
   verb.add_option("--out", options->out, "Folder of the draft")->capture_default_str();
   add_print_options(verb, options->print);

@@ -16,13 +16,13 @@
 namespace rigcal::app {
 namespace {
 
-struct Options {
+struct LeakTableRequest {
   CampaignOptions common;
   std::vector<double> targets_percent;
   std::vector<std::string> signals;
 };
 
-void choose_targets(const Options& options, datasets::LeakTableSettings& settings) {
+void choose_targets(const LeakTableRequest& options, datasets::LeakTableSettings& settings) {
   if (options.targets_percent.empty()) return;
   settings.targets_percent = options.targets_percent;
   std::sort(settings.targets_percent.begin(), settings.targets_percent.end());
@@ -30,7 +30,7 @@ void choose_targets(const Options& options, datasets::LeakTableSettings& setting
   settings.targets_percent.erase(last, settings.targets_percent.end());
 }
 
-void choose_signals(const Options& options, const datasets::Campaign& campaign,
+void choose_signals(const LeakTableRequest& options, const datasets::Campaign& campaign,
                     datasets::LeakTableSettings& settings) {
   if (options.signals.empty()) return;
   std::vector<datasets::LeakSignal> chosen;
@@ -40,7 +40,7 @@ void choose_signals(const Options& options, const datasets::Campaign& campaign,
   settings.signals = std::move(chosen);
 }
 
-ExitCode run_leak_table(const Options& options, const Invocation& invocation) {
+ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invocation) {
   LeakTableInput input = load_leak_table(options.common);
   choose_targets(options, input.settings);
   choose_signals(options, input.campaign, input.settings);
@@ -76,7 +76,7 @@ ExitCode run_leak_table(const Options& options, const Invocation& invocation) {
 }  // namespace
 
 Run add_leak_table(CLI::App& verb) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<LeakTableRequest>();
   add_campaign_options(verb, options->common);
   verb.add_option("--targets", options->targets_percent,
                   "Shares of the servo flow in percent: 5,15,25 (default: the campaign's)")

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace rigcal::report {
+
+/// Shortest text that reads back to the same bits; empty for what is not a number.
+std::string csv_number(double value);
+std::string csv_number(const std::optional<double>& value);
+
+/// A text as a CSV field: in quotes where it holds a comma, a quote or a line end.
+std::string csv_text(const std::string& text);
+
+/// Fields as a line of CSV, its end included.
+std::string csv_row(const std::vector<std::string>& fields);
+
+}  // namespace rigcal::report
