@@ -139,7 +139,7 @@ struct SyntheticSettings {
 };
 
 struct SimulationSettings {
-  model::Method method = model::Method::rosenbrock;
+  model::Method method = model::Method::automatic;
   std::optional<double> tolerance;  ///< none: from the noise of the records
   double max_seconds = 120.0;
 };

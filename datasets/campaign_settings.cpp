@@ -192,7 +192,9 @@ SimulationSettings read_simulation(const TomlNode& node) {
   SimulationSettings simulation;
   if (const auto method = node.find("method")) {
     simulation.method = method->choice<model::Method>(
-        {{"rosenbrock", model::Method::rosenbrock}, {"dopri5", model::Method::dopri5}});
+        {{"automatic", model::Method::automatic},
+         {"rosenbrock", model::Method::rosenbrock},
+         {"dopri5", model::Method::dopri5}});
   }
   if (const auto tolerance = node.find("tolerance")) {
     simulation.tolerance = tolerance->number();

@@ -1,63 +1,55 @@
 #pragma once
 
-#include <array>
 #include <boost/numeric/odeint/algebra/array_algebra.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 
-#include "model/rosenbrock.hpp"
+#include "model/interpolant.hpp"
+#include "model/state.hpp"
 
 namespace rigcal::model {
 
-/// Odeint's Dormand-Prince 5(4) with the interface of Rosenbrock: explicit, for parts that are not
-/// stiff and as a check by another method.
+/// Odeint's Dormand-Prince 5(4): explicit, for parts that are not stiff.
 template <int N, int P>
 class DormandPrince {
  public:
-  using State = StateMatrix<N, P>;
-  static constexpr int kOrder = 5;
+  using X = State<N, P>;
 
+  /// @param f_old  derivative at (x, t)
   template <typename System>
-  void do_step(const System& system, const Linearisation<N, P>& lin, const State& x, double t,
-               State& x_out, double dt, State& x_err) {
-    const auto f = [&system](const Flat& y, Flat& dydt, double s) {
-      as_matrix(dydt) = system.derivative(as_matrix(y), s);
-    };
-    as_matrix(f_old_) = lin.f;
-    Flat from;
-    Flat to;
-    Flat error;
-    as_matrix(from) = x;
-    stepper_.do_step(f, from, f_old_, t, to, f_new_, dt, error);
-    x_out = as_matrix(to);
-    x_err = as_matrix(error);
+  void do_step(const System& system, const X& f_old, const X& x, double t, X& x_out, double dt,
+               X& x_err) {
+    const auto f = [&system](const X& y, X& dydt, double s) { dydt = system.derivative(y, s); };
+    f_old_ = f_old;
+    stepper_.do_step(f, x, f_old_, t, x_out, f_new_, dt, x_err);
   }
 
-  void prepare_dense_output() {}
-
-  void calc_state(double t, State& x, const State& x_old, double t_old, const State& x_new,
-                  double t_new) const {
-    Flat old_state;
-    Flat new_state;
-    Flat between;
-    as_matrix(old_state) = x_old;
-    as_matrix(new_state) = x_new;
-    stepper_.calc_state(t, between, old_state, f_old_, t_old, new_state, f_new_, t_new);
-    x = as_matrix(between);
+  /// The solution within the step just done: the quartic through both ends with their slopes and
+  /// Odeint's dense output half way.
+  Interpolant<N, P> dense_output(const X& x_old, const X& x_new, double dt) const {
+    X middle;
+    stepper_.calc_state(0.5 * dt, middle, x_old, f_old_, 0.0, x_new, f_new_, dt);
+    Interpolant<N, P> result;
+    for (std::size_t i = 0; i < N; ++i) {
+      const auto d = x_new[i] - x_old[i];
+      const auto m = (middle[i] - x_old[i]) * 16.0;
+      const auto f0 = f_old_[i] * dt;
+      const auto f1 = f_new_[i] * dt;
+      result.coefficient[i] = {x_old[i], f0, m - d * 5.0 - f0 * 4.0 + f1,
+                               d * 14.0 - m * 2.0 + f0 * 5.0 - f1 * 3.0,
+                               m - d * 8.0 - f0 * 2.0 + f1 * 2.0};
+    }
+    return result;
   }
+
+  /// Derivative at the end of the step just done.
+  const X& f_new() const { return f_new_; }
 
  private:
-  // Odeint iterates over its states, which Eigen allows for vectors only.
-  using Flat = std::array<double, static_cast<std::size_t>(N*(1 + P))>;
-  static Eigen::Map<State> as_matrix(Flat& flat) { return Eigen::Map<State>(flat.data()); }
-  static Eigen::Map<const State> as_matrix(const Flat& flat) {
-    return Eigen::Map<const State>(flat.data());
-  }
-
-  boost::numeric::odeint::runge_kutta_dopri5<Flat, double, Flat, double,
+  boost::numeric::odeint::runge_kutta_dopri5<X, double, X, double,
                                              boost::numeric::odeint::array_algebra>
       stepper_;
-  Flat f_old_{};
-  Flat f_new_{};
+  X f_old_{};
+  X f_new_{};
 };
 
 }  // namespace rigcal::model

@@ -1,9 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <concepts>
 #include <type_traits>
+
+#include "model/pack.hpp"
 
 namespace rigcal::model {
 
@@ -11,20 +12,20 @@ namespace rigcal::model {
 /// second derivatives are wanted (the Jacobian of a Rosenbrock step and its sensitivities).
 template <typename T, int N>
 struct Dual {
-  T value{};
-  std::array<T, N> derivative{};
+  T value;
+  Pack<T, N> derivative;
 
   Dual() = default;
-  Dual(const T& v)
-      : value(v) {}  // NOLINT(google-explicit-constructor): a constant is a dual number
+  Dual(const T& v) : value(v), derivative{} {}  // NOLINT(google-explicit-constructor): a constant
   template <typename S>
   requires(std::is_arithmetic_v<S> && !std::same_as<S, T>) Dual(S v)
-      : value(static_cast<double>(v)) {}  // NOLINT(google-explicit-constructor)
+      : Dual(T(static_cast<double>(v))) {}  // NOLINT(google-explicit-constructor)
+  Dual(const T& v, const Pack<T, N>& d) : value(v), derivative(d) {}
 
   /// The independent variable of direction `index`.
   static Dual variable(const T& v, int index) {
     Dual result(v);
-    result.derivative[static_cast<std::size_t>(index)] = T(1.0);
+    result.derivative.set(static_cast<std::size_t>(index), T(1.0));
     return result;
   }
 
@@ -46,63 +47,47 @@ double value_of(const Dual<T, N>& x) {
 /// f(x) from f and f' at the value.
 template <typename T, int N>
 inline Dual<T, N> chain(const Dual<T, N>& x, const T& f, const T& slope) {
-  Dual<T, N> r(f);
-  for (std::size_t i = 0; i < N; ++i) r.derivative[i] = slope * x.derivative[i];
-  return r;
+  return {f, x.derivative * slope};
 }
 
 template <typename T, int N>
 inline Dual<T, N> operator-(const Dual<T, N>& a) {
-  Dual<T, N> r(-a.value);
-  for (std::size_t i = 0; i < N; ++i) r.derivative[i] = -a.derivative[i];
-  return r;
+  return {-a.value, -a.derivative};
 }
 
 template <typename T, int N>
 inline Dual<T, N> operator+(const Dual<T, N>& a, const Dual<T, N>& b) {
-  Dual<T, N> r(a.value + b.value);
-  for (std::size_t i = 0; i < N; ++i) r.derivative[i] = a.derivative[i] + b.derivative[i];
-  return r;
+  return {a.value + b.value, a.derivative + b.derivative};
 }
 template <typename T, int N, PassiveFor<T> S>
-inline Dual<T, N> operator+(Dual<T, N> a, const S& b) {
-  a.value = a.value + b;
-  return a;
+inline Dual<T, N> operator+(const Dual<T, N>& a, const S& b) {
+  return {a.value + b, a.derivative};
 }
 template <typename T, int N, PassiveFor<T> S>
 inline Dual<T, N> operator+(const S& a, const Dual<T, N>& b) {
-  return b + a;
+  return {a + b.value, b.derivative};
 }
 
 template <typename T, int N>
 inline Dual<T, N> operator-(const Dual<T, N>& a, const Dual<T, N>& b) {
-  Dual<T, N> r(a.value - b.value);
-  for (std::size_t i = 0; i < N; ++i) r.derivative[i] = a.derivative[i] - b.derivative[i];
-  return r;
+  return {a.value - b.value, a.derivative - b.derivative};
 }
 template <typename T, int N, PassiveFor<T> S>
-inline Dual<T, N> operator-(Dual<T, N> a, const S& b) {
-  a.value = a.value - b;
-  return a;
+inline Dual<T, N> operator-(const Dual<T, N>& a, const S& b) {
+  return {a.value - b, a.derivative};
 }
 template <typename T, int N, PassiveFor<T> S>
 inline Dual<T, N> operator-(const S& a, const Dual<T, N>& b) {
-  return -b + a;
+  return {a - b.value, -b.derivative};
 }
 
 template <typename T, int N>
 inline Dual<T, N> operator*(const Dual<T, N>& a, const Dual<T, N>& b) {
-  Dual<T, N> r(a.value * b.value);
-  for (std::size_t i = 0; i < N; ++i) {
-    r.derivative[i] = a.derivative[i] * b.value + a.value * b.derivative[i];
-  }
-  return r;
+  return {a.value * b.value, a.derivative * b.value + b.derivative * a.value};
 }
 template <typename T, int N, PassiveFor<T> S>
 inline Dual<T, N> operator*(const Dual<T, N>& a, const S& b) {
-  Dual<T, N> r(a.value * b);
-  for (std::size_t i = 0; i < N; ++i) r.derivative[i] = a.derivative[i] * b;
-  return r;
+  return {a.value * b, a.derivative * b};
 }
 template <typename T, int N, PassiveFor<T> S>
 inline Dual<T, N> operator*(const S& a, const Dual<T, N>& b) {
@@ -132,6 +117,14 @@ inline Dual<T, N> sqrt(const Dual<T, N>& a) {
   using std::sqrt;
   const T f = sqrt(a.value);
   return chain(a, f, T(0.5 / f));
+}
+/// x^(-1/4), x > 0: one division and two roots, whatever the number of derivatives.
+inline double inverse_fourth_root(double x) { return 1.0 / std::sqrt(std::sqrt(x)); }
+template <typename T, int N>
+inline Dual<T, N> inverse_fourth_root(const Dual<T, N>& a) {
+  const T f = inverse_fourth_root(a.value);
+  const T f2 = f * f;
+  return chain(a, f, T(-0.25 * (f2 * f2 * f)));
 }
 template <typename T, int N>
 inline Dual<T, N> exp(const Dual<T, N>& a) {

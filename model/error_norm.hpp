@@ -1,10 +1,9 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "model/rosenbrock.hpp"
+#include "model/state.hpp"
 
 namespace rigcal::model {
 
@@ -15,50 +14,67 @@ namespace rigcal::model {
 template <int N, int P>
 class ErrorNorm {
  public:
-  using State = StateMatrix<N, P>;
+  using X = State<N, P>;
 
   /// @param floor            shape (N): below it a state counts as zero
   /// @param parameter_scale  shape (P): typical size of each parameter, > 0
-  ErrorNorm(const Eigen::Matrix<double, N, 1>& floor,
+  ErrorNorm(const std::array<double, static_cast<std::size_t>(N)>& floor,
             const std::array<double, static_cast<std::size_t>(P)>& parameter_scale,
             double tolerance)
-      : parameter_scale_(parameter_scale), tolerance_(tolerance) {
-    peak_.setZero();
-    peak_.col(0) = floor;
+      : tolerance_(tolerance) {
+    for (std::size_t i = 0; i < N; ++i) peak_[i] = Active<P>(floor[i]);
+    if constexpr (P > 0) {
+      for (std::size_t j = 0; j < P; ++j)
+        sensitivity_floor_.set(j, kSensitivityFloor / parameter_scale[j]);
+    }
   }
 
-  void see(const State& x) { peak_ = peak_.cwiseMax(x.cwiseAbs()); }
+  void see(const X& x) {
+    for (std::size_t i = 0; i < N; ++i) peak_[i] = peak_of(i, x[i]);
+  }
 
   /// Root mean square over the states, largest over state and sensitivities; not finite if the
   /// error is not.
-  double operator()(const State& error, const State& x_new) const {
-    double worst = 0.0;
-    for (int j = 0; j <= P; ++j) {
-      double sum = 0.0;
-      for (int i = 0; i < N; ++i) {
-        double scale = std::max(peak_(i, j), std::abs(x_new(i, j)));
-        double tolerance = tolerance_;
-        if (j > 0) {
-          const double state_scale = std::max(peak_(i, 0), std::abs(x_new(i, 0)));
-          scale = std::max(scale, kSensitivityFloor * state_scale /
-                                      parameter_scale_[static_cast<std::size_t>(j - 1)]);
-          tolerance *= kSensitivityLooseness;
-        }
-        const double e = error(i, j) / (tolerance * scale);
+  double operator()(const X& error, const X& x_new) const {
+    Active<P> sum(0.0);
+    for (std::size_t i = 0; i < N; ++i) {
+      const Active<P> peak = peak_of(i, x_new[i]);
+      const double e = value_of(error[i]) / (tolerance_ * value_of(peak));
+      if constexpr (P == 0) {
         sum += e * e;
+      } else {
+        const auto scale = max(peak.derivative, sensitivity_floor_ * peak.value);
+        const auto e_j = error[i].derivative / (scale * (tolerance_ * kSensitivityLooseness));
+        sum.value += e * e;
+        sum.derivative = sum.derivative + e_j * e_j;
       }
-      const double norm = std::sqrt(sum / N);
-      if (!std::isfinite(norm)) return norm;
-      worst = std::max(worst, norm);
     }
-    return worst;
+    double worst = value_of(sum);
+    if constexpr (P > 0) {
+      for (std::size_t j = 0; j < P && std::isfinite(worst); ++j) {
+        const double column = sum.derivative[j];
+        if (!(column <= worst)) worst = column;  // nor is what is not a number
+      }
+    }
+    return std::sqrt(worst / N);
   }
 
  private:
   static constexpr double kSensitivityFloor = 1e-2;
-  static constexpr double kSensitivityLooseness = 10.0;
-  State peak_;
-  std::array<double, static_cast<std::size_t>(P)> parameter_scale_;
+  static constexpr double kSensitivityLooseness = 20.0;
+
+  Active<P> peak_of(std::size_t i, const Active<P>& x) const {
+    if constexpr (P == 0) {
+      return std::max(peak_[i], std::abs(x));
+    } else {
+      Active<P> peak(std::max(peak_[i].value, std::abs(x.value)));
+      peak.derivative = max(peak_[i].derivative, abs(x.derivative));
+      return peak;
+    }
+  }
+
+  X peak_;
+  Pack<double, P> sensitivity_floor_{};
   double tolerance_;
 };
 

@@ -19,6 +19,7 @@ class InputTrack {
 
   double segment_end() const { return signal_.segment_end(segment_) - shift_s_; }
   void next_segment() { ++segment_; }
+  double value(double t) const { return signal_.value(segment_, t + shift_s_); }
   SignalSample sample(double t) const { return signal_.sample(segment_, t + shift_s_); }
   double max_step() const { return signal_.max_step(); }
 

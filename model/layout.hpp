@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <string_view>
 
 #include "model/parameter.hpp"
 #include "model/simulate.hpp"
@@ -10,9 +11,13 @@ namespace rigcal::model {
 
 /// Optional terms that take part; an absent one costs nothing.
 struct PresentTerms {
-  bool friction = false;      ///< Coulomb or breakaway friction was given
-  bool stribeck = false;      ///< breakaway friction was given
-  bool orifice_leak = false;  ///< the leakage coefficient is not zero, or free
+  bool friction = false;        ///< Coulomb or breakaway friction was given
+  bool stribeck = false;        ///< breakaway friction was given
+  bool orifice_leak = false;    ///< the leakage coefficient is not zero, or free
+  bool laminar_leak = false;    ///< likewise
+  bool null_leak = false;       ///< likewise, across the null of the valve
+  bool spool_shape = false;     ///< null shift or overlap: not zero, or free
+  bool external_force = false;  ///< recorded, or not zero, or free
 };
 
 /// Which states a rig has beside those of its plant, and where they stand in the state vector.
@@ -33,7 +38,7 @@ struct Layout {
 
 /// @param free  table indices of the parameters whose sensitivities are wanted
 inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span<const int> free,
-                        int plant_states) {
+                        int plant_states, bool force_recorded = false) {
   Layout layout;
   layout.plant_states = plant_states;
   int next = plant_states;
@@ -52,9 +57,15 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   }
   layout.terms.stribeck = values.is_given("stribeck_friction");
   layout.terms.friction = layout.terms.stribeck || values.is_given("coulomb_friction");
-  const int leak = parameter_index(values.plant, "leakage_coefficient");
-  layout.terms.orifice_leak = values["leakage_coefficient"] != 0.0 ||
-                              std::find(free.begin(), free.end(), leak) != free.end();
+  const auto acts = [&](std::string_view key) {
+    const int index = parameter_index(values.plant, key);
+    return values[key] != 0.0 || std::find(free.begin(), free.end(), index) != free.end();
+  };
+  layout.terms.orifice_leak = acts("leakage_coefficient");
+  layout.terms.laminar_leak = acts("laminar_leakage");
+  layout.terms.null_leak = acts("valve_null_leakage");
+  layout.terms.external_force = force_recorded || acts("external_force");
+  layout.terms.spool_shape = acts("valve_offset") || acts("valve_dead_band");
   layout.initial_pressure_given = values.is_given("initial_load_pressure");
   layout.states = next;
   return layout;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "model/layout.hpp"
 #include "model/parameter_values.hpp"
@@ -11,9 +12,9 @@ namespace rigcal::model {
 /// What acts on a plant at one instant; X carries time derivatives where they are wanted.
 template <typename X>
 struct PlantInput {
-  X spool_command_v{};     ///< valve signal after its dynamics [V]
-  X external_force_n{};    ///< recorded load against positive travel [N]
-  X supply_pressure_pa{};  ///< P_s [Pa]
+  X spool_command_v;     ///< valve signal after its dynamics [V]
+  X external_force_n;    ///< load against positive travel [N]; set where that term takes part
+  X supply_pressure_pa;  ///< P_s [Pa]
 };
 
 /// The paper's plant: piston and load pressure of a symmetric cylinder of constant volume.
@@ -27,6 +28,24 @@ struct LoadPressurePlant {
   enum State { position, velocity, load_pressure };
   template <typename T>
   using Parameters = LoadPressureParameters<T>;
+  /// Parameters, and what follows from them alone.
+  template <typename C>
+  struct Coefficients : Parameters<C> {
+    C valve_conductance{};  ///< servo flow per spool travel and root of pressure
+    C leak_conductance{};   ///< orifice leakage per root of pressure
+    C inverse_mass{};       ///< [1/kg]
+    C inverse_capacity{};   ///< pressure rate per flow, 4 beta / V_t [Pa/m3]
+
+    Coefficients() = default;
+    explicit Coefficients(const Parameters<C>& p)
+        : Parameters<C>(p),
+          valve_conductance(model::valve_conductance(p.discharge_coefficient, p.area_gradient_m,
+                                                     p.density_kg_per_m3)),
+          leak_conductance(model::orifice_conductance(p.leakage_coefficient, p.leakage_area_m2,
+                                                      p.density_kg_per_m3)),
+          inverse_mass(1.0 / p.mass_kg),
+          inverse_capacity(4.0 * p.bulk_modulus_pa / p.total_volume_m3) {}
+  };
   template <typename T>
   static constexpr const auto& fields() {
     return kLoadPressureFields<T>;
@@ -34,33 +53,52 @@ struct LoadPressurePlant {
   /// Size below which a state counts as zero in the error control [m, m/s, Pa].
   static constexpr std::array<double, kStates> kFloor{1e-6, 1e-5, 100.0};
 
+  /// The state that an output reads, but for its sensor's offset; none: it takes more.
+  static constexpr std::optional<int> state_of(Output output) {
+    switch (output) {
+      case Output::position:
+        return position;
+      case Output::velocity:
+        return velocity;
+      case Output::load_pressure:
+        return load_pressure;
+      default:
+        return std::nullopt;
+    }
+  }
+
   /// Spool travel [m], eq. 6: x_v = k_sv u, after null shift and overlap.
   template <typename X, typename C>
-  static X spool(const PlantInput<X>& in, const Parameters<C>& p) {
-    return p.valve_gain_m_per_v *
-           dead_band(X(in.spool_command_v + p.valve_offset_v), p.valve_dead_band_v);
+  static X spool(const PlantInput<X>& in, const Coefficients<C>& p, const PresentTerms& terms) {
+    if (!terms.spool_shape) return in.spool_command_v * p.valve_gain_m_per_v;
+    return dead_band(X(in.spool_command_v + p.valve_offset_v), p.valve_dead_band_v) *
+           p.valve_gain_m_per_v;
   }
 
   /// Flow of the servo valve to the load [m3/s], eq. 4, less the loss across its null.
   template <typename X, typename C>
-  static X servo_flow(const X& P_L, const PlantInput<X>& in, const Parameters<C>& p) {
-    return model::servo_flow(spool(in, p), P_L, in.supply_pressure_pa, p.discharge_coefficient,
-                             p.area_gradient_m, p.density_kg_per_m3, p.leakage_smoothing_pa) -
-           P_L * p.valve_null_leakage_m3_per_s_pa;
+  static X servo_flow(const X& P_L, const PlantInput<X>& in, const Coefficients<C>& p,
+                      const PresentTerms& terms) {
+    const X flow = model::servo_flow(spool(in, p, terms), P_L, in.supply_pressure_pa,
+                                     p.valve_conductance, p.leakage_smoothing_pa);
+    if (!terms.null_leak) return flow;
+    return flow - P_L * p.valve_null_leakage_m3_per_s_pa;
   }
 
   /// Internal leakage across the piston [m3/s]: orifice (eq. 11) and laminar path.
   template <typename X, typename C>
-  static X leakage_flow(const X& P_L, const Parameters<C>& p, const PresentTerms& terms) {
+  static X leakage_flow(const X& P_L, const Coefficients<C>& p, const PresentTerms& terms) {
+    if (!terms.laminar_leak)
+      return terms.orifice_leak ? orifice_leakage(P_L, p.leak_conductance, p.leakage_smoothing_pa)
+                                : X(0.0);
     const X laminar = P_L * p.laminar_leakage_m3_per_s_pa;
     if (!terms.orifice_leak) return laminar;
-    return laminar + orifice_leakage(P_L, p.leakage_coefficient, p.leakage_area_m2,
-                                     p.density_kg_per_m3, p.leakage_smoothing_pa);
+    return laminar + orifice_leakage(P_L, p.leak_conductance, p.leakage_smoothing_pa);
   }
 
   /// Dry friction of piston and rod [N].
   template <typename X, typename C>
-  static X friction(const X& v, const Parameters<C>& p, const PresentTerms& terms) {
+  static X friction(const X& v, const Coefficients<C>& p, const PresentTerms& terms) {
     if (!terms.friction) return X(0.0);
     if (!terms.stribeck) return p.coulomb_friction_n * smooth_sign(v, p.friction_smoothing_m_per_s);
     return dry_friction(v, p.coulomb_friction_n, p.stribeck_friction_n, p.stribeck_velocity_m_per_s,
@@ -68,23 +106,25 @@ struct LoadPressurePlant {
   }
 
   /// Time derivative of the state [m/s, m/s2, Pa/s].
-  template <typename X, typename C>
-  static std::array<X, kStates> derivative(const std::array<X, kStates>& x, const PlantInput<X>& in,
-                                           const Parameters<C>& p, const PresentTerms& terms) {
+  ///
+  /// @param x  shape (kStates or more): the plant's states come first
+  template <typename X, std::size_t M, typename C>
+  static std::array<X, kStates> derivative(const std::array<X, M>& x, const PlantInput<X>& in,
+                                           const Coefficients<C>& p, const PresentTerms& terms) {
     const X& v = x[velocity];
     const X& P_L = x[load_pressure];
     const C& A = p.piston_area_m2;
-    const X force = P_L * A - v * p.damping_n_s_per_m - x[position] * p.stiffness_n_per_m -
-                    friction(v, p, terms) - in.external_force_n - p.external_force_n;
-    const X flow = servo_flow(P_L, in, p) - leakage_flow(P_L, p, terms) - v * A;
-    const C stiffness = 4.0 * p.bulk_modulus_pa / p.total_volume_m3;
-    return {v, force / p.mass_kg, flow * stiffness};
+    X force = P_L * A - v * p.damping_n_s_per_m - x[position] * p.stiffness_n_per_m;
+    if (terms.friction) force = force - friction(v, p, terms);
+    if (terms.external_force) force = force - in.external_force_n;
+    const X flow = servo_flow(P_L, in, p, terms) - leakage_flow(P_L, p, terms) - v * A;
+    return {v, force * p.inverse_mass, flow * p.inverse_capacity};
   }
 
   /// What a load cell in the rod reads: the force that the rod passes to mass, damper and spring of
   /// the load, A P_L less the dry friction of the cylinder (docs/model.md).
-  template <typename C>
-  static C rod_force(const std::array<C, kStates>& x, const Parameters<C>& p,
+  template <typename C, std::size_t M>
+  static C rod_force(const std::array<C, M>& x, const Coefficients<C>& p,
                      const PresentTerms& terms) {
     return x[load_pressure] * p.piston_area_m2 - friction(x[velocity], p, terms);
   }

@@ -1,25 +1,12 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <Eigen/LU>
-#include <array>
+#include <utility>
+
+#include "model/interpolant.hpp"
+#include "model/state.hpp"
 
 namespace rigcal::model {
-
-/// State of N variables and their sensitivities to P parameters: column 0 the state, column 1 + j
-/// its derivative by parameter j. A row is a dual number.
-template <int N, int P>
-using StateMatrix = Eigen::Matrix<double, N, 1 + P, P == 0 ? Eigen::ColMajor : Eigen::RowMajor>;
-
-/// f, its Jacobian and time derivative at one point, with the derivatives of all of them along each
-/// sensitivity column.
-template <int N, int P>
-struct Linearisation {
-  StateMatrix<N, P> f;
-  StateMatrix<N, P> f_t;
-  Eigen::Matrix<double, N, N> jacobian;
-  std::array<Eigen::Matrix<double, N, N>, static_cast<std::size_t>(P)> jacobian_tangent;
-};
 
 /// Coefficients of RODAS4P, an L-stable, stiffly accurate Rosenbrock method of order 4(3) with
 /// dense output whose order does not fall on stiff linear parts (G. Steinebach, Order-reduction of
@@ -51,7 +38,7 @@ struct Rodas4P {
        -1.882352941176471}};
 };
 
-/// RODAS4P as an Odeint error stepper with dense output.
+/// RODAS4P as an error stepper with dense output.
 ///
 /// Odeint's own rosenbrock4 (RODAS) has a wrong sign in its d4, which costs it order on systems
 /// that depend on time; it works on heap-allocated uBLAS matrices, knows no sensitivities, and
@@ -62,75 +49,98 @@ struct Rodas4P {
 template <int N, int P>
 class Rosenbrock {
  public:
-  using State = StateMatrix<N, P>;
+  using X = State<N, P>;
   using K = Rodas4P;
-  static constexpr int kOrder = 4;
 
   /// One step from x at t of size dt.
   /// @param system  has derivative(x, t) -> State
   /// @param lin     linearisation of the system at (x, t)
   template <typename System>
-  void do_step(const System& system, const Linearisation<N, P>& lin, const State& x, double t,
-               State& x_out, double dt, State& x_err) {
-    factorise(lin.jacobian, dt);
-    State stage = x;
-    for (int i = 0; i < K::kStages; ++i) {
-      State rhs;
-      if (i == 0) {
-        rhs = lin.f;
-      } else {
-        stage = x;
-        for (int j = 0; j < i; ++j) stage += K::kState[i][j] * g_[j];
-        rhs = system.derivative(stage, t + K::kTime[i] * dt);
-        for (int j = 0; j < i; ++j) rhs += (K::kRate[i][j] / dt) * g_[j];
-      }
-      if (K::kSlope[i] != 0.0) rhs += (K::kSlope[i] * dt) * lin.f_t;
-      g_[i] = solve(lin, rhs);
-    }
+  void do_step(const System& system, const Linearisation<N, P>& lin, const X& x, double t, X& x_out,
+               double dt, X& x_err) {
+    factorise(lin, dt);
+    stage<0>(system, lin, x, t, dt);
+    stage<1>(system, lin, x, t, dt);
+    stage<2>(system, lin, x, t, dt);
+    stage<3>(system, lin, x, t, dt);
+    stage<4>(system, lin, x, t, dt);
+    stage<5>(system, lin, x, t, dt);
     x_err = g_[K::kStages - 1];
-    x_out = stage + x_err;
+    x_out = point_;
+    add_scaled(x_out, 1.0, x_err);
   }
 
-  /// Prepares calc_state for the step just done.
-  void prepare_dense_output() {
-    for (int k = 0; k < 2; ++k) {
-      dense_[k].setZero();
-      for (int j = 0; j < K::kStages - 1; ++j) dense_[k] += K::kDense[k][j] * g_[j];
+  /// The solution within the step just done, as a polynomial.
+  Interpolant<N, P> dense_output(const X& x_old, const X& x_new) const {
+    // x_old (1 - s) + s (x_new + (1 - s) (d_0 + s d_1))
+    Interpolant<N, P> result;
+    for (std::size_t i = 0; i < N; ++i) {
+      Active<P> d[2]{};
+      for (std::size_t k = 0; k < 2; ++k) {
+        for (std::size_t j = 0; j + 1 < K::kStages; ++j) d[k] += g_[j][i] * K::kDense[k][j];
+      }
+      result.coefficient[i] = {x_old[i], x_new[i] - x_old[i] + d[0], d[1] - d[0], -d[1],
+                               Active<P>{}};
     }
-  }
-
-  /// State at a time within the step just done.
-  void calc_state(double t, State& x, const State& x_old, double t_old, const State& x_new,
-                  double t_new) const {
-    const double s = (t - t_old) / (t_new - t_old);
-    x = x_old * (1.0 - s) + s * (x_new + (1.0 - s) * (dense_[0] + s * dense_[1]));
+    return result;
   }
 
  private:
-  void factorise(const Eigen::Matrix<double, N, N>& jacobian, double dt) {
-    Eigen::Matrix<double, N, N> w = -jacobian;
-    w.diagonal().array() += 1.0 / (K::kGamma * dt);
+  template <int kStage, typename System>
+  void stage(const System& system, const Linearisation<N, P>& lin, const X& x, double t,
+             double dt) {
+    X rhs;
+    if constexpr (kStage == 0) {
+      rhs = lin.f;
+    } else {
+      point_ = x;
+      for (int j = 0; j < kStage; ++j) add_scaled(point_, K::kState[kStage][j], g_[j]);
+      rhs = system.derivative(point_, t + K::kTime[kStage] * dt);
+      for (int j = 0; j < kStage; ++j) add_scaled(rhs, K::kRate[kStage][j] / dt, g_[j]);
+    }
+    if constexpr (K::kSlope[kStage] != 0.0) add_scaled(rhs, K::kSlope[kStage] * dt, lin.f_t);
+    g_[kStage] = solve(lin, rhs);
+  }
+
+  void factorise(const Linearisation<N, P>& lin, double dt) {
+    Eigen::Matrix<double, N, N> w;
+    for (int i = 0; i < N; ++i) {
+      for (int k = 0; k < N; ++k) w(i, k) = -value_of(lin.jacobian[std::size_t(i)][std::size_t(k)]);
+      w(i, i) += 1.0 / (K::kGamma * dt);
+    }
     inverse_ = w.inverse();
   }
 
   /// Solves W g = rhs for the state, then W g' = rhs' + J' g for each sensitivity.
-  State solve(const Linearisation<N, P>& lin, const State& rhs) const {
-    State g;
-    const Eigen::Matrix<double, N, 1> g0 = inverse_ * rhs.col(0);
-    g.col(0) = g0;
-    if constexpr (P > 0) {
-      Eigen::Matrix<double, N, P> tangent;
-      for (int j = 0; j < P; ++j) {
-        tangent.col(j) = rhs.col(1 + j) + lin.jacobian_tangent[static_cast<std::size_t>(j)] * g0;
+  X solve(const Linearisation<N, P>& lin, const X& rhs) const {
+    X g;
+    std::array<double, static_cast<std::size_t>(N)> value;
+    for (int i = 0; i < N; ++i) {
+      double sum = 0.0;
+      for (int k = 0; k < N; ++k) sum += inverse_(i, k) * value_of(rhs[k]);
+      value[i] = sum;
+    }
+    if constexpr (P == 0) {
+      g = value;
+    } else {
+      std::array<Pack<double, P>, static_cast<std::size_t>(N)> tangent;
+      for (int i = 0; i < N; ++i) {
+        tangent[i] = rhs[i].derivative;
+        for (int k = 0; k < N; ++k)
+          tangent[i] = tangent[i] + lin.jacobian[i][k].derivative * value[k];
       }
-      g.template rightCols<P>() = inverse_ * tangent;
+      for (int i = 0; i < N; ++i) {
+        Pack<double, P> sum = tangent[0] * inverse_(i, 0);
+        for (int k = 1; k < N; ++k) sum = sum + tangent[k] * inverse_(i, k);
+        g[i] = {value[i], sum};
+      }
     }
     return g;
   }
 
   Eigen::Matrix<double, N, N> inverse_;
-  State g_[K::kStages];
-  State dense_[2];
+  X point_;
+  X g_[K::kStages];
 };
 
 }  // namespace rigcal::model

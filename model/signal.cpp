@@ -192,6 +192,12 @@ SignalSample Signal::sample(std::size_t segment, double t) const {
   return {};
 }
 
+double Signal::value(std::size_t segment, double t) const {
+  if (kind_ == Kind::sine)
+    return offset_ + amplitude_ * std::sin(kTwoPi * frequency_hz_ * t + phase_rad_);
+  return sample(segment, t).value;
+}
+
 double Signal::max_step() const {
   switch (kind_) {
     case Kind::sine:

@@ -39,8 +39,10 @@ class Signal {
   double segment_end(std::size_t segment) const;
   /// Value and derivatives at t by the formula of `segment`.
   SignalSample sample(std::size_t segment, double t) const;
+  /// Value alone, for less.
+  double value(std::size_t segment, double t) const;
   /// Value at t by the segment that holds there.
-  double value(double t) const { return sample(segment_at(t), t).value; }
+  double value(double t) const { return value(segment_at(t), t); }
   /// Longest step that cannot skip an oscillation; infinity if the segments are that.
   double max_step() const;
 

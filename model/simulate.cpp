@@ -54,26 +54,44 @@ void require(bool condition, const char* message) {
   if (!condition) throw std::invalid_argument(std::string("simulate: ") + message);
 }
 
+template <int N>
+void run_sized(const SizedRequest& request, Simulation& result) {
+#ifdef RIGCAL_AVX2
+  if constexpr (N <= kMaxStatesAvx2) {
+    if (best_instruction_set() == InstructionSet::avx2)
+      return simulate_sized<N, InstructionSet::avx2>(request, result);
+  }
+#endif
+  simulate_sized<N, InstructionSet::base>(request, result);
+}
+
 void dispatch(const SizedRequest& request, Simulation& result) {
   switch (request.layout.states) {
     case 3:
-      return simulate_sized<3>(request, result);
+      return run_sized<3>(request, result);
     case 4:
-      return simulate_sized<4>(request, result);
+      return run_sized<4>(request, result);
     case 5:
-      return simulate_sized<5>(request, result);
+      return run_sized<5>(request, result);
     case 6:
-      return simulate_sized<6>(request, result);
+      return run_sized<6>(request, result);
     case 7:
-      return simulate_sized<7>(request, result);
+      return run_sized<7>(request, result);
     case 8:
-      return simulate_sized<8>(request, result);
+      return run_sized<8>(request, result);
     default:
       throw std::logic_error("simulate: a layout with an unexpected number of states");
   }
 }
 
 }  // namespace
+
+InstructionSet best_instruction_set() {
+#ifdef RIGCAL_AVX2
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return InstructionSet::avx2;
+#endif
+  return InstructionSet::base;
+}
 
 std::string_view output_name(Output output) {
   for (const OutputName& row : kOutputNames) {
@@ -128,7 +146,8 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
   }
 
   Simulation result;
-  const Layout layout = layout_of(rig, parameters, free, LoadPressurePlant::kStates);
+  const Layout layout = layout_of(rig, parameters, free, LoadPressurePlant::kStates,
+                                  inputs.external_force_n.has_value());
   result.reason = bad_parameter(parameters, layout);
   if (!result.reason.empty()) {
     result.status = SimulationStatus::bad_parameters;
@@ -136,9 +155,11 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
     return result;
   }
   const auto samples = static_cast<Eigen::Index>(times_s.size());
-  result.outputs.setZero(samples, static_cast<Eigen::Index>(outputs.size()));
-  result.sensitivities.assign(
-      outputs.size(), Eigen::MatrixXd::Zero(samples, static_cast<Eigen::Index>(free.size())));
+  // Not set to zero: a simulation that ends well writes all of them.
+  result.outputs.resize(samples, static_cast<Eigen::Index>(outputs.size()));
+  result.sensitivities.resize(outputs.size());
+  for (Eigen::MatrixXd& each : result.sensitivities)
+    each.resize(samples, static_cast<Eigen::Index>(free.size()));
   dispatch({layout, rig.initial, parameters, free, inputs, times_s, outputs, options, started},
            result);
   const bool finite = result.outputs.allFinite() &&

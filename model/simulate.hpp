@@ -54,12 +54,13 @@ struct SimulationInputs {
 };
 
 enum class Method {
-  rosenbrock,  ///< RODAS4, L-stable: the default
-  dopri5,      ///< Odeint's Dormand-Prince 5(4): not stiff parts, cross-check
+  automatic,   ///< whichever of the two is cheaper where the simulation stands
+  rosenbrock,  ///< RODAS4P, L-stable
+  dopri5,      ///< Odeint's Dormand-Prince 5(4)
 };
 
 struct SimulationOptions {
-  Method method = Method::rosenbrock;
+  Method method = Method::automatic;
   /// Local error per step over the running peak of each state, and of each sensitivity.
   double tolerance = 1e-6;
   long max_steps = 5'000'000;                 ///< accepted and rejected

@@ -5,8 +5,8 @@
 
 #include "model/run.hpp"
 
-#ifndef RIGCAL_STATES
-#error "compiled once per number of states with -DRIGCAL_STATES=n"
+#if !defined(RIGCAL_STATES) || !defined(RIGCAL_INSTRUCTION_SET)
+#error "compiled once per number of states and instruction set, which CMake defines"
 #endif
 
 namespace rigcal::model {
@@ -22,7 +22,7 @@ double scale_of(const ParameterSpec& spec, double value) {
 }
 
 /// One pass with the sensitivities to at most P of the free parameters.
-template <int N, int P, template <int, int> class Stepper>
+template <int N, int P>
 void pass(const SizedRequest& request, int first, int count, Simulation& result) {
   const double start_s = request.times_s.front();
   const auto track = [start_s](const Signal& signal, double delay_s) {
@@ -44,43 +44,38 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   System<Plant, N, P> system(request.layout, request.parameters, free,
                              track(request.inputs.drive, request.parameters["transport_delay"]),
                              std::move(force), std::move(supply));
-  Run<Plant, N, P, Stepper> run(std::move(system), scale, request.times_s, request.outputs,
-                                request.options, request.started);
+  Run<Plant, N, P> run(std::move(system), scale, request.times_s, request.outputs, request.options,
+                       request.started);
   run(request.initial, result, first, count);
 }
 
-/// Passes until every free parameter had its turn: up to kWidest sensitivities at a time, 4 where
+/// Passes until every free parameter had its turn: up to eight sensitivities at a time, four where
 /// they suffice.
-template <int N, int kWidest, template <int, int> class Stepper>
+template <int N>
 void passes(const SizedRequest& request, Simulation& result) {
   const int free = static_cast<int>(request.free.size());
-  if (free == 0) {
-    pass<N, 0, Stepper>(request, 0, 0, result);
-    return;
-  }
+  if (free == 0) return pass<N, 0>(request, 0, 0, result);
   for (int first = 0; first < free && result.ok();) {
     const int left = free - first;
-    const int count = std::min(left, left <= 4 ? 4 : kWidest);
     if (left <= 4) {
-      pass<N, 4, Stepper>(request, first, count, result);
+      pass<N, 4>(request, first, left, result);
+      first += left;
     } else {
-      pass<N, kWidest, Stepper>(request, first, count, result);
+      const int count = std::min(left, 8);
+      pass<N, 8>(request, first, count, result);
+      first += count;
     }
-    first += count;
   }
 }
 
 }  // namespace
 
-template <int N>
+template <int N, InstructionSet Set>
 void simulate_sized(const SizedRequest& request, Simulation& result) {
-  if (request.options.method == Method::dopri5) {
-    passes<N, 4, DormandPrince>(request, result);
-  } else {
-    passes<N, 8, Rosenbrock>(request, result);
-  }
+  passes<N>(request, result);
 }
 
-template void simulate_sized<RIGCAL_STATES>(const SizedRequest&, Simulation&);
+template void simulate_sized<RIGCAL_STATES, InstructionSet::RIGCAL_INSTRUCTION_SET>(
+    const SizedRequest&, Simulation&);
 
 }  // namespace rigcal::model

@@ -10,6 +10,7 @@ namespace rigcal::model {
 
 inline constexpr int kMinStates = 3;
 inline constexpr int kMaxStates = 8;
+inline constexpr int kMaxStatesAvx2 = 4;  ///< as in CMakeLists.txt
 
 /// Everything that one simulation needs, its number of states fixed at compile time in
 /// simulate_sized.cpp (compiled once per number, so that the parts build side by side).
@@ -25,7 +26,13 @@ struct SizedRequest {
   std::chrono::steady_clock::time_point started;  ///< from when max_seconds counts
 };
 
-template <int N>
+/// What the solver is compiled for; `base` runs everywhere.
+enum class InstructionSet { base, avx2 };
+
+/// @return  of this processor, the best that the solver is compiled for
+InstructionSet best_instruction_set();
+
+template <int N, InstructionSet Set>
 void simulate_sized(const SizedRequest& request, Simulation& result);
 
 }  // namespace rigcal::model

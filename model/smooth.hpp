@@ -17,8 +17,7 @@ namespace rigcal::model {
 /// @return              [Pa^(1/2)]
 template <typename X, typename C>
 X signed_sqrt(const X& pressure_pa, const C& smoothing_pa) {
-  using std::sqrt;
-  return pressure_pa / sqrt(sqrt(pressure_pa * pressure_pa + smoothing_pa * smoothing_pa));
+  return pressure_pa * inverse_fourth_root(pressure_pa * pressure_pa + smoothing_pa * smoothing_pa);
 }
 
 /// Sign of a velocity, straightened below `smoothing`: tanh(v / v_0).

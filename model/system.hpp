@@ -1,52 +1,29 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <vector>
 
 #include "model/controller.hpp"
 #include "model/input_track.hpp"
 #include "model/layout.hpp"
 #include "model/load_pressure.hpp"
-#include "model/rosenbrock.hpp"
 #include "model/simulate.hpp"
+#include "model/state.hpp"
 
 namespace rigcal::model {
-
-/// A number with the derivatives by P parameters; a plain double for none.
-template <int P>
-using Active = std::conditional_t<P == 0, double, Dual<double, P>>;
-
-template <int P>
-Active<P> active_row(const double* row) {
-  if constexpr (P == 0) {
-    return *row;
-  } else {
-    Active<P> a(row[0]);
-    for (std::size_t j = 0; j < P; ++j) a.derivative[j] = row[1 + j];
-    return a;
-  }
-}
-
-template <int P>
-void store_row(const Active<P>& a, double* row) {
-  if constexpr (P == 0) {
-    *row = a;
-  } else {
-    row[0] = a.value;
-    for (std::size_t j = 0; j < P; ++j) row[1 + j] = a.derivative[j];
-  }
-}
 
 /// Plant, valve and controller as one system of N states with sensitivities to P parameters.
 template <typename Plant, int N, int P>
 class System {
  public:
   using C = Active<P>;
-  using State = StateMatrix<N, P>;
-  using States = std::array<C, static_cast<std::size_t>(N)>;
+  using X = State<N, P>;
   using Parameters = typename Plant::template Parameters<C>;
+  using Coefficients = typename Plant::template Coefficients<C>;
 
   /// @param free  table indices of the P (or fewer) parameters of the sensitivity columns
   System(const Layout& layout, const ParameterValues& values, std::span<const int> free,
@@ -57,82 +34,71 @@ class System {
         external_force_(std::move(external_force)),
         supply_pressure_(std::move(supply_pressure)) {
     const auto& fields = Plant::template fields<C>();
+    Parameters parameters;
     for (std::size_t i = 0; i < fields.size(); ++i) {
-      parameters_.*(fields[i].member) = C(values.value[i]);
+      parameters.*(fields[i].member) = C(values.value[i]);
     }
     if constexpr (P > 0) {
       for (std::size_t j = 0; j < free.size(); ++j) {
         const auto& field = fields[static_cast<std::size_t>(free[j])];
-        (parameters_.*(field.member)).derivative[j] = 1.0;
+        (parameters.*(field.member)).derivative.set(j, 1.0);
         if (field.spec.key == "transport_delay") delay_direction_ = static_cast<int>(j);
       }
     }
+    parameters_ = Coefficients(parameters);
   }
 
   const Layout& layout() const { return layout_; }
-  const Parameters& parameters() const { return parameters_; }
+  const Coefficients& parameters() const { return parameters_; }
   InputTrack& drive() { return drive_; }
   std::optional<InputTrack>& external_force() { return external_force_; }
   std::optional<InputTrack>& supply_pressure() { return supply_pressure_; }
   /// Sensitivity column of the transport delay among the P directions, or -1.
   int delay_direction() const { return delay_direction_; }
 
-  State derivative(const State& x, double t) const {
-    return pack(right_hand_side<C>(unpack(x), t));
-  }
+  [[gnu::flatten]] X derivative(const X& x, double t) const { return right_hand_side<C>(x, t); }
 
-  Linearisation<N, P> linearise(const State& x, double t) const {
-    using X = Dual<C, N + 1>;  // directions: the states, then time
-    const States states = unpack(x);
-    std::array<X, static_cast<std::size_t>(N)> lifted;
+  Linearisation<N, P> linearise(const X& x, double t) const {
+    using D = Dual<C, N + 1>;  // directions: the states, then time
+    std::array<D, static_cast<std::size_t>(N)> lifted;
     for (int i = 0; i < N; ++i) {
-      lifted[static_cast<std::size_t>(i)] = X::variable(states[static_cast<std::size_t>(i)], i);
+      lifted[static_cast<std::size_t>(i)] = D::variable(x[static_cast<std::size_t>(i)], i);
     }
-    const auto f = right_hand_side<X>(lifted, t);
+    const auto f = right_hand_side<D>(lifted, t);
     Linearisation<N, P> lin;
-    for (int i = 0; i < N; ++i) {
-      const X& fi = f[static_cast<std::size_t>(i)];
-      store_row<P>(fi.value, row(lin.f, i));
-      store_row<P>(fi.derivative[static_cast<std::size_t>(N)], row(lin.f_t, i));
-      for (int k = 0; k < N; ++k) {
-        const C& slope = fi.derivative[static_cast<std::size_t>(k)];
-        lin.jacobian(i, k) = value_of(slope);
-        if constexpr (P > 0) {
-          for (std::size_t j = 0; j < P; ++j) {
-            lin.jacobian_tangent[j](i, k) = slope.derivative[j];
-          }
-        }
-      }
+    for (std::size_t i = 0; i < N; ++i) {
+      lin.f[i] = f[i].value;
+      lin.f_t[i] = f[i].derivative[static_cast<std::size_t>(N)];
+      for (std::size_t k = 0; k < N; ++k) lin.jacobian[i][k] = f[i].derivative[k];
     }
     return lin;
   }
 
   /// The sampled controller's tick at t.
-  void tick(State& x, double t) const {
-    States states = unpack(x);
-    const C error = input_value<C>(drive_.sample(t), true) - states[Plant::position];
-    controller_tick(error, states, parameters_, layout_);
-    x = pack(states);
+  void tick(X& x, double t) const {
+    const C error = input_value<C>(drive_, t, true) - x[Plant::position];
+    controller_tick(error, x, parameters_, layout_);
   }
 
   /// Value of each wanted output, with sensitivities.
-  void observe(const State& x, double t, std::span<const Output> outputs,
-               std::span<C> result) const {
-    const States states = unpack(x);
-    const C drive = input_value<C>(drive_.sample(t), true);
-    const C command = valve_command(states, drive);
-    const PlantInput<C> in = plant_input<C>(states, command, t);
-    std::array<C, Plant::kStates> plant;
-    for (std::size_t i = 0; i < plant.size(); ++i) plant[i] = states[i];
-    const Parameters& p = parameters_;
-    const C& P_L = plant[Plant::load_pressure];
+  void observe(const X& x, double t, std::span<const Output> outputs, std::span<C> result) const {
+    C command{};
+    PlantInput<C> in{};
+    const bool of_states_alone = std::all_of(outputs.begin(), outputs.end(),
+                                             [](Output output) { return Plant::state_of(output); });
+    if (!of_states_alone) {
+      command = valve_command(x, input_value<C>(drive_, t, true));
+      in = plant_input<C>(x, command, t);
+    }
+    const Coefficients& p = parameters_;
+    const C& P_L = x[Plant::load_pressure];
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       switch (outputs[k]) {
         case Output::position:
-          result[k] = plant[Plant::position] + p.position_offset_m;
+          result[k] = x[Plant::position] + p.position_offset_m;
           break;
         case Output::velocity:
-          result[k] = plant[Plant::velocity];
+          result[k] = x[Plant::velocity];
           break;
         case Output::load_pressure:
           result[k] = P_L + p.load_pressure_offset_pa;
@@ -144,36 +110,36 @@ class System {
           result[k] = 0.5 * (in.supply_pressure_pa - P_L) + p.pressure_b_offset_pa;
           break;
         case Output::force:
-          result[k] = Plant::rod_force(plant, p, layout_.terms) + p.force_offset_n;
+          result[k] = Plant::rod_force(x, p, layout_.terms) + p.force_offset_n;
           break;
         case Output::command:
           result[k] = command;
           break;
         case Output::spool:
-          result[k] = Plant::spool(in, p);
+          result[k] = Plant::spool(in, p, layout_.terms);
           break;
         case Output::servo_flow:
-          result[k] = Plant::servo_flow(P_L, in, p);
+          result[k] = Plant::servo_flow(P_L, in, p, layout_.terms);
           break;
         case Output::leakage_flow:
           result[k] = Plant::leakage_flow(P_L, p, layout_.terms);
           break;
         case Output::work_flow:
-          result[k] = plant[Plant::velocity] * p.piston_area_m2;
+          result[k] = x[Plant::velocity] * p.piston_area_m2;
           break;
       }
     }
   }
 
   /// State at the first sample.
-  State initial(InitialState mode, double t) const {
-    States states;
+  X initial(InitialState mode, double t) const {
+    X states;
     states.fill(C(0.0));
     if (mode == InitialState::given) {
       const auto plant = Plant::initial(parameters_, layout_.initial_pressure_given);
       for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
       // The loop was closed before the record began: no kick of the derivative, spool at rest.
-      const C drive = input_value<C>(drive_.sample(t), true);
+      const C drive = input_value<C>(drive_, t, true);
       if (layout_.filter >= 0) {
         states[static_cast<std::size_t>(layout_.filter)] = drive - plant[Plant::position];
       }
@@ -186,77 +152,106 @@ class System {
         states[static_cast<std::size_t>(layout_.valve)] = valve_command(states, drive);
       }
     }
-    return pack(states);
-  }
-
-  static States unpack(const State& x) {
-    States states;
-    for (int i = 0; i < N; ++i) states[static_cast<std::size_t>(i)] = active_row<P>(row(x, i));
     return states;
   }
-  static State pack(const States& states) {
-    State x;
-    for (int i = 0; i < N; ++i) store_row<P>(states[static_cast<std::size_t>(i)], row(x, i));
-    return x;
+
+  /// States that the outputs are made of.
+  static std::vector<std::size_t> observed_states(std::span<const Output> outputs) {
+    std::vector<std::size_t> states;
+    for (std::size_t i = 0; i < N; ++i) {
+      const bool seen = std::any_of(outputs.begin(), outputs.end(), [i](Output output) {
+        const auto state = Plant::state_of(output);
+        return !state || static_cast<std::size_t>(*state) == i;
+      });
+      if (seen) states.push_back(i);
+    }
+    return states;
   }
 
  private:
-  static const double* row(const State& x, int i) { return x.data() + i * (1 + P); }
-  static double* row(State& x, int i) { return x.data() + i * (1 + P); }
-
-  /// An input at one instant: with its time derivative where X has one, and with its derivative by
+  /// An input at one instant: with its time derivative where D has one, and with its derivative by
   /// the transport delay, -d/dt, where it is delayed and that is a direction.
-  template <typename X>
-  X input_value(const SignalSample& s, bool delayed) const {
-    if constexpr (std::is_same_v<X, C>) {
-      C value(s.value);
-      if constexpr (P > 0) {
-        if (delayed && delay_direction_ >= 0) {
-          value.derivative[static_cast<std::size_t>(delay_direction_)] = -s.slope;
-        }
-      }
-      return value;
+  template <typename D>
+  D input_value(const InputTrack& track, double t, bool delayed) const {
+    if constexpr (std::is_same_v<D, C>) {
+      if (!delayed || delay_direction_ < 0) return C(track.value(t));
+      const SignalSample s = track.sample(t);
+      return with_delay(s.value, s.slope);
     } else {
-      X value(input_value<C>(s, delayed));
-      value.derivative[static_cast<std::size_t>(N)] =
-          input_value<C>({s.slope, s.curvature, 0.0}, delayed);
+      const SignalSample s = track.sample(t);
+      const bool moves = delayed && delay_direction_ >= 0;
+      D value(moves ? with_delay(s.value, s.slope) : C(s.value));
+      value.derivative.set(static_cast<std::size_t>(N),
+                           moves ? with_delay(s.slope, s.curvature) : C(s.slope));
       return value;
     }
   }
 
-  /// What the valve is told: the held output, the controller's, or the recorded command.
-  template <typename X>
-  X valve_command(const std::array<X, static_cast<std::size_t>(N)>& x, const X& drive) const {
-    if (!layout_.pid) return drive;
-    if (layout_.sampled()) return x[static_cast<std::size_t>(layout_.held)];
-    return controller_output(X(drive - x[Plant::position]), x, parameters_, layout_).limited;
+  C with_delay(double value, double slope) const {
+    C result(value);
+    if constexpr (P > 0) {
+      result.derivative.set(static_cast<std::size_t>(delay_direction_), -slope);
+    }
+    return result;
   }
 
-  template <typename X>
-  PlantInput<X> plant_input(const std::array<X, static_cast<std::size_t>(N)>& x, const X& command,
+  /// What the valve is told: the held output, the controller's, or the recorded command.
+  template <typename D>
+  D valve_command(const std::array<D, static_cast<std::size_t>(N)>& x, const D& drive) const {
+    if (!layout_.pid) return drive;
+    const D error = drive - x[Plant::position];
+    if constexpr (N == Plant::kStates) {
+      constexpr Layout kNoStates;
+      return controller_output(error, x, parameters_, kNoStates).limited;
+    } else {
+      if (layout_.sampled()) return x[static_cast<std::size_t>(layout_.held)];
+      return controller_output(error, x, parameters_, layout_).limited;
+    }
+  }
+
+  template <typename D>
+  PlantInput<D> plant_input(const std::array<D, static_cast<std::size_t>(N)>& x, const D& command,
                             double t) const {
-    PlantInput<X> in;
-    in.spool_command_v =
-        layout_.valve_order == 0 ? command : x[static_cast<std::size_t>(layout_.valve)];
-    if (external_force_) in.external_force_n = input_value<X>(external_force_->sample(t), false);
-    in.supply_pressure_pa = supply_pressure_ ? input_value<X>(supply_pressure_->sample(t), false)
-                                             : X(parameters_.supply_pressure_pa);
+    PlantInput<D> in;
+    in.spool_command_v = command;
+    if constexpr (N > Plant::kStates) {
+      if (layout_.valve_order > 0) in.spool_command_v = x[static_cast<std::size_t>(layout_.valve)];
+    }
+    if (layout_.terms.external_force) {
+      in.external_force_n = D(parameters_.external_force_n);
+      if (external_force_)
+        in.external_force_n = in.external_force_n + input_value<D>(*external_force_, t, false);
+    }
+    in.supply_pressure_pa = supply_pressure_ ? input_value<D>(*supply_pressure_, t, false)
+                                             : D(parameters_.supply_pressure_pa);
     return in;
   }
 
-  template <typename X>
-  std::array<X, static_cast<std::size_t>(N)> right_hand_side(
-      const std::array<X, static_cast<std::size_t>(N)>& x, double t) const {
-    const Parameters& p = parameters_;
-    std::array<X, static_cast<std::size_t>(N)> dx{};
-    const X drive = input_value<X>(drive_.sample(t), true);
-    X command = drive;
+  template <typename D>
+  std::array<D, static_cast<std::size_t>(N)> right_hand_side(
+      const std::array<D, static_cast<std::size_t>(N)>& x, double t) const {
+    const D drive = input_value<D>(drive_, t, true);
+    if constexpr (N == Plant::kStates) {
+      const D command = valve_command(x, drive);
+      return Plant::derivative(x, plant_input<D>(x, command, t), parameters_, layout_.terms);
+    } else {
+      return with_states_of_the_loop(x, drive, t);
+    }
+  }
+
+  /// The derivative of valve, controller and plant together.
+  template <typename D>
+  std::array<D, static_cast<std::size_t>(N)> with_states_of_the_loop(
+      const std::array<D, static_cast<std::size_t>(N)>& x, const D& drive, double t) const {
+    const Coefficients& p = parameters_;
+    std::array<D, static_cast<std::size_t>(N)> dx{};
+    D command = drive;
     if (layout_.pid) {
       if (layout_.sampled()) {
         command = x[static_cast<std::size_t>(layout_.held)];
       } else {
-        const X error = drive - x[Plant::position];
-        const ControllerOutput<X> u = controller_output(error, x, p, layout_);
+        const D error = drive - x[Plant::position];
+        const ControllerOutput<D> u = controller_output(error, x, p, layout_);
         command = u.limited;
         if (layout_.integral >= 0) {
           dx[static_cast<std::size_t>(layout_.integral)] = integral_rate(error, u, p);
@@ -277,15 +272,13 @@ class System {
       dx[spool + 1] = (command - x[spool]) * (omega * omega) -
                       x[spool + 1] * (2.0 * p.valve_damping_ratio * omega);
     }
-    std::array<X, Plant::kStates> plant;
-    for (std::size_t i = 0; i < plant.size(); ++i) plant[i] = x[i];
-    const auto plant_dx = Plant::derivative(plant, plant_input<X>(x, command, t), p, layout_.terms);
-    for (std::size_t i = 0; i < plant.size(); ++i) dx[i] = plant_dx[i];
+    const auto plant_dx = Plant::derivative(x, plant_input<D>(x, command, t), p, layout_.terms);
+    for (std::size_t i = 0; i < plant_dx.size(); ++i) dx[i] = plant_dx[i];
     return dx;
   }
 
   Layout layout_;
-  Parameters parameters_{};
+  Coefficients parameters_{};
   InputTrack drive_;
   std::optional<InputTrack> external_force_;
   std::optional<InputTrack> supply_pressure_;

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <functional>
 
+#include "model/dormand_prince.hpp"
+#include "model/stiffness.hpp"
+
 using namespace rigcal::model;
 using Catch::WithinAbs;
 
@@ -18,14 +21,12 @@ struct Equation {
   std::function<double(double t)> exact;
   double start_s = 0.0;
 
-  Eigen::Matrix<double, 1, 1> derivative(const Eigen::Matrix<double, 1, 1>& x, double t) const {
-    return Eigen::Matrix<double, 1, 1>(f(x(0), t));
-  }
+  State<1, 0> derivative(const State<1, 0>& x, double t) const { return {f(x[0], t)}; }
   Linearisation<1, 0> linearise(double x, double t) const {
     Linearisation<1, 0> lin;
-    lin.f(0) = f(x, t);
-    lin.f_t(0) = f_t(x, t);
-    lin.jacobian(0) = f_x(x, t);
+    lin.f[0] = f(x, t);
+    lin.f_t[0] = f_t(x, t);
+    lin.jacobian[0][0] = f_x(x, t);
     return lin;
   }
 };
@@ -51,25 +52,21 @@ struct Errors {
 };
 
 Errors errors_of(const Equation& equation, int steps) {
-  using State = StateMatrix<1, 0>;
   Rosenbrock<1, 0> stepper;
-  State x(equation.exact(0.0));
+  State<1, 0> x{equation.exact(0.0)};
   Errors errors;
   const double dt = 1.0 / steps;
   for (int i = 0; i < steps; ++i) {
     const double t = i * dt;
-    State x_new;
-    State error;
-    stepper.do_step(equation, equation.linearise(x(0), t), x, t, x_new, dt, error);
-    stepper.prepare_dense_output();
-    for (const double s : {0.25, 0.5, 0.75}) {
-      State between;
-      stepper.calc_state(t + s * dt, between, x, t, x_new, t + dt);
-      errors.dense = std::max(errors.dense, std::abs(between(0) - equation.exact(t + s * dt)));
-    }
+    State<1, 0> x_new;
+    State<1, 0> error;
+    stepper.do_step(equation, equation.linearise(x[0], t), x, t, x_new, dt, error);
+    const auto between = stepper.dense_output(x, x_new);
+    for (const double s : {0.25, 0.5, 0.75})
+      errors.dense = std::max(errors.dense, std::abs(between(0, s) - equation.exact(t + s * dt)));
     x = x_new;
   }
-  errors.end = std::abs(x(0) - equation.exact(1.0));
+  errors.end = std::abs(x[0] - equation.exact(1.0));
   return errors;
 }
 
@@ -154,60 +151,52 @@ TEST_CASE("rosenbrock: L-stable, an infinitely fast mode is gone after one step"
                          [=](double, double) { return -z; }, [](double, double) { return 0.0; },
                          [](double) { return 1.0; }};
     Rosenbrock<1, 0> stepper;
-    StateMatrix<1, 0> x(1.0);
-    StateMatrix<1, 0> x_new;
-    StateMatrix<1, 0> error;
+    const State<1, 0> x{1.0};
+    State<1, 0> x_new;
+    State<1, 0> error;
     stepper.do_step(decay, decay.linearise(1.0, 0.0), x, 0.0, x_new, 1.0, error);
-    CAPTURE(z, x_new(0));
-    CHECK(std::abs(x_new(0)) < 20.0 / z);  // R(z) falls at least like 1 / z
+    CAPTURE(z, x_new[0]);
+    CHECK(std::abs(x_new[0]) < 20.0 / z);  // R(z) falls at least like 1 / z
   }
 }
 
 namespace {
 
-/// Two states, two parameters: x' = y + sin(p t), y' = -q x y - 3 x; columns: state, d/dp, d/dq.
+/// Two states, two parameters: x' = y + sin(p t), y' = -q x y - 3 x, differentiated by hand.
 struct Pair {
   double p = 1.3;
   double q = 0.8;
-  using State = StateMatrix<2, 2>;
+  using X = State<2, 2>;
+  using D = Dual<double, 2>;
 
-  State derivative(const State& s, double t) const {
-    State d;
-    const double x = s(0, 0);
-    const double y = s(1, 0);
-    d(0, 0) = y + std::sin(p * t);
-    d(1, 0) = -q * x * y - 3.0 * x;
-    for (int j = 1; j <= 2; ++j) {
-      d(0, j) = s(1, j);
-      d(1, j) = -q * (s(0, j) * y + x * s(1, j)) - 3.0 * s(0, j);
-    }
-    d(0, 1) += t * std::cos(p * t);
-    d(1, 2) += -x * y;
+  static D dual(double value, double by_p, double by_q) {
+    D d(value);
+    d.derivative.set(0, by_p);
+    d.derivative.set(1, by_q);
     return d;
   }
-  Linearisation<2, 2> linearise(const State& s, double t) const {
+
+  X derivative(const X& s, double t) const {
+    const D drive = dual(std::sin(p * t), t * std::cos(p * t), 0.0);
+    return {s[1] + drive, -(dual(q, 0.0, 1.0) * s[0] * s[1]) - s[0] * 3.0};
+  }
+  Linearisation<2, 2> linearise(const X& s, double t) const {
     Linearisation<2, 2> lin;
+    const D zero(0.0);
+    const D q_dual = dual(q, 0.0, 1.0);
     lin.f = derivative(s, t);
-    lin.f_t.setZero();
-    lin.f_t(0, 0) = p * std::cos(p * t);
-    lin.f_t(0, 1) = std::cos(p * t) - p * t * std::sin(p * t);
-    lin.jacobian << 0.0, 1.0, -q * s(1, 0) - 3.0, -q * s(0, 0);
-    for (int j = 1; j <= 2; ++j) {
-      lin.jacobian_tangent[static_cast<std::size_t>(j - 1)] << 0.0, 0.0, -q * s(1, j), -q * s(0, j);
-    }
-    lin.jacobian_tangent[1](1, 0) += -s(1, 0);
-    lin.jacobian_tangent[1](1, 1) += -s(0, 0);
+    lin.f_t = {dual(p * std::cos(p * t), std::cos(p * t) - p * t * std::sin(p * t), 0.0), zero};
+    lin.jacobian = {X{zero, D(1.0)}, X{-(q_dual * s[1]) - 3.0, -(q_dual * s[0])}};
     return lin;
   }
 };
 
-Pair::State one_step(double p, double q) {
+Pair::X one_step(double p, double q) {
   const Pair system{p, q};
-  Pair::State x;
-  x << 0.9, 0.0, 0.0, -0.4, 0.0, 0.0;
+  const Pair::X x{Pair::D(0.9), Pair::D(-0.4)};
   Rosenbrock<2, 2> stepper;
-  Pair::State x_new;
-  Pair::State error;
+  Pair::X x_new;
+  Pair::X error;
   stepper.do_step(system, system.linearise(x, 0.6), x, 0.6, x_new, 0.5, error);
   return x_new;
 }
@@ -217,19 +206,56 @@ Pair::State one_step(double p, double q) {
 TEST_CASE("rosenbrock: sensitivities of a step are the derivatives of that step", "[model]") {
   constexpr double kStep = 1e-5;
   const Pair nominal;
-  const Pair::State step = one_step(nominal.p, nominal.q);
-  const Pair::State by_p =
-      (one_step(nominal.p + kStep, nominal.q) - one_step(nominal.p - kStep, nominal.q)) /
-      (2.0 * kStep);
-  const Pair::State by_q =
-      (one_step(nominal.p, nominal.q + kStep) - one_step(nominal.p, nominal.q - kStep)) /
-      (2.0 * kStep);
-  for (int i = 0; i < 2; ++i) {
+  const Pair::X step = one_step(nominal.p, nominal.q);
+  const auto difference = [](const Pair::X& right, const Pair::X& left, std::size_t i) {
+    return (right[i].value - left[i].value) / (2.0 * kStep);
+  };
+  const Pair::X p_right = one_step(nominal.p + kStep, nominal.q);
+  const Pair::X p_left = one_step(nominal.p - kStep, nominal.q);
+  const Pair::X q_right = one_step(nominal.p, nominal.q + kStep);
+  const Pair::X q_left = one_step(nominal.p, nominal.q - kStep);
+  for (std::size_t i = 0; i < 2; ++i) {
     CAPTURE(i);
     // Central difference: kStep^2 of a third derivative near 1, rounding 1e-11.
-    CHECK_THAT(step(i, 1), WithinAbs(by_p(i, 0), 1e-9));
-    CHECK_THAT(step(i, 2), WithinAbs(by_q(i, 0), 1e-9));
-    CHECK(std::abs(step(i, 1)) > 1e-3);
-    CHECK(std::abs(step(i, 2)) > 1e-3);
+    CHECK_THAT(step[i].derivative[0], WithinAbs(difference(p_right, p_left, i), 1e-9));
+    CHECK_THAT(step[i].derivative[1], WithinAbs(difference(q_right, q_left, i), 1e-9));
+    CHECK(std::abs(step[i].derivative[0]) > 1e-3);
+    CHECK(std::abs(step[i].derivative[1]) > 1e-3);
+  }
+}
+
+TEST_CASE("dormand_prince: order 5, and 4 between the steps", "[model]") {
+  const auto errors = [](int steps) {
+    const Equation equation = nonlinear();
+    DormandPrince<1, 0> stepper;
+    State<1, 0> x{equation.exact(0.0)};
+    Errors result;
+    const double dt = 1.0 / steps;
+    for (int i = 0; i < steps; ++i) {
+      const double t = i * dt;
+      State<1, 0> x_new;
+      State<1, 0> error;
+      stepper.do_step(equation, equation.derivative(x, t), x, t, x_new, dt, error);
+      const auto between = stepper.dense_output(x, x_new, dt);
+      for (const double s : {0.2, 0.5, 0.8})
+        result.dense = std::max(result.dense, std::abs(between(0, s) - equation.exact(t + s * dt)));
+      x = x_new;
+    }
+    result.end = std::abs(x[0] - equation.exact(1.0));
+    return result;
+  };
+  const Errors coarse = errors(10);
+  const Errors fine = errors(20);
+  CHECK(order(coarse.end, fine.end) > 4.7);
+  CHECK(order(coarse.dense, fine.dense) > 4.0);
+}
+
+TEST_CASE("stiffness: the spectral radius, whatever the units of the states", "[model]") {
+  // Oscillator x'' = -w^2 x - d x' with x in metres and in a billionth of it.
+  for (const double unit : {1.0, 1e9}) {
+    const std::array<State<2, 0>, 2> jacobian{State<2, 0>{0.0, unit},
+                                              State<2, 0>{-600.0 * 600.0 / unit, -12.0}};
+    CHECK(spectral_radius(jacobian) > 600.0);
+    CHECK(spectral_radius(jacobian) < 600.0 * 1.1);  // trace of the 8th power: twice, 2^(1/8)
   }
 }

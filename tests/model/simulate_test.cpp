@@ -119,13 +119,16 @@ TEST_CASE("simulate: two methods agree on every optional term", "[model]") {
   Experiment base = paper(Signal::sine(0.02, 2.0), 0.5);
   base.set("kp", 300.0);
   base.options.tolerance = 1e-8;
+  base.options.method = Method::rosenbrock;
   const Simulation plain = ok(base);
   for (const Term& term : terms()) {
     CAPTURE(term.name);
     Experiment e = with(base, term.values);
     const Simulation implicit = ok(e);
-    e.options.method = Method::dopri5;
-    CHECK(difference(implicit.outputs, ok(e).outputs) < 2e-5);
+    for (const Method method : {Method::dopri5, Method::automatic}) {
+      e.options.method = method;
+      CHECK(difference(implicit.outputs, ok(e).outputs) < 2e-5);
+    }
     CHECK(difference(implicit.outputs, plain.outputs) > 1e-4);  // the term does something
   }
 }

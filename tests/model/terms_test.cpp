@@ -17,7 +17,7 @@ constexpr double kEps = 100.0;
 
 template <typename X>
 X servo(const X& spool, const X& load_pressure) {
-  return servo_flow(spool, load_pressure, kSupply, kCd, kWidth, kRho, kEps);
+  return servo_flow(spool, load_pressure, kSupply, valve_conductance(kCd, kWidth, kRho), kEps);
 }
 
 }  // namespace
@@ -58,13 +58,13 @@ TEST_CASE("servo_flow: turns back where the load pressure passes the supply", "[
 
 TEST_CASE("orifice_leakage: odd, eq. 11 far from zero, finite slope at it", "[model]") {
   const auto leak = [](auto pressure) {
-    return orifice_leakage(pressure, 0.35, 4.456e-6, kRho, kEps);
+    return orifice_leakage(pressure, orifice_conductance(0.35, 4.456e-6, kRho), kEps);
   };
   const double gain = 0.35 * 4.456e-6 * std::sqrt(2.0 / kRho);
   CHECK(leak(-3e5) == -leak(3e5));
   CHECK_THAT(leak(1e6), WithinRel(gain * 1e3, 1e-8));  // (eps/P)^2 / 4 = 2.5e-9
   CHECK_THAT(leak(D::variable(0.0, 0)).derivative[0], WithinRel(gain / std::sqrt(kEps), 1e-14));
-  CHECK(orifice_leakage(1e6, 0.0, 4.456e-6, kRho, kEps) == 0.0);
+  CHECK(orifice_leakage(1e6, orifice_conductance(0.0, 4.456e-6, kRho), kEps) == 0.0);
 }
 
 TEST_CASE("dry_friction: breakaway, Coulomb limit, odd, nothing at rest", "[model]") {

@@ -1,0 +1,26 @@
+# Code for AVX2 lies beside that for every x86-64, and is chosen at run time. Not under sanitizers,
+# which keep tables of what the object files held before they were merged.
+include(CheckCXXSourceCompiles)
+set(CMAKE_REQUIRED_FLAGS "-mavx2 -mfma")
+check_cxx_source_compiles("int main() { return __builtin_cpu_supports(\"avx2\") ? 0 : 1; }"
+  RIGCAL_COMPILER_KNOWS_AVX2)
+unset(CMAKE_REQUIRED_FLAGS)
+if(RIGCAL_COMPILER_KNOWS_AVX2 AND CMAKE_OBJCOPY AND CMAKE_LINKER AND NOT RIGCAL_SANITIZE)
+  set(RIGCAL_AVX2 ON)
+else()
+  set(RIGCAL_AVX2 OFF)
+endif()
+
+# The object file of an object library of one source with all symbols local but those that match
+# `keep`. Inline functions of an object compiled for AVX2 would else stand in for those of the
+# others, whose processors may not have it.
+function(rigcal_private_object library keep result)
+  set(merged ${CMAKE_CURRENT_BINARY_DIR}/${library}.merged.o)
+  set(private ${CMAKE_CURRENT_BINARY_DIR}/${library}.private.o)
+  add_custom_command(OUTPUT ${private}
+    COMMAND ${CMAKE_LINKER} -r --force-group-allocation -o ${merged} $<TARGET_OBJECTS:${library}>
+    COMMAND ${CMAKE_OBJCOPY} --wildcard "--keep-global-symbol=${keep}" ${merged} ${private}
+    DEPENDS ${library} $<TARGET_OBJECTS:${library}>
+    VERBATIM)
+  set(${result} ${private} PARENT_SCOPE)
+endfunction()

@@ -1,0 +1,19 @@
+#pragma once
+
+#include "model/state.hpp"
+
+namespace rigcal::model {
+
+/// The solution within one step: a polynomial of the fourth degree at most in s, which goes from 0
+/// to 1 along the step.
+template <int N, int P>
+struct Interpolant {
+  std::array<std::array<Active<P>, 5>, static_cast<std::size_t>(N)> coefficient;
+
+  Active<P> operator()(std::size_t i, double s) const {
+    const auto& c = coefficient[i];
+    return c[0] + (c[1] + (c[2] + (c[3] + c[4] * s) * s) * s) * s;
+  }
+};
+
+}  // namespace rigcal::model
