@@ -34,12 +34,12 @@ Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t cha
 
 ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
                                        std::span<const double> z, const std::atomic<bool>* cancel,
-                                       ConditionRows* rows) {
+                                       ConditionRows* rows, std::optional<double> tolerance) {
   const ProblemCondition& data = problem.conditions[condition];
   const datasets::Campaign& campaign = *problem.campaign;
   model::SimulationOptions options;
   options.method = campaign.simulation.method;
-  options.tolerance = problem.tolerance;
+  options.tolerance = tolerance.value_or(problem.tolerance);
   options.max_steps = data.max_steps;
   options.max_seconds = campaign.simulation.max_seconds;
   options.cancel = cancel;

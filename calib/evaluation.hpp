@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <atomic>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,10 +36,12 @@ struct ConditionRows {
 /// loss. Never throws for a point that cannot be simulated.
 ///
 /// @param z       shape (unknowns), in the unit box
-/// @param rows    if not null, receives every row
+/// @param rows       if not null, receives every row
+/// @param tolerance  of the simulation, if not the problem's
 ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
                                        std::span<const double> z, const std::atomic<bool>* cancel,
-                                       ConditionRows* rows = nullptr);
+                                       ConditionRows* rows = nullptr,
+                                       std::optional<double> tolerance = std::nullopt);
 
 /// All conditions at one point.
 struct Evaluation {

@@ -10,6 +10,8 @@ namespace {
 
 /// Failures that are kept in words, of each condition and kind.
 constexpr int kFailuresKept = 3;
+/// Tolerance far from an optimum: less buys no fewer steps of the optimiser.
+constexpr double kCoarseTolerance = 1e-4;
 
 double prior_cost(const Problem& problem, std::span<const double> z) {
   double cost = 0.0;
@@ -47,8 +49,11 @@ const Evaluation& Evaluator::evaluate(std::span<const double> z) {
     last_ = std::move(evaluation);
     return last_;
   }
+  const double tolerance =
+      coarse_ ? std::max(kCoarseTolerance, problem_.tolerance) : problem_.tolerance;
   parallel_for(problem_.conditions.size(), options_.threads, [&](std::size_t i) {
-    evaluation.conditions[i] = evaluate_condition(problem_, i, z, options_.cancel);
+    evaluation.conditions[i] =
+        evaluate_condition(problem_, i, z, options_.cancel, nullptr, tolerance);
   });
   ++evaluations_;
   evaluation.ok = std::all_of(evaluation.conditions.begin(), evaluation.conditions.end(),
@@ -71,6 +76,11 @@ void Evaluator::keep_best() {
 void Evaluator::begin_start(int number) {
   start_ = number;
   best_ = {};
+}
+
+void Evaluator::be_coarse(bool coarse) {
+  if (coarse != coarse_) forget();
+  coarse_ = coarse;
 }
 
 void Evaluator::forget() {

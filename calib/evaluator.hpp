@@ -37,12 +37,21 @@ class Evaluator final : public ceres::EvaluationCallback {
   /// The evaluation at z; not ok where a condition could not be simulated, which is recorded.
   const Evaluation& evaluate(std::span<const double> z);
 
+  /// Simulates no finer than need be far from an optimum, where errors of the simulation are
+  /// nothing against those of the parameters; or at the tolerance of the problem again. Drops what
+  /// is kept of earlier points.
+  void be_coarse(bool coarse);
+  bool coarse() const { return coarse_; }
+
   /// Begins a start of a multi-start: best() is then the best of this start.
   void begin_start(int number);
   /// Drops what is kept of earlier points.
   void forget();
   /// The point of lowest cost so far; not ok if there is none.
   const Evaluation& best() const { return best_; }
+
+  /// Takes the last point for the best, whatever its cost.
+  void take_last() { best_ = last_; }
 
   /// Where Ceres keeps the point; read at every PrepareForEvaluation.
   void watch(std::span<const double> z) { watched_ = z; }
@@ -71,6 +80,7 @@ class Evaluator final : public ceres::EvaluationCallback {
   Evaluation best_;
   std::span<const double> watched_;
   std::exception_ptr error_;
+  bool coarse_ = false;
   int start_ = 1;
   long evaluations_ = 0;
   long failure_count_ = 0;

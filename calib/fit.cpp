@@ -26,8 +26,9 @@ using datasets::Record;
 using datasets::Use;
 using Clock = Evaluator::Clock;
 
-/// A later point may take this many times the steps of the start before it is given up.
-constexpr long kStepsOverStart = 50;
+/// A later point may take this many times the steps of the start, at a coarse tolerance, before it
+/// is given up.
+constexpr long kStepsOverStart = 200;
 constexpr long kLeastSteps = 20'000;
 
 std::vector<const Condition*> conditions_of(const Campaign& campaign, std::vector<Use> uses) {
@@ -121,6 +122,7 @@ Evaluator::Options evaluator_options(const Campaign& campaign, const FitOptions&
 /// Solves a problem and describes what was found, all but the scores.
 Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options,
                          Fit& fit) {
+  evaluator.be_coarse(true);
   budget_steps(problem, evaluator.evaluate(problem.start()));
   MultiStart found = multi_start(problem, evaluator, options);
   if (found.optimum.ok && problem.has_estimated_sd())

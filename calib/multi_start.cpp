@@ -60,6 +60,7 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
     if (i > 0 && evaluator.aborted()) break;
     const int number = static_cast<int>(i) + 1;
     evaluator.begin_start(number);
+    evaluator.be_coarse(true);
     StartReport report;
     report.number = number;
     report.start_values = problem.to_physical(points[i]);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/SVD>
 #include <algorithm>
 
 #include "calib/residual.hpp"
@@ -17,6 +18,19 @@ constexpr int kMaxCalls = 4;
 /// Ceres' own 1e4 is all but a full Gauss-Newton step: far from the optimum it ends in a corner of
 /// the box, where it may stay.
 constexpr double kFirstTrustRadius = 100.0;
+/// Near it the full step is the right one.
+constexpr double kNearTrustRadius = 1e8;
+/// Standard errors that may be left of a step with coarse simulations: their own errors leave more.
+constexpr double kCoarseOffset = 1.0;
+/// Where full Gauss-Newton steps begin, in standard errors, and how many of them there are.
+constexpr double kFullStepOffset = 30.0;
+constexpr int kFullSteps = 4;
+/// Relative change of the cost below which coarse simulations tell no more.
+constexpr double kCoarseChange = 1e-4;
+
+bool near_enough(const Evaluator& evaluator, const OptimumCheck& check) {
+  return evaluator.coarse() ? check.relative_offset <= kCoarseOffset : check.stationary();
+}
 
 /// Tells of each iteration, and ends the call at a stationary point, when the set of parameters to
 /// be held at a bound has changed for good, on a signal, or at the time limit.
@@ -40,7 +54,8 @@ class Watcher final : public ceres::IterationCallback {
                           summary.cumulative_time_in_seconds);
       }
       const OptimumCheck check = check_optimum(problem_, evaluator_.best());
-      stationary_ = check.stationary();
+      stationary_ =
+          evaluator_.coarse() ? check.relative_offset <= kCoarseOffset : check.stationary();
       other_bounds_ = check.held == held_ ? 0 : other_bounds_ + 1;
     } catch (...) {
       error_ = std::current_exception();
@@ -74,7 +89,8 @@ class Watcher final : public ceres::IterationCallback {
 /// One call of Ceres; z is where it starts and its working space.
 ceres::Solver::Summary call_ceres(const Problem& problem, Evaluator& evaluator,
                                   std::vector<double>& z, const std::vector<bool>& held,
-                                  int iterations, Watcher& watcher, const FitOptions& options) {
+                                  double trust_radius, int iterations, Watcher& watcher,
+                                  const FitOptions& options) {
   evaluator.watch(z);
   ceres::Problem::Options problem_options;
   problem_options.evaluation_callback = &evaluator;
@@ -103,8 +119,8 @@ ceres::Solver::Summary call_ceres(const Problem& problem, Evaluator& evaluator,
   settings.logging_type = ceres::SILENT;
   settings.minimizer_progress_to_stdout = false;
   settings.max_num_iterations = iterations;
-  settings.initial_trust_region_radius = kFirstTrustRadius;
-  settings.function_tolerance = options.function_tolerance;
+  settings.initial_trust_region_radius = trust_radius;
+  settings.function_tolerance = evaluator.coarse() ? kCoarseChange : options.function_tolerance;
   settings.gradient_tolerance = options.gradient_tolerance;
   settings.parameter_tolerance = options.parameter_tolerance;
   settings.callbacks.push_back(&watcher);
@@ -118,6 +134,19 @@ std::string stop_reason(const Evaluator& evaluator, int iterations) {
   if (evaluator.out_of_time()) return "stopped at the time limit";
   return fmt::format("stopped after {} iterations, the most allowed, before it converged",
                      iterations);
+}
+
+std::string converged_after(int iterations) {
+  return fmt::format("converged after {} iterations", iterations);
+}
+
+/// The result where not even the start could be simulated.
+SolveResult no_start(const Problem& problem, const Evaluator& evaluator, const Evaluation& first) {
+  SolveResult result;
+  result.status = evaluator.aborted() ? FitStatus::stopped : FitStatus::failed;
+  result.message = evaluator.aborted() ? stop_reason(evaluator, 0)
+                                       : "the start " + describe_failure(problem, first);
+  return result;
 }
 
 }  // namespace
@@ -140,21 +169,64 @@ std::string describe_failure(const Problem& problem, const Evaluation& evaluatio
   return "not simulated";
 }
 
-SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
-                  int iterations, int start, const FitOptions& options) {
+namespace {
+
+/// Where a full Gauss-Newton step leads, parameters that are held left where they are.
+std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evaluation,
+                                 const std::vector<bool>& held) {
+  const Linearisation system = linearise(problem, evaluation);
+  std::vector<Eigen::Index> free;
+  for (std::size_t j = 0; j < held.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    if (!held[j] && system.jacobian.col(column).norm() > 0.0) free.push_back(column);
+  }
+  std::vector<double> z = evaluation.z;
+  if (free.empty()) return z;
+  Eigen::MatrixXd scaled = system.jacobian(Eigen::all, free);
+  const Eigen::VectorXd norms = scaled.colwise().norm();
+  scaled.array().rowwise() /= norms.transpose().array();
+  Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  svd.setThreshold(rank_threshold(problem.tolerance));
+  const Eigen::VectorXd step = -(svd.solve(system.residual).array() / norms.array()).matrix();
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    double& each = z[static_cast<std::size_t>(free[k])];
+    each = std::clamp(each + step(static_cast<Eigen::Index>(k)), 0.0, 1.0);
+  }
+  return z;
+}
+
+/// Full Gauss-Newton steps from the evaluator's best point while they come nearer to a stationary
+/// one; near it the cost itself tells nothing, because errors of the simulation move it by more
+/// than is left to gain. Where it ends is the evaluator's best point.
+///
+/// @return  number of steps, and what is left
+std::pair<int, OptimumCheck> full_steps(const Problem& problem, Evaluator& evaluator, int most) {
+  OptimumCheck check = check_optimum(problem, evaluator.best());
+  int steps = 0;
+  while (steps < most && check.relative_offset <= kFullStepOffset && !check.stationary()) {
+    const std::vector<double> next = gauss_newton(problem, evaluator.best(), check.held);
+    const Evaluation& after = evaluator.evaluate(next);
+    if (!after.ok) break;
+    const OptimumCheck found = check_optimum(problem, after);
+    if (found.relative_offset >= check.relative_offset) break;
+    evaluator.take_last();
+    check = found;
+    ++steps;
+  }
+  return {steps, check};
+}
+
+/// Calls Ceres until the point is near enough to a minimum.
+SolveResult descend(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
+                    double trust_radius, int iterations, int start, const FitOptions& options) {
   SolveResult result;
   const Evaluation first = evaluator.evaluate(z);
-  if (!first.ok) {
-    result.status = evaluator.aborted() ? FitStatus::stopped : FitStatus::failed;
-    result.message = evaluator.aborted() ? stop_reason(evaluator, 0)
-                                         : "the start " + describe_failure(problem, first);
-    return result;
-  }
+  if (!first.ok) return no_start(problem, evaluator, first);
   std::vector<bool> held(z.size(), false);
   int retries = 0;
   while (retries < kMaxCalls) {
     Watcher watcher(problem, evaluator, options, start, result.iterations, held);
-    const auto summary = call_ceres(problem, evaluator, z, held,
+    const auto summary = call_ceres(problem, evaluator, z, held, trust_radius,
                                     std::max(iterations - result.iterations, 0), watcher, options);
     evaluator.rethrow();
     watcher.rethrow();
@@ -162,9 +234,10 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
     z = evaluator.best().z;
     result.check = check_optimum(problem, evaluator.best());
     const bool agreed = summary.termination_type == ceres::CONVERGENCE;
-    if (result.check.stationary() || (agreed && result.check.nearly_stationary())) {
+    const bool nearly = evaluator.coarse() || result.check.nearly_stationary();
+    if (near_enough(evaluator, result.check) || (agreed && nearly)) {
       result.status = FitStatus::converged;
-      result.message = fmt::format("converged after {} iterations", result.iterations);
+      result.message = converged_after(result.iterations);
       return result;
     }
     if (evaluator.aborted() || result.iterations >= iterations) {
@@ -181,12 +254,53 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
                   "errors is left: not a minimum",
                   result.check.relative_offset);
     if (!watcher.bounds_changed() || watcher.iterations() == 0) ++retries;
+    trust_radius = kFirstTrustRadius;
     held = result.check.held;
     for (std::size_t j = 0; j < z.size(); ++j) {
       if (held[j]) z[j] = result.check.side[j] == BoundSide::lower ? 0.0 : 1.0;
     }
     if (!evaluator.evaluate(z).ok) break;  // not even the bound itself
   }
+  return result;
+}
+
+}  // namespace
+
+SolveResult refine(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
+                   int iterations, int start, const FitOptions& options) {
+  if (!evaluator.evaluate(z).ok || iterations == 0)
+    return descend(problem, evaluator, std::move(z), kNearTrustRadius, iterations, start, options);
+  const auto [steps, check] = full_steps(problem, evaluator, std::min(kFullSteps, iterations));
+  if (check.nearly_stationary())
+    return {FitStatus::converged, converged_after(steps), steps, check};
+  SolveResult result = descend(problem, evaluator, evaluator.best().z, kNearTrustRadius,
+                               iterations - steps, start, options);
+  result.iterations += steps;
+  return result;
+}
+
+SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
+                  int iterations, int start, const FitOptions& options) {
+  evaluator.be_coarse(true);
+  const Evaluation first = evaluator.evaluate(z);
+  if (!first.ok) return no_start(problem, evaluator, first);
+  const SolveResult coarse =
+      descend(problem, evaluator, z, kFirstTrustRadius, iterations, start, options);
+  const int used = coarse.iterations;
+  if (evaluator.aborted()) return coarse;
+
+  z = evaluator.best().z;
+  evaluator.be_coarse(false);
+  FitOptions counting = options;  // one count of iterations through both
+  if (options.progress) {
+    counting.progress = [&](int number, int iteration, double cost, double change, double seconds) {
+      options.progress(number, used + iteration, cost, change, seconds);
+    };
+  }
+  SolveResult result = refine(problem, evaluator, z, iterations - used, start, counting);
+  result.iterations += used;
+  if (result.status == FitStatus::converged) result.message = converged_after(result.iterations);
+  if (result.status == FitStatus::stopped) result.message = stop_reason(evaluator, iterations);
   return result;
 }
 

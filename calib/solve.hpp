@@ -20,10 +20,17 @@ struct SolveResult {
 /// Parameters at a bound that the cost pushes outwards are held there in the next call, because a
 /// projected Gauss-Newton step is none for the others; those that it pushes inwards are let go.
 ///
+/// First to about a standard error with coarse simulations, then on from there with those of the
+/// problem's tolerance; the result is of the latter.
+///
 /// @param iterations  budget of all calls together
 /// @param start       number of the start, for `options.progress`
 SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
                   int iterations, int start, const FitOptions& options);
+
+/// The same without coarse simulations, from a point near the optimum.
+SolveResult refine(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
+                   int iterations, int start, const FitOptions& options);
 
 /// The first condition that could not be simulated, with time, reason and values.
 std::string describe_failure(const Problem& problem, const Evaluation& evaluation);

@@ -85,7 +85,7 @@ void estimate_weights(Problem& problem, Evaluator& evaluator, const FitOptions& 
     evaluator.forget();
     const int iterations_before = found.result.iterations;
     found.result =
-        solve(problem, evaluator, found.optimum.z, options.max_iterations, found.best, counting);
+        refine(problem, evaluator, found.optimum.z, options.max_iterations, found.best, counting);
     found.result.iterations += iterations_before;
     if (!evaluator.best().ok) break;
     found.optimum = evaluator.best();
