@@ -1,6 +1,6 @@
 #include <benchmark/benchmark.h>
 
-#include "bench/six_signals.hpp"
+#include "bench/problems.hpp"
 
 namespace rigcal::bench {
 namespace {
@@ -12,7 +12,7 @@ void sweep(benchmark::State& state, const std::vector<const char*>& free_keys,
   std::vector<int> free;
   for (const char* key : free_keys) free.push_back(model::parameter_index(values.plant, key));
   std::vector<std::vector<double>> times;
-  for (const SixSignal& signal : kSixSignals) times.push_back(sample_times(signal));
+  for (const Reference& signal : kSixSignals) times.push_back(sample_times(signal));
   model::SimulationOptions options;
   options.method = method;
   const std::vector<model::Output> outputs{model::Output::position};
@@ -35,6 +35,9 @@ void sweep(benchmark::State& state, const std::vector<const char*>& free_keys,
 
 const std::vector<const char*> kFour{"mass", "bulk_modulus", "valve_gain", "leakage_coefficient"};
 
+BENCHMARK_CAPTURE(sweep, automatic, {}, model::Method::automatic)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(sweep, automatic_four_sensitivities, kFour, model::Method::automatic)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sweep, rosenbrock, {}, model::Method::rosenbrock)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sweep, rosenbrock_four_sensitivities, kFour, model::Method::rosenbrock)
     ->Unit(benchmark::kMillisecond);

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "bench/problems.hpp"
+
+/// What a careful engineer writes in an afternoon with Odeint and Ceres, and what rigcal is
+/// measured against: Dormand-Prince 5(4) on the six signals, derivatives through ceres::Jet, dense
+/// QR on all residuals.
+namespace rigcal::bench::baseline {
+
+/// Mass, bulk modulus, valve gain, leakage coefficient.
+inline constexpr int kFree = 4;
+using Values = std::array<double, kFree>;
+
+Values truth();
+
+/// Positions at the sample times of one signal [m].
+/// @param factors  of the true values
+std::vector<double> simulate(const Reference& signal, const Values& factors, double tolerance);
+/// The same with derivatives by the factors: simulated along, all judged by the error control.
+/// @return  shape (samples, 1 + kFree), row by row
+std::vector<double> simulate_with_sensitivities(const Reference& signal, const Values& factors,
+                                                double tolerance);
+
+struct Fit {
+  Values factors;  ///< of the true values
+  double cost = 0.0;
+  int jacobians = 0;
+  int residuals = 0;
+  bool converged = false;
+};
+
+/// @param measured  positions of each signal [m]
+Fit fit(const std::vector<std::vector<double>>& measured, double noise_sd_m, double tolerance);
+
+}  // namespace rigcal::bench::baseline

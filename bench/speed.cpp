@@ -1,0 +1,364 @@
+// Prints every figure of docs/performance.md as a table: CPU time, medians of interleaved rounds.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <functional>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "bench/baseline.hpp"
+#include "bench/problems.hpp"
+#include "calib/evaluator.hpp"
+#include "calib/fit.hpp"
+#include "calib/multi_start.hpp"
+#include "calib/solve.hpp"
+
+namespace rigcal::bench {
+namespace {
+
+double cpu_ms() {
+  timespec now;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+double wall_ms() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return std::chrono::duration<double, std::milli>(now).count();
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+using Task = std::function<void()>;
+
+/// Median CPU time of each task, the tasks taking turns.
+std::vector<double> medians(const std::vector<Task>& tasks, int rounds,
+                            double (*clock)() = cpu_ms) {
+  std::vector<std::vector<double>> times(tasks.size());
+  for (int r = 0; r < rounds; ++r) {
+    for (std::size_t i = 0; i < tasks.size(); ++i) {
+      const double begin = clock();
+      tasks[i]();
+      times[i].push_back(clock() - begin);
+    }
+  }
+  std::vector<double> result;
+  for (auto& each : times) result.push_back(median(each));
+  return result;
+}
+
+std::vector<int> free_indices(const std::vector<const char*>& keys) {
+  std::vector<int> free;
+  for (const char* key : keys)
+    free.push_back(model::parameter_index(model::PlantKind::load_pressure, key));
+  return free;
+}
+const std::vector<const char*> kFour{"mass", "bulk_modulus", "valve_gain", "leakage_coefficient"};
+
+model::Simulation run(const model::ParameterValues& values, const std::vector<int>& free,
+                      const Reference& reference, double tolerance) {
+  model::SimulationOptions options;
+  options.tolerance = tolerance;
+  auto result = model::simulate({}, values, free, inputs(reference), sample_times(reference),
+                                std::vector{model::Output::position}, options);
+  if (!result.ok()) {
+    fmt::print(stderr, "{}: {}\n", reference.waveform, result.reason);
+    std::exit(1);
+  }
+  return result;
+}
+
+/// What a fit computes before it describes the result: the problem solved from its start.
+struct Solved {
+  calib::Problem problem;
+  calib::MultiStart found;
+  long evaluations = 0;
+};
+
+Solved solve(const Problem& data, const calib::FitOptions& options) {
+  std::vector<const datasets::Condition*> conditions;
+  for (const auto& each : data.campaign.conditions) conditions.push_back(&each);
+  Solved solved{
+      calib::make_problem(data.campaign, data.records, conditions, false, nullptr), {}, 0};
+  calib::Evaluator::Options settings;
+  settings.threads = options.threads;
+  calib::Evaluator evaluator(solved.problem, settings);
+  solved.found = calib::multi_start(solved.problem, evaluator, options);
+  solved.evaluations = evaluator.evaluations();
+  return solved;
+}
+
+void require_converged(const calib::SolveResult& result) {
+  if (result.status == calib::FitStatus::converged) return;
+  fmt::print(stderr, "not converged: {}\n", result.message);
+  std::exit(1);
+}
+
+/// Largest distance of two points in standard errors of the first.
+double distance_in_errors(const calib::Fit& fit, const std::vector<double>& other) {
+  double worst = 0.0;
+  std::size_t j = 0;
+  for (const auto& each : fit.parameters) {
+    if (!each.fitted) continue;
+    worst = std::max(worst, std::abs(each.value - other[j++]) / each.standard_error.value_or(0.0));
+  }
+  return worst;
+}
+
+void six_signals(int rounds) {
+  const auto truth = six_signal_truth();
+  const auto free = free_indices(kFour);
+  const baseline::Values ones{1.0, 1.0, 1.0, 1.0};
+  const auto times = medians({[&] {
+                                for (const auto& r : kSixSignals) baseline::simulate(r, ones, 1e-6);
+                              },
+                              [&] {
+                                for (const auto& r : kSixSignals) run(truth, {}, r, 1e-6);
+                              },
+                              [&] {
+                                for (const auto& r : kSixSignals)
+                                  baseline::simulate_with_sensitivities(r, ones, 1e-6);
+                              },
+                              [&] {
+                                for (const auto& r : kSixSignals) run(truth, free, r, 1e-6);
+                              }},
+                             rounds);
+  std::vector<double> error(2, 0.0);
+  for (const Reference& r : kSixSignals) {
+    const auto exact = run(truth, {}, r, 1e-11).outputs;
+    const auto ours = run(truth, {}, r, 1e-6).outputs;
+    const auto theirs = baseline::simulate(r, ones, 1e-6);
+    const Eigen::Map<const Eigen::VectorXd> other(theirs.data(), exact.rows());
+    const double peak = exact.cwiseAbs().maxCoeff();
+    error[0] = std::max(error[0], (other - exact.col(0)).cwiseAbs().maxCoeff() / peak);
+    error[1] = std::max(error[1], (ours - exact).cwiseAbs().maxCoeff() / peak);
+  }
+
+  const Problem data = six_signal_problem();
+  std::vector<std::vector<double>> measured;
+  for (const auto& record : data.records)
+    measured.push_back(record.channels.at(datasets::Channel::position).mean);
+  baseline::Fit theirs;
+  std::optional<Solved> ours;
+  calib::Fit whole;
+  const auto fits = medians({[&] { theirs = baseline::fit(measured, kNoiseSd, 1e-7); },
+                             [&] {
+                               ours.emplace(solve(data, {}));
+                               require_converged(ours->found.result);
+                             },
+                             [&] { whole = calib::fit(data.campaign, data.records, {}); }},
+                            std::max(3, rounds / 3));
+  Problem exact_data = data;
+  exact_data.campaign.simulation.tolerance = 1e-10;
+  const calib::Fit exact = calib::fit(exact_data.campaign, exact_data.records, {});
+  std::vector<double> baseline_values;
+  for (std::size_t j = 0; j < baseline::kFree; ++j)
+    baseline_values.push_back(theirs.factors[j] * baseline::truth()[j]);
+  // The order of the unknowns is that of the parameter table: mass, bulk modulus, gain, leakage.
+
+  fmt::print("### Six signals, 86 006 samples, one thread\n\n");
+  fmt::print(
+      "| CPU ms | baseline | rigcal | ratio | required | aim |\n| --- | --- | --- | --- | --- | "
+      "--- |\n");
+  const auto row = [](const char* name, double base, double mine, const char* required,
+                      const char* aim) {
+    fmt::print("| {} | {:.2f} | {:.2f} | 1/{:.1f} | {} | {} |\n", name, base, mine, base / mine,
+               required, aim);
+  };
+  row("sweep at 1e-6", times[0], times[1], "1/2", "1/5");
+  row("with four sensitivities", times[2], times[3], "1/4", "1/8");
+  row("fit", fits[0], fits[1], "1/10", "1/25");
+  row("fit, with intervals and scores", fits[0], fits[2], "", "");
+  fmt::print("\nLargest error of position at 1e-6, of its peak: baseline {:.1e}, rigcal {:.1e}.\n",
+             error[0], error[1]);
+  fmt::print(
+      "Evaluations of a fit: baseline {} with and {} without derivatives, rigcal {} (all with).\n",
+      theirs.jacobians / 6, theirs.residuals / 6, ours->evaluations);
+  fmt::print(
+      "Distance from the optimum of simulations at 1e-10, in standard errors: baseline {:.4f}, "
+      "rigcal {:.4f}.\n\n",
+      distance_in_errors(exact, baseline_values),
+      distance_in_errors(exact, ours->problem.to_physical(ours->found.optimum.z)));
+}
+
+void stiff(int rounds) {
+  Problem data = stiff_problem();
+  const auto free = free_indices(kFour);
+  const auto sweep = [&](const std::vector<int>& parameters) {
+    for (std::size_t i = 0; i < data.truth.size(); ++i)
+      run(data.truth[i], parameters, kPaperSignals[i % kPaperSignals.size()], 1e-6);
+  };
+  const auto times = medians({[&] { sweep({}); }, [&] { sweep(free); }}, rounds);
+  std::optional<Solved> solved;
+  const auto fits = medians({[&] {
+                              solved.emplace(solve(data, {}));
+                              require_converged(solved->found.result);
+                            }},
+                            std::max(3, rounds / 5));
+  const std::vector<double> optimum = solved->found.optimum.z;
+  std::vector<double> refits;
+  for (unsigned seed = 2; seed < 5; ++seed) {
+    draw_noise(data, seed);
+    std::vector<const datasets::Condition*> conditions;
+    for (const auto& each : data.campaign.conditions) conditions.push_back(&each);
+    const auto problem =
+        calib::make_problem(data.campaign, data.records, conditions, false, nullptr);
+    calib::Evaluator evaluator(problem, {});
+    const double begin = cpu_ms();
+    require_converged(calib::refine(problem, evaluator, optimum, 100, 1, {}));
+    refits.push_back(cpu_ms() - begin);
+  }
+  fmt::print("### Stiff campaign: 24 records, 344 024 samples, seven parameters, one thread\n\n");
+  fmt::print("| | CPU ms | estimate of what is possible |\n| --- | --- | --- |\n");
+  fmt::print("| sweep at 1e-6 | {:.0f} | |\n", times[0]);
+  fmt::print("| with sensitivities (four act in each record) | {:.0f} | 80 |\n", times[1]);
+  fmt::print("| fit, {} evaluations | {:.0f} | 600 |\n", solved->evaluations, fits[0]);
+  const double refit = median(refits);
+  fmt::print("| refit from the optimum | {:.0f} | |\n", refit);
+  fmt::print("| 1000 refits on two cores, min | {:.1f} | 3 |\n\n", refit * 1000.0 / 2.0 / 60e3);
+}
+
+/// 20 s at 10 kHz, the recorded command drives the valve.
+void long_record(int rounds) {
+  const auto truth = six_signal_truth();
+  const auto free = free_indices({"mass", "damping", "stiffness", "piston_area", "total_volume",
+                                  "supply_pressure", "bulk_modulus", "valve_gain",
+                                  "leakage_coefficient", "leakage_area"});
+  model::Rig rig;
+  rig.controller = model::ControllerKind::none;
+  std::vector<double> times;
+  std::vector<double> every;
+  for (int k = 0; k <= 200'000; ++k) {
+    times.push_back(k / 1e4);
+    every.push_back(0.5 * std::sin(9.0 * times.back()) + 0.2 * std::sin(61.0 * times.back()));
+  }
+  const auto simulate = [&](const model::Signal& command) {
+    model::SimulationInputs in;
+    in.drive = command;
+    const auto result =
+        model::simulate(rig, truth, free, in, times, std::vector{model::Output::position});
+    if (!result.ok()) {
+      fmt::print(stderr, "{}\n", result.reason);
+      std::exit(1);
+    }
+  };
+  const auto changing = model::Signal::held(times, every);
+  const auto steps = model::Signal::held({0.0, 4.0, 8.0, 12.0, 16.0}, {0.5, -0.5, 0.3, -0.3, 0.1});
+  const auto result =
+      medians({[&] { simulate(changing); }, [&] { simulate(steps); }}, std::max(3, rounds / 5));
+  fmt::print("### A record of 20 s at 10 kHz with sensitivities to ten parameters\n\n");
+  fmt::print("| command | CPU ms | required |\n| --- | --- | --- |\n");
+  fmt::print("| changes at every sample | {:.0f} | 1000 |\n| five steps | {:.0f} | 200 |\n\n",
+             result[0], result[1]);
+}
+
+struct Point {
+  std::string of;
+  double ms = 0.0;
+};
+
+/// A table with a bar for each figure.
+void draw(const std::string& title, const std::string& head, const std::vector<Point>& points) {
+  double longest = 0.0;
+  for (const Point& each : points) longest = std::max(longest, each.ms);
+  fmt::print("{}\n\n| {} | ms | |\n| --- | --- | --- |\n", title, head);
+  for (const Point& each : points) {
+    std::string bar;
+    for (int k = 0; k < static_cast<int>(30.0 * each.ms / longest + 0.5); ++k) bar += "\u2588";
+    fmt::print("| {} | {:.2f} | {} |\n", each.of, each.ms, bar);
+  }
+  fmt::print("\n");
+}
+
+/// The problem with every condition `copies` times.
+Problem repeated(const Problem& data, int copies) {
+  Problem more = data;
+  for (int c = 1; c < copies; ++c) {
+    for (std::size_t i = 0; i < data.records.size(); ++i) {
+      more.campaign.conditions.push_back(data.campaign.conditions[i]);
+      more.records.push_back(data.records[i]);
+      more.campaign.conditions.back().id += fmt::format("_{}", c);
+      more.records.back().condition = more.campaign.conditions.back().id;
+    }
+  }
+  return more;
+}
+
+void growth(int rounds) {
+  const auto truth = six_signal_truth();
+  fmt::print("### Growth\n\n");
+  std::vector<Point> points;
+  for (const double duration : {5.0, 10.0, 20.0, 40.0, 80.0}) {
+    const Reference reference{"sine", 1.0, 0.02, duration};
+    const auto free = free_indices(kFour);
+    points.push_back({fmt::format("{:.0f}", duration * 1000.0 + 1.0),
+                      medians({[&] { run(truth, free, reference, 1e-6); }}, rounds)[0]});
+  }
+  draw("With samples: a 1 Hz sine with four sensitivities, CPU time.", "samples", points);
+
+  const std::vector<const char*> all{"mass",
+                                     "bulk_modulus",
+                                     "valve_gain",
+                                     "leakage_coefficient",
+                                     "damping",
+                                     "stiffness",
+                                     "piston_area",
+                                     "total_volume",
+                                     "supply_pressure",
+                                     "density",
+                                     "leakage_area",
+                                     "kp"};
+  points.clear();
+  for (const std::ptrdiff_t count : {0, 4, 8, 12}) {
+    const auto free = free_indices({all.begin(), all.begin() + count});
+    const Task sweep = [&] {
+      for (const auto& r : kSixSignals) run(truth, free, r, 1e-6);
+    };
+    points.push_back({std::to_string(count), medians({sweep}, rounds)[0]});
+  }
+  draw("With parameters: sweep over the six signals, CPU time.", "sensitivities", points);
+
+  const Problem data = six_signal_problem();
+  const int few = std::max(3, rounds / 3);
+  points.clear();
+  for (const int copies : {1, 2, 3, 4}) {
+    const Problem more = repeated(data, copies);
+    points.push_back(
+        {std::to_string(more.records.size()), medians({[&] { solve(more, {}); }}, few)[0]});
+  }
+  draw("With conditions: fit of the six signals, each given once or more, CPU time.", "conditions",
+       points);
+
+  points.clear();
+  const Problem more = repeated(data, 4);
+  for (const int threads : {1, 2, 4}) {
+    calib::FitOptions options;
+    options.threads = threads;
+    points.push_back(
+        {std::to_string(threads), medians({[&] { solve(more, options); }}, few, wall_ms)[0]});
+  }
+  draw(fmt::format("With threads, on {} cores: fit of the 24 conditions, wall time.",
+                   std::thread::hardware_concurrency()),
+       "threads", points);
+}
+
+}  // namespace
+}  // namespace rigcal::bench
+
+int main(int argc, char** argv) {
+  using namespace rigcal::bench;
+  const int rounds = argc > 1 ? std::atoi(argv[1]) : 15;
+  six_signals(rounds);
+  stiff(rounds);
+  long_record(rounds);
+  growth(rounds);
+}
