@@ -1,6 +1,7 @@
 #include "calib/problem.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -46,6 +47,19 @@ double known_sd(const Campaign& campaign, Channel channel, const datasets::Serie
   if (std::isfinite(series.sd_of_mean) && series.sd_of_mean > 0.0) return series.sd_of_mean;
   const auto sd = campaign.channels.at(channel).sd;
   return sd && *sd > 0.0 ? *sd : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Counts would be taken for metres, pascals and seconds.
+void require_units(const Campaign& campaign, const Condition& condition) {
+  const bool counted =
+      campaign.time_in_counts ||
+      std::any_of(campaign.channels.begin(), campaign.channels.end(), [](const auto& entry) {
+        return entry.second.in_counts && entry.second.role != datasets::ChannelRole::ignore;
+      });
+  if (!counted) return;
+  throw InputError(condition.where,
+                   fmt::format("condition \"{}\": {}", condition.id,
+                               fmt::join(lacks_for_model(campaign, condition), "; ")));
 }
 
 ProblemChannel make_channel(const Campaign& campaign, const ProblemCondition& condition,
@@ -102,6 +116,7 @@ ProblemCondition make_condition(const Campaign& campaign, const std::vector<Reco
                                 const Condition& condition,
                                 const std::vector<datasets::FittedValue>* fitted) {
   ProblemCondition result;
+  require_units(campaign, condition);
   result.condition = &condition;
   result.record = &record_of(condition, records);
   result.rig = campaign.rig;

@@ -1,13 +1,13 @@
 # Forbids upward includes: cmake -DROOT=... -P check_layers.cmake
 cmake_minimum_required(VERSION 3.25)
-# common <- { model, metrics } <- datasets <- calib <- { diagnosis, report } <- apps
+# common <- { model, metrics } <- datasets <- calib <- diagnosis <- report <- apps
 set(allowed_common common)
 set(allowed_model common model)
 set(allowed_metrics common metrics)
 set(allowed_datasets common model metrics datasets)
 set(allowed_calib common model metrics datasets calib)
 set(allowed_diagnosis common model metrics datasets calib diagnosis)
-set(allowed_report common model metrics datasets calib report)
+set(allowed_report common model metrics datasets calib diagnosis report)
 set(allowed_apps common model metrics datasets calib diagnosis report apps)
 set(layers common model metrics datasets calib diagnosis report apps)
 set(violations "")

@@ -1,7 +1,7 @@
 # What computes is optimised under the sanitizers too, or the tests would crawl. Everything else
 # is not: it compiles in half the time so.
 set(rigcal_optimised $<$<BOOL:${RIGCAL_SANITIZE}>:-O1>)
-set(rigcal_computing common model metrics datasets calib)
+set(rigcal_computing common model metrics datasets calib diagnosis)
 
 # rigcal_library(name SOURCES ... LINKS ...): one layer as a static library, alias rigcal::name.
 function(rigcal_library name)

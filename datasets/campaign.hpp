@@ -12,6 +12,7 @@
 
 #include "common/error.hpp"
 #include "common/quantity.hpp"
+#include "datasets/diagnosis_settings.hpp"
 #include "datasets/record.hpp"
 #include "model/parameter.hpp"
 #include "model/simulate.hpp"
@@ -56,6 +57,7 @@ struct ChannelSetting {
   std::optional<double> sd;  ///< of the samples in the file, SI, after `gain`
   ChannelRole role = ChannelRole::output;
   Interpolation interpolation = Interpolation::hold;
+  bool in_counts = false;  ///< raw numbers of a converter: nothing says what they measure
 };
 
 enum class Waveform { sine, square, chirp, recorded };
@@ -91,6 +93,7 @@ struct Condition {
   std::optional<double> sample_rate_hz;
   std::optional<double> temperature_k;
   std::optional<std::string> date;
+  std::optional<std::string> specimen;  ///< which machine, where a campaign has several
   Location where;
 
   bool has_record() const { return averaged.has_value() || !repeats.empty(); }
@@ -160,11 +163,13 @@ struct Campaign {
   SpikeTreatment spikes = SpikeTreatment::report;
   std::string time_column;
   UnitConversion time_to_s;
+  bool time_in_counts = false;  ///< samples are numbered, nothing says how long one lasts
   std::map<Channel, ChannelSetting> channels;
   Alignment alignment = Alignment::correlate;
   std::vector<AcceptanceLimit> acceptance;
   FitSettings fit;
   SimulationSettings simulation;
+  DiagnosisSettings diagnosis;
   std::optional<SyntheticSettings> synthetic_settings;
   std::vector<Condition> conditions;
 
@@ -194,6 +199,11 @@ void set_free(Campaign& campaign, const std::vector<std::string>& names);
 /// since one alone may leave a pair half given.
 /// @throws UsageError  naming the condition and what is missing or contradicts
 void check_values(const Campaign& campaign);
+
+/// What a condition lacks to be compared with the model, in words: parameters without a value, an
+/// unknown drive, time or unit, no output channel. Empty if nothing; conditions of use `fit` and
+/// `validate` that lack something but a unit are refused by load_campaign() already.
+std::vector<std::string> lacks_for_model(const Campaign& campaign, const Condition& condition);
 
 /// Values that hold in a condition: rig, then its leak level, then its own.
 model::ParameterValues values_in(const Campaign& campaign, const Condition& condition);

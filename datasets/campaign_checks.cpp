@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
@@ -141,7 +142,59 @@ void check_record(const Campaign& campaign, const Condition& condition) {
   }
 }
 
+void add_counted(const Campaign& campaign, const Condition& condition,
+                 std::vector<std::string>& lacks) {
+  std::vector<std::string_view> counted;
+  for (const auto& [channel, setting] : campaign.channels) {
+    if (setting.in_counts && carries(campaign, condition, channel))
+      counted.push_back(info(channel).key);
+  }
+  if (counted.empty()) return;
+  lacks.push_back(
+      fmt::format("{} {} raw counts of a converter: without a calibration (unit and gain) they "
+                  "cannot be compared with the model",
+                  fmt::join(counted, ", "), counted.size() == 1 ? "holds" : "hold"));
+}
+
+void add_missing_drive(const Campaign& campaign, const Condition& condition,
+                       std::vector<std::string>& lacks) {
+  const Channel drive = drive_channel(campaign);
+  if (condition.waveform != Waveform::recorded || carries(campaign, condition, drive)) return;
+  lacks.push_back(fmt::format(
+      "the waveform is recorded, but no channel {} holds it: what the machine was told to do is "
+      "not known, so the healthy model cannot be run under the same {}",
+      info(drive).key, info(drive).key));
+}
+
 }  // namespace
+
+std::vector<std::string> lacks_for_model(const Campaign& campaign, const Condition& condition) {
+  std::vector<std::string> lacks;
+  const auto values = values_in(campaign, condition);
+  if (const auto missing = values.missing(); !missing.empty()) {
+    lacks.push_back(fmt::format("nothing tells {} of the rig: expected values in [rig.parameters]",
+                                fmt::join(missing, ", ")));
+  } else if (const auto conflict = find_conflict(campaign.rig, values)) {
+    lacks.push_back(fmt::format("{}: {}", conflict->key, conflict->message));
+  }
+  add_missing_drive(campaign, condition, lacks);
+  if (!condition.has_record()) {
+    lacks.emplace_back("it has no record");
+    return lacks;
+  }
+  if (campaign.time_column.empty()) {
+    lacks.emplace_back("no column holds the time of its samples");
+  } else if (campaign.time_in_counts) {
+    lacks.emplace_back("its samples are numbered, but nothing tells the sampling rate");
+  }
+  const auto outputs = output_channels(campaign);
+  if (std::none_of(outputs.begin(), outputs.end(),
+                   [&](Channel channel) { return carries(campaign, condition, channel); })) {
+    lacks.emplace_back("no recorded channel can be compared with the model");
+  }
+  add_counted(campaign, condition, lacks);
+  return lacks;
+}
 
 void check_campaign(const Campaign& campaign, const Location& start) {
   if (campaign.conditions.empty()) {
@@ -151,6 +204,11 @@ void check_campaign(const Campaign& campaign, const Location& start) {
   check_controller(campaign);
   for (const Condition& condition : campaign.conditions) {
     if (condition.use == Use::ignore) continue;
+    if (condition.use == Use::diagnose) {
+      // What it lacks is told by the diagnosis, all of it at once.
+      if (values_in(campaign, condition).missing().empty()) check_values(campaign, condition);
+      continue;
+    }
     check_values(campaign, condition);
     check_levels(campaign, condition);
     check_record(campaign, condition);

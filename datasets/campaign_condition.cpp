@@ -263,7 +263,8 @@ Condition read_condition(const TomlNode& unnamed, const Campaign& campaign) {
                    "averaged",    "repeats_averaged",
                    "window",      "windows",
                    "duration",    "sample_rate",
-                   "temperature", "date"});
+                   "temperature", "date",
+                   "specimen"});
   condition.where = node.where();
   read_waveform(node, campaign, condition);
   if (const auto level = node.find("leak_level")) {
@@ -288,6 +289,8 @@ Condition read_condition(const TomlNode& unnamed, const Campaign& campaign) {
     condition.temperature_k = temperature->non_negative_quantity("K");
   }
   if (const auto date = node.find("date")) condition.date = date->date();
+  if (const auto specimen = node.find("specimen"))
+    condition.specimen = specimen->name("a text that names the machine");
   return condition;
 }
 

@@ -10,6 +10,22 @@ namespace {
 
 constexpr double kDefaultWindowS = 0.1;
 
+constexpr std::string_view kCounts = "counts";
+
+bool is_in_counts(const TomlNode& node) {
+  const auto unit = node.find("unit");
+  return unit && unit->is_string() && unit->string() == kCounts;
+}
+
+/// Numbers that nothing converts stay as they are.
+UnitConversion read_counts(const TomlNode& node) {
+  for (const char* key : {"gain", "offset", "sd"}) {
+    if (const auto entry = node.find(key))
+      entry->fail("has no meaning for counts: expected the unit that the gain leads to");
+  }
+  return {};
+}
+
 /// SI = conversion(gain * raw + offset), the offset in the channel's own unit.
 UnitConversion read_conversion(const TomlNode& node, std::string_view si_unit) {
   const TomlNode unit =
@@ -70,7 +86,8 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel,
   ChannelSetting setting;
   setting.channel = channel;
   if (const auto column = node.find("column")) setting.column = column->name("a column name");
-  setting.to_si = read_conversion(node, info(channel).unit);
+  setting.in_counts = is_in_counts(node);
+  setting.to_si = setting.in_counts ? read_counts(node) : read_conversion(node, info(channel).unit);
   if (const auto sd = node.find("sd")) {
     setting.sd = sd->non_negative_difference(info(channel).unit);
     if (*setting.sd == 0.0) sd->fail_type("a standard deviation above zero");
@@ -95,7 +112,8 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
       node.allow_only({"column", "unit", "gain", "offset"});
       campaign.time_column =
           node.require("column", "the name of the time column").name("a column name");
-      campaign.time_to_s = read_conversion(node, "s");
+      campaign.time_in_counts = is_in_counts(node);
+      campaign.time_to_s = campaign.time_in_counts ? read_counts(node) : read_conversion(node, "s");
       continue;
     }
     const Channel channel = read_channel_key(table, key);

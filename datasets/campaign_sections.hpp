@@ -19,6 +19,9 @@ std::vector<AcceptanceLimit> read_acceptance(const TomlNode& node, const Campaig
 /// [fit]; needs the channels.
 FitSettings read_fit(const TomlNode& node, const Campaign& campaign);
 
+/// [diagnosis]
+DiagnosisSettings read_diagnosis(const TomlNode& node);
+
 /// [simulation]
 SimulationSettings read_simulation(const TomlNode& node);
 

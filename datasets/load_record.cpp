@@ -79,6 +79,15 @@ void find_moving_windows(const Campaign& campaign, const Condition& condition, R
 
 }  // namespace
 
+std::vector<std::string> files_of(const Campaign& campaign, const Condition& condition) {
+  std::vector<std::string> files;
+  for (const RepeatSource& source : repeat_sources(campaign, condition)) {
+    const std::string file = source.path.string();
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  }
+  return files;
+}
+
 Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
   if (campaign.time_column.empty())
     throw InputError(
@@ -107,21 +116,21 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
   return repeat;
 }
 
-Record load_record(const Campaign& campaign, const Condition& condition) {
+std::vector<Repeat> load_all_repeats(const Campaign& campaign, const Condition& condition) {
   std::vector<Repeat> repeats;
-  std::vector<std::string> files;
-  for (const RepeatSource& source : repeat_sources(campaign, condition)) {
+  for (const RepeatSource& source : repeat_sources(campaign, condition))
     repeats.push_back(load_repeat(campaign, source));
-    const std::string file = source.path.string();
-    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
-  }
   if (repeats.empty()) refuse(condition, "has no record: expected repeats or averaged");
+  return repeats;
+}
+
+Record average_of(const Campaign& campaign, const Condition& condition,
+                  std::vector<Repeat>& repeats) {
   try {
     const Conditioning done = condition_repeats(campaign, repeats);
     AverageOptions options = options_of(campaign, condition);
     for (auto& [channel, sd] : options.known_sd) sd *= done.noise_gain;
     Record record = average(condition.id, repeats, options);
-    record.files = std::move(files);
     record.notes = done.notes;
     record.warnings.insert(record.warnings.end(), done.warnings.begin(), done.warnings.end());
     record.windows = condition.windows;
@@ -130,6 +139,13 @@ Record load_record(const Campaign& campaign, const Condition& condition) {
   } catch (const std::invalid_argument& error) {
     refuse(condition, error.what());
   }
+}
+
+Record load_record(const Campaign& campaign, const Condition& condition) {
+  std::vector<Repeat> repeats = load_all_repeats(campaign, condition);
+  Record record = average_of(campaign, condition, repeats);
+  record.files = files_of(campaign, condition);
+  return record;
 }
 
 std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use>& uses,

@@ -5,9 +5,23 @@
 
 namespace rigcal::datasets {
 
+/// Every file of a condition, once.
+/// @throws InputError  a pattern that matches no file
+std::vector<std::string> files_of(const Campaign& campaign, const Condition& condition);
+
 /// Reads the files of one repeat and converts them to SI.
 /// @throws InputError
 Repeat load_repeat(const Campaign& campaign, const RepeatSource& source);
+
+/// Reads every repeat of a condition, or the one file that is averaged already.
+/// @throws InputError  a file is wrong, or there is none
+std::vector<Repeat> load_all_repeats(const Campaign& campaign, const Condition& condition);
+
+/// Averages the repeats of a condition as the campaign says.
+/// @param repeats  decimated and cleared of spikes first, where the campaign asks for it
+/// @throws InputError  the repeats do not belong together
+Record average_of(const Campaign& campaign, const Condition& condition,
+                  std::vector<Repeat>& repeats);
 
 /// Reads every repeat of a condition and averages them.
 /// @throws InputError  a file is wrong, or the repeats do not belong together

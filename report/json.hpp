@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -46,6 +47,9 @@ struct EarlierFit {
   std::vector<datasets::FittedValue> values;  ///< of the fitted parameters, without nuisance
   std::vector<datasets::FittedValue> known;   ///< of the others, scope rig
   Validity validity;
+  std::vector<int> indices;  ///< table rows of the fitted values of scope rig that have an error
+  /// Of these, SI, shape (indices)^2: the larger of standard and robust error, and the correlation.
+  Eigen::MatrixXd covariance;
 };
 
 /// Reads fit.json strictly.
@@ -53,5 +57,11 @@ struct EarlierFit {
 /// @throws InputError  file (and line:column where it is no JSON, or the key where it is not what a
 ///                     fit.json holds), what was found and what was expected; a fit that failed
 EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant);
+
+/// Values of the truth.json that `synthesize` wrote.
+///
+/// @throws InputError  as read_fit()
+std::vector<datasets::FittedValue> read_truth(const std::filesystem::path& file,
+                                              model::PlantKind plant);
 
 }  // namespace rigcal::report

@@ -15,6 +15,8 @@ namespace {
 using datasets::FittedValue;
 using datasets::Scope;
 
+constexpr const char* kTruthSchema = "rigcal.truth/1";
+
 std::string read_text(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::error_code error;
@@ -137,17 +139,62 @@ Validity read_validity(const Node& node) {
   return validity;
 }
 
+/// Standard error of an entry of `parameters`: the larger of the two; empty where there is none.
+std::optional<double> standard_error(const Node& entry) {
+  std::optional<double> largest;
+  for (const char* key : {"standard_error", "robust_standard_error"}) {
+    const Node error = entry[key];
+    if (!error.is_null()) largest = std::max(largest.value_or(0.0), error.real());
+  }
+  return largest;
+}
+
+void read_covariance(const Node& root, model::PlantKind plant, EarlierFit& fit) {
+  const auto names = root["correlation"]["names"].items();
+  const auto rows = root["correlation"]["matrix"].items();
+  std::vector<std::size_t> places;
+  std::vector<double> errors;
+  for (const Node& entry : root["parameters"].items()) {
+    if (!entry["fitted"].boolean() || entry["nuisance"].boolean()) continue;
+    if (one_of(entry["scope"], std::array{Scope::rig, Scope::leak_level, Scope::condition}) !=
+        Scope::rig)
+      continue;
+    const std::string name = entry["name"].string();
+    const auto place = std::find_if(names.begin(), names.end(),
+                                    [&](const Node& each) { return each.string() == name; });
+    const auto error = standard_error(entry);
+    if (!error || place == names.end()) continue;
+    fit.indices.push_back(index_of(entry["name"], plant));
+    places.push_back(static_cast<std::size_t>(place - names.begin()));
+    errors.push_back(*error);
+  }
+  const auto n = static_cast<Eigen::Index>(places.size());
+  fit.covariance.resize(n, n);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i] >= rows.size()) root["correlation"]["matrix"].fail("one row per name");
+    const auto row = rows[places[i]].items();
+    for (std::size_t j = 0; j < places.size(); ++j) {
+      if (places[j] >= row.size()) rows[places[i]].fail("one number per name");
+      fit.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
+          row[places[j]].real() * errors[i] * errors[j];
+    }
+  }
+}
+
+Json parse(const std::filesystem::path& file) {
+  const std::string text = read_text(file);
+  try {
+    return Json::parse(text);
+  } catch (const Json::parse_error& error) {
+    throw InputError(location_of_byte(file.string(), text, error.byte), "this is not JSON");
+  }
+}
+
 }  // namespace
 
 EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
   const std::string name = file.string();
-  const std::string text = read_text(file);
-  Json json;
-  try {
-    json = Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw InputError(location_of_byte(name, text, error.byte), "this is not JSON");
-  }
+  const Json json = parse(file);
   const Node root(json, name, "");
   if (!json.is_object()) {
     throw InputError({name}, "found no JSON object, expected the fit.json of an earlier fit");
@@ -182,7 +229,27 @@ EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
     }
   }
   result.validity = read_validity(root["validity"]);
+  read_covariance(root, plant, result);
   return result;
+}
+
+std::vector<FittedValue> read_truth(const std::filesystem::path& file, model::PlantKind plant) {
+  const Json json = parse(file);
+  const Node root(json, file.string(), "");
+  if (root["schema"].string() != kTruthSchema)
+    root["schema"].fail(fmt::format("\"{}\"", kTruthSchema));
+  std::vector<FittedValue> values;
+  for (const Node& entry : root["parameters"].items()) {
+    if (!entry["given"].boolean()) continue;
+    FittedValue value;
+    value.index = index_of(entry["name"], plant);
+    value.scope =
+        one_of(entry["scope"], std::array{Scope::rig, Scope::leak_level, Scope::condition});
+    if (value.scope != Scope::rig) value.level = entry["level"].string();
+    value.value = entry["value"].real();
+    values.push_back(std::move(value));
+  }
+  return values;
 }
 
 }  // namespace rigcal::report

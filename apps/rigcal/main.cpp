@@ -38,6 +38,8 @@ constexpr std::array kVerbs{
             rigcal::app::add_leak_table},
     VerbRow{"fit-tables", "Estimate unstated values from published tables",
             rigcal::app::add_fit_tables},
+    VerbRow{"diagnose", "Leak, share of the servo flow and fault class per record",
+            rigcal::app::add_diagnose},
     VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},
     VerbRow{"init", "Draft a campaign file from recordings", rigcal::app::add_init},
     VerbRow{"params", "List every parameter", rigcal::app::add_params},

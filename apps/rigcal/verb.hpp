@@ -25,6 +25,7 @@ Run add_fit(CLI::App& verb);
 Run add_validate(CLI::App& verb);
 Run add_leak_table(CLI::App& verb);
 Run add_fit_tables(CLI::App& verb);
+Run add_diagnose(CLI::App& verb);
 Run add_synthesize(CLI::App& verb);
 Run add_init(CLI::App& verb);
 Run add_params(CLI::App& verb);

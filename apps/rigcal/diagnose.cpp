@@ -1,0 +1,131 @@
+#include "diagnosis/diagnose.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "common/parallel.hpp"
+#include "datasets/single_repeats.hpp"
+#include "diagnosis/obstacles.hpp"
+#include "report/diagnosis.hpp"
+#include "report/folder.hpp"
+#include "report/validity.hpp"
+
+namespace rigcal::app {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+
+struct Options {
+  CampaignOptions common;
+  std::filesystem::path fit;
+};
+
+report::Style terminal_style() {
+  const char* no_colour = std::getenv("NO_COLOR");
+  const bool wanted = no_colour == nullptr || std::strlen(no_colour) == 0;
+  return {wanted && ::isatty(STDOUT_FILENO) == 1};
+}
+
+/// Where each record leaves what the fit covers, which is asked with the leak that was found.
+void warn_of_validity(const Campaign& campaign, const report::Validity& covered,
+                      diagnosis::Diagnosis& found) {
+  const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
+  for (diagnosis::RecordDiagnosis& record : found.records) {
+    if (!record.fit.ok()) continue;
+    Campaign alone = campaign;
+    std::erase_if(alone.conditions, [&](const Condition& c) { return c.id != record.condition; });
+    calib::Fit values;
+    calib::FittedParameter& own = values.parameters.emplace_back();
+    own.index = leak;
+    own.scope = datasets::Scope::condition;
+    own.level = record.condition;
+    own.value = std::max(0.0, record.estimate.coefficient);
+    own.fitted = true;
+    report::Validity asked = report::coverage(alone, {}, values, {alone.conditions.front().use});
+    // How large the leak is, is the question; a fit to healthy records covers none.
+    asked.leakage_coefficient.reset();
+    for (const std::string& text : report::outside(asked, covered)) record.warnings.push_back(text);
+  }
+}
+
+std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& campaign) {
+  const auto file = campaign.file.parent_path() / "truth.json";
+  std::error_code error;
+  if (!campaign.synthetic || !std::filesystem::exists(file, error)) return std::nullopt;
+  return report::read_truth(file, campaign.rig.plant);
+}
+
+ExitCode finish(const Options& options, const report::DiagnosisResult& result) {
+  const report::Json json = report::diagnosis_json(result);
+  report::write_results(options.common.out,
+                        {{"diagnosis.csv", report::diagnosis_csv(result)},
+                         {"diagnosis.json", report::json_text(json)}},
+                        result.provenance.inputs);
+  const std::string text =
+      report::diagnosis_text(result, terminal_style()) +
+      fmt::format("files: {} {}\n", (options.common.out / "diagnosis.json").string(),
+                  (options.common.out / "diagnosis.csv").string());
+  print(options.common.print, text, json);
+  return report::status_of(result) == "done" ? ExitCode::done : ExitCode::no_result;
+}
+
+ExitCode run_diagnose(const Options& options, const Invocation& invocation) {
+  const Campaign campaign = load(options.common);
+  const bool has_fit = !options.fit.empty();
+  const std::vector<std::string> reasons = diagnosis::obstacles(campaign, has_fit);
+  std::vector<std::filesystem::path> more_inputs;
+  if (has_fit) more_inputs.push_back(options.fit);
+  report::Provenance provenance{invocation.command, 0, recorded(options.common), {}};
+  diagnosis::Diagnosis found;
+  if (!reasons.empty()) {
+    if (!has_fit && diagnosis::obstacles(campaign, true).empty()) {
+      throw UsageError(
+          "diagnose: --fit is missing: expected the fit.json of a fit to healthy records");
+    }
+    provenance.inputs = report::hash_inputs(campaign, {}, more_inputs);
+    return finish(options, {campaign, found, reasons, provenance});
+  }
+  const report::EarlierFit earlier = report::read_fit(options.fit, campaign.rig.plant);
+  diagnosis::DiagnosisOptions settings;
+  settings.threads = options.common.threads;
+  settings.cancel = &invocation.cancel;
+  settings.truth = truth_beside(campaign);
+  stop_if(invocation.cancel);
+  report::require_writable(options.common.out);
+  const diagnosis::Diagnosable diagnosable = diagnosis::diagnosable(campaign);
+  std::vector<datasets::RepeatRecords> records(diagnosable.conditions.size());
+  parallel_for(records.size(), settings.threads, [&](std::size_t i) {
+    records[i] = datasets::load_repeats(campaign, *diagnosable.conditions[i]);
+  });
+  std::vector<datasets::Record> averages;
+  for (const datasets::RepeatRecords& each : records) averages.push_back(each.average);
+  provenance.inputs = report::hash_inputs(campaign, averages, more_inputs);
+  found = diagnosis::diagnose(campaign, records,
+                              {earlier.values, earlier.indices, earlier.covariance}, settings);
+  found.warnings.insert(found.warnings.end(), diagnosable.left_out.begin(),
+                        diagnosable.left_out.end());
+  stop_if(invocation.cancel);
+  warn_of_validity(campaign, earlier.validity, found);
+  if (earlier.status == calib::FitStatus::stopped)
+    found.warnings.push_back("the fit was stopped before it converged: " + earlier.message);
+  return finish(options, {campaign, found, reasons, provenance});
+}
+
+}  // namespace
+
+Run add_diagnose(CLI::App& verb) {
+  const auto options = std::make_shared<Options>();
+  add_campaign_options(verb, options->common);
+  verb.add_option("--fit", options->fit, "fit.json of a fit to healthy records of the rig");
+  return [options](const Invocation& invocation) { return run_diagnose(*options, invocation); };
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,425 @@
+#include "diagnosis/diagnose.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "common/parallel.hpp"
+#include "datasets/single_repeats.hpp"
+#include "diagnosis/feature_clusters.hpp"
+#include "diagnosis/obstacles.hpp"
+
+namespace rigcal::diagnosis {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+
+/// Share changes by less than this fraction of a relative change of the coefficient: a plateau.
+constexpr double kFlat = 0.1;
+/// Share of a difference from the healthy model that a leak leaves unexplained: told of, and too
+/// much for a class.
+constexpr double kNoticeable = 0.05;
+constexpr double kTooMuch = 1.0 / 3.0;
+
+/// A condition with its records and what a leak does in it.
+struct Prepared {
+  const Condition* condition = nullptr;
+  const datasets::RepeatRecords* records = nullptr;
+  std::optional<LeakCurve> curve;
+  Residuals residuals;  ///< of the average, then of each repeat
+  std::string failure;
+  std::optional<double> true_share;
+
+  const std::vector<double>& time_s() const { return records->average.time_s; }
+};
+
+std::string signal_of(const Campaign& campaign, const Condition& condition) {
+  std::string text(to_string(condition.waveform));
+  if (condition.frequency_hz) text += fmt::format(" {:.6g} Hz", *condition.frequency_hz);
+  if (condition.end_frequency_hz) text += fmt::format(" to {:.6g} Hz", *condition.end_frequency_hz);
+  if (!condition.amplitude) return text;
+  if (campaign.rig.controller == model::ControllerKind::none)
+    return text + fmt::format(", {:.6g} V", *condition.amplitude);
+  return text + fmt::format(", {:.6g} mm", 1e3 * *condition.amplitude);
+}
+
+Prepared prepare(const LeakProblem& problem, const datasets::RepeatRecords& records,
+                 const DiagnosisOptions& options) {
+  Prepared result;
+  result.condition = problem.campaign.find(records.average.condition);
+  if (result.condition == nullptr)
+    throw std::invalid_argument("diagnose: no condition " + records.average.condition);
+  result.records = &records;
+  try {
+    result.curve = leak_curve_of(problem, *result.condition, records.average);
+    std::vector<const datasets::Record*> all{&records.average};
+    for (const datasets::Record& single : records.singles) all.push_back(&single);
+    result.residuals = healthy_residuals(problem, *result.condition, records.average, all);
+    if (options.truth)
+      result.true_share =
+          share_at(problem.campaign, *result.condition, records.average, *options.truth);
+  } catch (const NoResultError& error) {
+    result.failure = error.what();
+  }
+  return result;
+}
+
+/// One fit that is to be made.
+struct Task {
+  const Prepared* prepared = nullptr;
+  int single = -1;  ///< index of the repeat; -1: the average
+};
+
+/// Residual of a record at the sample nearest to a time.
+double at_time(const std::vector<double>& residual, const std::vector<double>& time_s, double t) {
+  const auto above = std::lower_bound(time_s.begin(), time_s.end(), t);
+  auto i = static_cast<std::size_t>(above - time_s.begin());
+  if (i == time_s.size() || (i > 0 && t - time_s[i - 1] < time_s[i] - t)) --i;
+  return residual[i];
+}
+
+/// A repeat of a healthy condition, or its average where it has no repeats.
+struct Reference {
+  const Prepared* prepared = nullptr;
+  std::size_t index = 0;  ///< in the residuals
+};
+
+std::vector<Reference> references_of(const Campaign& campaign, const std::vector<Prepared>& all,
+                                     const std::string& signal) {
+  std::vector<Reference> references;
+  for (const Prepared& each : all) {
+    if (each.residuals.empty() || each.condition->waveform == datasets::Waveform::recorded ||
+        !is_healthy(campaign, *each.condition) || signal_of(campaign, *each.condition) != signal)
+      continue;
+    if (each.residuals.size() == 1) references.push_back({&each, 0});
+    for (std::size_t i = 1; i < each.residuals.size(); ++i) references.push_back({&each, i});
+  }
+  return references;
+}
+
+/// Takes the mean residual of the references off every output channel.
+void correct(const std::vector<Reference>& references, datasets::Record& record) {
+  for (auto& [channel, series] : record.channels) {
+    std::vector<double> sum(record.time_s.size(), 0.0);
+    for (const Reference& each : references) {
+      const auto& channels = each.prepared->residuals[each.index];
+      const auto residual = channels.find(channel);
+      if (residual == channels.end()) continue;
+      for (std::size_t i = 0; i < sum.size(); ++i)
+        sum[i] += at_time(residual->second, each.prepared->time_s(), record.time_s[i]);
+    }
+    for (std::size_t i = 0; i < sum.size(); ++i)
+      series.mean[i] -= sum[i] / static_cast<double>(references.size());
+  }
+}
+
+/// The parity residual where it counts.
+metrics::ResidualFeatures features_of(const std::vector<double>& residual,
+                                      const std::vector<double>& time_s,
+                                      const std::optional<datasets::TimeWindow>& covered) {
+  std::vector<double> counted;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (!covered || (time_s[i] >= covered->start_s && time_s[i] <= covered->end_s))
+      counted.push_back(residual[i]);
+  }
+  return metrics::residual_features(counted);
+}
+
+RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, const Task& task,
+                                const std::vector<Prepared>& all, const DiagnosisOptions& options) {
+  const Prepared& prepared = *task.prepared;
+  const datasets::RepeatRecords& records = *prepared.records;
+  RecordDiagnosis result;
+  result.condition = prepared.condition->id;
+  result.signal = signal_of(problem.campaign, *prepared.condition);
+  result.true_share = prepared.true_share;
+  if (!prepared.failure.empty()) {
+    result.fit.failure = prepared.failure;
+    return result;
+  }
+  const bool is_single = task.single >= 0;
+  const auto index = static_cast<std::size_t>(task.single + 1);
+  datasets::Record record = is_single ? records.singles[index - 1] : records.average;
+  std::optional<datasets::TimeWindow> covered;
+  if (is_single) {
+    covered = records.covered[index - 1];
+    result.repeat = static_cast<int>(index);
+  } else {
+    result.repeats = records.average.repeats;
+  }
+  result.features = features_of(prepared.residuals[index].at(datasets::Channel::position),
+                                record.time_s, covered);
+
+  std::vector<Reference> references = references_of(problem.campaign, all, result.signal);
+  if (is_single || references.size() > prepared.residuals.size() - 1) {
+    std::erase_if(references, [&](const Reference& each) {
+      return each.prepared == &prepared && (!is_single || each.index == index);
+    });
+  } else {
+    result.is_reference =
+        std::any_of(references.begin(), references.end(),
+                    [&](const Reference& each) { return each.prepared == &prepared; });
+  }
+  if (!references.empty()) correct(references, record);
+  result.reference_repeats = static_cast<int>(references.size());
+
+  const LeakProblem bounded = problem.up_to(2.0 * prepared.curve->points().back().coefficient);
+  result.fit = fit_leak(bounded, rig, *prepared.condition, record, covered, !references.empty(),
+                        &*prepared.curve, options.cancel);
+  return result;
+}
+
+double square(double x) { return x * x; }
+
+/// The part of a residual that is not new in each sample.
+double structured(double rms, double noise) {
+  return std::sqrt(std::max(0.0, square(rms) - square(noise)));
+}
+
+struct SignalRecords {
+  std::vector<RecordDiagnosis*> averages;
+  std::map<std::string, std::vector<RecordDiagnosis*>> singles;  ///< by condition
+  std::vector<RecordDiagnosis*> healthy;                         ///< averages and singles
+};
+
+std::map<std::string, SignalRecords> by_signal(const Campaign& campaign,
+                                               std::vector<RecordDiagnosis>& records) {
+  std::map<std::string, SignalRecords> signals;
+  for (RecordDiagnosis& record : records) {
+    if (!record.fit.ok()) continue;
+    SignalRecords& own = signals[record.signal];
+    if (record.repeat) {
+      own.singles[record.condition].push_back(&record);
+    } else {
+      own.averages.push_back(&record);
+    }
+    if (is_healthy(campaign, *campaign.find(record.condition))) own.healthy.push_back(&record);
+  }
+  return signals;
+}
+
+SignalErrors errors_of(const SignalRecords& records) {
+  SignalErrors errors;
+  double squares = 0.0;
+  for (const auto& [condition, singles] : records.singles) {
+    if (singles.size() < 2) continue;
+    double mean = 0.0;
+    for (const RecordDiagnosis* each : singles) mean += each->fit.coefficient;
+    mean /= static_cast<double>(singles.size());
+    for (const RecordDiagnosis* each : singles)
+      squares += square((each->fit.coefficient - mean) * each->fit.effect_m);
+    errors.repeat_freedom += static_cast<int>(singles.size()) - 1;
+  }
+  if (errors.repeat_freedom > 0) errors.repeat_m = std::sqrt(squares / errors.repeat_freedom);
+  double healthy = 0.0;
+  int count = 0;
+  for (const RecordDiagnosis* each : records.healthy) {
+    if (each->repeat) continue;
+    healthy += square(each->fit.coefficient * each->fit.effect_m);
+    ++count;
+  }
+  if (count > 0) errors.healthy_m = std::sqrt(healthy / count);
+  return errors;
+}
+
+/// Structured parity residual that the healthy model leaves in healthy records of the signal [m].
+double healthy_misfit(const SignalRecords& records) {
+  double largest = 0.0;
+  for (const RecordDiagnosis* each : records.healthy)
+    largest = std::max(largest, structured(each->fit.parity_rms_m, each->fit.noise_rms_m));
+  return largest;
+}
+
+/// Share of the structured parity residual's power that a leak does not explain; 0 where no more is
+/// left than noise, or twice of what healthy records leave.
+double unexplained_share(const LeakFit& fit, double healthy_m) {
+  const double left = structured(fit.misfit_rms_m, fit.noise_rms_m);
+  if (left <= std::max(2.0 * healthy_m, fit.noise_rms_m)) return 0.0;
+  const double beyond = square(left) - square(healthy_m);
+  const double explained = square(fit.parity_rms_m) - square(fit.misfit_rms_m);
+  return beyond / (beyond + std::max(0.0, explained));
+}
+
+void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m) {
+  const LeakFit& fit = record.fit;
+  const LeakEstimate& estimate = record.estimate;
+  const double left = unexplained_share(fit, healthy_m);
+  if (!record.unexplained && left > kNoticeable) {
+    record.warnings.push_back(
+        fmt::format("a leak explains all but {:.0f} % of the difference from the healthy model "
+                    "(rms {:.3g} mm); "
+                    "what is left, {:.3g} mm, is more than noise: another fault may be part of it",
+                    100.0 * left, 1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m));
+  }
+  if (record.unexplained) {
+    record.warnings.push_back(fmt::format(
+        "not explained by a leak: it takes the difference from the healthy model from {:.3g} mm to "
+        "{:.3g} mm rms only, where healthy records leave {:.3g} mm; something else is wrong "
+        "(friction, valve, sensor), or the fit does not hold for this record",
+        1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m, 1e3 * healthy_m));
+  }
+  if (estimate.leak_score < -4.0) {
+    record.warnings.push_back(fmt::format(
+        "a leak below zero would fit best (coefficient {:.3g}): the machine is faster than its "
+        "healthy model, so supply or valve are not as they were in the fit",
+        fit.coefficient));
+  }
+  const double log_slope =
+      estimate.share > 0.0 ? fit.share_slope * fit.coefficient / estimate.share : 1.0;
+  if (std::abs(log_slope) < kFlat) {
+    record.warnings.push_back(fmt::format(
+        "the share hardly depends on the coefficient here (d ln share / d ln C = {:.2g}): a "
+        "coefficient cannot be told from a share of this signal",
+        log_slope));
+  }
+  if (!errors.repeat_m)
+    record.warnings.emplace_back(
+        "no repeats of this signal: how one run varies from the next is not in the interval");
+  if (record.is_reference)
+    record.warnings.emplace_back(
+        "the healthy reference of its signal: its leak is zero by construction");
+  if (!errors.healthy_m && record.reference_repeats == 0)
+    record.warnings.emplace_back(
+        "no healthy record of this signal: what the model lacks is not in the interval");
+}
+
+void judge(const Campaign& campaign, RecordDiagnosis& record) {
+  const Condition& condition = *campaign.find(record.condition);
+  const auto& known = campaign.diagnosis.level_class;
+  if (condition.leak_level) {
+    const auto level = known.find(*condition.leak_level);
+    if (level != known.end()) record.truth = level->second;
+  }
+  if (record.true_share) record.truth = class_of(campaign.diagnosis, *record.true_share);
+}
+
+void classify_by_features(std::vector<RecordDiagnosis>& records) {
+  std::vector<LabelledFeatures> labelled;
+  for (const RecordDiagnosis& record : records) {
+    if (record.fit.ok() && record.truth && record.repeat)
+      labelled.push_back({record.signal, *record.repeat, *record.truth, record.features});
+  }
+  for (RecordDiagnosis& record : records) {
+    if (!record.fit.ok()) continue;
+    const LabelledFeatures own{record.signal, record.repeat.value_or(0), LeakClass::normal,
+                               record.features};
+    record.by_features = class_without_repeat(labelled, own);
+    record.by_features_of_other_signals = class_without_signal(labelled, own);
+  }
+}
+
+enum class Method { fitted_leak, features };
+
+/// Features that have nothing to be compared with are no judgement; a leak that was not found is.
+template <typename Found>
+Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bool single,
+                  Found found) {
+  std::vector<Judged> judged;
+  for (const RecordDiagnosis& record : records) {
+    if (method == Method::features && !found(record)) continue;
+    if (record.truth && record.repeat.has_value() == single && !record.is_reference)
+      judged.push_back({record.condition, *record.truth, found(record)});
+  }
+  return accuracy_of(judged);
+}
+
+SignalDiagnosis limits_of(const Campaign& campaign, const SignalRecords& records,
+                          const SignalErrors& errors,
+                          const std::map<std::string, const LeakCurve*>& curves,
+                          const std::string& signal) {
+  SignalDiagnosis result;
+  result.signal = signal;
+  result.errors = errors;
+  for (const RecordDiagnosis* each : records.healthy) {
+    const DetectionLimit limit =
+        detection_limit(each->estimate, *curves.at(each->condition), campaign.diagnosis);
+    std::optional<DetectionLimit>& kept =
+        each->repeat ? result.smallest_single_leak : result.smallest_leak;
+    if (!each->repeat) result.repeats = each->repeats;
+    if (!kept || limit.leak_flow_m3_per_s > kept->leak_flow_m3_per_s) kept = limit;
+  }
+  if (records.healthy.empty()) result.reason = "no healthy record of this signal";
+  return result;
+}
+
+}  // namespace
+
+bool Diagnosis::usable() const {
+  return std::any_of(records.begin(), records.end(),
+                     [](const RecordDiagnosis& record) { return record.fit.ok(); });
+}
+
+Diagnosable diagnosable(const Campaign& campaign) {
+  Diagnosable result;
+  for (const Condition* condition : diagnosed_conditions(campaign)) {
+    const auto lacks = lacks_for_diagnosis(campaign, *condition);
+    if (lacks.empty()) {
+      result.conditions.push_back(condition);
+    } else {
+      result.left_out.push_back(
+          fmt::format("condition \"{}\" is left out: {}", condition->id, fmt::join(lacks, "; ")));
+    }
+  }
+  return result;
+}
+
+Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatRecords>& records,
+                   const RigFit& rig, const DiagnosisOptions& options) {
+  Diagnosis result;
+  const LeakProblem problem(campaign, rig);
+  std::vector<Prepared> prepared(records.size());
+  parallel_for(prepared.size(), options.threads,
+               [&](std::size_t i) { prepared[i] = prepare(problem, records[i], options); });
+  std::vector<Task> tasks;
+  for (const Prepared& each : prepared) {
+    for (int single = -1; single < static_cast<int>(each.records->singles.size()); ++single)
+      tasks.push_back({&each, single});
+  }
+  result.records.resize(tasks.size());
+  std::atomic<int> done{0};
+  parallel_for(tasks.size(), options.threads, [&](std::size_t i) {
+    result.records[i] = diagnose_record(problem, rig, tasks[i], prepared, options);
+    const int finished = ++done;
+    if (options.progress) options.progress(finished, static_cast<int>(tasks.size()));
+  });
+
+  std::map<std::string, const LeakCurve*> curves;
+  for (const Prepared& each : prepared) {
+    if (each.curve) curves[each.condition->id] = &*each.curve;
+  }
+  for (const auto& [signal, members] : by_signal(campaign, result.records)) {
+    const SignalErrors errors = errors_of(members);
+    const double healthy_m = healthy_misfit(members);
+    for (RecordDiagnosis& record : result.records) {
+      if (!record.fit.ok() || record.signal != signal) continue;
+      record.estimate = estimate_leak(record.fit, *curves.at(record.condition), errors,
+                                      record.repeats, record.reference_repeats, campaign.diagnosis);
+      record.unexplained = unexplained_share(record.fit, healthy_m) > kTooMuch;
+      const auto best = static_cast<std::size_t>(record.estimate.most_probable);
+      if (!record.unexplained &&
+          record.estimate.probability[best] >= campaign.diagnosis.least_probability)
+        record.leak_class = record.estimate.most_probable;
+      warn(record, errors, healthy_m);
+    }
+    result.signals.push_back(limits_of(campaign, members, errors, curves, signal));
+  }
+  for (RecordDiagnosis& record : result.records) judge(campaign, record);
+  classify_by_features(result.records);
+  const auto by_leak = [](const RecordDiagnosis& record) { return record.leak_class; };
+  result.single = accuracy(result.records, Method::fitted_leak, true, by_leak);
+  result.averaged = accuracy(result.records, Method::fitted_leak, false, by_leak);
+  result.features = accuracy(result.records, Method::features, true,
+                             [](const RecordDiagnosis& record) { return record.by_features; });
+  result.features_of_other_signals =
+      accuracy(result.records, Method::features, true,
+               [](const RecordDiagnosis& record) { return record.by_features_of_other_signals; });
+  for (const std::string& each : confounded(campaign)) result.warnings.push_back(each);
+  return result;
+}
+
+}  // namespace rigcal::diagnosis

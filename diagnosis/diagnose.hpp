@@ -1,0 +1,94 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/campaign.hpp"
+#include "diagnosis/accuracy.hpp"
+#include "diagnosis/leak_estimate.hpp"
+#include "diagnosis/leak_fit.hpp"
+#include "metrics/residual_features.hpp"
+
+namespace rigcal::diagnosis {
+
+struct DiagnosisOptions {
+  int threads = 1;  ///< results are the same bits for any number
+  const std::atomic<bool>* cancel = nullptr;
+  /// True values by which a synthetic campaign was made; the diagnosis is judged by them.
+  std::optional<std::vector<datasets::FittedValue>> truth;
+  /// Told of every finished record: how many are done, and of how many. From any thread.
+  std::function<void(int, int)> progress;
+};
+
+/// What was found in one record.
+struct RecordDiagnosis {
+  std::string condition;
+  std::string signal;         ///< "sine 0.1 Hz, 50.8 mm"
+  std::optional<int> repeat;  ///< from 1; empty: the average
+  int repeats = 1;            ///< that the record is the mean of
+  /// Healthy repeats of the same signal whose parity residual was taken off the record; 0: none.
+  int reference_repeats = 0;
+  /// It is itself that reference, so that its leak is zero by construction.
+  bool is_reference = false;
+  LeakFit fit;                         ///< says why where nothing was found
+  metrics::ResidualFeatures features;  ///< of the parity residual, eq. 14, nothing taken off [m]
+  LeakEstimate estimate;               ///< means nothing unless fit.ok()
+  /// A leak leaves more than a third of the difference from the healthy model: some other fault.
+  bool unexplained = false;
+  std::optional<LeakClass> leak_class;  ///< empty: undecided
+  /// By the paper's features, clusters learned without this repeat, and without this signal; empty
+  /// where nothing with a label is left to learn from.
+  std::optional<LeakClass> by_features;
+  std::optional<LeakClass> by_features_of_other_signals;
+  std::optional<double> true_share;
+  std::optional<LeakClass> truth;
+  std::vector<std::string> warnings;
+};
+
+/// What the records of one signal tell together.
+struct SignalDiagnosis {
+  std::string signal;
+  SignalErrors errors;
+  std::optional<DetectionLimit> smallest_leak;         ///< in an average
+  std::optional<DetectionLimit> smallest_single_leak;  ///< in a single repeat
+  int repeats = 1;                                     ///< of that average
+  std::string reason;                                  ///< why there is no limit, in words
+};
+
+struct Diagnosis {
+  std::vector<RecordDiagnosis> records;  ///< campaign order; the average, then its repeats
+  std::vector<SignalDiagnosis> signals;  ///< in order of their first appearance
+  Accuracy single;                       ///< fitted leak, single repeats
+  Accuracy averaged;                     ///< fitted leak, averages
+  Accuracy features;                     ///< paper's features, without the repeat in question
+  Accuracy features_of_other_signals;
+  std::vector<std::string> warnings;
+  /// True if at least one record was diagnosed.
+  bool usable() const;
+};
+
+/// Conditions that can be diagnosed, and why others cannot, in words.
+struct Diagnosable {
+  std::vector<const datasets::Condition*> conditions;
+  std::vector<std::string> left_out;
+};
+Diagnosable diagnosable(const datasets::Campaign& campaign);
+
+/// Healthy records of a signal calibrate it: what they differ by from the healthy model, friction
+/// or a lag that it does not have, is taken off every record of the same generated signal before a
+/// leak is fitted. A healthy repeat is corrected by the others; the average of healthy repeats is
+/// the reference itself.
+///
+/// Fits a leak to the average and to every single repeat of some conditions, and classifies them by
+/// two methods.
+///
+/// @param records  of diagnosable conditions, by the name in their average
+/// @throws InputError  records or campaign are wrong
+Diagnosis diagnose(const datasets::Campaign& campaign,
+                   const std::vector<datasets::RepeatRecords>& records, const RigFit& rig,
+                   const DiagnosisOptions& options);
+
+}  // namespace rigcal::diagnosis

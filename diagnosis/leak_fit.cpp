@@ -1,0 +1,417 @@
+#include "diagnosis/leak_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "calib/problem.hpp"
+#include "calib/solve.hpp"
+
+namespace rigcal::diagnosis {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+using datasets::Record;
+
+constexpr const char* kLeak = "leakage_coefficient";
+constexpr int kClusters = 10;
+constexpr int kIterations = 40;
+
+void erase_value(datasets::Overrides& overrides, int index) {
+  std::erase_if(overrides, [index](const auto& entry) { return entry.first == index; });
+}
+
+/// The campaign's own value, bounds and all, but from 0 and estimated for every record.
+datasets::ParameterSetting free_leak(const Campaign& campaign, int index) {
+  const auto row = static_cast<std::size_t>(index);
+  const model::ParameterSpec& spec = model::parameter_table(campaign.rig.plant)[row];
+  datasets::ParameterSetting setting;
+  if (const auto* own = campaign.setting(index)) setting = *own;
+  setting.index = index;
+  setting.lower = 0.0;
+  setting.upper = spec.upper;
+  setting.fit = true;
+  setting.scope = datasets::Scope::condition;
+  setting.prior.reset();
+  setting.nuisance = true;
+  return setting;
+}
+
+/// Weighted residuals of a record and all derivatives, at the end of the fit.
+struct Linear {
+  Eigen::MatrixXd jacobian;      ///< shape (residuals, unknowns), SI
+  Eigen::MatrixXd rig_jacobian;  ///< shape (residuals, rig parameters), SI
+  Eigen::VectorXd residual;      ///< simulated minus measured, weighted
+};
+
+int column_of(const std::vector<int>& list, int index) {
+  const auto found = std::find(list.begin(), list.end(), index);
+  return found == list.end() ? -1 : static_cast<int>(found - list.begin());
+}
+
+Linear linearise(const calib::ProblemCondition& condition, const model::Simulation& run,
+                 std::size_t unknowns) {
+  const auto rows = static_cast<Eigen::Index>(condition.rows.size());
+  const auto channels = static_cast<Eigen::Index>(condition.channels.size());
+  const Eigen::MatrixXd& any = run.sensitivities.front();
+  const auto own = static_cast<Eigen::Index>(unknowns);
+  Linear linear;
+  linear.jacobian.resize(rows * channels, own);
+  linear.rig_jacobian.resize(rows * channels, any.cols() - own);
+  linear.residual.resize(rows * channels);
+  for (Eigen::Index k = 0; k < channels; ++k) {
+    const calib::ProblemChannel& channel = condition.channels[static_cast<std::size_t>(k)];
+    const Eigen::MatrixXd& sensitivity = run.sensitivities[static_cast<std::size_t>(k)];
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const auto sample = static_cast<Eigen::Index>(condition.rows[static_cast<std::size_t>(i)]);
+      const Eigen::Index row = k * rows + i;
+      linear.jacobian.row(row) = sensitivity.row(sample).head(own) / channel.sd;
+      linear.rig_jacobian.row(row) = sensitivity.row(sample).tail(any.cols() - own) / channel.sd;
+      linear.residual(row) =
+          (run.outputs(sample, k) - channel.measured[static_cast<std::size_t>(i)]) / channel.sd;
+    }
+  }
+  return linear;
+}
+
+/// The cluster of each sample that counts, from 0.
+std::vector<int> clusters_of(const calib::ProblemCondition& condition) {
+  const Condition& c = *condition.condition;
+  const bool periodic =
+      c.waveform == datasets::Waveform::sine || c.waveform == datasets::Waveform::square;
+  std::vector<int> clusters;
+  for (std::size_t i = 0; i < condition.rows.size(); ++i) {
+    double place = static_cast<double>(i) / static_cast<double>(condition.rows.size());
+    if (periodic && c.frequency_hz) {
+      const double periods = condition.record->time_s[condition.rows[i]] * *c.frequency_hz;
+      place = periods - std::floor(periods);
+    }
+    clusters.push_back(std::min(kClusters - 1, static_cast<int>(kClusters * place)));
+  }
+  return clusters;
+}
+
+/// Sandwich covariance of the unknowns, and its degrees of freedom.
+std::pair<Eigen::MatrixXd, int> cluster_sandwich(const Linear& linear,
+                                                 const Eigen::VectorXd& residual,
+                                                 const std::vector<int>& clusters) {
+  const auto samples = static_cast<Eigen::Index>(clusters.size());
+  const Eigen::Index p = linear.jacobian.cols();
+  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(kClusters, p);
+  for (Eigen::Index row = 0; row < residual.size(); ++row) {
+    const int cluster = clusters[static_cast<std::size_t>(row % samples)];
+    scores.row(cluster) += linear.jacobian.row(row) * residual(row);
+  }
+  const auto used =
+      static_cast<int>(std::count_if(scores.rowwise().begin(), scores.rowwise().end(),
+                                     [](const auto& row) { return row.squaredNorm() > 0.0; }));
+  const int freedom = std::max(1, used - static_cast<int>(p));
+  const Eigen::MatrixXd bread =
+      (linear.jacobian.transpose() * linear.jacobian).ldlt().solve(Eigen::MatrixXd::Identity(p, p));
+  const double factor = static_cast<double>(used) / freedom;
+  return {factor * bread * (scores.transpose() * scores) * bread, freedom};
+}
+
+/// Share over the steady part and its derivatives by every free parameter.
+struct ShareAt {
+  double share = 0.0;
+  Eigen::VectorXd gradient;
+};
+
+ShareAt share_gradient(const model::Simulation& run, std::size_t servo, std::size_t leak,
+                       const SteadyPart& part) {
+  const auto first = static_cast<Eigen::Index>(part.first);
+  const auto count = static_cast<Eigen::Index>(part.count);
+  const auto mean_of = [&](std::size_t output) {
+    const auto flow = run.outputs.col(static_cast<Eigen::Index>(output)).segment(first, count);
+    const auto slopes = run.sensitivities[output].middleRows(first, count);
+    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(slopes.cols());
+    for (Eigen::Index i = 0; i < count; ++i) {
+      if (flow(i) == 0.0) {  // |C q| at C = 0
+        gradient += slopes.row(i).cwiseAbs().transpose();
+      } else {
+        gradient += (flow(i) > 0.0 ? 1.0 : -1.0) * slopes.row(i).transpose();
+      }
+    }
+    const double n = static_cast<double>(count);
+    return std::pair<double, Eigen::VectorXd>{flow.cwiseAbs().sum() / n, gradient / n};
+  };
+  const auto [servo_mean, servo_gradient] = mean_of(servo);
+  const auto [leak_mean, leak_gradient] = mean_of(leak);
+  if (!(servo_mean > 0.0)) return {0.0, Eigen::VectorXd::Zero(servo_gradient.size())};
+  const double share = leak_mean / servo_mean;
+  return {share, (leak_gradient - share * servo_gradient) / servo_mean};
+}
+
+double rms(const std::vector<double>& x) {
+  double squares = 0.0;
+  for (const double value : x) squares += value * value;
+  return x.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(x.size()));
+}
+
+/// Standard deviation of the part that is independent from sample to sample (von Neumann).
+double noise_rms(const std::vector<double>& x) {
+  double squares = 0.0;
+  for (std::size_t i = 1; i < x.size(); ++i) squares += (x[i] - x[i - 1]) * (x[i] - x[i - 1]);
+  return x.size() < 2 ? 0.0 : std::sqrt(0.5 * squares / static_cast<double>(x.size() - 1));
+}
+
+model::SimulationOptions options_of(const calib::Problem& problem,
+                                    const std::atomic<bool>* cancel) {
+  model::SimulationOptions options;
+  options.method = problem.campaign->simulation.method;
+  options.tolerance = problem.tolerance;
+  options.max_seconds = problem.campaign->simulation.max_seconds;
+  options.cancel = cancel;
+  return options;
+}
+
+/// Record minus simulated position at the samples that count [m].
+std::vector<double> position_residual(const calib::ProblemCondition& condition,
+                                      const Eigen::VectorXd& simulated) {
+  const auto& measured = condition.record->channels.at(datasets::Channel::position).mean;
+  std::vector<double> residual;
+  for (const std::size_t row : condition.rows)
+    residual.push_back(measured[row] - simulated(static_cast<Eigen::Index>(row)));
+  return residual;
+}
+
+std::string in_words(const model::Simulation& run) {
+  return fmt::format("{} at {:g} s ({})", run.reason, run.failed_at_s,
+                     model::to_string(run.status));
+}
+
+/// Everything that simulations at the end of the fit, with and without the leak, tell.
+void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, bool corrected,
+              const model::ParameterValues& values, const std::atomic<bool>* cancel, LeakFit& fit) {
+  const calib::ProblemCondition& condition = problem.conditions.front();
+  std::vector<int> free = condition.free;
+  std::vector<int> rig_columns;  // of the covariance, for each rig parameter that is free here
+  for (std::size_t j = 0; j < rig.indices.size(); ++j) {
+    if (column_of(condition.free, rig.indices[j]) >= 0) continue;
+    free.push_back(rig.indices[j]);
+    rig_columns.push_back(static_cast<int>(j));
+  }
+  std::vector<model::Output> outputs = condition.outputs;
+  const std::size_t position = outputs.size();
+  outputs.insert(outputs.end(),
+                 {model::Output::position, model::Output::servo_flow, model::Output::leakage_flow});
+  const auto simulated = [&](double coefficient) {
+    model::ParameterValues at = values;
+    at.set(leak_row, coefficient);
+    return model::simulate(condition.rig, at, free, condition.inputs, condition.record->time_s,
+                           outputs, options_of(problem, cancel));
+  };
+  const auto run = simulated(values[kLeak]);
+  const auto healthy = simulated(0.0);
+  if (!run.ok() || !healthy.ok()) {
+    fit.failure = in_words(run.ok() ? healthy : run);
+    return;
+  }
+  const Linear linear = linearise(condition, run, condition.free.size());
+  const auto leak = static_cast<Eigen::Index>(column_of(condition.free, leak_row));
+  const Eigen::HouseholderQR<Eigen::MatrixXd> solver(linear.jacobian);
+  const Eigen::VectorXd step = -solver.solve(linear.residual);
+  if (!step.allFinite()) {
+    fit.failure = "nothing that was recorded responds to a leak";
+    return;
+  }
+  fit.coefficient = values[kLeak] + step(leak);
+  const auto [covariance, freedom] =
+      cluster_sandwich(linear, linear.residual + linear.jacobian * step, clusters_of(condition));
+  fit.scatter_se = std::sqrt(covariance(leak, leak));
+  fit.scatter_freedom = freedom;
+  // The last step is taken by linear continuation, which a long one would overstretch.
+  if (values[kLeak] > 0.0 && std::abs(step(leak)) > fit.scatter_se + 1e-3 * values[kLeak]) {
+    fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
+                              std::abs(step(leak)) / fit.scatter_se);
+    return;
+  }
+
+  const ShareAt share = share_gradient(run, position + 1, position + 2, steady_part(condition));
+  fit.share_slope = share.gradient(leak);
+  if (!rig_columns.empty()) {
+    // What the rig's parameters change without a leak too is in the healthy reference already.
+    Eigen::MatrixXd rig_jacobian = linear.rig_jacobian;
+    if (corrected)
+      rig_jacobian -= linearise(condition, healthy, condition.free.size()).rig_jacobian;
+    const Eigen::VectorXd moves = -solver.solve(rig_jacobian).row(leak).transpose();
+    const Eigen::VectorXd share_moves = share.gradient.tail(moves.size()) + fit.share_slope * moves;
+    const Eigen::MatrixXd spread = rig.covariance(rig_columns, rig_columns);
+    fit.rig_se = std::sqrt(std::max(0.0, moves.dot(spread * moves)));
+    fit.share_rig_se = std::sqrt(std::max(0.0, share_moves.dot(spread * share_moves)));
+  }
+  const Eigen::VectorXd effect = run.sensitivities[position].col(leak);
+  double squares = 0.0;
+  for (const std::size_t row : condition.rows) {
+    const double each = effect(static_cast<Eigen::Index>(row));
+    squares += each * each;
+  }
+  fit.effect_m = std::sqrt(squares / static_cast<double>(condition.rows.size()));
+  const auto misfit =
+      position_residual(condition, run.outputs.col(static_cast<Eigen::Index>(position)));
+  fit.misfit_rms_m = rms(misfit);
+  fit.noise_rms_m = noise_rms(misfit);
+  fit.parity_rms_m =
+      rms(position_residual(condition, healthy.outputs.col(static_cast<Eigen::Index>(position))));
+}
+
+calib::Problem problem_of(const LeakProblem& leak_problem, const Condition& condition,
+                          const std::vector<Record>& record) {
+  return calib::make_problem(leak_problem.campaign, record, {&condition}, true,
+                             &leak_problem.values);
+}
+
+/// The condition with windows that hold only what the record covers.
+Condition within(const Condition& condition, const Record& record,
+                 const std::optional<datasets::TimeWindow>& covered) {
+  Condition result = condition;
+  if (!covered) return result;
+  if (condition.moving_windows) result.windows = record.windows;
+  result.moving_windows = false;
+  if (result.windows.empty()) {
+    result.windows = {*covered};
+    return result;
+  }
+  for (datasets::TimeWindow& window : result.windows) {
+    window.start_s = std::max(window.start_s, covered->start_s);
+    window.end_s = std::min(window.end_s, covered->end_s);
+  }
+  std::erase_if(result.windows, [](const auto& window) { return window.start_s > window.end_s; });
+  return result;
+}
+
+const Condition& own_condition(const LeakProblem& leak_problem, const Condition& condition) {
+  return *leak_problem.campaign.find(condition.id);
+}
+
+}  // namespace
+
+RigFit rig_fit_of(const calib::Fit& fit) {
+  RigFit rig;
+  std::vector<Eigen::Index> rows;
+  std::vector<double> errors;
+  Eigen::Index row = 0;
+  for (const calib::FittedParameter& p : fit.parameters) {
+    if (!p.fitted) continue;
+    if (!p.nuisance) rig.values.push_back({p.index, p.scope, p.level, p.value});
+    if (!p.standard_error || row >= fit.correlation.rows()) continue;
+    if (!p.nuisance && p.scope == datasets::Scope::rig) {
+      rig.indices.push_back(p.index);
+      rows.push_back(row);
+      errors.push_back(std::max(*p.standard_error, p.robust_standard_error.value_or(0.0)));
+    }
+    ++row;
+  }
+  const Eigen::VectorXd scale =
+      Eigen::Map<const Eigen::VectorXd>(errors.data(), static_cast<Eigen::Index>(errors.size()));
+  rig.covariance =
+      scale.asDiagonal() * Eigen::MatrixXd(fit.correlation(rows, rows)) * scale.asDiagonal();
+  return rig;
+}
+
+LeakProblem::LeakProblem(const Campaign& original, const RigFit& rig)
+    : campaign(original), leak(model::parameter_index(original.rig.plant, kLeak)) {
+  const datasets::ParameterSetting setting = free_leak(campaign, leak);
+  std::erase_if(campaign.parameters, [&](const auto& each) { return each.index == leak; });
+  campaign.parameters.push_back(setting);
+  for (auto& [level, overrides] : campaign.leak_levels) erase_value(overrides, leak);
+  for (Condition& condition : campaign.conditions) erase_value(condition.overrides, leak);
+  campaign.fit.loss = datasets::Loss::squared;
+  for (const datasets::FittedValue& value : rig.values) {
+    if (value.index != leak) values.push_back(value);
+  }
+}
+
+LeakProblem LeakProblem::up_to(double coefficient) const {
+  LeakProblem result = *this;
+  datasets::ParameterSetting& setting = result.campaign.parameters.back();
+  setting.upper = coefficient;
+  setting.value = std::min(setting.value, coefficient);
+  return result;
+}
+
+LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condition& condition,
+                 const Record& record, const std::optional<datasets::TimeWindow>& covered,
+                 bool corrected, const LeakCurve* curve, const std::atomic<bool>* cancel) {
+  LeakFit fit;
+  const Condition counted = within(own_condition(leak_problem, condition), record, covered);
+  const std::vector<Record> records{record};
+  const calib::Problem problem = problem_of(leak_problem, counted, records);
+  calib::Evaluator::Options options;
+  options.cancel = cancel;
+  calib::Evaluator evaluator(problem, options);
+  std::vector<double> z = problem.start();
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    if (curve != nullptr && problem.map.unknowns()[j].index == leak_problem.leak)
+      z[j] = problem.map.to_unit(static_cast<int>(j), curve->best_coefficient());
+  }
+  const calib::SolveResult solved =
+      calib::solve(problem, evaluator, z, kIterations, 1, calib::FitOptions{});
+  const calib::Evaluation& best = evaluator.best();
+  if (!best.ok || solved.status == calib::FitStatus::failed || evaluator.aborted()) {
+    fit.failure = solved.message;
+    return fit;
+  }
+  const model::ParameterValues values = problem.values_at(0, best.z);
+  describe(problem, rig, leak_problem.leak, corrected, values, cancel, fit);
+  return fit;
+}
+
+LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condition,
+                        const Record& average) {
+  const std::vector<Record> records{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), records);
+  const double beyond = 1.3 * leak_problem.campaign.diagnosis.limits.back();
+  return leak_curve(problem, problem.conditions.front(), beyond);
+}
+
+Residuals healthy_residuals(const LeakProblem& leak_problem, const Condition& condition,
+                            const Record& average, const std::vector<const Record*>& records) {
+  const std::vector<Record> averages{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), averages);
+  const calib::ProblemCondition& prepared = problem.conditions.front();
+  model::ParameterValues values = prepared.values;
+  values.set(leak_problem.leak, 0.0);
+  const auto healthy = model::simulate(prepared.rig, values, {}, prepared.inputs, average.time_s,
+                                       prepared.outputs, options_of(problem, nullptr));
+  if (!healthy.ok())
+    throw NoResultError(
+        fmt::format("condition \"{}\": healthy model: {}", condition.id, in_words(healthy)));
+  Residuals result;
+  for (const Record* record : records) {
+    auto& channels = result.emplace_back();
+    for (std::size_t k = 0; k < prepared.channels.size(); ++k) {
+      const datasets::Channel channel = prepared.channels[k].channel;
+      std::vector<double> residual = record->channels.at(channel).mean;
+      for (std::size_t i = 0; i < residual.size(); ++i)
+        residual[i] -= healthy.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+      channels.emplace(channel, std::move(residual));
+    }
+  }
+  return result;
+}
+
+double share_at(const Campaign& campaign, const Condition& condition, const Record& record,
+                const std::vector<datasets::FittedValue>& values) {
+  const std::vector<Record> records{record};
+  calib::Problem problem = calib::make_problem(campaign, records, {&condition}, true, nullptr);
+  calib::ProblemCondition& prepared = problem.conditions.front();
+  for (const datasets::FittedValue& value : values) {
+    const bool here = value.scope == datasets::Scope::rig ||
+                      value.level == (value.scope == datasets::Scope::condition
+                                          ? condition.id
+                                          : condition.leak_level.value_or(""));
+    if (here) prepared.values.set(value.index, value.value);
+  }
+  return simulate_leak(problem, prepared, prepared.values["leakage_coefficient"]).share;
+}
+
+}  // namespace rigcal::diagnosis

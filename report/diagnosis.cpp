@@ -1,0 +1,351 @@
+#include "report/diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <map>
+
+#include "report/text_table.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using datasets::LeakClass;
+using diagnosis::Accuracy;
+using diagnosis::DetectionLimit;
+using diagnosis::RecordDiagnosis;
+using diagnosis::SignalDiagnosis;
+using Align = TextTable::Align;
+
+constexpr double kLitresPerMinute = 60e3;  ///< per m3/s
+constexpr double kPercent = 100.0;
+
+Json class_or_null(const std::optional<LeakClass>& leak_class) {
+  return leak_class ? Json(std::string(to_string(*leak_class))) : Json(nullptr);
+}
+
+Json pair_json(const std::pair<double, double>& range, double scale = 1.0) {
+  return Json::array({number(scale * range.first), number(scale * range.second)});
+}
+
+Json record_json(const RecordDiagnosis& record) {
+  const bool ok = record.fit.ok();
+  const diagnosis::LeakEstimate& e = record.estimate;
+  const auto value = [&](double x) { return ok ? number(x) : Json(nullptr); };
+  Json json;
+  json["condition"] = record.condition;
+  json["repeat"] = record.repeat ? Json(*record.repeat) : Json(nullptr);
+  json["repeats_averaged"] = record.repeats;
+  json["signal"] = record.signal;
+  json["reference_repeats"] = record.reference_repeats;
+  json["is_reference"] = record.is_reference;
+  json["failure"] = ok ? Json(nullptr) : Json(record.fit.failure);
+  json["leakage_coefficient"] = value(std::max(0.0, e.coefficient));
+  json["ci95"] = ok ? pair_json(e.ci95) : Json(nullptr);
+  json["standard_error"] = value(e.standard_error);
+  json["unbounded_leakage_coefficient"] = value(e.coefficient);
+  json["leak_share_percent"] = value(kPercent * e.share);
+  json["leak_share_ci95_percent"] = ok ? pair_json(e.share_ci95, kPercent) : Json(nullptr);
+  json["leak_flow_l_per_min"] = value(kLitresPerMinute * e.leak_flow_m3_per_s);
+  json["leak_detected"] = ok ? Json(e.leak_detected) : Json(nullptr);
+  json["class"] = class_or_null(record.leak_class);
+  json["class_probabilities"] = Json::object();
+  for (std::size_t i = 0; i < diagnosis::kClassCount; ++i) {
+    json["class_probabilities"][std::string(to_string(datasets::kLeakClasses[i]))] =
+        value(e.probability[i]);
+  }
+  json["undecided"] = !record.leak_class.has_value();
+  json["explained_by_leak"] = ok ? Json(!record.unexplained) : Json(nullptr);
+  json["features"] = {{"mean_m", value(record.features.mean)},
+                      {"rms_m", value(record.features.rms)},
+                      {"std_m", value(record.features.std)}};
+  json["parity_rms_m"] = value(record.fit.parity_rms_m);
+  json["misfit_rms_m"] = value(record.fit.misfit_rms_m);
+  json["noise_rms_m"] = value(record.fit.noise_rms_m);
+  json["log_slope"] = ok && e.share > 0.0 ? number(record.fit.share_slope * e.coefficient / e.share)
+                                          : Json(nullptr);
+  json["class_by_features"] = class_or_null(record.by_features);
+  json["class_by_features_of_other_signals"] = class_or_null(record.by_features_of_other_signals);
+  json["true_class"] = class_or_null(record.truth);
+  json["true_share_percent"] =
+      record.true_share ? number(kPercent * *record.true_share) : Json(nullptr);
+  json["warnings"] = record.warnings;
+  return json;
+}
+
+Json confusion_json(const Accuracy& accuracy) {
+  Json json;
+  json["truth"] = Json::array();
+  for (const LeakClass each : datasets::kLeakClasses)
+    json["truth"].push_back(std::string(to_string(each)));
+  json["found"] = json["truth"];
+  json["found"].push_back("undecided");
+  json["counts"] = accuracy.confusion;
+  return json;
+}
+
+Json accuracy_json(const Accuracy& accuracy) {
+  const bool any = accuracy.records > 0;
+  Json json;
+  json["records"] = accuracy.records;
+  json["conditions"] = accuracy.conditions;
+  json["right"] = accuracy.right;
+  json["undecided"] = accuracy.undecided;
+  json["off_by_two_or_more"] = accuracy.off_by_two;
+  json["accuracy"] = any ? number(accuracy.accuracy) : Json(nullptr);
+  json["accuracy_ci95"] = any ? pair_json(accuracy.ci95) : Json(nullptr);
+  json["confusion"] = confusion_json(accuracy);
+  return json;
+}
+
+Json limit_json(const std::optional<DetectionLimit>& limit) {
+  return limit ? number(kLitresPerMinute * limit->leak_flow_m3_per_s) : Json(nullptr);
+}
+
+Json signal_json(const SignalDiagnosis& signal) {
+  Json json;
+  json["signal"] = signal.signal;
+  json["repeats_averaged"] = signal.repeats;
+  json["averaged"] = limit_json(signal.smallest_leak);
+  json["single"] = limit_json(signal.smallest_single_leak);
+  json["averaged_share_percent"] =
+      signal.smallest_leak ? number(kPercent * signal.smallest_leak->share) : Json(nullptr);
+  json["repeat_sd_m"] = number(signal.errors.repeat_m);
+  json["healthy_leak_m"] = number(signal.errors.healthy_m);
+  json["reason"] = signal.reason.empty() ? Json(nullptr) : Json(signal.reason);
+  return json;
+}
+
+Json settings_json(const datasets::DiagnosisSettings& settings) {
+  Json json;
+  json["limits_percent"] = Json::object();
+  for (std::size_t i = 0; i < settings.limits.size(); ++i) {
+    json["limits_percent"][std::string(to_string(datasets::kLeakClasses[i]))] =
+        number(kPercent * settings.limits[i]);
+  }
+  json["least_probability"] = settings.least_probability;
+  json["false_alarms"] = settings.false_alarms;
+  json["detection"] = settings.detection;
+  return json;
+}
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string result = "\"";
+  for (const char c : text) {
+    if (c == '"') result += '"';
+    result += c;
+  }
+  return result + "\"";
+}
+
+std::string field(bool is_there, double value) {
+  return is_there && std::isfinite(value) ? fmt::format("{}", value) : std::string();
+}
+
+std::string class_name(const std::optional<LeakClass>& leak_class, const char* otherwise = "") {
+  return leak_class ? std::string(to_string(*leak_class)) : otherwise;
+}
+
+std::string csv_row(const RecordDiagnosis& record) {
+  const bool ok = record.fit.ok();
+  const diagnosis::LeakEstimate& e = record.estimate;
+  std::vector<std::string> fields{record.condition,
+                                  record.repeat ? fmt::format("{}", *record.repeat) : std::string(),
+                                  quoted(record.signal),
+                                  field(ok, std::max(0.0, e.coefficient)),
+                                  field(ok, e.ci95.first),
+                                  field(ok, e.ci95.second),
+                                  field(ok, kPercent * e.share),
+                                  field(ok, kPercent * e.share_ci95.first),
+                                  field(ok, kPercent * e.share_ci95.second),
+                                  field(ok, kLitresPerMinute * e.leak_flow_m3_per_s),
+                                  class_name(record.leak_class, "undecided")};
+  for (const double probability : e.probability) fields.push_back(field(ok, probability));
+  fields.insert(
+      fields.end(),
+      {field(ok, record.features.mean), field(ok, record.features.rms),
+       field(ok, record.features.std), class_name(record.by_features), class_name(record.truth),
+       field(record.true_share.has_value(), kPercent * record.true_share.value_or(0.0)),
+       quoted(ok ? fmt::format("{}", fmt::join(record.warnings, "; ")) : record.fit.failure)});
+  return fmt::format("{}\n", fmt::join(fields, ","));
+}
+
+std::string coloured(const std::string& text, const char* code, const Style& style) {
+  return style.colour ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : text;
+}
+
+std::string record_table(const diagnosis::Diagnosis& found) {
+  TextTable table({{"condition"},
+                   {"repeats", Align::right},
+                   {"C_leak", Align::right},
+                   {"95 % interval", Align::right},
+                   {"share %", Align::right},
+                   {"95 % interval", Align::right},
+                   {"leak L/min", Align::right},
+                   {"class"},
+                   {"probability", Align::right},
+                   {"by features"},
+                   {"known class"}});
+  for (const RecordDiagnosis& record : found.records) {
+    if (record.repeat) continue;
+    const diagnosis::LeakEstimate& e = record.estimate;
+    if (!record.fit.ok()) {
+      table.add({record.condition, fmt::format("{}", record.repeats), "-", "-", "-", "-", "-",
+                 "not fitted", "-", "-", class_name(record.truth, "-")});
+      continue;
+    }
+    const double best = e.probability[static_cast<std::size_t>(e.most_probable)];
+    table.add({record.condition, fmt::format("{}", record.repeats),
+               fmt::format("{:.4g}", std::max(0.0, e.coefficient)),
+               fmt::format("{:.3g} .. {:.3g}", e.ci95.first, e.ci95.second),
+               fmt::format("{:.2f}", kPercent * e.share),
+               fmt::format("{:.2f} .. {:.2f}", kPercent * e.share_ci95.first,
+                           kPercent * e.share_ci95.second),
+               fmt::format("{:.4f}", kLitresPerMinute * e.leak_flow_m3_per_s),
+               record.unexplained ? "not explained" : class_name(record.leak_class, "undecided"),
+               fmt::format("{:.3f}", best), class_name(record.by_features, "-"),
+               class_name(record.truth, "-")});
+  }
+  return table.text();
+}
+
+std::string accuracy_table(const diagnosis::Diagnosis& found) {
+  TextTable table({{"method"},
+                   {"records"},
+                   {"right", Align::right},
+                   {"accuracy %", Align::right},
+                   {"95 % (Wilson, over conditions)", Align::right},
+                   {"undecided", Align::right},
+                   {"off by two", Align::right}});
+  const auto add = [&](const char* method, const char* records, const Accuracy& accuracy) {
+    if (accuracy.records == 0) return;
+    table.add({method, records, fmt::format("{} of {}", accuracy.right, accuracy.records),
+               fmt::format("{:.1f}", kPercent * accuracy.accuracy),
+               fmt::format("{:.1f} .. {:.1f}", kPercent * accuracy.ci95.first,
+                           kPercent * accuracy.ci95.second),
+               fmt::format("{}", accuracy.undecided), fmt::format("{}", accuracy.off_by_two)});
+  };
+  add("fitted leak", "single repeats", found.single);
+  add("fitted leak", "averages", found.averaged);
+  add("paper's features, without this repeat", "single repeats", found.features);
+  add("paper's features, without this signal", "single repeats", found.features_of_other_signals);
+  return table.empty() ? std::string() : table.text();
+}
+
+std::string limit_table(const diagnosis::Diagnosis& found) {
+  TextTable table({{"signal"},
+                   {"single, L/min", Align::right},
+                   {"averaged, L/min", Align::right},
+                   {"averaged, share %", Align::right}});
+  const auto flow = [](const std::optional<DetectionLimit>& limit) {
+    return limit ? fmt::format("{:.4f}", kLitresPerMinute * limit->leak_flow_m3_per_s) : "-";
+  };
+  for (const SignalDiagnosis& signal : found.signals) {
+    table.add({signal.signal, flow(signal.smallest_single_leak), flow(signal.smallest_leak),
+               signal.smallest_leak ? fmt::format("{:.2f}", kPercent * signal.smallest_leak->share)
+                                    : signal.reason});
+  }
+  return table.empty() ? std::string() : table.text();
+}
+
+/// Warnings of records, each once with all that it holds for.
+std::string warning_lines(const diagnosis::Diagnosis& found) {
+  std::string text;
+  for (const RecordDiagnosis& record : found.records) {
+    const std::string name = record.repeat
+                                 ? fmt::format("{} repeat {}", record.condition, *record.repeat)
+                                 : record.condition;
+    if (!record.fit.ok()) text += fmt::format("  {}: {}\n", name, record.fit.failure);
+    if (record.repeat && !record.unexplained) continue;  // the table files name them all
+    for (const std::string& warning : record.warnings)
+      text += fmt::format("  {}: {}\n", name, warning);
+  }
+  for (const std::string& warning : found.warnings) text += fmt::format("warning: {}\n", warning);
+  return text;
+}
+
+}  // namespace
+
+std::string status_of(const DiagnosisResult& result) {
+  if (!result.reasons.empty()) return "declined";
+  return result.diagnosis.usable() ? "done" : "failed";
+}
+
+Json diagnosis_json(const DiagnosisResult& result) {
+  const diagnosis::Diagnosis& found = result.diagnosis;
+  Json json;
+  json["status"] = status_of(result);
+  json["schema"] = kDiagnosisSchema;
+  json["reasons"] = result.reasons;
+  json["campaign"] = result.campaign.name;
+  json["synthetic"] = result.campaign.synthetic;
+  json["settings"] = settings_json(result.campaign.diagnosis);
+  json["records"] = Json::array();
+  for (const RecordDiagnosis& record : found.records)
+    json["records"].push_back(record_json(record));
+  const Json single = accuracy_json(found.single);
+  json["confusion"] = single["confusion"];
+  json["accuracy"] = single["accuracy"];
+  json["accuracy_ci95"] = single["accuracy_ci95"];
+  json["methods"] = {
+      {"fitted_leak_single", single},
+      {"fitted_leak_averaged", accuracy_json(found.averaged)},
+      {"features_leave_one_repeat_out", accuracy_json(found.features)},
+      {"features_leave_one_signal_out", accuracy_json(found.features_of_other_signals)}};
+  json["smallest_leak_l_per_min"] = Json::array();
+  for (const SignalDiagnosis& signal : found.signals)
+    json["smallest_leak_l_per_min"].push_back(signal_json(signal));
+  json["warnings"] = found.warnings;
+  json["provenance"] = provenance_json(result.provenance);
+  return json;
+}
+
+std::string diagnosis_csv(const DiagnosisResult& result) {
+  std::string text;
+  if (const std::string status = status_of(result); status != "done") {
+    text = fmt::format("# status: {}: {}\n", status, fmt::join(result.reasons, "; "));
+  }
+  text +=
+      "condition,repeat,signal,leakage_coefficient,ci95_low,ci95_high,leak_share_percent,"
+      "leak_share_ci95_low_percent,leak_share_ci95_high_percent,leak_flow_l_per_min,class";
+  for (const LeakClass each : datasets::kLeakClasses)
+    text += fmt::format(",probability_{}", to_string(each));
+  text +=
+      ",feature_mean_m,feature_rms_m,feature_std_m,class_by_features,true_class,"
+      "true_share_percent,warnings\n";
+  for (const RecordDiagnosis& record : result.diagnosis.records) text += csv_row(record);
+  return text;
+}
+
+std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
+  const diagnosis::Diagnosis& found = result.diagnosis;
+  const std::string status = status_of(result);
+  if (status == "declined") {
+    std::string text = coloured("declined: these records cannot be diagnosed", "31", style) + "\n";
+    for (const std::string& reason : result.reasons) text += fmt::format("  - {}\n", reason);
+    return text;
+  }
+  std::string text =
+      coloured("Leak in the average of each condition", "1", style) + "\n" + record_table(found);
+  if (const std::string table = accuracy_table(found); !table.empty()) {
+    text += "\n" + coloured("Against the known classes (undecided counts as wrong)", "1", style) +
+            "\n" + table;
+  }
+  if (const std::string table = limit_table(found); !table.empty()) {
+    const datasets::DiagnosisSettings& settings = result.campaign.diagnosis;
+    text += "\n" +
+            coloured(fmt::format("Smallest leak told from none ({:g} % false alarms, found in "
+                                 "{:g} %)",
+                                 kPercent * settings.false_alarms, kPercent * settings.detection),
+                     "1", style) +
+            "\n" + table;
+  }
+  text += "\nstatus: " + coloured(status, status == "done" ? "32" : "31", style) + "\n";
+  text += warning_lines(found);
+  if (result.campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
+  return text;
+}
+
+}  // namespace rigcal::report

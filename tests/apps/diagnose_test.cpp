@@ -1,0 +1,85 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/apps/cli_fixture.hpp"
+
+using namespace rigcal::test;
+using Catch::Contains;
+using Catch::StartsWith;
+using nlohmann::json;
+
+namespace {
+
+/// One healthy and one leaking condition of the same sine.
+const std::string kDiagnosed =
+    edited(kCampaign, {{"leakage_coefficient = 0.3", "leakage_coefficient = 0"},
+                       {"[leak_level.\"none\"]",
+                        "[leak_level.\"none\"]\nparameters = { leakage_coefficient = 0 }\n"
+                        "[leak_level.\"open\"]\nparameters = { leakage_coefficient = 0.15 }\n"},
+                       {"id = \"square\"\nwaveform = \"square\"\nfrequency = \"1 Hz\"\n"
+                        "amplitude = \"4 mm\"\nleak_level = \"none\"\nuse = \"validate\"\n"
+                        "repeats = [\"records/square_*.csv\"]",
+                        "id = \"leaking\"\nwaveform = \"sine\"\nfrequency = \"2 Hz\"\n"
+                        "amplitude = \"5 mm\"\nleak_level = \"open\"\nuse = \"diagnose\"\n"}});
+
+}  // namespace
+
+TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", kDiagnosed + kSynthetic);
+  REQUIRE(folder.run({"synthesize", "campaign.toml", "--seed", "1", "--out", "made"}).exit_code ==
+          0);
+  REQUIRE(folder.run({"fit", "made/campaign.toml", "--out", "fit"}).exit_code == 0);
+  const Outcome outcome =
+      folder.run({"diagnose", "made/campaign.toml", "--fit", "fit/fit.json", "--out", "diagnosis"});
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("leaking") && Contains("Smallest leak"));
+  const json result = json::parse(folder.read("diagnosis/diagnosis.json"));
+  CHECK(result["status"] == "done");
+  REQUIRE(result["records"].size() == 8);  // two averages of three repeats, and these
+  for (const json& record : result["records"]) {
+    CAPTURE(record.dump());
+    CHECK(record["failure"].is_null());
+    CHECK(record["class"] == record["true_class"]);
+    CHECK(record["ci95"][0] <= record["leakage_coefficient"]);
+    CHECK(record["leakage_coefficient"] <= record["ci95"][1]);
+    CHECK_FALSE(record["undecided"].get<bool>());
+  }
+  CHECK(result["accuracy"] == 1.0);
+  CHECK(result["confusion"]["counts"][0][0] == 3);
+  CHECK(result["smallest_leak_l_per_min"][0]["averaged"].is_number());
+  CHECK_THAT(folder.read("diagnosis/diagnosis.csv"), StartsWith("condition,repeat,signal,"));
+}
+
+TEST_CASE("diagnose: without a fit it is a wrong use", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", kDiagnosed);
+  const Outcome outcome = folder.run({"diagnose", "campaign.toml"});
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("--fit is missing"));
+  CHECK_FALSE(folder.has("rigcal-out"));
+}
+
+TEST_CASE("diagnose: a seal defect in counts is declined with every reason", "[apps]") {
+  const std::filesystem::path data =
+      std::filesystem::path(RIGCAL_RECORDINGS_DIR) / "moog_flotork_rotary_seal_defect";
+  const CommandFolder folder;
+  const Outcome outcome =
+      folder.run({"diagnose", RIGCAL_SOURCE_DIR "/datasets/moog_flotork/campaign.toml", "--data",
+                  data.string(), "--out", "declined"});
+  if (!std::filesystem::exists(data)) {
+    WARN("skipped: no recordings at " << data);
+    return;
+  }
+  CHECK(outcome.exit_code == 3);
+  const json result = json::parse(folder.read("declined/diagnosis.json"));
+  CHECK(result["status"] == "declined");
+  const std::string reasons = result["reasons"].dump();
+  for (const char* part : {"counts", "no channel command", "sampling rate", "specimen", "date"})
+    CHECK_THAT(reasons, Contains(part));
+  CHECK(result["records"].empty());
+  CHECK_THAT(folder.read("declined/diagnosis.csv"), StartsWith("# status: declined: "));
+}

@@ -1,0 +1,40 @@
+#include "diagnosis/feature_clusters.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace rigcal::diagnosis;
+using rigcal::datasets::LeakClass;
+
+namespace {
+
+std::vector<LabelledFeatures> two_signals() {
+  return {{"slow", 1, LeakClass::normal, {0.1, 0.1, 0.0}},
+          {"slow", 2, LeakClass::normal, {0.2, 0.2, 0.0}},
+          {"slow", 1, LeakClass::slight, {1.0, 1.1, 0.4}},
+          {"slow", 2, LeakClass::slight, {1.1, 1.2, 0.4}},
+          {"fast", 1, LeakClass::normal, {0.9, 1.0, 0.4}},
+          {"fast", 2, LeakClass::slight, {9.0, 10.0, 4.0}}};
+}
+
+}  // namespace
+
+TEST_CASE("FeatureClusters: the nearest mean", "[diagnosis]") {
+  const FeatureClusters clusters(two_signals());
+  CHECK(clusters.nearest({0.0, 0.0, 0.0}) == LeakClass::normal);
+  CHECK(clusters.nearest({20.0, 20.0, 9.0}) == LeakClass::slight);
+  CHECK_FALSE(FeatureClusters({}).nearest({0.0, 0.0, 0.0}));
+}
+
+TEST_CASE("class_without_repeat: own signal, other repeats", "[diagnosis]") {
+  const auto all = two_signals();
+  CHECK(class_without_repeat(all, all[0]) == LeakClass::normal);
+  CHECK(class_without_repeat(all, all[3]) == LeakClass::slight);
+  // Only the slight repeat of its signal is left.
+  CHECK(class_without_repeat(all, all[4]) == LeakClass::slight);
+}
+
+TEST_CASE("class_without_signal: features of another signal mislead", "[diagnosis]") {
+  const auto all = two_signals();
+  CHECK(class_without_signal(all, all[4]) == LeakClass::slight);
+  CHECK(class_without_signal(all, all[2]) == LeakClass::normal);
+}

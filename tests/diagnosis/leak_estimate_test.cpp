@@ -1,0 +1,117 @@
+#include "diagnosis/leak_estimate.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+using namespace rigcal::diagnosis;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+namespace {
+
+/// share = C / 10: straight, so that errors carry over one to one.
+LeakCurve straight() {
+  std::vector<LeakPoint> points;
+  for (const double c : {0.0, 0.5, 1.0, 2.0, 4.0, 8.0})
+    points.push_back({c, 0.1 * c, 1e-5 * c, 0.0});
+  return LeakCurve(points);
+}
+
+/// A record whose coefficient is known within `se`, with all degrees of freedom one could wish for.
+LeakFit fit_of(double coefficient, double se) {
+  LeakFit fit;
+  fit.coefficient = coefficient;
+  fit.scatter_se = se;
+  fit.scatter_freedom = 1'000'000;
+  fit.effect_m = 1e-3;
+  fit.share_slope = 0.1;
+  return fit;
+}
+
+double probability(const LeakEstimate& estimate, LeakClass leak_class) {
+  return estimate.probability[static_cast<std::size_t>(leak_class)];
+}
+
+const rigcal::datasets::DiagnosisSettings kSettings;
+
+}  // namespace
+
+TEST_CASE("LeakCurve: through its points, monotone, nothing leaks backwards", "[diagnosis]") {
+  const LeakCurve curve({{0.0, 0.0, 0.0, 3.0},
+                         {0.1, 0.05, 1e-6, 1.0},
+                         {0.4, 0.14, 3e-6, 2.0},
+                         {0.6, 0.15, 4e-6, 4.0},
+                         {0.9, 0.35, 8e-6, 5.0}});
+  CHECK(curve.share(-1.0) == 0.0);
+  CHECK_THAT(curve.share(0.4), WithinRel(0.14, 1e-12));
+  CHECK(curve.best_coefficient() == 0.1);
+  double last = 0.0;
+  for (double c = 0.01; c < 1.2; c += 0.01) {
+    CHECK(curve.share(c) > last);
+    last = curve.share(c);
+  }
+  CHECK_THROWS_AS(LeakCurve({{0.0, 0.0, 0.0, 0.0}}), std::invalid_argument);
+}
+
+TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]") {
+  const auto sure = estimate_leak(fit_of(1.5, 0.02), straight(), {}, 1, 0, kSettings);
+  CHECK(sure.most_probable == LeakClass::medium);
+  CHECK(probability(sure, LeakClass::medium) > 0.999);
+  CHECK_THAT(sure.share, WithinRel(0.15, 1e-9));
+  // Normal quantile 1.96 of 0.02, a tenth of which is the share's; 401 draws resolve a hundredth.
+  CHECK_THAT(sure.share_ci95.first, WithinAbs(0.15 - 0.00392, 1e-4));
+  CHECK_THAT(sure.ci95.second, WithinAbs(1.5 + 0.0392, 1e-5));
+
+  const auto torn = estimate_leak(fit_of(1.0, 0.1), straight(), {}, 1, 0, kSettings);
+  CHECK_THAT(probability(torn, LeakClass::slight), WithinAbs(0.5, 2e-3));
+  CHECK_THAT(probability(torn, LeakClass::medium), WithinAbs(0.5, 2e-3));
+  CHECK_THAT(std::accumulate(torn.probability.begin(), torn.probability.end(), 0.0),
+             WithinAbs(1.0, 1e-12));
+}
+
+TEST_CASE("estimate_leak: given that a leak is not negative", "[diagnosis]") {
+  // Phi(1) - Phi(0) = 0.3413 lies below 1 % and 0.1587 above; normal is as wide as slight, nine
+  // times itself: 0.3413 9 / (0.3413 9 + 0.1587) = 0.9509.
+  const auto none = estimate_leak(fit_of(0.0, 0.1), straight(), {}, 1, 0, kSettings);
+  CHECK_THAT(probability(none, LeakClass::normal), WithinAbs(0.9509, 2e-3));
+  CHECK(none.ci95.first == 0.0);
+  CHECK(none.share_ci95.first > 0.0);
+  CHECK_FALSE(none.leak_detected);
+  const auto negative = estimate_leak(fit_of(-0.5, 0.1), straight(), {}, 1, 0, kSettings);
+  CHECK(negative.share == 0.0);
+  CHECK(probability(negative, LeakClass::normal) > 0.99);
+}
+
+TEST_CASE("estimate_leak: every source of error is in the interval", "[diagnosis]") {
+  LeakFit fit = fit_of(1.5, 0.03);
+  fit.rig_se = 0.04;
+  SignalErrors errors;
+  errors.repeat_m = 0.12e-3;  // 0.12 of the coefficient
+  errors.repeat_freedom = 16;
+  errors.healthy_m = 0.05e-3;
+  const auto single = estimate_leak(fit, straight(), errors, 1, 0, kSettings);
+  CHECK_THAT(single.standard_error,
+             WithinRel(std::sqrt(0.03 * 0.03 + 0.04 * 0.04 + 0.12 * 0.12 + 0.05 * 0.05), 1e-9));
+  const auto mean = estimate_leak(fit, straight(), errors, 4, 0, kSettings);
+  CHECK_THAT(mean.standard_error,
+             WithinRel(std::sqrt(0.03 * 0.03 + 0.04 * 0.04 + 0.06 * 0.06 + 0.05 * 0.05), 1e-9));
+  CHECK(single.freedom > 16.0);
+  CHECK(single.freedom < 100.0);
+}
+
+TEST_CASE("detection_limit: Currie's sum of both quantiles", "[diagnosis]") {
+  const auto healthy = estimate_leak(fit_of(0.0, 0.01), straight(), {}, 1, 0, kSettings);
+  const auto limit = detection_limit(healthy, straight(), kSettings);
+  // 2.3263 + 1.6449
+  CHECK_THAT(limit.coefficient, WithinRel(0.039712, 1e-4));
+  CHECK_THAT(limit.leak_flow_m3_per_s, WithinRel(0.039712e-5, 1e-3));
+}
+
+TEST_CASE("class_of: a share at a limit is above it", "[diagnosis]") {
+  CHECK(class_of(kSettings, 0.0) == LeakClass::normal);
+  CHECK(class_of(kSettings, 0.01) == LeakClass::slight);
+  CHECK(class_of(kSettings, 0.0999) == LeakClass::slight);
+  CHECK(class_of(kSettings, 0.25) == LeakClass::critical);
+  CHECK(class_of(kSettings, 2.0) == LeakClass::supercritical);
+}

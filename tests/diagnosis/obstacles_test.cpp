@@ -1,0 +1,118 @@
+#include "diagnosis/obstacles.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "diagnosis/diagnose.hpp"
+
+using namespace rigcal;
+using Catch::Contains;
+
+namespace {
+
+/// A campaign file for the length of a test.
+class TemporaryCampaign {
+ public:
+  explicit TemporaryCampaign(const std::string& text) {
+    std::random_device seed;
+    path_ = std::filesystem::temp_directory_path() /
+            ("rigcal-obstacles-" + std::to_string(seed()) + ".toml");
+    std::ofstream(path_) << text;
+  }
+  TemporaryCampaign(const TemporaryCampaign&) = delete;
+  TemporaryCampaign& operator=(const TemporaryCampaign&) = delete;
+  ~TemporaryCampaign() { std::filesystem::remove(path_); }
+  datasets::Campaign load() const { return datasets::load_campaign(path_); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+const std::string kHead = R"(schema = "rigcal.campaign/1"
+[rig]
+model = "load_pressure"
+[rig.parameters]
+supply_pressure = "6.2 MPa"
+mass = "60 kg"
+damping = "1000 N s/m"
+valve_gain = "2e-5 m/V"
+leakage_coefficient = 0.3
+stiffness = "0 N/m"
+piston_area = "633 mm2"
+total_volume = "468 cm3"
+density = "850 kg/m3"
+bulk_modulus = "689 MPa"
+discharge_coefficient = 0.6
+area_gradient = "20 mm"
+leakage_area = "1 mm2"
+)";
+
+const std::string kChannels = R"([recording.channels]
+time = { column = "t", unit = "s" }
+command = { column = "u", unit = "V" }
+position = { column = "x", unit = "mm" }
+)";
+
+std::string condition(const std::string& id, const std::string& more) {
+  return "[[condition]]\nid = \"" + id +
+         "\"\nwaveform = \"recorded\"\nuse = \"diagnose\"\nrepeats = [\"" + id + ".csv\"]\n" + more;
+}
+
+std::string all(const std::vector<std::string>& reasons) {
+  std::string text;
+  for (const std::string& each : reasons) text += each + "\n";
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("obstacles: none for records that can be compared", "[diagnosis]") {
+  const TemporaryCampaign file(kHead + kChannels + condition("a", ""));
+  CHECK(diagnosis::obstacles(file.load(), true).empty());
+  CHECK_THAT(all(diagnosis::obstacles(file.load(), false)), Contains("--fit"));
+}
+
+TEST_CASE("obstacles: everything that is missing is named at once", "[diagnosis]") {
+  const TemporaryCampaign file(R"(schema = "rigcal.campaign/1"
+[rig]
+model = "load_pressure"
+[rig.parameters]
+mass = "60 kg"
+[recording.channels]
+time = { column = "sample", unit = "counts" }
+position = { column = "x", unit = "counts" }
+)" + condition("a", ""));
+  const std::string reasons = all(diagnosis::obstacles(file.load(), true));
+  CHECK_THAT(reasons, Contains("nothing tells damping"));
+  CHECK_THAT(reasons, Contains("no channel command"));
+  CHECK_THAT(reasons, Contains("sampling rate"));
+  CHECK_THAT(reasons, Contains("position holds raw counts"));
+  CHECK_THAT(reasons, !Contains("mass,"));
+}
+
+TEST_CASE("obstacles: a condition that can be diagnosed is enough", "[diagnosis]") {
+  const TemporaryCampaign file(kHead + kChannels + condition("a", "") +
+                               "[[condition]]\nid = \"b\"\nwaveform = \"recorded\"\n"
+                               "use = \"diagnose\"\n");
+  const datasets::Campaign campaign = file.load();
+  CHECK(diagnosis::obstacles(campaign, true).empty());
+  const auto found = diagnosis::diagnosable(campaign);
+  REQUIRE(found.conditions.size() == 1);
+  CHECK(found.conditions.front()->id == "a");
+  CHECK_THAT(all(found.left_out), Contains("\"b\" is left out") && Contains("no record"));
+}
+
+TEST_CASE("confounded: level with specimen and date, but not where both appear", "[diagnosis]") {
+  const std::string levels = "[diagnosis]\nlevel_class = { none = \"normal\" }\n";
+  const auto with = [&](const std::string& second_date) {
+    const TemporaryCampaign file(
+        kHead + kChannels + levels +
+        condition("a", "leak_level = \"none\"\nspecimen = \"one\"\ndate = 2019-09-11\n") +
+        condition("b", "leak_level = \"seal\"\nspecimen = \"two\"\ndate = " + second_date + "\n"));
+    return all(diagnosis::confounded(file.load()));
+  };
+  CHECK_THAT(with("2019-09-10"), Contains("level and specimen") && Contains("level and date"));
+  CHECK_THAT(with("2019-09-11"), Contains("level and specimen") && !Contains("level and date"));
+}
