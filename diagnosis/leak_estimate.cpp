@@ -76,7 +76,7 @@ class ShareDistribution {
   std::vector<double> shares_;
 };
 
-double square(double x) { return x * x; }
+double squared(double x) { return x * x; }
 
 /// Beforehand a normal machine is as probable as one with a slight leak; apart from that every
 /// share is as probable as any other.
@@ -100,21 +100,21 @@ std::array<double, kClassCount> class_probabilities(const ShareDistribution& sha
 LeakEstimate estimate_leak(const LeakFit& fit, const LeakCurve& curve, const SignalErrors& errors,
                            int repeats, int reference,
                            const datasets::DiagnosisSettings& settings) {
-  std::vector<ErrorPart> parts{{square(fit.scatter_se), static_cast<double>(fit.scatter_freedom)}};
+  std::vector<ErrorPart> parts{{squared(fit.scatter_se), static_cast<double>(fit.scatter_freedom)}};
   if (errors.repeat_m && fit.effect_m > 0.0) {
     const double means = 1.0 / repeats + (reference > 0 ? 1.0 / reference : 0.0);
-    parts.push_back({square(*errors.repeat_m / fit.effect_m) * means,
+    parts.push_back({squared(*errors.repeat_m / fit.effect_m) * means,
                      static_cast<double>(std::max(1, errors.repeat_freedom))});
   }
   if (errors.healthy_m && reference == 0 && fit.effect_m > 0.0)
-    parts.push_back({square(*errors.healthy_m / fit.effect_m)});
+    parts.push_back({squared(*errors.healthy_m / fit.effect_m)});
   double own_variance = 0.0;
   for (const ErrorPart& part : parts) own_variance += part.variance;
-  parts.push_back({square(fit.rig_se)});
+  parts.push_back({squared(fit.rig_se)});
 
   LeakEstimate estimate;
   estimate.coefficient = fit.coefficient;
-  estimate.standard_error = std::sqrt(own_variance + square(fit.rig_se));
+  estimate.standard_error = std::sqrt(own_variance + squared(fit.rig_se));
   estimate.freedom = effective_freedom(parts);
   const boost::math::students_t t(estimate.freedom);
   const double half = boost::math::quantile(t, 0.975) * estimate.standard_error;

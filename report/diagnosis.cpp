@@ -25,11 +25,11 @@ Json class_or_null(const std::optional<LeakClass>& leak_class) {
   return leak_class ? Json(std::string(to_string(*leak_class))) : Json(nullptr);
 }
 
-Json pair_json(const std::pair<double, double>& range, double scale = 1.0) {
+Json interval_json(const std::pair<double, double>& range, double scale = 1.0) {
   return Json::array({number(scale * range.first), number(scale * range.second)});
 }
 
-Json record_json(const RecordDiagnosis& record) {
+Json diagnosed_json(const RecordDiagnosis& record) {
   const bool ok = record.fit.ok();
   const diagnosis::LeakEstimate& e = record.estimate;
   const auto value = [&](double x) { return ok ? number(x) : Json(nullptr); };
@@ -42,11 +42,11 @@ Json record_json(const RecordDiagnosis& record) {
   json["is_reference"] = record.is_reference;
   json["failure"] = ok ? Json(nullptr) : Json(record.fit.failure);
   json["leakage_coefficient"] = value(std::max(0.0, e.coefficient));
-  json["ci95"] = ok ? pair_json(e.ci95) : Json(nullptr);
+  json["ci95"] = ok ? interval_json(e.ci95) : Json(nullptr);
   json["standard_error"] = value(e.standard_error);
   json["unbounded_leakage_coefficient"] = value(e.coefficient);
   json["leak_share_percent"] = value(kPercent * e.share);
-  json["leak_share_ci95_percent"] = ok ? pair_json(e.share_ci95, kPercent) : Json(nullptr);
+  json["leak_share_ci95_percent"] = ok ? interval_json(e.share_ci95, kPercent) : Json(nullptr);
   json["leak_flow_l_per_min"] = value(kLitresPerMinute * e.leak_flow_m3_per_s);
   json["leak_detected"] = ok ? Json(e.leak_detected) : Json(nullptr);
   json["class"] = class_or_null(record.leak_class);
@@ -94,7 +94,7 @@ Json accuracy_json(const Accuracy& accuracy) {
   json["undecided"] = accuracy.undecided;
   json["off_by_two_or_more"] = accuracy.off_by_two;
   json["accuracy"] = any ? number(accuracy.accuracy) : Json(nullptr);
-  json["accuracy_ci95"] = any ? pair_json(accuracy.ci95) : Json(nullptr);
+  json["accuracy_ci95"] = any ? interval_json(accuracy.ci95) : Json(nullptr);
   json["confusion"] = confusion_json(accuracy);
   return json;
 }
@@ -103,7 +103,7 @@ Json limit_json(const std::optional<DetectionLimit>& limit) {
   return limit ? number(kLitresPerMinute * limit->leak_flow_m3_per_s) : Json(nullptr);
 }
 
-Json signal_json(const SignalDiagnosis& signal) {
+Json smallest_leak_json(const SignalDiagnosis& signal) {
   Json json;
   json["signal"] = signal.signal;
   json["repeats_averaged"] = signal.repeats;
@@ -117,7 +117,7 @@ Json signal_json(const SignalDiagnosis& signal) {
   return json;
 }
 
-Json settings_json(const datasets::DiagnosisSettings& settings) {
+Json class_settings_json(const datasets::DiagnosisSettings& settings) {
   Json json;
   json["limits_percent"] = Json::object();
   for (std::size_t i = 0; i < settings.limits.size(); ++i) {
@@ -130,7 +130,7 @@ Json settings_json(const datasets::DiagnosisSettings& settings) {
   return json;
 }
 
-std::string quoted(const std::string& text) {
+std::string quoted_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string result = "\"";
   for (const char c : text) {
@@ -140,7 +140,7 @@ std::string quoted(const std::string& text) {
   return result + "\"";
 }
 
-std::string field(bool is_there, double value) {
+std::string number_field(bool is_there, double value) {
   return is_there && std::isfinite(value) ? fmt::format("{}", value) : std::string();
 }
 
@@ -153,26 +153,26 @@ std::string csv_row(const RecordDiagnosis& record) {
   const diagnosis::LeakEstimate& e = record.estimate;
   std::vector<std::string> fields{record.condition,
                                   record.repeat ? fmt::format("{}", *record.repeat) : std::string(),
-                                  quoted(record.signal),
-                                  field(ok, std::max(0.0, e.coefficient)),
-                                  field(ok, e.ci95.first),
-                                  field(ok, e.ci95.second),
-                                  field(ok, kPercent * e.share),
-                                  field(ok, kPercent * e.share_ci95.first),
-                                  field(ok, kPercent * e.share_ci95.second),
-                                  field(ok, kLitresPerMinute * e.leak_flow_m3_per_s),
+                                  quoted_field(record.signal),
+                                  number_field(ok, std::max(0.0, e.coefficient)),
+                                  number_field(ok, e.ci95.first),
+                                  number_field(ok, e.ci95.second),
+                                  number_field(ok, kPercent * e.share),
+                                  number_field(ok, kPercent * e.share_ci95.first),
+                                  number_field(ok, kPercent * e.share_ci95.second),
+                                  number_field(ok, kLitresPerMinute * e.leak_flow_m3_per_s),
                                   class_name(record.leak_class, "undecided")};
-  for (const double probability : e.probability) fields.push_back(field(ok, probability));
+  for (const double probability : e.probability) fields.push_back(number_field(ok, probability));
   fields.insert(
       fields.end(),
-      {field(ok, record.features.mean), field(ok, record.features.rms),
-       field(ok, record.features.std), class_name(record.by_features), class_name(record.truth),
-       field(record.true_share.has_value(), kPercent * record.true_share.value_or(0.0)),
-       quoted(ok ? fmt::format("{}", fmt::join(record.warnings, "; ")) : record.fit.failure)});
+      {number_field(ok, record.features.mean), number_field(ok, record.features.rms),
+       number_field(ok, record.features.std), class_name(record.by_features), class_name(record.truth),
+       number_field(record.true_share.has_value(), kPercent * record.true_share.value_or(0.0)),
+       quoted_field(ok ? fmt::format("{}", fmt::join(record.warnings, "; ")) : record.fit.failure)});
   return fmt::format("{}\n", fmt::join(fields, ","));
 }
 
-std::string coloured(const std::string& text, const char* code, const Style& style) {
+std::string in_colour(const std::string& text, const char* code, const Style& style) {
   return style.colour ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : text;
 }
 
@@ -281,10 +281,10 @@ Json diagnosis_json(const DiagnosisResult& result) {
   json["reasons"] = result.reasons;
   json["campaign"] = result.campaign.name;
   json["synthetic"] = result.campaign.synthetic;
-  json["settings"] = settings_json(result.campaign.diagnosis);
+  json["settings"] = class_settings_json(result.campaign.diagnosis);
   json["records"] = Json::array();
   for (const RecordDiagnosis& record : found.records)
-    json["records"].push_back(record_json(record));
+    json["records"].push_back(diagnosed_json(record));
   const Json single = accuracy_json(found.single);
   json["confusion"] = single["confusion"];
   json["accuracy"] = single["accuracy"];
@@ -296,7 +296,7 @@ Json diagnosis_json(const DiagnosisResult& result) {
       {"features_leave_one_signal_out", accuracy_json(found.features_of_other_signals)}};
   json["smallest_leak_l_per_min"] = Json::array();
   for (const SignalDiagnosis& signal : found.signals)
-    json["smallest_leak_l_per_min"].push_back(signal_json(signal));
+    json["smallest_leak_l_per_min"].push_back(smallest_leak_json(signal));
   json["warnings"] = found.warnings;
   json["provenance"] = provenance_json(result.provenance);
   return json;
@@ -323,26 +323,26 @@ std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
   const diagnosis::Diagnosis& found = result.diagnosis;
   const std::string status = status_of(result);
   if (status == "declined") {
-    std::string text = coloured("declined: these records cannot be diagnosed", "31", style) + "\n";
+    std::string text = in_colour("declined: these records cannot be diagnosed", "31", style) + "\n";
     for (const std::string& reason : result.reasons) text += fmt::format("  - {}\n", reason);
     return text;
   }
   std::string text =
-      coloured("Leak in the average of each condition", "1", style) + "\n" + record_table(found);
+      in_colour("Leak in the average of each condition", "1", style) + "\n" + record_table(found);
   if (const std::string table = accuracy_table(found); !table.empty()) {
-    text += "\n" + coloured("Against the known classes (undecided counts as wrong)", "1", style) +
+    text += "\n" + in_colour("Against the known classes (undecided counts as wrong)", "1", style) +
             "\n" + table;
   }
   if (const std::string table = limit_table(found); !table.empty()) {
     const datasets::DiagnosisSettings& settings = result.campaign.diagnosis;
     text += "\n" +
-            coloured(fmt::format("Smallest leak told from none ({:g} % false alarms, found in "
+            in_colour(fmt::format("Smallest leak told from none ({:g} % false alarms, found in "
                                  "{:g} %)",
                                  kPercent * settings.false_alarms, kPercent * settings.detection),
                      "1", style) +
             "\n" + table;
   }
-  text += "\nstatus: " + coloured(status, status == "done" ? "32" : "31", style) + "\n";
+  text += "\nstatus: " + in_colour(status, status == "done" ? "32" : "31", style) + "\n";
   text += warning_lines(found);
   if (result.campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
   return text;

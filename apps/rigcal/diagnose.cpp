@@ -23,12 +23,12 @@ namespace {
 using datasets::Campaign;
 using datasets::Condition;
 
-struct Options {
+struct DiagnoseRequest {
   CampaignOptions common;
   std::filesystem::path fit;
 };
 
-report::Style terminal_style() {
+report::Style diagnosis_style() {
   const char* no_colour = std::getenv("NO_COLOR");
   const bool wanted = no_colour == nullptr || std::strlen(no_colour) == 0;
   return {wanted && ::isatty(STDOUT_FILENO) == 1};
@@ -63,21 +63,21 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
   return report::read_truth(file, campaign.rig.plant);
 }
 
-ExitCode finish(const Options& options, const report::DiagnosisResult& result) {
+ExitCode write_diagnosis(const DiagnoseRequest& options, const report::DiagnosisResult& result) {
   const report::Json json = report::diagnosis_json(result);
   report::write_results(options.common.out,
                         {{"diagnosis.csv", report::diagnosis_csv(result)},
                          {"diagnosis.json", report::json_text(json)}},
                         result.provenance.inputs);
   const std::string text =
-      report::diagnosis_text(result, terminal_style()) +
+      report::diagnosis_text(result, diagnosis_style()) +
       fmt::format("files: {} {}\n", (options.common.out / "diagnosis.json").string(),
                   (options.common.out / "diagnosis.csv").string());
   print(options.common.print, text, json);
   return report::status_of(result) == "done" ? ExitCode::done : ExitCode::no_result;
 }
 
-ExitCode run_diagnose(const Options& options, const Invocation& invocation) {
+ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocation) {
   const Campaign campaign = load(options.common);
   const bool has_fit = !options.fit.empty();
   const std::vector<std::string> reasons = diagnosis::obstacles(campaign, has_fit);
@@ -91,7 +91,7 @@ ExitCode run_diagnose(const Options& options, const Invocation& invocation) {
           "diagnose: --fit is missing: expected the fit.json of a fit to healthy records");
     }
     provenance.inputs = report::hash_inputs(campaign, {}, more_inputs);
-    return finish(options, {campaign, found, reasons, provenance});
+    return write_diagnosis(options, {campaign, found, reasons, provenance});
   }
   const report::EarlierFit earlier = report::read_fit(options.fit, campaign.rig.plant);
   diagnosis::DiagnosisOptions settings;
@@ -116,13 +116,13 @@ ExitCode run_diagnose(const Options& options, const Invocation& invocation) {
   warn_of_validity(campaign, earlier.validity, found);
   if (earlier.status == calib::FitStatus::stopped)
     found.warnings.push_back("the fit was stopped before it converged: " + earlier.message);
-  return finish(options, {campaign, found, reasons, provenance});
+  return write_diagnosis(options, {campaign, found, reasons, provenance});
 }
 
 }  // namespace
 
 Run add_diagnose(CLI::App& verb) {
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<DiagnoseRequest>();
   add_campaign_options(verb, options->common);
   verb.add_option("--fit", options->fit, "fit.json of a fit to healthy records of the rig");
   return [options](const Invocation& invocation) { return run_diagnose(*options, invocation); };
