@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "report/csv_fields.hpp"
 #include "report/text_table.hpp"
 
 namespace rigcal::report {
@@ -130,16 +131,6 @@ Json class_settings_json(const datasets::DiagnosisSettings& settings) {
   return json;
 }
 
-std::string quoted_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) {
-    if (c == '"') result += '"';
-    result += c;
-  }
-  return result + "\"";
-}
-
 std::string number_field(bool is_there, double value) {
   return is_there && std::isfinite(value) ? fmt::format("{}", value) : std::string();
 }
@@ -153,7 +144,7 @@ std::string csv_row(const RecordDiagnosis& record) {
   const diagnosis::LeakEstimate& e = record.estimate;
   std::vector<std::string> fields{record.condition,
                                   record.repeat ? fmt::format("{}", *record.repeat) : std::string(),
-                                  quoted_field(record.signal),
+                                  csv_text(record.signal),
                                   number_field(ok, std::max(0.0, e.coefficient)),
                                   number_field(ok, e.ci95.first),
                                   number_field(ok, e.ci95.second),
@@ -166,9 +157,10 @@ std::string csv_row(const RecordDiagnosis& record) {
   fields.insert(
       fields.end(),
       {number_field(ok, record.features.mean), number_field(ok, record.features.rms),
-       number_field(ok, record.features.std), class_name(record.by_features), class_name(record.truth),
+       number_field(ok, record.features.std), class_name(record.by_features),
+       class_name(record.truth),
        number_field(record.true_share.has_value(), kPercent * record.true_share.value_or(0.0)),
-       quoted_field(ok ? fmt::format("{}", fmt::join(record.warnings, "; ")) : record.fit.failure)});
+       csv_text(ok ? fmt::format("{}", fmt::join(record.warnings, "; ")) : record.fit.failure)});
   return fmt::format("{}\n", fmt::join(fields, ","));
 }
 
@@ -337,9 +329,9 @@ std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
     const datasets::DiagnosisSettings& settings = result.campaign.diagnosis;
     text += "\n" +
             in_colour(fmt::format("Smallest leak told from none ({:g} % false alarms, found in "
-                                 "{:g} %)",
-                                 kPercent * settings.false_alarms, kPercent * settings.detection),
-                     "1", style) +
+                                  "{:g} %)",
+                                  kPercent * settings.false_alarms, kPercent * settings.detection),
+                      "1", style) +
             "\n" + table;
   }
   text += "\nstatus: " + in_colour(status, status == "done" ? "32" : "31", style) + "\n";
