@@ -226,7 +226,8 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, bo
       cluster_sandwich(linear, linear.residual + linear.jacobian * step, clusters_of(condition));
   fit.scatter_se = std::sqrt(covariance(leak, leak));
   fit.scatter_freedom = freedom;
-  // The last step is taken by linear continuation, which a long one would overstretch.
+  // Whether the optimiser is content does not matter: the last step is taken here, by linear
+  // continuation, which a long one would overstretch.
   if (values[kLeak] > 0.0 && std::abs(step(leak)) > fit.scatter_se + 1e-3 * values[kLeak]) {
     fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
                               std::abs(step(leak)) / fit.scatter_se);
@@ -354,7 +355,7 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
   const calib::SolveResult solved =
       calib::solve(problem, evaluator, z, kIterations, 1, calib::FitOptions{});
   const calib::Evaluation& best = evaluator.best();
-  if (!best.ok || solved.status == calib::FitStatus::failed || evaluator.aborted()) {
+  if (!best.ok || evaluator.aborted()) {
     fit.failure = solved.message;
     return fit;
   }
