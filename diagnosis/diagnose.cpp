@@ -34,6 +34,7 @@ struct Prepared {
   Residuals residuals;  ///< of the average, then of each repeat
   std::string failure;
   std::optional<double> true_share;
+  bool is_healthy = false;
 
   const std::vector<double>& time_s() const { return records->average.time_s; }
 };
@@ -94,7 +95,7 @@ std::vector<Reference> references_of(const Campaign& campaign, const std::vector
   std::vector<Reference> references;
   for (const Prepared& each : all) {
     if (each.residuals.empty() || each.condition->waveform == datasets::Waveform::recorded ||
-        !is_healthy(campaign, *each.condition) || signal_of(campaign, *each.condition) != signal)
+        !each.is_healthy || signal_of(campaign, *each.condition) != signal)
       continue;
     if (each.residuals.size() == 1) references.push_back({&each, 0});
     for (std::size_t i = 1; i < each.residuals.size(); ++i) references.push_back({&each, i});
@@ -375,6 +376,9 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   std::vector<Prepared> prepared(records.size());
   parallel_for(prepared.size(), options.threads,
                [&](std::size_t i) { prepared[i] = prepare(problem, records[i], options); });
+  // The problem's own campaign has forgotten what was known of leaks.
+  for (Prepared& each : prepared)
+    each.is_healthy = is_healthy(campaign, *campaign.find(each.condition->id));
   std::vector<Task> tasks;
   for (const Prepared& each : prepared) {
     for (int single = -1; single < static_cast<int>(each.records->singles.size()); ++single)

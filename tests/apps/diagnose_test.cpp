@@ -28,7 +28,10 @@ const std::string kDiagnosed =
 
 TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   const CommandFolder folder;
-  folder.write("campaign.toml", kDiagnosed + kSynthetic);
+  folder.write(
+      "campaign.toml",
+      kDiagnosed + edited(kSynthetic, {{"position = \"0.01 mm\"", "position = \"0.05 mm\""},
+                                       {"\"0.05 bar\"", "\"1 bar\""}}));
   REQUIRE(folder.run({"synthesize", "campaign.toml", "--seed", "1", "--out", "made"}).exit_code ==
           0);
   REQUIRE(folder.run({"fit", "made/campaign.toml", "--out", "fit"}).exit_code == 0);
@@ -47,6 +50,8 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
     CHECK(record["ci95"][0] <= record["leakage_coefficient"]);
     CHECK(record["leakage_coefficient"] <= record["ci95"][1]);
     CHECK_FALSE(record["undecided"].get<bool>());
+    const bool is_healthy_mean = record["condition"] == "sine" && record["repeat"].is_null();
+    CHECK(record["is_reference"] == is_healthy_mean);
   }
   CHECK(result["accuracy"] == 1.0);
   CHECK(result["confusion"]["counts"][0][0] == 3);
