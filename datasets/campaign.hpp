@@ -142,7 +142,7 @@ struct SyntheticSettings {
 };
 
 struct SimulationSettings {
-  model::Method method = model::Method::automatic;
+  model::Method method = model::Method::rosenbrock;
   std::optional<double> tolerance;  ///< none: from the noise of the records
   double max_seconds = 120.0;
 };

@@ -60,7 +60,7 @@ enum class Method {
 };
 
 struct SimulationOptions {
-  Method method = Method::automatic;
+  Method method = Method::rosenbrock;
   /// Local error per step over the running peak of each state, and of each sensitivity.
   double tolerance = 1e-6;
   long max_steps = 5'000'000;                 ///< accepted and rejected

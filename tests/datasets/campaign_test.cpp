@@ -86,7 +86,7 @@ TEST_CASE("load_campaign: what is left out has its default", "[datasets]") {
   CHECK(campaign.alignment == Alignment::correlate);
   CHECK(campaign.fit.loss == Loss::squared);
   CHECK(campaign.fit.starts == 1);
-  CHECK(campaign.simulation.method == model::Method::automatic);
+  CHECK(campaign.simulation.method == model::Method::rosenbrock);
   CHECK_FALSE(campaign.synthetic_settings.has_value());
 }
 
