@@ -124,8 +124,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   const TomlNode root(parsed, file.string(), "");
   check_schema(root);
   root.allow_only({"schema", "name", "synthetic", "rig", "leak_level", "recording", "averaging",
-                   "acceptance", "fit", "simulation", "leak_table", "diagnosis",
-                   "condition"});
+                   "acceptance", "fit", "simulation", "leak_table", "diagnosis", "condition"});
   Campaign campaign;
   campaign.file = file;
   campaign.data_dir = data_dir.empty() ? file.parent_path() : data_dir;
