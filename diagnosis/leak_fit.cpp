@@ -71,9 +71,10 @@ Linear linearise(const calib::ProblemCondition& condition, const model::Simulati
       const auto sample = static_cast<Eigen::Index>(condition.rows[static_cast<std::size_t>(i)]);
       const Eigen::Index row = k * rows + i;
       linear.jacobian.row(row) = sensitivity.row(sample).head(own) / channel.sd;
-      linear.rig_jacobian.row(row) = sensitivity.row(sample).tail(any.cols() - own) / channel.sd;
       linear.residual(row) =
           (run.outputs(sample, k) - channel.measured[static_cast<std::size_t>(i)]) / channel.sd;
+      if (any.cols() == own) continue;  // no parameter of the rig has an error
+      linear.rig_jacobian.row(row) = sensitivity.row(sample).tail(any.cols() - own) / channel.sd;
     }
   }
   return linear;
