@@ -208,7 +208,9 @@ PeriodicSeries periodic_series(const PeriodicDrive& drive, const model::Paramete
                                outputs, options);
   if (series.run.ok()) {
     series.run.outputs = series.run.outputs.bottomRows(samples).eval();
-    for (auto& slope : series.run.sensitivities) slope = slope.bottomRows(samples).eval();
+    for (auto& slope : series.run.sensitivities) {
+      if (slope.cols() > 0) slope = slope.bottomRows(samples).eval();
+    }
   }
   return series;
 }
