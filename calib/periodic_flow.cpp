@@ -210,6 +210,7 @@ PeriodicSeries periodic_series(const PeriodicDrive& drive, const model::Paramete
     series.run.outputs = series.run.outputs.bottomRows(samples).eval();
     for (auto& slope : series.run.sensitivities) {
       if (slope.cols() > 0) slope = slope.bottomRows(samples).eval();
+      slope.conservativeResize(samples, Eigen::NoChange);  // also without columns
     }
   }
   return series;
