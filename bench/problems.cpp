@@ -57,13 +57,11 @@ void add_condition(const Reference& reference, const std::string& level,
   problem.truth.push_back(truth);
 }
 
-}  // namespace
-
-model::ParameterValues paper_rig_truth() {
+/// What the rigs of both problems have in common.
+model::ParameterValues shaker_truth() {
   auto values = model::ParameterValues::defaults(model::PlantKind::load_pressure);
   values.set("mass", 85.0);
   values.set("damping", 1000.0);
-  values.set("stiffness", 0.0);
   values.set("piston_area", 1.62e-3);
   values.set("total_volume", 1.62e-3 * 0.1524);
   values.set("supply_pressure", 6.2e6);
@@ -73,33 +71,29 @@ model::ParameterValues paper_rig_truth() {
   values.set("area_gradient", 20.75e-3);
   values.set("valve_gain", 4.06e-5);
   values.set("leakage_coefficient", 0.35);
+  values.set("output_limit", 10.0);
+  return values;
+}
+
+}  // namespace
+
+model::ParameterValues paper_rig_truth() {
+  auto values = shaker_truth();
+  values.set("stiffness", 0.0);
   values.set("leakage_area", 4.456e-6);
   values.set("leakage_smoothing", 100.0);
   values.set("kp", 78.74);
   values.set("kd", 0.394);
   values.set("derivative_filter", 100.0);
-  values.set("output_limit", 10.0);
   return values;
 }
 
 model::ParameterValues six_signal_truth() {
-  auto values = model::ParameterValues::defaults(model::PlantKind::load_pressure);
-  values.set("mass", 85.0);
-  values.set("damping", 1000.0);
+  auto values = shaker_truth();
   values.set("stiffness", 75e3);
-  values.set("piston_area", 1.62e-3);
-  values.set("total_volume", 1.62e-3 * 0.1524);
-  values.set("supply_pressure", 6.2e6);
-  values.set("density", 847.0);
-  values.set("bulk_modulus", 689e6);
-  values.set("discharge_coefficient", 0.6);
-  values.set("area_gradient", 20.75e-3);
-  values.set("valve_gain", 4.06e-5);
-  values.set("leakage_coefficient", 0.35);
   values.set("leakage_area", 5e-7);
   values.set("leakage_smoothing", 1e4);
   values.set("kp", 400.0);
-  values.set("output_limit", 10.0);
   return values;
 }
 

@@ -141,6 +141,12 @@ Eigen::VectorXd slopes(const Run& run, FlowColumn column) {
   return result;
 }
 
+/// A block of a matrix without columns would start at an offset from a null pointer.
+Eigen::MatrixXd last_rows(const Eigen::MatrixXd& matrix, Eigen::Index rows) {
+  if (matrix.cols() == 0) return {rows, 0};
+  return matrix.bottomRows(rows);
+}
+
 }  // namespace
 
 PeriodicFlow periodic_flow(const PeriodicDrive& drive, const model::ParameterValues& values,
@@ -207,11 +213,8 @@ PeriodicSeries periodic_series(const PeriodicDrive& drive, const model::Paramete
   series.run = model::simulate(from_rest(drive.rig), values, free, inputs(drive.signal), times,
                                outputs, options);
   if (series.run.ok()) {
-    series.run.outputs = series.run.outputs.bottomRows(samples).eval();
-    for (auto& slope : series.run.sensitivities) {
-      if (slope.cols() > 0) slope = slope.bottomRows(samples).eval();
-      slope.conservativeResize(samples, Eigen::NoChange);  // also without columns
-    }
+    series.run.outputs = last_rows(series.run.outputs, samples);
+    for (auto& slope : series.run.sensitivities) slope = last_rows(slope, samples);
   }
   return series;
 }

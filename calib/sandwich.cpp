@@ -110,17 +110,17 @@ VectorXd innovations(const ChannelRows& rows, const Autoregression& noise, const
 /// Autoregressions of all channels, corrected for what the fit has removed.
 std::vector<std::vector<Autoregression>> noise_models(const std::vector<ScoreRows>& rows,
                                                       const MatrixXd& priors) {
-  struct Channel {
+  struct ChannelNoise {
     std::size_t condition;
     ChannelRows rows;
     std::vector<double> gamma;
     Autoregression noise;
     std::size_t order = 0;
   };
-  std::vector<Channel> channels;
+  std::vector<ChannelNoise> channels;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (Index k = 0; k < rows[i].channels; ++k) {
-      Channel& each = channels.emplace_back();
+      ChannelNoise& each = channels.emplace_back();
       each.condition = i;
       each.rows = channel_rows(rows[i], k);
       const auto samples = static_cast<std::size_t>(each.rows.samples());
@@ -132,8 +132,8 @@ std::vector<std::vector<Autoregression>> noise_models(const std::vector<ScoreRow
   }
   for (int round = 0; round < kBiasRounds; ++round) {
     MatrixXd total = priors;
-    for (const Channel& each : channels) total += expected(each.rows, each.noise);
-    for (Channel& each : channels) {
+    for (const ChannelNoise& each : channels) total += expected(each.rows, each.noise);
+    for (ChannelNoise& each : channels) {
       std::vector<double> gamma(each.gamma.begin(),
                                 each.gamma.begin() + 1 + static_cast<std::ptrdiff_t>(each.order));
       const auto removed = bias(each.rows, each.noise, total, static_cast<Index>(each.order));
@@ -144,7 +144,7 @@ std::vector<std::vector<Autoregression>> noise_models(const std::vector<ScoreRow
     }
   }
   std::vector<std::vector<Autoregression>> result(rows.size());
-  for (const Channel& each : channels) result[each.condition].push_back(each.noise);
+  for (const ChannelNoise& each : channels) result[each.condition].push_back(each.noise);
   return result;
 }
 

@@ -80,22 +80,12 @@ Json tables_fit_json(const TablesFitResult& result) {
   json["iterations"] = fit.iterations;
   json["wall_seconds"] = number(fit.wall_seconds);
   json["parameters"] = Json::array();
-  Json names = Json::array();
+  std::vector<std::string> names;
   for (const calib::FittedAssumption& p : fit.parameters) {
     json["parameters"].push_back(parameter_json(result, p));
-    names.push_back(
-        std::string(datasets::assumption_spec(result.campaign.rig.plant, p.index).name));
+    names.emplace_back(datasets::assumption_spec(result.campaign.rig.plant, p.index).name);
   }
-  Json matrix = Json::array();
-  for (Eigen::Index i = 0; i < fit.correlation.rows(); ++i) {
-    Json row = Json::array();
-    for (Eigen::Index j = 0; j < fit.correlation.cols(); ++j) {
-      row.push_back(number(fit.correlation(i, j)));
-    }
-    matrix.push_back(std::move(row));
-  }
-  json["correlation"]["names"] = std::move(names);
-  json["correlation"]["matrix"] = std::move(matrix);
+  json["correlation"] = correlation_json(names, fit.correlation);
   json["residuals"] = Json::array();
   for (const calib::TableResidual& residual : fit.residuals) {
     Json entry;

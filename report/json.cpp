@@ -72,21 +72,6 @@ Json parameter_list(const Result& result) {
   return list;
 }
 
-Json correlation_json(const calib::Fit& fit) {
-  Json matrix = Json::array();
-  for (Eigen::Index i = 0; i < fit.correlation.rows(); ++i) {
-    Json row = Json::array();
-    for (Eigen::Index j = 0; j < fit.correlation.cols(); ++j) {
-      row.push_back(number(fit.correlation(i, j)));
-    }
-    matrix.push_back(std::move(row));
-  }
-  Json json;
-  json["names"] = fit.correlation_names;
-  json["matrix"] = std::move(matrix);
-  return json;
-}
-
 Json validity_json(const Result& result) {
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
   const auto use = result.kind == ResultKind::fit
@@ -237,6 +222,19 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
 
+Json correlation_json(const std::vector<std::string>& names, const Eigen::MatrixXd& correlation) {
+  Json matrix = Json::array();
+  for (Eigen::Index i = 0; i < correlation.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < correlation.cols(); ++j) row.push_back(number(correlation(i, j)));
+    matrix.push_back(std::move(row));
+  }
+  Json json;
+  json["names"] = names;
+  json["matrix"] = std::move(matrix);
+  return json;
+}
+
 Json provenance_json(const Provenance& provenance) {
   Json json;
   json["version"] = std::string(version());
@@ -271,7 +269,7 @@ Json result_json(const Result& result) {
   json["wall_seconds"] = number(fit.wall_seconds);
   json["simulation_tolerance"] = number(fit.tolerance);
   json["parameters"] = parameter_list(result);
-  json["correlation"] = correlation_json(fit);
+  json["correlation"] = correlation_json(fit.correlation_names, fit.correlation);
   json["rank"] = fit.rank;
   json["singular_values"] = numbers(fit.singular_values);
   json["validity"] = validity_json(result);

@@ -24,6 +24,9 @@ inline constexpr const char* kValidationSchema = "rigcal.validation/1";
 Json number(double value);
 Json number(const std::optional<double>& value);
 
+/// `correlation` of a result: names of the estimates and the matrix, shape (names)^2.
+Json correlation_json(const std::vector<std::string>& names, const Eigen::MatrixXd& correlation);
+
 /// What a result was made from, as every result file holds it.
 Json provenance_json(const Provenance& provenance);
 

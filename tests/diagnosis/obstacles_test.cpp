@@ -1,34 +1,20 @@
 #include "diagnosis/obstacles.hpp"
 
 #include <catch2/catch.hpp>
-#include <filesystem>
-#include <fstream>
-#include <random>
+#include <string>
 
 #include "diagnosis/diagnose.hpp"
+#include "tests/datasets/campaign_fixture.hpp"
 
 using namespace rigcal;
 using Catch::Contains;
 
 namespace {
 
-/// A campaign file for the length of a test.
-class TemporaryCampaign {
- public:
-  explicit TemporaryCampaign(const std::string& text) {
-    std::random_device seed;
-    path_ = std::filesystem::temp_directory_path() /
-            ("rigcal-obstacles-" + std::to_string(seed()) + ".toml");
-    std::ofstream(path_) << text;
-  }
-  TemporaryCampaign(const TemporaryCampaign&) = delete;
-  TemporaryCampaign& operator=(const TemporaryCampaign&) = delete;
-  ~TemporaryCampaign() { std::filesystem::remove(path_); }
-  datasets::Campaign load() const { return datasets::load_campaign(path_); }
-
- private:
-  std::filesystem::path path_;
-};
+datasets::Campaign campaign_of(const std::string& text) {
+  const test::TemporaryFolder folder;
+  return datasets::load_campaign(folder.write("campaign.toml", text));
+}
 
 const std::string kHead = R"(schema = "rigcal.campaign/1"
 [rig]
@@ -69,13 +55,13 @@ std::string all(const std::vector<std::string>& reasons) {
 }  // namespace
 
 TEST_CASE("obstacles: none for records that can be compared", "[diagnosis]") {
-  const TemporaryCampaign file(kHead + kChannels + condition("a", ""));
-  CHECK(diagnosis::obstacles(file.load(), true).empty());
-  CHECK_THAT(all(diagnosis::obstacles(file.load(), false)), Contains("--fit"));
+  const datasets::Campaign campaign = campaign_of(kHead + kChannels + condition("a", ""));
+  CHECK(diagnosis::obstacles(campaign, true).empty());
+  CHECK_THAT(all(diagnosis::obstacles(campaign, false)), Contains("--fit"));
 }
 
 TEST_CASE("obstacles: everything that is missing is named at once", "[diagnosis]") {
-  const TemporaryCampaign file(R"(schema = "rigcal.campaign/1"
+  const datasets::Campaign campaign = campaign_of(R"(schema = "rigcal.campaign/1"
 [rig]
 model = "load_pressure"
 [rig.parameters]
@@ -84,7 +70,7 @@ mass = "60 kg"
 time = { column = "sample", unit = "counts" }
 position = { column = "x", unit = "counts" }
 )" + condition("a", ""));
-  const std::string reasons = all(diagnosis::obstacles(file.load(), true));
+  const std::string reasons = all(diagnosis::obstacles(campaign, true));
   CHECK_THAT(reasons, Contains("nothing tells damping"));
   CHECK_THAT(reasons, Contains("no channel command"));
   CHECK_THAT(reasons, Contains("sampling rate"));
@@ -93,10 +79,10 @@ position = { column = "x", unit = "counts" }
 }
 
 TEST_CASE("obstacles: a condition that can be diagnosed is enough", "[diagnosis]") {
-  const TemporaryCampaign file(kHead + kChannels + condition("a", "") +
-                               "[[condition]]\nid = \"b\"\nwaveform = \"recorded\"\n"
-                               "use = \"diagnose\"\n");
-  const datasets::Campaign campaign = file.load();
+  const datasets::Campaign campaign =
+      campaign_of(kHead + kChannels + condition("a", "") +
+                  "[[condition]]\nid = \"b\"\nwaveform = \"recorded\"\n"
+                  "use = \"diagnose\"\n");
   CHECK(diagnosis::obstacles(campaign, true).empty());
   const auto found = diagnosis::diagnosable(campaign);
   REQUIRE(found.conditions.size() == 1);
@@ -107,11 +93,11 @@ TEST_CASE("obstacles: a condition that can be diagnosed is enough", "[diagnosis]
 TEST_CASE("confounded: level with specimen and date, but not where both appear", "[diagnosis]") {
   const std::string levels = "[diagnosis]\nlevel_class = { none = \"normal\" }\n";
   const auto with = [&](const std::string& second_date) {
-    const TemporaryCampaign file(
+    const datasets::Campaign campaign = campaign_of(
         kHead + kChannels + levels +
         condition("a", "leak_level = \"none\"\nspecimen = \"one\"\ndate = 2019-09-11\n") +
         condition("b", "leak_level = \"seal\"\nspecimen = \"two\"\ndate = " + second_date + "\n"));
-    return all(diagnosis::confounded(file.load()));
+    return all(diagnosis::confounded(campaign));
   };
   CHECK_THAT(with("2019-09-10"), Contains("level and specimen") && Contains("level and date"));
   CHECK_THAT(with("2019-09-11"), Contains("level and specimen") && !Contains("level and date"));
