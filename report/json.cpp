@@ -272,6 +272,7 @@ Json result_json(const Result& result) {
   json["correlation"] = correlation_json(fit.correlation_names, fit.correlation);
   json["rank"] = fit.rank;
   json["singular_values"] = numbers(fit.singular_values);
+  json["reduced_chi_square"] = fit.rank > 0 ? number(fit.reduced_chi_square) : Json(nullptr);
   json["validity"] = validity_json(result);
   json["conditions"] = Json::array();
   for (const calib::ConditionScore& score : fit.conditions) {

@@ -460,6 +460,9 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
   CHECK(fit["status"] == "converged");
   CHECK(fit["verdict"] == "PASS");
   CHECK(fit["synthetic"] == true);
+  const double freedom = fit["residual_count"].get<double>() - fit["rank"].get<double>();
+  CHECK_THAT(fit["reduced_chi_square"].get<double>(),
+             Catch::WithinRel(2.0 * fit["cost"].get<double>() / freedom, 1e-12));
   for (const json& parameter : fit["parameters"]) {
     if (parameter["name"] == "damping_n_s_per_m") {
       // Noise of 0.2 % leaves 0.2 %; 3.5 standard errors: wrong once in two thousand draws.
