@@ -14,6 +14,7 @@
 #include "datasets/record.hpp"
 #include "metrics/agreement.hpp"
 #include "metrics/noise_floor.hpp"
+#include "metrics/residual_tests.hpp"
 
 namespace rigcal::calib {
 
@@ -92,6 +93,9 @@ struct ChannelScore {
   std::optional<metrics::NoiseFloor> noise_floor;        ///< absent where the noise is unknown
   std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
   std::string problem;                                   ///< why a metric does not exist, in words
+  /// Of measured minus simulated, over the longest stretch that counts; absent where it is too
+  /// short, or constant.
+  std::optional<metrics::ResidualTests> residual_tests;
 };
 
 enum class Verdict { pass, warn, fail };
@@ -109,6 +113,9 @@ struct ConditionScore {
   std::vector<double> time_s;
   /// measured mean and simulated value per output channel, whole record
   std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
+  std::vector<double> drive;  ///< reference [m] or command [V] at time_s
+  /// Simulated flows at time_s [m3/s]; empty if it could not be simulated.
+  std::vector<double> servo_flow_m3_per_s, leakage_flow_m3_per_s;
   std::vector<bool> in_window;  ///< empty: all
 };
 

@@ -50,8 +50,29 @@ void compare_at_fundamental(const ProblemCondition& condition, std::span<const d
   }
 }
 
+/// Tests of the residual on the longest stretch without a gap.
+std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& condition,
+                                                    std::span<const double> measured,
+                                                    std::span<const double> simulated,
+                                                    std::span<const double> drive) {
+  const auto [first, count] = longest_stretch(condition.rows);
+  if (count < 2) return std::nullopt;
+  std::vector<double> residual;
+  for (std::size_t i = first; i < first + count; ++i)
+    residual.push_back(measured[i] - simulated[i]);
+  const auto& time_s = condition.record->time_s;
+  const std::size_t begin = condition.rows[first];
+  const double interval_s =
+      (time_s[begin + count - 1] - time_s[begin]) / static_cast<double>(count - 1);
+  try {
+    return metrics::residual_tests(residual, drive.subspan(begin, count), interval_s);
+  } catch (const std::logic_error&) {  // too short, or constant
+    return std::nullopt;
+  }
+}
+
 ChannelScore score_channel(const ProblemCondition& condition, const ProblemChannel& channel,
-                           const std::vector<double>& simulated) {
+                           const std::vector<double>& simulated, std::span<const double> drive) {
   ChannelScore score;
   score.channel = channel.channel;
   try {
@@ -67,6 +88,7 @@ ChannelScore score_channel(const ProblemCondition& condition, const ProblemChann
     }
   }
   compare_at_fundamental(condition, channel.measured, simulated, score);
+  score.residual_tests = test_residual(condition, channel.measured, simulated, drive);
   return score;
 }
 
@@ -85,20 +107,30 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
   options.method = problem.campaign->simulation.method;
   options.tolerance = problem.tolerance;
   options.max_seconds = problem.campaign->simulation.max_seconds;
-  const model::Simulation run =
-      model::simulate(condition.rig, problem.values_at(i, z), {}, condition.inputs, score.time_s,
-                      condition.outputs, options);
+  for (const double t : score.time_s) score.drive.push_back(condition.inputs.drive.value(t));
+  std::vector<model::Output> outputs = condition.outputs;
+  outputs.push_back(model::Output::servo_flow);
+  outputs.push_back(model::Output::leakage_flow);
+  const model::Simulation run = model::simulate(condition.rig, problem.values_at(i, z), {},
+                                                condition.inputs, score.time_s, outputs, options);
   if (!run.ok()) {
     score.failure =
         fmt::format("{} at {:g} s ({})", run.reason, run.failed_at_s, model::to_string(run.status));
+    for (const ProblemChannel& channel : condition.channels)
+      score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean, {}};
   } else {
+    const auto column = [&](std::size_t k) {
+      const auto values = run.outputs.col(static_cast<Eigen::Index>(k));
+      return std::vector<double>(values.begin(), values.end());
+    };
+    score.servo_flow_m3_per_s = column(outputs.size() - 2);
+    score.leakage_flow_m3_per_s = column(outputs.size() - 1);
     for (std::size_t k = 0; k < condition.channels.size(); ++k) {
       const ProblemChannel& channel = condition.channels[k];
-      const auto column = run.outputs.col(static_cast<Eigen::Index>(k));
-      std::vector<double> whole(column.begin(), column.end());
+      std::vector<double> whole = column(k);
       std::vector<double> simulated;
       for (const std::size_t row : condition.rows) simulated.push_back(whole[row]);
-      score.channels.push_back(score_channel(condition, channel, simulated));
+      score.channels.push_back(score_channel(condition, channel, simulated, score.drive));
       score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean,
                                        std::move(whole)};
     }

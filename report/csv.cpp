@@ -41,6 +41,21 @@ std::vector<std::string> score_fields(const calib::ChannelScore& score) {
   return fields;
 }
 
+double at(std::span<const double> values, std::size_t i) {
+  return i < values.size() ? values[i] : std::nan("");
+}
+
+/// Scatter of the repeats about their mean, shape (samples); empty where there is but one.
+std::span<const double> sd_of(const Result& result, const std::string& condition,
+                              datasets::Channel channel) {
+  for (const datasets::Record& record : result.records) {
+    if (record.condition != condition) continue;
+    const auto series = record.channels.find(channel);
+    if (series != record.channels.end() && series->second.repeats > 1) return series->second.sd;
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string scorecard_csv(const Result& result) {
@@ -98,24 +113,34 @@ std::string residuals_csv(const Result& result, const calib::ConditionScore& sco
   if (!score.failure.empty()) text += comment("not simulated: " + score.failure);
   std::vector<std::string> titles{"time_s"};
   for (const auto& [channel, series] : score.series) {
-    for (const char* what : {"measured", "simulated", "residual"}) {
+    for (const char* what : {"measured", "simulated", "residual", "sd"}) {
       titles.push_back(fmt::format("{}_{}", what, info(channel).name));
     }
   }
-  titles.emplace_back("in_window");
+  const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
+  titles.insert(titles.end(), {"in_window", closed_loop ? "reference_m" : "command_v",
+                               "servo_flow_m3_per_s", "leakage_flow_m3_per_s"});
   text += csv_row(titles);
+  std::vector<std::span<const double>> scatter;
+  for (const auto& [channel, series] : score.series)
+    scatter.push_back(sd_of(result, score.id, channel));
   for (std::size_t i = 0; i < score.time_s.size(); ++i) {
     std::vector<std::string> fields{csv_number(score.time_s[i])};
+    auto sd = scatter.begin();
     for (const auto& [channel, series] : score.series) {
       // A condition that could not be simulated has a measured side alone.
       const auto& [measured, simulated] = series;
-      const double y = i < measured.size() ? measured[i] : std::nan("");
-      const double s = i < simulated.size() ? simulated[i] : std::nan("");
+      const double y = at(measured, i);
+      const double s = at(simulated, i);
       fields.push_back(csv_number(y));
       fields.push_back(csv_number(s));
       fields.push_back(csv_number(y - s));
+      fields.push_back(csv_number(at(*sd++, i)));
     }
     fields.emplace_back(score.in_window.empty() || score.in_window[i] ? "1" : "0");
+    fields.push_back(csv_number(at(score.drive, i)));
+    fields.push_back(csv_number(at(score.servo_flow_m3_per_s, i)));
+    fields.push_back(csv_number(at(score.leakage_flow_m3_per_s, i)));
     text += csv_row(fields);
   }
   return text;

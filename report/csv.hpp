@@ -19,8 +19,9 @@ namespace rigcal::report {
 /// scorecard.csv: one row per condition and channel; `unit` is that of rmse and maximum_error.
 std::string scorecard_csv(const Result& result);
 
-/// residuals/<condition>.csv: time_s, per output channel measured, simulated and residual
-/// (measured minus simulated), and whether the sample counts.
+/// residuals/<condition>.csv: time_s, per output channel measured, simulated, residual (measured
+/// minus simulated) and sd (of one repeat about the mean, where there are repeats), whether the
+/// sample counts, the drive (reference_m or command_v) and the simulated flows.
 std::string residuals_csv(const Result& result, const calib::ConditionScore& score);
 
 /// averaged/<condition>.csv: time_s, and mean, sd and count of every channel.

@@ -8,6 +8,7 @@
 #include "datasets/repeatability.hpp"
 #include "metrics/metric_table.hpp"
 #include "report/groups.hpp"
+#include "report/residual_tests_json.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -154,8 +155,13 @@ Json condition_json(const Result& result, const calib::ConditionScore& score) {
   json["failure"] = score.failure.empty() ? Json(nullptr) : Json(score.failure);
   json["metrics"] = Json::object();
   json["noise_floor"] = Json::object();
+  json["residual_tests"] = Json::object();
   for (const calib::ChannelScore& channel : score.channels) {
     const std::string key(info(channel.channel).key);
+    json["residual_tests"][key] =
+        channel.residual_tests
+            ? residual_tests_json(*channel.residual_tests, info(channel.channel).unit)
+            : Json(nullptr);
     json["metrics"][key] = score_json(channel);
     json["noise_floor"][key] = noise_floor_json(channel.noise_floor);
   }
@@ -201,6 +207,19 @@ Json starts_json(const calib::Fit& fit) {
   return list;
 }
 
+Json acceptance_json(const datasets::Campaign& campaign) {
+  Json list = Json::array();
+  for (const datasets::AcceptanceLimit& limit : campaign.acceptance) {
+    Json json;
+    json["channel"] = std::string(info(limit.channel).key);
+    json["metric"] = limit.metric;
+    json["limit"] = number(limit.limit);
+    json["warn"] = number(limit.warn);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 Json failures_json(const calib::Fit& fit) {
   Json list = Json::array();
   for (const calib::SimulationFailure& failure : fit.failures) {
@@ -239,6 +258,7 @@ Json provenance_json(const Provenance& provenance) {
   Json json;
   json["version"] = std::string(version());
   json["revision"] = std::string(revision());
+  json["machine"] = machine();
   json["command"] = provenance.command;
   json["seed"] = provenance.seed;
   json["options"] = Json::object();
@@ -274,6 +294,7 @@ Json result_json(const Result& result) {
   json["singular_values"] = numbers(fit.singular_values);
   json["reduced_chi_square"] = fit.rank > 0 ? number(fit.reduced_chi_square) : Json(nullptr);
   json["validity"] = validity_json(result);
+  json["acceptance"] = acceptance_json(result.campaign);
   json["conditions"] = Json::array();
   for (const calib::ConditionScore& score : fit.conditions) {
     json["conditions"].push_back(condition_json(result, score));

@@ -1,6 +1,10 @@
 #include "report/provenance.hpp"
 
+#include <fmt/format.h>
+#include <sys/utsname.h>
+
 #include <set>
+#include <thread>
 
 #include "common/file.hpp"
 
@@ -8,6 +12,13 @@ namespace rigcal::report {
 
 std::string_view version() { return RIGCAL_VERSION; }
 std::string_view revision() { return RIGCAL_REVISION; }
+
+std::string machine() {
+  utsname system{};
+  if (uname(&system) != 0) return "unknown";
+  return fmt::format("{} {} {}, {} processors", system.sysname, system.release, system.machine,
+                     std::thread::hardware_concurrency());
+}
 
 std::vector<InputFile> hash_inputs(const datasets::Campaign& campaign,
                                    const std::vector<datasets::Record>& records,

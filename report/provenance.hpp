@@ -17,6 +17,9 @@ std::string_view version();
 /// Git revision of the sources, or "unknown" where they were no git checkout.
 std::string_view revision();
 
+/// Operating system, processor family and number of processors.
+std::string machine();
+
 /// A file that a result depends on.
 struct InputFile {
   std::string path;  ///< as it was opened

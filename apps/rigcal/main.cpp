@@ -42,6 +42,7 @@ constexpr std::array kVerbs{
             rigcal::app::add_diagnose},
     VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},
     VerbRow{"init", "Draft a campaign file from recordings", rigcal::app::add_init},
+    VerbRow{"report", "Draw the report of a result folder again", rigcal::app::add_report},
     VerbRow{"params", "List every parameter", rigcal::app::add_params},
 };
 

@@ -17,12 +17,12 @@ namespace {
 
 constexpr int kMostThreads = 1024;
 
+}  // namespace
+
 int hardware_threads() {
   const unsigned count = std::thread::hardware_concurrency();
   return count > 0 ? static_cast<int>(std::min<unsigned>(count, kMostThreads)) : 1;
 }
-
-}  // namespace
 
 void add_print_options(CLI::App& verb, PrintOptions& options) {
   verb.add_flag("--quiet", options.quiet, "Print nothing but errors");

@@ -29,6 +29,9 @@ struct CampaignOptions {
   PrintOptions print;
 };
 
+/// Threads that this machine has.
+int hardware_threads();
+
 void add_print_options(CLI::App& verb, PrintOptions& options);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);
 

@@ -233,8 +233,13 @@ const std::vector<BadFit> kBadFits{
      {"parameters[0].value", "60", "a number"}},
 };
 
-const std::set<std::string> kFitFiles{"out/fit.json", "out/fitted.toml", "out/scorecard.csv",
-                                      "out/residuals/sine.csv", "out/residuals/square.csv"};
+const std::set<std::string> kFitFiles{"out/fit.json",
+                                      "out/fitted.toml",
+                                      "out/report.html",
+                                      "out/residual_tests.json",
+                                      "out/scorecard.csv",
+                                      "out/residuals/sine.csv",
+                                      "out/residuals/square.csv"};
 
 std::set<std::string> files_in(const CommandFolder& folder, const std::string& prefix) {
   std::set<std::string> found;
@@ -475,6 +480,14 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
   CHECK(fit["provenance"]["inputs"][0]["sha256"].get<std::string>().size() == 64);
   CHECK_THAT(folder.read("out/residuals/sine.csv"), StartsWith("time_s,measured_position_m,"));
 
+  SECTION("the report is drawn again to the same bytes") {
+    const std::string page = folder.read("out/report.html");
+    CHECK(folder.run({"report", "out", "--figures", "--threads", "1"}).exit_code == 2);
+    CHECK(folder.run({"report", "out", "--figures", "--quiet"}).exit_code == 0);
+    CHECK(folder.read("out/report.html") == page);
+    CHECK_THAT(folder.read("out/figures/sine_position.svg"), StartsWith("<svg xmlns="));
+    CHECK(folder.run({"report", "twin"}).exit_code == 2);
+  }
   SECTION("the same numbers for any number of threads") {
     folder.run({"fit", "twin/campaign.toml", "--out", "one", "--threads", "1", "--quiet"});
     folder.run({"fit", "twin/campaign.toml", "--out", "four", "--threads", "4", "--quiet"});
@@ -586,6 +599,7 @@ TEST_CASE("fit: what cannot be simulated gives no parameters", "[apps]") {
   CHECK_THAT(folder.read("out/fit.json"), StartsWith("{\n  \"status\": \"failed\""));
   CHECK_THAT(folder.read("out/scorecard.csv"), StartsWith("# status: failed: "));
   CHECK_THAT(folder.read("out/residuals/sine.csv"), StartsWith("# status: failed: "));
+  CHECK_THAT(folder.read("out/report.html"), Contains("<title>FAILED"));
   check_complete(folder.read("out/fit.json"));
   check_bad_input(folder, {"validate", "twin/campaign.toml", "--fit", "out/fit.json"}, {"failed"});
 }

@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "report/folder.hpp"
+#include "report/page.hpp"
+
+namespace rigcal::app {
+namespace {
+
+struct Options {
+  std::filesystem::path folder;
+  bool figures = false;
+  int threads = 1;
+  PrintOptions print;
+};
+
+ExitCode run_report(const Options& options) {
+  const report::ReadFile read = report::files_in(options.folder);
+  const std::string where = options.folder.string();
+  std::vector<report::ResultFile> files;
+  files.push_back({"report.html", report::result_page(read, where, options.threads)});
+  if (options.figures) {
+    for (auto& [path, text] : report::result_figures(read, where))
+      files.push_back({path, std::move(text)});
+  }
+  report::write_results(options.folder, files, {});
+  report::Json json;
+  json["files"] = report::Json::array();
+  for (const report::ResultFile& file : files)
+    json["files"].push_back((options.folder / file.path).string());
+  std::string text = fmt::format("files: {}", (options.folder / "report.html").string());
+  if (options.figures) text += fmt::format(" {}", (options.folder / "figures" / "").string());
+  print(options.print, text + "\n", json);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Run add_report(CLI::App& verb) {
+  const auto options = std::make_shared<Options>();
+  options->threads = hardware_threads();
+  verb.add_option("DIR", options->folder, "Folder of a fit or validation")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  verb.add_flag("--figures", options->figures, "Also write every time plot as SVG into figures/");
+  add_print_options(verb, options->print);
+  return [options](const Invocation&) { return run_report(*options); };
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,23 @@
+# Writes files into a C++ source as raw strings: cmake -DOUT=... "-DFILES=name=path;..." -P embed.cmake
+cmake_minimum_required(VERSION 3.25)
+set(rows "")
+foreach(entry IN LISTS FILES)
+  string(REGEX MATCH "^([^=]+)=(.*)$" matched "${entry}")
+  set(name "${CMAKE_MATCH_1}")
+  file(READ "${CMAKE_MATCH_2}" content)
+  string(APPEND rows "    {\"${name}\", R\"rigcal_asset(${content})rigcal_asset\"},\n")
+endforeach()
+file(WRITE "${OUT}" "#include \"report/assets.hpp\"
+
+#include <map>
+
+namespace rigcal::report {
+
+std::string_view asset(std::string_view name) {
+  static const std::map<std::string_view, std::string_view> kAssets{
+${rows}  };
+  return kAssets.at(name);
+}
+
+}  // namespace rigcal::report
+")

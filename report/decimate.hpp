@@ -1,0 +1,39 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace rigcal::report {
+
+/// How a series is thinned for drawing: buckets of `size` samples, of which the least and the
+/// largest stay, so that no peak is lost.
+struct Buckets {
+  std::size_t samples = 0;
+  std::size_t size = 1;  ///< 1: every sample stays
+
+  std::size_t points() const;
+};
+
+/// The smallest buckets that leave at most about `points` points of `samples`.
+Buckets buckets(std::size_t samples, std::size_t points);
+
+/// Where the points of thinned series stand: the first and the middle sample of each bucket.
+std::vector<double> thinned_times(std::span<const double> time_s, const Buckets& buckets);
+
+/// Least and largest value of each bucket in the order in which they occur; NaN where a bucket
+/// holds no number.
+std::vector<double> thinned(std::span<const double> values, const Buckets& buckets);
+
+/// Values as 16-bit steps above the least one: little endian, base64; 65535 is NaN.
+struct Quantised {
+  double low = 0.0;
+  double step = 0.0;  ///< half of it is the largest error: 1/131068 of the range
+  std::string base64;
+};
+Quantised quantised(std::span<const double> values);
+
+/// Values as 32-bit floats: little endian, base64.
+std::string floats_base64(std::span<const double> values);
+
+}  // namespace rigcal::report

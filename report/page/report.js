@@ -1,0 +1,197 @@
+// Replaces the static pictures of the time plots by ones that zoom; all else works without it.
+"use strict";
+(() => {
+  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+
+  const bytes = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+
+  /** 16-bit steps above `low`; 65535 is a gap. */
+  const unpack = ({low, step, data}) => {
+    const view = new DataView(bytes(data).buffer);
+    return Array.from({length: view.byteLength / 2}, (_, i) => {
+      const code = view.getUint16(2 * i, true);
+      return code === 65535 ? null : low + step * code;
+    });
+  };
+
+  const times = ({first_s, times}) => {
+    const view = new DataView(bytes(times).buffer);
+    return Float64Array.from({length: view.byteLength / 4}, (_, i) => first_s + view.getFloat32(4 * i, true));
+  };
+
+  const digits = (value) => value == null ? "–" : String(+value.toPrecision(5));
+
+  const dashes = {reference: [5, 3]};
+  const widths = {model: 1.8, leak: 1.8};
+
+  const save = (name, url) => {
+    const link = document.createElement("a");
+    link.download = name;
+    link.href = url;
+    link.click();
+  };
+
+  /** The picture as a file of its own: the colours of the page go with it. */
+  const savePicture = (figure) => {
+    const svg = figure.querySelector("svg.static").cloneNode(true);
+    const shown = figure.querySelectorAll("svg.static *");
+    const kept = ["stroke", "stroke-width", "stroke-dasharray", "fill", "fill-opacity", "font-size", "font-family"];
+    svg.querySelectorAll("*").forEach((node, i) => {
+      const style = getComputedStyle(shown[i]);
+      for (const key of kept) node.style.setProperty(key, style.getPropertyValue(key));
+    });
+    const blob = new Blob([new XMLSerializer().serializeToString(svg)], {type: "image/svg+xml"});
+    save(figure.dataset.file + ".svg", URL.createObjectURL(blob));
+  };
+
+  const saveImage = (figure, chart) => {
+    const canvas = document.createElement("canvas");
+    canvas.width = chart.ctx.canvas.width;
+    canvas.height = chart.ctx.canvas.height;
+    const context = canvas.getContext("2d");
+    context.fillStyle = css("--paper");
+    context.fillRect(0, 0, canvas.width, canvas.height);
+    context.drawImage(chart.ctx.canvas, 0, 0);
+    save(figure.dataset.file + ".png", canvas.toDataURL("image/png"));
+  };
+
+  /** The plots of one condition: they share their time axis and cursor. */
+  class Group {
+    constructor(article) {
+      this.figures = [...article.querySelectorAll("figure.plot")];
+      this.source = article.querySelector("script.series");
+      this.charts = new Map();
+      this.range = null;
+    }
+
+    load() {
+      if (this.data) return;
+      this.data = JSON.parse(this.source.textContent);
+      this.time = times(this.data);
+      this.columns = [];
+      this.whole = [this.time[0], this.time[this.time.length - 1]];
+      this.sync = uPlot.sync(this.figures[0].dataset.file);
+    }
+
+    column(i) {
+      return this.columns[i] ??= unpack(this.data.columns[i]);
+    }
+
+    /** Shows [from, to] in every plot; null shows all. */
+    zoom(from, to, source) {
+      if (this.zooming) return;
+      this.zooming = true;
+      this.range = [Math.max(from, this.whole[0]), Math.min(to, this.whole[1])];
+      for (const chart of this.charts.values())
+        if (chart !== source) chart.setScale("x", {min: this.range[0], max: this.range[1]});
+      this.zooming = false;
+    }
+
+    reset() { this.zoom(this.whole[0], this.whole[1]); }
+
+    key(event) {
+      const [from, to] = this.range ?? this.whole;
+      const span = to - from;
+      const middle = (from + to) / 2;
+      const moves = {
+        "+": [middle - span / 4, middle + span / 4], "=": [middle - span / 4, middle + span / 4],
+        "-": [middle - span, middle + span],
+        "ArrowLeft": [Math.max(this.whole[0], from - span / 5), Math.max(this.whole[0], from - span / 5) + span],
+        "ArrowRight": [Math.min(this.whole[1], to + span / 5) - span, Math.min(this.whole[1], to + span / 5)],
+        "0": this.whole,
+      };
+      if (!moves[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      this.zoom(...moves[event.key]);
+    }
+
+    draw(figure) {
+      this.load();
+      const plot = this.data.plots[+figure.dataset.plot];
+      const series = [{label: "time", value: (_, v) => v == null ? "–" : digits(v) + " s"}];
+      const values = [this.time];
+      const bands = [];
+      if (plot.sd != null) {
+        const mean = this.column(plot.lines[0].column);
+        const sd = this.column(plot.sd);
+        for (const sign of [1, -1]) {
+          series.push({label: sign > 0 ? "+ sd" : "- sd", stroke: "transparent", points: {show: false}, value: (_, v) => digits(v)});
+          values.push(mean.map((m, i) => m == null || sd[i] == null ? null : m + sign * sd[i]));
+        }
+        bands.push({series: [1, 2], fill: css("--measured") + "38"});
+      }
+      // The last is drawn on top: what was measured.
+      for (const line of [...plot.lines].reverse()) {
+        series.push({
+          label: line.name, stroke: css("--" + line.style), width: widths[line.style] ?? 1.2, dash: dashes[line.style],
+          points: {show: false}, value: (_, v) => v == null ? "–" : digits(v) + " " + plot.unit,
+        });
+        values.push(this.column(line.column));
+      }
+      const axis = {stroke: css("--soft"), grid: {stroke: css("--rule"), width: 1}, ticks: {stroke: css("--rule")}, font: "11px system-ui, sans-serif"};
+      const chart = new uPlot({
+        width: figure.clientWidth, height: plot.height, series, bands,
+        scales: {x: {time: false}},
+        axes: [{...axis, size: 28, values: (_, ticks) => ticks.map((t) => digits(t) + " s")}, {...axis, size: 64}],
+        legend: {live: true},
+        cursor: {sync: {key: this.sync.key, setSeries: false, scales: ["x", null]}, drag: {x: true, y: false}, focus: {prox: -1}},
+        hooks: {setScale: [(u, key) => { if (key === "x" && u.status === 1) this.zoom(u.scales.x.min, u.scales.x.max, u); }]},
+      }, values, figure);
+      if (this.range) chart.setScale("x", {min: this.range[0], max: this.range[1]});
+      chart.over.addEventListener("dblclick", () => this.reset());
+      this.charts.set(figure, chart);
+      figure.classList.add("live");
+      if (!figure.querySelector(".tools")) this.addTools(figure);
+    }
+
+    addTools(figure) {
+      const tools = document.createElement("span");
+      tools.className = "tools";
+      const add = (text, label, action) => {
+        const button = document.createElement("button");
+        button.type = "button";
+        button.textContent = text;
+        button.setAttribute("aria-label", label);
+        button.addEventListener("click", action);
+        tools.append(button);
+      };
+      add("Show all", "Show the whole record", () => this.reset());
+      add("PNG", "Save the plot as it is shown, as PNG", () => saveImage(figure, this.charts.get(figure)));
+      add("SVG", "Save the picture of the whole record as SVG", () => savePicture(figure));
+      figure.querySelector("figcaption").append(tools);
+      figure.addEventListener("keydown", (event) => { if (event.target === figure) this.key(event); });
+    }
+
+    redraw() {
+      for (const [figure, chart] of [...this.charts]) {
+        chart.destroy();
+        this.draw(figure);
+      }
+    }
+
+    resize() {
+      for (const [figure, chart] of this.charts)
+        chart.setSize({width: figure.clientWidth, height: chart.height});
+    }
+  }
+
+  const groups = [...document.querySelectorAll("article.condition")].filter((a) => a.querySelector("script.series")).map((a) => new Group(a));
+  const owner = new Map(groups.flatMap((group) => group.figures.map((figure) => [figure, group])));
+  const seen = new IntersectionObserver((entries) => {
+    for (const {isIntersecting, target} of entries) {
+      if (!isIntersecting) continue;
+      seen.unobserve(target);
+      owner.get(target).draw(target);
+    }
+  }, {rootMargin: "300px"});
+  for (const figure of owner.keys()) seen.observe(figure);
+
+  let waiting = 0;
+  addEventListener("resize", () => {
+    clearTimeout(waiting);
+    waiting = setTimeout(() => groups.forEach((group) => group.resize()), 100);
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => groups.forEach((group) => group.redraw()));
+  // On paper nothing can be opened.
+  addEventListener("beforeprint", () => document.querySelectorAll("details").forEach((d) => { d.open = true; }));
+})();

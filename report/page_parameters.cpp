@@ -1,0 +1,208 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/page_parts.hpp"
+#include "report/readable.hpp"
+
+namespace rigcal::report {
+namespace {
+
+/// Unit of one row, so that value, bounds and intervals can be compared at a glance.
+struct RowUnit {
+  std::string name;
+  double si = 1.0;
+};
+
+RowUnit unit_of(const Json& parameter) {
+  const std::string unit = text_of(parameter, "unit");
+  const auto readable = readable_unit(number_of(parameter, "value").value_or(0.0), unit);
+  return {std::string(readable.name), readable.si};
+}
+
+Json interval(const Json& pair, const RowUnit& unit) {
+  if (!pair.is_array()) return {{"known", false}};
+  return {{"known", true},
+          {"low", shown_in(pair[0], unit.si, 5)},
+          {"high", shown_in(pair[1], unit.si, 5)}};
+}
+
+/// "± 2.1 %" of the value; empty where that says nothing.
+std::string half_width_text(const Json& parameter) {
+  const Json& ci = parameter.at("ci95");
+  const auto value = number_of(parameter, "value");
+  if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number() || !value || *value == 0.0)
+    return {};
+  const double half = 0.5 * (ci[1].get<double>() - ci[0].get<double>());
+  const double percent = 100.0 * half / std::abs(*value);
+  return percent > 1000.0 ? "over 1000 %" : fmt::format("± {:.2g} %", percent);
+}
+
+Json grade(const Json& parameter) {
+  const std::string text = text_of(parameter, "identifiability");
+  const bool bound = parameter.at("at_bound").get<bool>();
+  Json view{{"word", text == "not_identifiable" ? "not identifiable" : text},
+            {"mark", "✓"},
+            {"class", "good"}};
+  if (text == "weak" || bound) {
+    view["mark"] = "!";
+    view["class"] = "warn";
+  }
+  if (text == "not_identifiable") {
+    view["mark"] = "✕";
+    view["class"] = "bad";
+  }
+  if (bound) view["word"] = view["word"].get<std::string>() + ", at a bound";
+  return view;
+}
+
+Json fitted_row(const Json& p) {
+  const RowUnit unit = unit_of(p);
+  Json row;
+  row["name"] = text_of(p, "key");
+  row["symbol"] = text_of(p, "symbol");
+  const std::string level = text_of(p, "level");
+  row["whose"] = level.empty() ? std::string("rig") : level;
+  row["nuisance"] = p.at("nuisance").get<bool>();
+  row["value"] = shown_in(p.at("value"), unit.si, 6);
+  row["unit"] = unit.name;
+  row["interval"] = interval(p.at("ci95"), unit);
+  row["half_width"] = half_width_text(p);
+  row["standard_error"] = shown_in(p.at("standard_error"), unit.si, 3);
+  row["robust_standard_error"] = shown_in(p.at("robust_standard_error"), unit.si, 3);
+  row["start"] = shown_in(p.at("start"), unit.si, 5);
+  row["lower"] = shown_in(p.at("lower"), unit.si, 4);
+  row["upper"] = shown_in(p.at("upper"), unit.si, 4);
+  row["grade"] = grade(p);
+  row["reason"] = text_of(p, "reason");
+  row["has_reason"] = !text_of(p, "reason").empty();
+  return row;
+}
+
+Json known_row(const Json& p) {
+  const RowUnit unit = unit_of(p);
+  const std::string level = text_of(p, "level");
+  return {{"name", text_of(p, "key")},
+          {"symbol", text_of(p, "symbol")},
+          {"whose", level.empty() ? std::string("rig") : level},
+          {"value", shown_in(p.at("value"), unit.si, 6)},
+          {"unit", unit.name},
+          {"reason", text_of(p, "reason")}};
+}
+
+Json correlation_rows(const Json& correlation) {
+  const Json& names = correlation.at("names");
+  const Json& matrix = correlation.at("matrix");
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    Json cells = Json::array();
+    for (std::size_t j = 0; j < names.size(); ++j) {
+      const Json& value = matrix.at(i).at(j);
+      const double r = value.is_number() ? value.get<double>() : 0.0;
+      Json cell{{"r", shown_in(value, 1.0, 3)},
+                {"strength", fmt::format("{:.2f}", std::min(1.0, std::abs(r)))},
+                {"sign", i == j    ? "self"
+                         : r < 0.0 ? "minus"
+                                   : "plus"}};
+      if (value.is_number()) cell["r"]["text"] = fmt::format("{:.2f}", r);
+      cells.push_back(std::move(cell));
+    }
+    rows.push_back({{"number", fmt::format("{}", i + 1)},
+                    {"name", names[i].get<std::string>()},
+                    {"cells", std::move(cells)}});
+  }
+  return rows;
+}
+
+/// Pairs that can hardly be told apart, in words.
+std::string correlation_reading(const Json& correlation) {
+  const Json& names = correlation.at("names");
+  const Json& matrix = correlation.at("matrix");
+  double strongest = 0.0;
+  std::string pair;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Json& value = matrix.at(i).at(j);
+      if (!value.is_number() || std::abs(value.get<double>()) <= std::abs(strongest)) continue;
+      strongest = value.get<double>();
+      pair = names[j].get<std::string>() + " and " + names[i].get<std::string>();
+    }
+  }
+  if (pair.empty()) return {};
+  const char* meaning =
+      std::abs(strongest) > 0.99  ? "they can hardly be told apart by these records"
+      : std::abs(strongest) > 0.9 ? "an error of one is mostly made up by the other"
+                                  : "all can be told apart";
+  return fmt::format("Strongest: {:.3f} between {}; {}.", strongest, pair, meaning);
+}
+
+}  // namespace
+
+Json parameters_view(const Json& result) {
+  Json fitted = Json::array();
+  Json known = Json::array();
+  for (const Json& p : result.at("parameters")) {
+    if (p.at("fitted").get<bool>()) {
+      fitted.push_back(fitted_row(p));
+    } else {
+      known.push_back(known_row(p));
+    }
+  }
+  const Json& correlation = result.at("correlation");
+  Json view;
+  view["has_fitted"] = !fitted.empty();
+  view["fitted"] = std::move(fitted);
+  view["has_known"] = !known.empty();
+  view["known"] = std::move(known);
+  view["has_correlation"] = correlation.at("names").size() > 1;
+  view["correlation"] = correlation_rows(correlation);
+  view["correlation_reading"] = correlation_reading(correlation);
+  return view;
+}
+
+Json identifiability_view(const Json& result) {
+  std::vector<double> values;
+  for (const Json& value : result.at("singular_values"))
+    if (value.is_number()) values.push_back(value.get<double>());
+  Json view;
+  view["known"] = !values.empty();
+  if (values.empty()) return view;
+  const int rank = result.at("rank").get<int>();
+  const auto all = static_cast<int>(values.size());
+  if (rank < all) {
+    view["reading"] = fmt::format(
+        "Only {} of {} directions of the parameters are determined by the records: {} "
+        "combination{} "
+        "can be changed without any effect that the records show.",
+        rank, all, all - rank, all - rank == 1 ? "" : "s");
+  } else {
+    view["reading"] = fmt::format(
+        "All {} directions of the parameters are determined; the best {:.3g} times as sharply as "
+        "the "
+        "worst.",
+        all, values.back() > 0.0 ? values.front() / values.back() : 0.0);
+  }
+  Plot plot;
+  plot.title = "Singular values of the scaled Jacobian";
+  plot.x_label = "direction";
+  plot.y_label = "singular value";
+  plot.log_y = true;
+  plot.height = 170.0;
+  Trace trace;
+  trace.kind = Trace::Kind::points;
+  trace.style = "model";
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    trace.x.push_back(static_cast<double>(i + 1));
+    trace.y.push_back(values[i]);
+  }
+  plot.traces = {trace};
+  view["plot_html"] = svg(plot);
+  view["values"] = Json::array();
+  for (std::size_t i = 0; i < values.size(); ++i)
+    view["values"].push_back(
+        {{"number", fmt::format("{}", i + 1)}, {"value", shown(values[i], "1", 4)}});
+  return view;
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/svg.hpp"
+#include "report/table.hpp"
+
+// What the templates of report/page/ show, section by section, from the stored result files alone.
+// Every function takes the JSON of a result file and throws nlohmann::json::exception where it is
+// not one. Texts are plain: the template engine escapes them. A key that ends in _html holds markup
+// made here.
+
+namespace rigcal::report {
+
+using Json = nlohmann::ordered_json;
+
+/// A number for people, beside the one in the file: {"exact": "0.0508", "text": "50.8 mm"}; the
+/// text is a dash where there is none.
+Json shown(const Json& value, std::string_view si_unit, int digits = 5);
+/// The same in a unit that others share.
+Json shown_in(const Json& value, double si_per_unit, int digits = 5);
+/// Agreement near 1 with the digits that tell: 0.9999958.
+Json shown_agreement(const Json& value);
+
+/// The text of a key, or an empty one where it is null or missing.
+std::string text_of(const Json& json, const std::string& key);
+std::optional<double> number_of(const Json& json, const std::string& key);
+
+/// Id of a condition's section.
+std::string anchor(const std::string& condition);
+/// {"word": "PASS", "mark": "✓", "class": "good"} of a verdict; null: not judged.
+Json badge(const Json& verdict);
+/// Name of a parameter with whose it is: "leakage_coefficient (leak level 33 %)".
+std::string parameter_label(const Json& parameter);
+/// SI unit of a channel, by the key that it has in the results.
+std::string_view channel_unit(std::string_view channel);
+
+/// PASS, WARN or FAIL of one channel of one condition by the limits of the campaign; null where
+/// none applies. `excess`: distance from the ideal over that of the nearest limit, above 1 beyond.
+struct Judgement {
+  std::optional<std::string> verdict;
+  double excess = 0.0;
+};
+Judgement judge_channel(const Json& acceptance, const Json& condition, const std::string& channel);
+
+/// Headline, the three reasons that weigh most, and the range that is covered.
+Json headline_view(const Json& result);
+/// Per channel: signals by leak levels.
+Json matrix_view(const Json& result);
+Json groups_view(const Json& result);
+Json parameters_view(const Json& result);
+Json identifiability_view(const Json& result);
+Json starts_view(const Json& result);
+Json ledger_view(const Json& result);
+Json provenance_view(const Json& result);
+Json formulas_view();
+
+/// One condition: what it is, its scores, its plots and residual tests.
+///
+/// @param series  its residuals/<condition>.csv
+/// @param curves  its entry in residual_tests.json, or null
+/// @param points  of one interactive series, about
+Json condition_view(const Json& result, const Json& condition, const Table& series,
+                    const Json& curves, std::size_t points);
+
+/// The pictures of a condition, for the page and for files of their own.
+struct Figure {
+  std::string name;  ///< "position", "position_residual", ...
+  Plot plot;
+};
+std::vector<Figure> condition_figures(const Json& condition, const Table& series);
+
+}  // namespace rigcal::report

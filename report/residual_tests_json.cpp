@@ -1,0 +1,179 @@
+#include "report/residual_tests_json.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "report/readable.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using metrics::ResidualTests;
+
+std::string hertz(double value) { return fmt::format("{:.3g} Hz", value); }
+
+std::string p_text(double p) {
+  return p < 1e-4 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p);
+}
+
+std::string autocorrelation_words(const ResidualTests& tests) {
+  const auto& test = tests.autocorrelation;
+  if (test.passed)
+    return fmt::format("white: no sample tells of the next ({})", p_text(test.p_value));
+  return fmt::format(
+      "coloured ({}): correlated for {}, so that {} samples weigh like {:.0f}; the model misses "
+      "something, or the noise is not white",
+      p_text(test.p_value), readable(test.correlation_time_s, "s", 2), tests.samples,
+      tests.effective_samples);
+}
+
+std::string cross_correlation_words(const metrics::CrossCorrelation& test) {
+  if (test.passed) {
+    return fmt::format("independent of the input: at most {:.2g}, within {:.2g}",
+                       std::abs(test.peak), test.band_of_peak);
+  }
+  return fmt::format(
+      "depends on the input: correlation {:.2g} at a lag of {}, which explains {:.0f} % of its "
+      "variance; dynamics that the model lacks, or a wrong parameter",
+      test.peak, readable(test.peak_lag_s, "s", 2), 100.0 * test.peak * test.peak);
+}
+
+std::string periodogram_words(const metrics::Periodogram& test) {
+  if (test.passed) return "flat: no frequency stands out";
+  std::string text =
+      fmt::format("not flat: half of its power lies below {}", hertz(test.median_frequency_hz));
+  if (test.peak_share >= 0.1) {
+    text += fmt::format(", {:.0f} % at {}", 100.0 * test.peak_share, hertz(test.peak_frequency_hz));
+  }
+  return text;
+}
+
+std::string normality_words(const metrics::Normality& test) {
+  if (test.passed) return fmt::format("normal ({})", p_text(test.p_value));
+  std::string text = fmt::format("not normal ({})", p_text(test.p_value));
+  if (test.excess_kurtosis > 0.5) text += ", heavy tails or rare bursts";
+  if (test.excess_kurtosis < -0.5) text += ", flatter than a bell, as a wave is";
+  if (std::abs(test.skewness) > 0.3)
+    text += test.skewness > 0.0 ? ", skewed upwards" : ", skewed downwards";
+  return text;
+}
+
+std::string drift_words(const ResidualTests& tests, std::string_view unit) {
+  const auto& test = tests.drift;
+  if (test.passed) return "none: neither offset nor trend";
+  const double span =
+      test.slope_per_s * tests.sample_interval_s * static_cast<double>(tests.samples);
+  return fmt::format("offset {} ({}), trend {} over the record ({})", readable(test.mean, unit, 3),
+                     p_text(test.mean_p_value), readable(span, unit, 3),
+                     p_text(test.slope_p_value));
+}
+
+/// Every k-th value, so that at most about 200 are left.
+struct Thinned {
+  std::size_t stride = 1;
+  Json values = Json::array();
+};
+
+Thinned thinned(const std::vector<double>& values, std::size_t centre) {
+  constexpr std::size_t kMost = 200;
+  Thinned result;
+  result.stride = values.size() / kMost + 1;
+  for (std::size_t i = centre % result.stride; i < values.size(); i += result.stride)
+    result.values.push_back(number(values[i]));
+  return result;
+}
+
+Json curves_of(const ResidualTests& tests) {
+  Json json;
+  const Thinned rho = thinned(tests.autocorrelation.values, 0);
+  json["autocorrelation"] = {
+      {"first_lag_s", 0.0},
+      {"lag_step_s", static_cast<double>(rho.stride) * tests.sample_interval_s},
+      {"band", tests.autocorrelation.band},
+      {"values", rho.values}};
+  json["cross_correlation"] = nullptr;
+  if (const auto& cross = tests.cross_correlation) {
+    const std::size_t centre = cross->values.size() / 2;
+    const Thinned values = thinned(cross->values, centre);
+    const double first = static_cast<double>(centre % values.stride) - static_cast<double>(centre);
+    json["cross_correlation"] = {
+        {"first_lag_s", first * tests.sample_interval_s},
+        {"lag_step_s", static_cast<double>(values.stride) * tests.sample_interval_s},
+        {"band", cross->band},
+        {"band_of_peak", cross->band_of_peak},
+        {"values", values.values}};
+  }
+  json["periodogram"] = {{"frequency_hz", tests.periodogram.frequency_hz},
+                         {"density", tests.periodogram.density}};
+  json["normality"] = {{"normal_quantile", tests.normality.normal_quantile},
+                       {"residual_quantile", tests.normality.residual_quantile}};
+  return json;
+}
+
+}  // namespace
+
+Json residual_tests_json(const ResidualTests& tests, std::string_view unit) {
+  Json json;
+  json["samples"] = tests.samples;
+  json["sample_interval_s"] = number(tests.sample_interval_s);
+  json["std"] = number(tests.std);
+  json["effective_samples"] = number(tests.effective_samples);
+  const auto& rho = tests.autocorrelation;
+  json["autocorrelation"] = {{"passed", rho.passed},
+                             {"ljung_box", number(rho.ljung_box)},
+                             {"tested_lags", rho.tested_lags},
+                             {"p_value", number(rho.p_value)},
+                             {"durbin_watson", number(rho.durbin_watson)},
+                             {"correlation_time_s", number(rho.correlation_time_s)},
+                             {"verdict", autocorrelation_words(tests)}};
+  json["cross_correlation"] = nullptr;
+  if (const auto& cross = tests.cross_correlation) {
+    json["cross_correlation"] = {{"passed", cross->passed},
+                                 {"peak", number(cross->peak)},
+                                 {"peak_lag_s", number(cross->peak_lag_s)},
+                                 {"limit", number(cross->band_of_peak)},
+                                 {"verdict", cross_correlation_words(*cross)}};
+  }
+  const auto& spectrum = tests.periodogram;
+  json["periodogram"] = {{"passed", spectrum.passed},
+                         {"distance", number(spectrum.distance)},
+                         {"limit", number(spectrum.limit)},
+                         {"median_frequency_hz", number(spectrum.median_frequency_hz)},
+                         {"peak_frequency_hz", number(spectrum.peak_frequency_hz)},
+                         {"peak_share", number(spectrum.peak_share)},
+                         {"verdict", periodogram_words(spectrum)}};
+  const auto& shape = tests.normality;
+  json["normality"] = {{"passed", shape.passed},
+                       {"skewness", number(shape.skewness)},
+                       {"excess_kurtosis", number(shape.excess_kurtosis)},
+                       {"jarque_bera", number(shape.jarque_bera)},
+                       {"p_value", number(shape.p_value)},
+                       {"verdict", normality_words(shape)}};
+  const auto& drift = tests.drift;
+  json["drift"] = {{"passed", drift.passed},
+                   {"mean", number(drift.mean)},
+                   {"mean_p_value", number(drift.mean_p_value)},
+                   {"slope_per_s", number(drift.slope_per_s)},
+                   {"slope_p_value", number(drift.slope_p_value)},
+                   {"verdict", drift_words(tests, unit)}};
+  return json;
+}
+
+std::string residual_curves_text(const Result& result) {
+  Json json;
+  json["status"] = std::string(to_string(status_of(result.fit)));
+  json["schema"] = kResidualTestsSchema;
+  json["of"] = result.kind == ResultKind::fit ? kFitSchema : kValidationSchema;
+  json["conditions"] = Json::object();
+  for (const calib::ConditionScore& score : result.fit.conditions) {
+    Json& channels = json["conditions"][score.id] = Json::object();
+    for (const calib::ChannelScore& channel : score.channels) {
+      channels[std::string(info(channel.channel).key)] =
+          channel.residual_tests ? curves_of(*channel.residual_tests) : Json(nullptr);
+    }
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rigcal::report {
+
+/// What a picture shows, in the units that its axes name.
+struct Trace {
+  enum class Kind { line, points, bars, band };
+  std::string name;   ///< in the legend; none if empty
+  std::string style;  ///< class of the style sheet: "measured", "model", "residual", ...
+  Kind kind = Kind::line;
+  std::vector<double> x;
+  std::vector<double> y;      ///< NaN: a gap
+  std::vector<double> upper;  ///< of a band alone; `y` is its lower edge
+};
+
+struct Plot {
+  std::string title;  ///< what a screen reader says first
+  std::string x_label;
+  std::string y_label;
+  double width = 720.0;
+  double height = 200.0;
+  bool log_x = false;
+  bool log_y = false;
+  std::vector<Trace> traces;
+  std::vector<double> levels;  ///< dashed horizontal lines, in units of y
+};
+
+/// A picture as SVG, coloured by the style sheet of the page. Every text is escaped.
+///
+/// @param style_sheet  put inside, for a file that stands alone; none if empty
+std::string svg(const Plot& plot, const std::string& style_sheet = {});
+
+/// Round numbers that divide [low, high] into about `count` parts.
+std::vector<double> round_ticks(double low, double high, int count);
+
+}  // namespace rigcal::report

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rigcal::report {
+
+/// A numeric table of a result folder, read back.
+struct Table {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> columns;  ///< shape (names)(rows); NaN where a field is empty
+
+  /// A column by its name; null if the table does not have it.
+  const std::vector<double>* find(std::string_view name) const;
+};
+
+/// Reads a CSV file as the result writers of this project make them: lines of comment (#), one line
+/// of names, then numbers.
+///
+/// @param file  named in errors
+/// @throws InputError  file, line and column of a field that is no number, or of a row of other
+///                     length
+Table parse_table(std::string_view text, const std::string& file);
+
+}  // namespace rigcal::report

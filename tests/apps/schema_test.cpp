@@ -1,0 +1,60 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/utils/nlohmann_json_utils.hpp>
+#include <valijson/validation_results.hpp>
+#include <valijson/validator.hpp>
+
+#include "tests/apps/cli_fixture.hpp"
+
+using nlohmann::json;
+using rigcal::test::CommandFolder;
+using rigcal::test::write_twin;
+
+namespace {
+
+/// What a document lacks, in words; empty if it is as the schema says.
+std::string violations(const json& document) {
+  json rules;
+  const std::string file = std::string(RIGCAL_SOURCE_DIR) + "/docs/schema/result.schema.json";
+  REQUIRE(valijson::utils::loadDocument(file, rules));
+  valijson::Schema schema;
+  valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(rules), schema);
+  valijson::ValidationResults results;
+  valijson::Validator().validate(schema, valijson::adapters::NlohmannJsonAdapter(document),
+                                 &results);
+  std::string text;
+  valijson::ValidationResults::Error error;
+  while (results.popError(error)) {
+    for (const std::string& part : error.context) text += part;
+    text += ": " + error.description + "\n";
+  }
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  folder.run({"fit", "twin/campaign.toml", "--out", "fit", "--quiet"});
+  const json fit = json::parse(folder.read("fit/fit.json"));
+  CHECK(violations(fit).empty());
+  folder.run(
+      {"validate", "twin/campaign.toml", "--fit", "fit/fit.json", "--out", "val", "--quiet"});
+  CHECK(violations(json::parse(folder.read("val/validation.json"))).empty());
+  folder.write("twin/hopeless.toml",
+               folder.read("twin/campaign.toml") + "\n[simulation]\nmax_seconds = 1e-9\n");
+  folder.run({"fit", "twin/hopeless.toml", "--out", "failed", "--quiet"});
+  CHECK(violations(json::parse(folder.read("failed/fit.json"))).empty());
+
+  json broken = fit;
+  broken["parameters"][0]["value"] = "60 kg";
+  CHECK_FALSE(violations(broken).empty());
+  broken = fit;
+  broken.erase("status");
+  CHECK_FALSE(violations(broken).empty());
+}

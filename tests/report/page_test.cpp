@@ -1,0 +1,217 @@
+#include "report/page.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/error.hpp"
+
+using Catch::Contains;
+using Json = nlohmann::ordered_json;
+using namespace rigcal::report;
+
+namespace {
+
+const std::string kNasty = "</script><script>alert(1)</script> \"q\" 'a' & \n\xc3\xbc";
+
+/// A small result, as fit.json holds it.
+Json stored_result() {
+  Json json = Json::parse(R"({
+    "status": "converged", "schema": "rigcal.fit/1", "verdict": "PASS", "message": "converged",
+    "campaign": "rig", "synthetic": false, "cost": 10.5, "residual_count": 100, "evaluations": 3,
+    "wall_seconds": 0.1, "simulation_tolerance": 1e-7,
+    "parameters": [
+      {"name": "mass_kg", "key": "mass", "symbol": "m", "unit": "kg", "scope": "rig", "level": null,
+       "value": 85.01139529, "start": 60, "lower": 10, "upper": 500, "fitted": true,
+       "nuisance": false, "standard_error": 0.026, "robust_standard_error": null,
+       "ci95": [84.9, 85.1], "at_bound": false, "identifiability": "identified", "reason": ""},
+      {"name": "supply_pressure_pa", "key": "supply_pressure", "symbol": "P_s", "unit": "Pa",
+       "scope": "rig", "level": null, "value": 6.2e6, "start": 6.2e6, "lower": null, "upper": null,
+       "fitted": false, "nuisance": false, "standard_error": null, "robust_standard_error": null,
+       "ci95": null, "at_bound": false, "identifiability": null, "reason": ""}],
+    "correlation": {"names": ["mass"], "matrix": [[1.0]]}, "rank": 1, "singular_values": [1.0],
+    "reduced_chi_square": 1.01,
+    "validity": {"frequency_hz": [0.1, 10], "amplitude_m": [0.05, 0.05], "amplitude_v": null,
+      "supply_pressure_pa": null, "leakage_coefficient": null, "leak_levels": ["none"]},
+    "acceptance": [{"channel": "position", "metric": "rho2", "limit": 0.9, "warn": 0.95}],
+    "conditions": [{"id": "sine", "waveform": "sine", "frequency_hz": 2.0, "amplitude_m": 0.005,
+      "leak_level": "none", "use": "fit", "samples": 4, "failure": null,
+      "metrics": {"position": {"rho2": 0.99876543, "r": 0.999, "ccc": 0.998,
+        "absolute_error_percent": 0.5, "rmse": 1e-5, "nrmse_fit_percent": 96.0,
+        "maximum_error": 2e-5, "gain_ratio": 1.0, "phase_deg": 0.1, "delay_s": 1e-4,
+        "problem": null}},
+      "noise_floor": {"position": null}, "residual_tests": {"position": null},
+      "verdict": "PASS", "reasons": []}],
+    "groups": [], "starts": [], "best_start": 0, "failure_count": 0, "failures": [], "warnings": [],
+    "provenance": {"version": "0", "revision": "r", "machine": "m", "command": "rigcal fit",
+      "seed": 1, "options": {}, "inputs": []}})");
+  return json;
+}
+
+std::string page(const Json& json, const std::string& file = "fit.json", int threads = 2) {
+  const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+    if (path == file) return json.dump();
+    if (path == "residual_tests.json") return R"({"of": "rigcal.fit/1", "conditions": {}})";
+    if (path == "residuals/sine.csv") {
+      return "time_s,measured_position_m,simulated_position_m,residual_position_m,sd_position_m,"
+             "in_window,reference_m,servo_flow_m3_per_s,leakage_flow_m3_per_s\n"
+             "0,0,0,0,,1,0,0,0\n0.1,0.001,0.0011,-0.0001,,1,0.001,1e-5,1e-6\n";
+    }
+    return std::nullopt;
+  };
+  return result_page(read, "folder", threads);
+}
+
+/// Text between the tags of the first element of this class.
+std::string word_of(const std::string& html) {
+  const std::size_t begin = html.find("<p class=\"word\">");
+  return html.substr(begin, html.find("</p>", begin) - begin);
+}
+
+}  // namespace
+
+TEST_CASE("page: sections in the order of the guide", "[report]") {
+  const std::string html = page(stored_result());
+  std::size_t at = 0;
+  for (const char* id : {"verdict", "matrix", "parameters", "conditions", "identifiability",
+                         "starts", "warnings", "provenance", "formulas"}) {
+    const std::size_t found = html.find(std::string("<section id=\"") + id + "\"");
+    CAPTURE(id);
+    REQUIRE(found != std::string::npos);
+    CHECK(found > at);
+    at = found;
+  }
+  CHECK_THAT(html, Contains("href=\"#condition-sine\"") && Contains("id=\"condition-sine\""));
+  // The plot library names its home in a comment; nothing leads out of the page.
+  for (const char* outside : {"src=\"", "href=\"http", "@import", "url(http"})
+    CHECK_THAT(html, !Contains(outside));
+}
+
+TEST_CASE("page: carries the exact numbers beside the readable ones", "[report]") {
+  const std::string html = page(stored_result());
+  CHECK_THAT(html, Contains("value=\"85.01139529\">85.0114<"));
+  CHECK_THAT(html, Contains("value=\"0.99876543\">0.9988<"));
+  CHECK_THAT(html, Contains("value=\"6200000\">6.2<"));
+  CHECK_THAT(html, Contains("0.1 Hz</data> to <data value=\"10\">10 Hz"));
+}
+
+TEST_CASE("page: whatever a file names is shown as text", "[report]") {
+  Json json = stored_result();
+  json["campaign"] = json["message"] = kNasty;
+  json["conditions"][0]["leak_level"] = kNasty;
+  json["conditions"][0]["reasons"] = {kNasty};
+  json["warnings"] = {kNasty};
+  json["provenance"]["command"] = kNasty;
+  json["provenance"]["inputs"] = {{{"path", kNasty}, {"sha256", "0"}}};
+  json["parameters"][0]["reason"] = kNasty;
+  const std::string html = page(json);
+  CHECK_THAT(html, !Contains("<script>alert"));
+  CHECK_THAT(html, Contains("&lt;/script&gt;&lt;script&gt;alert(1)"));
+  CHECK_THAT(html, Contains("\xc3\xbc"));
+}
+
+TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
+  CHECK_THAT(word_of(page(stored_result())), Contains("PASS"));
+  Json json = stored_result();
+  SECTION("failed") {
+    json["status"] = "failed";
+    json["conditions"] = Json::array();
+    json["verdict"] = nullptr;
+    json["message"] = "no start could be simulated";
+    const std::string html = page(json);
+    CHECK_THAT(word_of(html), Contains("FAILED"));
+    CHECK_THAT(html, Contains("<title>FAILED") && Contains("<body class=\"bad\">"));
+    CHECK_THAT(html, Contains("no start could be simulated"));
+  }
+  SECTION("stopped") {
+    json["status"] = "stopped";
+    CHECK_THAT(word_of(page(json)), Contains("STOPPED"));
+  }
+  SECTION("outside the limits") {
+    json["verdict"] = json["conditions"][0]["verdict"] = "FAIL";
+    json["conditions"][0]["metrics"]["position"]["rho2"] = 0.5;
+    json["conditions"][0]["reasons"] = {"position: rho2 = 0.5 is below 0.9"};
+    const std::string html = page(json);
+    CHECK_THAT(word_of(html), Contains("FAIL"));
+    CHECK_THAT(html, Contains("sine: position: rho2 = 0.5 is below 0.9"));
+    CHECK_THAT(html, Contains("class=\"cell bad\""));
+  }
+  SECTION("poor, where the campaign has no limits") {
+    json["verdict"] = json["conditions"][0]["verdict"] = nullptr;
+    json["acceptance"] = Json::array();
+    CHECK_THAT(word_of(page(json)), Contains("NOT JUDGED"));
+    json["conditions"][0]["metrics"]["position"]["rho2"] = 0.5;
+    const std::string html = page(json);
+    CHECK_THAT(word_of(html), Contains("POOR"));
+    CHECK_THAT(html, Contains("<body class=\"bad\">"));
+  }
+  SECTION("a condition that could not be simulated") {
+    json["verdict"] = json["conditions"][0]["verdict"] = "FAIL";
+    json["conditions"][0]["failure"] = "too many steps";
+    json["conditions"][0]["metrics"] = Json::object();
+    CHECK_THAT(page(json), Contains("sine could not be simulated: too many steps"));
+  }
+}
+
+TEST_CASE("page: says which parameter is not identified, and why", "[report]") {
+  Json json = stored_result();
+  json["parameters"][0]["identifiability"] = "not_identifiable";
+  json["parameters"][0]["reason"] = "acts only together with damping";
+  json["parameters"][0]["standard_error"] = nullptr;
+  json["parameters"][0]["ci95"] = nullptr;
+  const std::string html = page(json);
+  CHECK_THAT(html, Contains("mass: acts only together with damping"));
+  CHECK_THAT(html, Contains("not identifiable"));
+}
+
+TEST_CASE("page: the same bytes for any number of threads", "[report]") {
+  Json json = stored_result();
+  for (int i = 0; i < 5; ++i) {
+    json["conditions"].push_back(json["conditions"][0]);
+    json["conditions"].back()["id"] = "sine" + std::to_string(i);
+  }
+  CHECK(page(json, "fit.json", 1) == page(json, "fit.json", 4));
+}
+
+TEST_CASE("page: refuses what is no result of this version", "[report]") {
+  using rigcal::InputError;
+  CHECK_THROWS_AS(page(Json::array()), InputError);
+  CHECK_THROWS_AS(page(Json::object()), InputError);
+  CHECK_THROWS_WITH(page(stored_result(), "other.json"),
+                    Contains("neither fit.json nor validation.json"));
+  Json json = stored_result();
+  json["conditions"][0].erase("metrics");
+  CHECK_THROWS_WITH(page(json), Contains("folder") && Contains("metrics"));
+}
+
+TEST_CASE("page: 24 conditions stay below 8 MB, however long they are", "[report]") {
+  // From about 6000 samples on all are thinned to the same number of points.
+  constexpr int kSamples = 7000;
+  Json json = stored_result();
+  const Json condition = json["conditions"][0];
+  json["conditions"] = Json::array();
+  for (int i = 0; i < 24; ++i) {
+    json["conditions"].push_back(condition);
+    json["conditions"].back()["id"] = "c" + std::to_string(i);
+  }
+  std::string csv =
+      "time_s,measured_position_m,simulated_position_m,residual_position_m,sd_position_m,in_window,"
+      "reference_m,servo_flow_m3_per_s,leakage_flow_m3_per_s\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double x = 0.05 * std::sin(1e-3 * i) + 1e-5 * (i * 7919 % 101);
+    csv += std::to_string(1e-3 * i);
+    for (int k = 0; k < 4; ++k) csv += "," + std::to_string(x);
+    csv += ",1";
+    for (int k = 0; k < 3; ++k) csv += "," + std::to_string(x);
+    csv += "\n";
+  }
+  const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+    if (path == "fit.json") return json.dump();
+    if (path == "residual_tests.json") return "{}";
+    if (path == "validation.json") return std::nullopt;
+    return csv;
+  };
+  const std::string html = result_page(read, "folder", 2);
+  CHECK(html.size() < 8'000'000);
+  CHECK(html.size() > 1'000'000);
+}

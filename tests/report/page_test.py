@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+"""Opens reports in headless Chromium as a reader does: page_test.py RIGCAL. Exit code 77: no browser."""
+
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+from browser import Browser, chromium
+
+SECTIONS = ["verdict", "matrix", "parameters", "conditions", "identifiability", "starts", "warnings", "provenance",
+            "formulas"]
+
+# Names that would do harm if a page took them for anything but text.
+NAME = "<script>alert(1)</script> \"quoted\" 'rig' & \u00fcber \u2192"
+LEVEL = "<img src=x onerror=alert(2)>"
+
+CAMPAIGN = f"""schema = "rigcal.campaign/1"
+name = {json.dumps(NAME)}
+[rig]
+model = "load_pressure"
+[rig.parameters]
+supply_pressure = "6.2 MPa"
+mass = "60 kg"
+damping = {{ start = "2000 N s/m", lower = "10 N s/m", upper = "1e5 N s/m", fit = true }}
+valve_gain = {{ start = "2e-5 m/V", lower = "1e-6 m/V", upper = "1e-3 m/V", fit = true }}
+leakage_coefficient = 0.3
+stiffness = "0 N/m"
+piston_area = "633 mm2"
+total_volume = "468 cm3"
+density = "850 kg/m3"
+bulk_modulus = "689 MPa"
+discharge_coefficient = 0.6
+area_gradient = "20 mm"
+leakage_area = "1 mm2"
+[rig.controller]
+type = "pid"
+kp = "1000 V/m"
+[leak_level.{json.dumps(LEVEL)}]
+[recording.channels]
+time = {{ column = "t_s", unit = "s" }}
+reference = {{ column = "ref_mm", unit = "mm" }}
+position = {{ column = "x_mm", unit = "mm" }}
+load_pressure = {{ column = "pl_bar", unit = "bar" }}
+[acceptance]
+rho2 = 0.9
+warn_rho2 = 0.95
+[[condition]]
+id = "sine"
+waveform = "sine"
+frequency = "2 Hz"
+amplitude = "5 mm"
+leak_level = {json.dumps(LEVEL)}
+use = "fit"
+repeats = ["records/sine_*.csv"]
+[[condition]]
+id = "square"
+waveform = "square"
+frequency = "1 Hz"
+amplitude = "4 mm"
+leak_level = {json.dumps(LEVEL)}
+use = "validate"
+repeats = ["records/square_*.csv"]
+[synthetic]
+parameters = {{ damping = "1000 N s/m", valve_gain = "3e-5 m/V" }}
+repeats = 3
+duration = "2 s"
+sample_rate = "200 Hz"
+noise = {{ position = "0.01 mm", load_pressure = "0.05 bar" }}
+"""
+
+
+def check(holds, what):
+    if not holds:
+        raise AssertionError(what)
+
+
+def rigcal(binary, folder, *arguments):
+    return subprocess.run([binary, *arguments, "--quiet"], cwd=folder, check=False).returncode
+
+
+def values(page, selector):
+    """Exact numbers that the page carries beside what it shows."""
+    return page.run(f"[...document.querySelectorAll({json.dumps(selector)})].map(d => d.value)")
+
+
+def check_sections(page):
+    found = page.run("[...document.querySelectorAll('main > section')].map(s => s.id)")
+    check(found == SECTIONS, f"sections in their order: {found}")
+    check(page.run("document.querySelectorAll('main h2, main h1').length") == len(SECTIONS), "a title each")
+
+
+def check_numbers(page, result):
+    shown = [float(v) for v in values(page, ".parameters data.value")]
+    fitted = [p["value"] for p in result["parameters"] if p["fitted"]]
+    check(shown == fitted, f"parameters {shown} are those of fit.json {fitted}")
+    for channel in ("position", "load_pressure"):
+        shown = sorted(float(v) for v in values(page, f".matrix[data-channel={channel}] data.rho2"))
+        stored = sorted(c["metrics"][channel]["rho2"] for c in result["conditions"])
+        check(shown == stored, f"rho2 of {channel}: {shown}, {stored}")
+
+
+def check_cells(page):
+    """A cell of the matrix leads to its condition."""
+    page.run("document.querySelector('a.cell[title=square]').click()")
+    page.wait_for("location.hash === '#condition-square'", "the cell's address")
+    page.wait_for("(r => r.top > -5 && r.top < innerHeight)(document.getElementById('condition-square')"
+                  ".getBoundingClientRect())", "the condition is in view")
+
+
+def check_zoom(page):
+    """Dragging across a plot zooms it and those beside it; the keyboard too; 0 shows all."""
+    figure = "document.querySelector('#condition-sine figure.plot')"
+    page.run(f"{figure}.scrollIntoView()")
+    page.wait_for("document.querySelectorAll('#condition-sine figure.live').length >= 2", "two plots are live")
+    axis = "[...document.querySelectorAll('#condition-sine .u-legend tr:first-child .u-value')]"
+    check(page.run(f"{axis}.length") >= 2, "legends")
+    box = page.run(f"(r => [r.x, r.y, r.width, r.height])({figure}.querySelector('.u-over').getBoundingClientRect())")
+    span = ("[...%s.querySelector('canvas').toDataURL()].reduce((s, c) => (s * 31 + c.charCodeAt()) | 0, 7)")
+    before = page.run(span % figure)
+    second = "document.querySelectorAll('#condition-sine figure.plot')[1]"
+    before_second = page.run(span % second)
+    page.drag(box[0] + 0.3 * box[2], box[0] + 0.6 * box[2], box[1] + 0.5 * box[3])
+    page.wait_for(f"{span % figure} !== {before}", "a drag zooms")
+    page.wait_for(f"{span % second} !== {before_second}", "the plot beside it follows")
+    page.run(f"{figure}.focus()")
+    zoomed = page.run(span % figure)
+    page.key("+")
+    page.wait_for(f"{span % figure} !== {zoomed}", "plus zooms further")
+    page.key("0")
+    page.wait_for(f"{span % second} === {before_second}", "0 shows all again")
+
+
+def check_quiet(page, path):
+    check(not page.problems, f"the browser complains: {page.problems}")
+    outside = [u for u in page.requests if not u.startswith(("data:", "blob:")) and not u.endswith(path.name)]
+    check(not outside, f"the page asks for {outside}")
+    check(len([u for u in page.requests if u.endswith(path.name)]) >= 1, "the page itself was seen")
+
+
+def check_good(binary, work):
+    check(rigcal(binary, work, "fit", "twin/campaign.toml", "--out", "good") == 0, "the fit is good")
+    path = work / "good" / "report.html"
+    result = json.loads((work / "good" / "fit.json").read_text())
+    with Browser() as page:
+        page.open(path)
+        check(page.run("document.querySelector('.verdict .word').textContent").split()[-1] == "PASS", "PASS")
+        check(page.run("document.querySelector('h1').textContent") == result["campaign"], "the name is text")
+        check(NAME in result["campaign"], "the name is whole")
+        check(page.run("document.querySelectorAll('main img').length") == 0, "a level is text")
+        check_sections(page)
+        check_numbers(page, result)
+        check_cells(page)
+        check_zoom(page)
+        for width in (1280, 400):
+            page.size(width)
+            page.wait_for(f"document.documentElement.scrollWidth <= {width}", f"no sideways scroll at {width}")
+        check_quiet(page, path)
+
+
+def check_bad(binary, work):
+    """A failed and a poor result say so at their top."""
+    campaign = (work / "twin" / "campaign.toml").read_text()
+    (work / "twin" / "hopeless.toml").write_text(campaign + "\n[simulation]\nmax_seconds = 1e-9\n")
+    check(rigcal(binary, work, "fit", "twin/hopeless.toml", "--out", "failed") == 3, "the fit fails")
+    wrong = ["--set", "valve_gain=1e-6 m/V", "--set", "damping=90000 N s/m"]
+    check(rigcal(binary, work, "validate", "twin/campaign.toml", "--out", "poor", *wrong) == 1, "the model is wrong")
+    unjudged = campaign.replace("[acceptance]", "").replace("warn_rho2 = 0.95", "").replace("rho2 = 0.9", "")
+    (work / "twin" / "unjudged.toml").write_text(unjudged)
+    check(rigcal(binary, work, "validate", "twin/unjudged.toml", "--out", "unjudged", *wrong) == 0, "not judged")
+    for folder, word in (("failed", "FAILED"), ("poor", "FAIL"), ("unjudged", "POOR")):
+        path = work / folder / "report.html"
+        with Browser() as page:
+            page.open(path)
+            check(page.run("document.title").startswith(word + " "), f"{folder}: title")
+            check(page.run("document.querySelector('.verdict .word').textContent").split()[-1] == word, folder)
+            check(page.run("document.body.className") == "bad", f"{folder}: the page is marked")
+            check_sections(page)
+            check_quiet(page, path)
+
+
+def main():
+    if chromium() is None:
+        print("skipped: no chromium (scripts/setup --dev installs it)")
+        return 77
+    binary = str(pathlib.Path(sys.argv[1]).resolve())
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        (work / "truth.toml").write_text(CAMPAIGN)
+        check(rigcal(binary, work, "synthesize", "truth.toml", "--seed", "3", "--out", "twin") == 0, "synthesize")
+        check_good(binary, work)
+        check_bad(binary, work)
+    print("reports open, zoom, print their numbers, and ask for nothing")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
