@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "apps/rigcal/options.hpp"
@@ -26,13 +28,43 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
+bool is_recording(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension == ".csv" || extension == ".mat";
+}
+
+/// A folder stands for the recordings in it, in the order of their names.
+std::vector<std::filesystem::path> with_folders_opened(
+    const std::vector<std::filesystem::path>& paths) {
+  std::vector<std::filesystem::path> files;
+  for (const auto& path : paths) {
+    if (!std::filesystem::is_directory(path)) {
+      files.push_back(path);
+      continue;
+    }
+    const std::size_t before = files.size();
+    for (const auto& entry : std::filesystem::directory_iterator(path)) {
+      if (entry.is_regular_file() && is_recording(entry.path())) files.push_back(entry.path());
+    }
+    if (files.size() == before) {
+      throw UsageError(fmt::format(
+          "{}: this folder holds no .csv or .mat file; expected recordings", path.string()));
+    }
+    std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end());
+  }
+  return files;
+}
+
 ExitCode run_init(const InitRequest& options) {
   const auto path = options.out / "campaign.toml";
   if (std::filesystem::exists(path)) {
     throw UsageError(fmt::format("--out {}: {} is there already; choose another folder",
                                  options.out.string(), path.string()));
   }
-  const std::string draft = datasets::draft_campaign(options.files, options.out);
+  const std::string draft =
+      datasets::draft_campaign(with_folders_opened(options.files), options.out);
   report::write_results(options.out, {{"campaign.toml", draft}}, {});
   // The first blank is in the head, which explains them.
   const std::size_t blanks = count_of(draft, datasets::kBlank) - 1;
@@ -50,7 +82,7 @@ ExitCode run_init(const InitRequest& options) {
 
 Run add_init(CLI::App& verb) {
   const auto options = std::make_shared<InitRequest>();
-  verb.add_option("FILE", options->files, "Recordings, CSV or MAT")->required();
+  verb.add_option("FILE", options->files, "Recordings, CSV or MAT, or folders of them")->required();
   verb.add_option("--out", options->out, "Folder of the draft")->capture_default_str();
   add_print_options(verb, options->print);
   return [options](const Invocation&) { return run_init(*options); };

@@ -44,9 +44,23 @@ TEST_CASE("init: a draft that check accepts once its blanks are filled", "[apps]
   CHECK_THAT(checked.out, Contains("sine: fit, 400 samples at 200 Hz") && Contains("2 repeats"));
 }
 
+TEST_CASE("init: a folder stands for the recordings in it", "[apps]") {
+  const CommandFolder folder;
+  write_campaign(folder);
+  folder.write("records/notes.txt", "measured on a Monday");
+  REQUIRE(folder.run({"init", "records", "--out", "new"}).exit_code == 0);
+  REQUIRE(folder
+              .run({"init", "records/sine_1.csv", "records/sine_2.csv", "records/square_1.csv",
+                    "records/square_2.csv", "--out", "other"})
+              .exit_code == 0);
+  CHECK(folder.read("new/campaign.toml") == folder.read("other/campaign.toml"));
+}
+
 TEST_CASE("init: what it refuses", "[apps]") {
   const CommandFolder folder;
   write_campaign(folder);
+  folder.write("empty/notes.txt", "none");
+  CHECK_THAT(folder.run({"init", "empty"}).err, Contains("empty: this folder holds no .csv"));
   CHECK(folder.run({"init"}).exit_code == 2);
   const Outcome missing = folder.run({"init", "records/none.csv"});
   CHECK(missing.exit_code == 2);
