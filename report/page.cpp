@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
+#include <exception>
 
 #include "common/error.hpp"
 #include "common/parallel.hpp"
 #include "report/assets.hpp"
 #include "report/page_parts.hpp"
 #include "report/render.hpp"
-#include "report/table.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -23,50 +21,6 @@ constexpr std::size_t kSeriesBytes = 3'600'000;
 constexpr double kBytesPerPoint = 2.0 * 4.0 / 3.0;
 constexpr std::size_t kLeastPoints = 2000;
 
-struct Stored {
-  std::string file;  ///< fit.json or validation.json
-  Json result;
-  Json curves;
-  std::vector<Table> series;  ///< shape (conditions)
-};
-
-Json parsed(const std::string& text, const std::string& name) {
-  try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw InputError({name}, fmt::format("this is not JSON: {}", error.what()));
-  }
-}
-
-Stored load(const ReadFile& read, const std::string& where, int threads) {
-  const auto path = [&](const std::string& name) { return (fs::path(where) / name).string(); };
-  Stored stored;
-  const auto fit = read("fit.json");
-  const auto validation = read("validation.json");
-  const auto curves = read("residual_tests.json");
-  if (!fit && !validation) {
-    throw InputError({where},
-                     "found neither fit.json nor validation.json; expected the folder of a "
-                     "fit or validation");
-  }
-  if (!curves) {
-    throw InputError({path("residual_tests.json")},
-                     "is missing; make the result again with this version");
-  }
-  stored.curves = parsed(*curves, path("residual_tests.json"));
-  const bool both = fit && validation;
-  const bool is_fit = both ? text_of(stored.curves, "of") == "rigcal.fit/1" : fit.has_value();
-  stored.file = is_fit ? "fit.json" : "validation.json";
-  stored.result = parsed(is_fit ? *fit : *validation, path(stored.file));
-  const Json& conditions = stored.result.at("conditions");
-  stored.series.resize(conditions.size());
-  parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    const std::string name = "residuals/" + text_of(conditions[i], "id") + ".csv";
-    if (const auto text = read(name)) stored.series[i] = parse_table(*text, path(name));
-  });
-  return stored;
-}
-
 /// Points of one series, so that all of them together keep the size of the page.
 std::size_t points_of(const std::vector<Table>& series) {
   std::size_t columns = 0;
@@ -77,37 +31,187 @@ std::size_t points_of(const std::vector<Table>& series) {
   return std::max(points, kLeastPoints);
 }
 
-Json page_view(const Stored& stored, int threads) {
-  const Json& result = stored.result;
-  Json view;
-  const bool is_fit = text_of(result, "schema") == "rigcal.fit/1";
-  view["campaign"] = text_of(result, "campaign");
-  view["kind"] = is_fit ? "Calibration" : "Validation";
-  view["file"] = stored.file;
-  view["synthetic"] = result.at("synthetic").get<bool>();
-  view["message"] = text_of(result, "message");
-  view["status"] = text_of(result, "status");
-  view["headline"] = headline_view(result);
-  view["matrix"] = matrix_view(result);
-  view["groups"] = groups_view(result);
-  view["parameters"] = parameters_view(result);
-  const Json& conditions = result.at("conditions");
+Json condition_views(const Calibration& stored, int threads) {
+  const Json& conditions = stored.result.at("conditions");
   const std::size_t points = points_of(stored.series);
   std::vector<Json> sections(conditions.size());
   const Json none;
+  const auto all = stored.curves.find("conditions");
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    const auto all = stored.curves.find("conditions");
     const std::string id = text_of(conditions[i], "id");
     const bool found = all != stored.curves.end() && all->contains(id);
-    sections[i] =
-        condition_view(result, conditions[i], stored.series[i], found ? all->at(id) : none, points);
+    sections[i] = condition_view(stored.result, conditions[i], stored.series[i],
+                                 found ? all->at(id) : none, points);
   });
-  view["has_conditions"] = !sections.empty();
-  view["conditions"] = std::move(sections);
-  view["identifiability"] = identifiability_view(result);
-  view["starts"] = starts_view(result);
-  view["ledger"] = ledger_view(result);
-  view["provenance"] = provenance_view(result);
+  return sections;
+}
+
+/// One result of the folder on the page.
+struct Part {
+  std::string section;  ///< key of its template: "calibration"
+  std::string link;     ///< id of its first section
+  std::string name;     ///< "Calibration"
+  Json headline;        ///< as headline_view() makes it
+  Json view;
+  Json provenance;
+  std::vector<std::pair<const char*, const char*>> nav;  ///< id and name of its sections
+  bool synthetic = false;
+  std::string campaign;
+};
+
+Part calibration_part(const ReadFile& read, const std::string& where, int threads) {
+  const Calibration stored = load_calibration(read, where, threads);
+  const Json& result = stored.result;
+  const bool is_fit = text_of(result, "schema") == "rigcal.fit/1";
+  Part part;
+  part.section = "calibration";
+  part.link = "parameters";
+  part.name = is_fit ? "Calibration" : "Validation";
+  part.campaign = text_of(result, "campaign");
+  part.provenance = provenance_view(result, part.name, stored.file);
+  part.view["parameters"] = parameters_view(result);
+  part.view["has_records"] = !stored.of_tables;
+  if (stored.of_tables) {
+    part.name = "Calibration from published tables";
+    part.headline = tables_headline(result);
+    part.nav = {{"parameters", "Parameters"}};
+    return part;
+  }
+  part.synthetic = result.at("synthetic").get<bool>();
+  part.headline = headline_view(result);
+  part.view["matrix"] = matrix_view(result);
+  part.view["groups"] = groups_view(result);
+  part.view["has_conditions"] = !result.at("conditions").empty();
+  part.view["conditions"] = condition_views(stored, threads);
+  part.view["identifiability"] = identifiability_view(result);
+  part.view["trust"] = trust_view(result);
+  part.view["starts"] = starts_view(result);
+  part.view["ledger"] = ledger_view(result);
+  part.nav = {{"matrix", "Scores"},         {"parameters", "Parameters"},
+              {"conditions", "Conditions"}, {"identifiability", "Identifiability"},
+              {"starts", "Starts"},         {"warnings", "Warnings"}};
+  return part;
+}
+
+Part leak_table_part(const ReadFile& read, const std::string& where) {
+  const LeakTableFiles stored = load_leak_table(read, where);
+  Part part;
+  part.section = part.link = "leak-table";
+  part.name = "Leak table";
+  part.campaign = text_of(stored.table, "campaign");
+  part.headline = leak_table_headline(stored.table);
+  part.view["leak_table"] = leak_table_view(stored.table, stored.levels);
+  part.provenance = provenance_view(stored.table, part.name, "leak_table.json");
+  part.nav = {{"leak-table", "Leak table"}};
+  return part;
+}
+
+Part diagnosis_part(const ReadFile& read, const std::string& where) {
+  const Json diagnosis = load_json(read, where, "diagnosis.json");
+  Part part;
+  part.section = part.link = "diagnosis";
+  part.name = "Diagnosis";
+  part.campaign = text_of(diagnosis, "campaign");
+  part.synthetic = diagnosis.at("synthetic").get<bool>();
+  part.headline = diagnosis_headline(diagnosis);
+  part.view["diagnosis"] = diagnosis_view(diagnosis);
+  part.provenance = provenance_view(diagnosis, part.name, "diagnosis.json");
+  part.nav = {{"diagnosis", "Diagnosis"}};
+  return part;
+}
+
+Part comparison_part(const ReadFile& read, const std::string& where) {
+  const Json comparison = load_json(read, where, "comparison.json");
+  Part part;
+  part.section = "comparison";
+  part.link = "results";
+  part.name = "Comparison";
+  for (const Json& result : comparison.at("results")) {
+    part.campaign += (part.campaign.empty() ? "" : ", ") + text_of(result, "name");
+    part.synthetic = part.synthetic || result.at("synthetic") == true;
+  }
+  part.headline = comparison_headline(comparison);
+  part.view["comparison"] = comparison_view(comparison);
+  part.provenance = provenance_view(comparison, part.name, "comparison.json");
+  part.nav = {{"results", "Results"}, {"estimates", "Parameters"}};
+  if (part.view["comparison"].at("has_trends").get<bool>()) part.nav.push_back({"trends", "Trend"});
+  part.nav.push_back({"scores", "Scores"});
+  part.nav.push_back({"records", "Records"});
+  return part;
+}
+
+struct Parts {
+  std::vector<Part> drawn;
+  Json problems = Json::array();  ///< results that are there but could not be drawn
+};
+
+/// What is there; what cannot be read is named on the page, unless it is all there is.
+Parts parts_of(const ReadFile& read, const std::string& where, int threads) {
+  Parts parts;
+  std::exception_ptr first;
+  const auto add = [&](bool is_there, const auto& make) {
+    if (!is_there) return;
+    try {
+      try {
+        parts.drawn.push_back(make());
+      } catch (const Json::exception& error) {
+        throw InputError(
+            {where}, fmt::format("the result is not as this version writes it: {}", error.what()));
+      }
+    } catch (const InputError& error) {
+      if (!first) first = std::current_exception();
+      parts.problems.push_back(fmt::format("Left out: {}", error.what()));
+    }
+  };
+  const auto has = [&](const char* file) { return read(file).has_value(); };
+  add(has("fit.json") || has("validation.json"),
+      [&] { return calibration_part(read, where, threads); });
+  add(has("leak_table.json"), [&] { return leak_table_part(read, where); });
+  add(has("diagnosis.json"), [&] { return diagnosis_part(read, where); });
+  add(has("comparison.json"), [&] { return comparison_part(read, where); });
+  if (!parts.drawn.empty()) return parts;
+  if (first) std::rethrow_exception(first);
+  throw InputError({where},
+                   "found neither fit.json nor validation.json, leak_table.json, diagnosis.json or "
+                   "comparison.json; expected a result folder");
+}
+
+/// The first part speaks for the page; the others say beside it what they found.
+Json page_view(Parts parts) {
+  Json view;
+  Part& first = parts.drawn.front();
+  view["kind"] = first.name;
+  view["campaign"] = first.campaign;
+  view["headline"] = first.headline;
+  view["page_class"] = first.headline.at("class");
+  view["problems"] = std::move(parts.problems);
+  view["beside"] = Json::array();
+  view["nav"] = Json::array();
+  view["provenance"] = Json::array();
+  bool synthetic = false;
+  for (Part& part : parts.drawn) {
+    synthetic = synthetic || part.synthetic;
+    if (&part != &first) {
+      view["beside"].push_back({{"link", part.link},
+                                {"name", part.name},
+                                {"text", part.headline.at("sentence")},
+                                {"word", part.headline.at("word")},
+                                {"class", part.headline.at("class")}});
+      // What cannot be used marks the page, wherever it stands.
+      if (part.headline.at("class") == "bad") view["page_class"] = "bad";
+    }
+    for (const auto& [id, name] : part.nav) view["nav"].push_back({{"id", id}, {"name", name}});
+    view["provenance"].push_back(std::move(part.provenance));
+    std::string key = part.section;
+    std::replace(key.begin(), key.end(), '-', '_');
+    view["has_" + key] = true;
+    for (auto& [name, value] : part.view.items()) view[name] = std::move(value);
+  }
+  for (const auto& [id, name] : {std::pair{"provenance", "Provenance"}, {"formulas", "Formulas"}})
+    view["nav"].push_back({{"id", id}, {"name", name}});
+  view["bad"] = view["page_class"] == "bad";
+  view["synthetic"] = synthetic;
+  view["has_beside"] = !view["beside"].empty();
   view["formulas"] = formulas_view();
   view["style_html"] = std::string(asset("report.css")) + std::string(asset("uPlot.css"));
   view["plot_library_html"] = std::string(asset("uPlot.js"));
@@ -115,53 +219,30 @@ Json page_view(const Stored& stored, int threads) {
   return view;
 }
 
-/// What is JSON but no result of this version.
-template <typename Work>
-auto checked(const std::string& where, const Work& work) {
-  try {
-    return work();
-  } catch (const Json::exception& error) {
-    throw InputError({where},
-                     fmt::format("the result is not as this version writes it: {}", error.what()));
-  }
-}
-
 }  // namespace
 
-ReadFile files_in(const fs::path& folder) {
-  return [folder](const fs::path& path) -> std::optional<std::string> {
-    std::ifstream stream(folder / path, std::ios::binary | std::ios::ate);
-    if (!stream) return std::nullopt;
-    std::string text(static_cast<std::size_t>(stream.tellg()), '\0');
-    stream.seekg(0);
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!stream) return std::nullopt;
-    return text;
-  };
-}
-
 std::string result_page(const ReadFile& read, const std::string& where, int threads) {
-  return checked(where, [&] {
-    return render(asset("report.html"), page_view(load(read, where, threads), threads));
-  });
+  std::vector<Partial> sections;
+  for (const std::string name : {"calibration", "leak_table", "diagnosis", "comparison"})
+    sections.push_back({"section_" + name, asset(name + ".html")});
+  return render(asset("report.html"), page_view(parts_of(read, where, threads)), sections);
 }
 
 std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& read,
                                                              const std::string& where) {
-  return checked(where, [&] {
-    const Stored stored = load(read, where, 1);
-    std::vector<std::pair<fs::path, std::string>> files;
-    const std::string style(asset("figure.css"));
-    for (std::size_t i = 0; i < stored.series.size(); ++i) {
-      const Json& condition = stored.result.at("conditions")[i];
-      for (const Figure& figure : condition_figures(condition, stored.series[i])) {
-        files.emplace_back(
-            fs::path("figures") / fmt::format("{}_{}.svg", text_of(condition, "id"), figure.name),
-            svg(figure.plot, style) + "\n");
-      }
+  std::vector<std::pair<fs::path, std::string>> files;
+  if (!read("fit.json") && !read("validation.json")) return files;
+  const Calibration stored = load_calibration(read, where, 1);
+  const std::string style(asset("figure.css"));
+  for (std::size_t i = 0; i < stored.series.size(); ++i) {
+    const Json& condition = stored.result.at("conditions")[i];
+    for (const Figure& figure : condition_figures(condition, stored.series[i])) {
+      files.emplace_back(
+          fs::path("figures") / fmt::format("{}_{}.svg", text_of(condition, "id"), figure.name),
+          svg(figure.plot, style) + "\n");
     }
-    return files;
-  });
+  }
+  return files;
 }
 
 }  // namespace rigcal::report

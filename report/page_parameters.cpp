@@ -4,21 +4,12 @@
 #include <cmath>
 
 #include "report/page_parts.hpp"
-#include "report/readable.hpp"
 
 namespace rigcal::report {
 namespace {
 
-/// Unit of one row, so that value, bounds and intervals can be compared at a glance.
-struct RowUnit {
-  std::string name;
-  double si = 1.0;
-};
-
 RowUnit unit_of(const Json& parameter) {
-  const std::string unit = text_of(parameter, "unit");
-  const auto readable = readable_unit(number_of(parameter, "value").value_or(0.0), unit);
-  return {std::string(readable.name), readable.si};
+  return row_unit(number_of(parameter, "value").value_or(0.0), parameter);
 }
 
 Json interval(const Json& pair, const RowUnit& unit) {
@@ -137,6 +128,44 @@ std::string correlation_reading(const Json& correlation) {
   return fmt::format("Strongest: {:.3f} between {}; {}.", strongest, pair, meaning);
 }
 
+std::vector<std::string> parts_of_reason(const std::string& reason) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0; begin < reason.size();) {
+    const std::size_t end = std::min(reason.find("; ", begin), reason.size());
+    parts.push_back(reason.substr(begin, end - begin));
+    begin = end + 2;
+  }
+  return parts;
+}
+
+std::string joined_reason(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
+  return text;
+}
+
+/// Takes what holds for every one of several rows out of their reasons, to be told once.
+std::string lift_common_reasons(Json& rows) {
+  if (rows.size() < 2) return {};
+  std::vector<std::string> common;
+  for (const std::string& part : parts_of_reason(text_of(rows[0], "reason"))) {
+    const bool everywhere = std::all_of(rows.begin(), rows.end(), [&](const Json& row) {
+      const auto parts = parts_of_reason(text_of(row, "reason"));
+      return std::find(parts.begin(), parts.end(), part) != parts.end();
+    });
+    if (everywhere) common.push_back(part);
+  }
+  for (Json& row : rows) {
+    auto parts = parts_of_reason(text_of(row, "reason"));
+    std::erase_if(parts, [&](const std::string& part) {
+      return std::find(common.begin(), common.end(), part) != common.end();
+    });
+    row["reason"] = joined_reason(parts);
+    row["has_reason"] = !parts.empty();
+  }
+  return joined_reason(common);
+}
+
 }  // namespace
 
 Json parameters_view(const Json& result) {
@@ -151,6 +180,8 @@ Json parameters_view(const Json& result) {
   }
   const Json& correlation = result.at("correlation");
   Json view;
+  view["common"] = lift_common_reasons(fitted);
+  view["has_common"] = view["common"] != "";
   view["has_fitted"] = !fitted.empty();
   view["fitted"] = std::move(fitted);
   view["has_known"] = !known.empty();

@@ -48,6 +48,12 @@ Json shown_agreement(const Json& value) {
   return {{"exact", fmt::format("{}", v)}, {"text", fmt::format("{:.{}f}", v, decimals)}};
 }
 
+RowUnit row_unit(double value_si, const Json& parameter) {
+  const std::string si_unit = text_of(parameter, "unit");
+  const ReadableUnit unit = readable_unit(value_si, si_unit);
+  return {std::string(unit.name), unit.si};
+}
+
 std::string text_of(const Json& json, const std::string& key) {
   const auto found = json.find(key);
   return found == json.end() || found->is_null() ? std::string() : found->get<std::string>();
@@ -57,6 +63,27 @@ std::optional<double> number_of(const Json& json, const std::string& key) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_number()) return std::nullopt;
   return found->get<double>();
+}
+
+Json make_headline(const std::string& word, const std::string& mark, const std::string& css,
+                   const std::string& sentence) {
+  return {{"word", word},
+          {"mark", mark},
+          {"class", css},
+          {"sentence", sentence},
+          {"reasons", Json::array()},
+          {"has_more", false},
+          {"more", 0}};
+}
+
+void add_reason(Json& headline, const std::string& text, const std::string& link) {
+  constexpr std::size_t kReasonsShown = 3;
+  if (headline["reasons"].size() < kReasonsShown) {
+    headline["reasons"].push_back({{"text", text}, {"link", link}, {"linked", !link.empty()}});
+    return;
+  }
+  headline["has_more"] = true;
+  headline["more"] = headline["more"].get<int>() + 1;
 }
 
 std::string anchor(const std::string& condition) { return "condition-" + condition; }

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
+#include "report/stored.hpp"
 #include "report/svg.hpp"
 #include "report/table.hpp"
 
@@ -16,8 +17,6 @@
 
 namespace rigcal::report {
 
-using Json = nlohmann::ordered_json;
-
 /// A number for people, beside the one in the file: {"exact": "0.0508", "text": "50.8 mm"}; the
 /// text is a dash where there is none.
 Json shown(const Json& value, std::string_view si_unit, int digits = 5);
@@ -25,6 +24,15 @@ Json shown(const Json& value, std::string_view si_unit, int digits = 5);
 Json shown_in(const Json& value, double si_per_unit, int digits = 5);
 /// Agreement near 1 with the digits that tell: 0.9999958.
 Json shown_agreement(const Json& value);
+
+/// The readable unit of a row of values, so that they can be compared at a glance; "1" has an empty
+/// name.
+struct RowUnit {
+  std::string name;
+  double si = 1.0;
+};
+/// That of a parameter's value and of others like it.
+RowUnit row_unit(double value_si, const Json& parameter);
 
 /// The text of a key, or an empty one where it is null or missing.
 std::string text_of(const Json& json, const std::string& key);
@@ -47,16 +55,28 @@ struct Judgement {
 };
 Judgement judge_channel(const Json& acceptance, const Json& condition, const std::string& channel);
 
+/// A headline without reasons yet: `word` large, `css` its class (good, warn, bad, none).
+Json make_headline(const std::string& word, const std::string& mark, const std::string& css,
+                   const std::string& sentence);
+/// Adds a reason that leads to a section (`link` its id, or empty); only the first three are shown.
+void add_reason(Json& headline, const std::string& text, const std::string& link);
+
 /// Headline, the three reasons that weigh most, and the range that is covered.
 Json headline_view(const Json& result);
+/// Headline of a fit to published tables, which has no records.
+Json tables_headline(const Json& result);
 /// Per channel: signals by leak levels.
 Json matrix_view(const Json& result);
 Json groups_view(const Json& result);
 Json parameters_view(const Json& result);
 Json identifiability_view(const Json& result);
+/// What tells how far the estimates can be trusted, as far as the fit holds it: profiles,
+/// bootstrap, lack of fit, predictions, where starts ended.
+Json trust_view(const Json& result);
 Json starts_view(const Json& result);
 Json ledger_view(const Json& result);
-Json provenance_view(const Json& result);
+/// What made a result, under its name, and from which file it is drawn.
+Json provenance_view(const Json& result, const std::string& name, const std::string& file);
 Json formulas_view();
 
 /// One condition: what it is, its scores, its plots and residual tests.
@@ -73,5 +93,17 @@ struct Figure {
   Plot plot;
 };
 std::vector<Figure> condition_figures(const Json& condition, const Table& series);
+
+/// leak_table.json against what was published.
+Json leak_table_headline(const Json& table);
+Json leak_table_view(const Json& table, const std::vector<std::pair<std::string, Table>>& levels);
+
+/// diagnosis.json: classes, their probabilities, and how often they are right.
+Json diagnosis_headline(const Json& diagnosis);
+Json diagnosis_view(const Json& diagnosis);
+
+/// comparison.json: estimates, scores and records side by side, and the leak's trend.
+Json comparison_headline(const Json& comparison);
+Json comparison_view(const Json& comparison);
 
 }  // namespace rigcal::report

@@ -58,6 +58,22 @@ constexpr std::array kFormulas{
     Formula{"drift",
             "mean and least-squares slope of e, each against its standard error by the "
             "effective samples"},
+    Formula{"share of the servo flow",
+            "mean |Q_leak| / mean |Q_servo| of the model, over whole periods; a leak table looks "
+            "for all coefficients at which it is the target"},
+    Formula{"class of a leak",
+            "by the share's place between the limits; probabilities by the share's interval, "
+            "given that it is not negative (docs/diagnosis.md)"},
+    Formula{"smallest leak",
+            "told from none with the stated false alarms, and found in the stated share of cases "
+            "(Currie's detection limit)"},
+    Formula{"difference, p",
+            "two-sided, of (b - a) / root of the sum of the squared errors, each the larger of "
+            "standard and robust; for all parameters together by Holm's steps"},
+    Formula{"trend",
+            "weighted least squares; its error is widened by the root of reduced chi-square where "
+            "that exceeds 1, t with n - 2 degrees of freedom"},
+    Formula{"sign test", "exact binomial, two-sided, over the conditions that both results have"},
 };
 
 }  // namespace
@@ -141,32 +157,32 @@ Json ledger_view(const Json& result) {
   return view;
 }
 
-Json provenance_view(const Json& result) {
+Json provenance_view(const Json& result, const std::string& name, const std::string& file) {
   const Json& provenance = result.at("provenance");
   Json view;
+  view["name"] = name;
+  view["file"] = file;
   view["command"] = text_of(provenance, "command");
   view["facts"] = Json::array();
-  const auto add = [&](const char* name, const std::string& value) {
-    if (!value.empty()) view["facts"].push_back({{"name", name}, {"value", value}});
+  const auto add = [&](const std::string& fact, const std::string& value) {
+    if (!value.empty()) view["facts"].push_back({{"name", fact}, {"value", value}});
   };
-  const auto count = [&](const char* key) { return fmt::format("{}", result.at(key).get<long>()); };
+  const auto add_number = [&](const char* fact, const char* key, int digits, const char* unit) {
+    if (const auto value = number_of(result, key))
+      add(fact, fmt::format("{:.{}g}{}", *value, digits, unit));
+  };
   add("Program", fmt::format("rigcal {}", text_of(provenance, "version")));
   add("Git revision", text_of(provenance, "revision"));
   add("Machine", text_of(provenance, "machine"));
   add("Seed", fmt::format("{}", provenance.at("seed").get<std::uint64_t>()));
-  for (const auto& [name, value] : provenance.at("options").items()) {
-    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-    if (!text.empty()) view["facts"].push_back({{"name", "Option " + name}, {"value", text}});
-  }
-  if (const auto tolerance = number_of(result, "simulation_tolerance"))
-    add("Tolerance of the simulations", fmt::format("{:.3g}", *tolerance));
-  add("Residuals", count("residual_count"));
-  add("Evaluations", count("evaluations"));
-  if (const auto seconds = number_of(result, "wall_seconds"))
-    add("Time", fmt::format("{:.3g} s", *seconds));
-  if (const auto cost = number_of(result, "cost")) add("Cost", fmt::format("{:.8g}", *cost));
-  if (const auto chi = number_of(result, "reduced_chi_square"))
-    add("Reduced chi-square", fmt::format("{:.5g}", *chi));
+  for (const auto& [option, value] : provenance.at("options").items())
+    add("Option " + option, value.is_string() ? value.get<std::string>() : value.dump());
+  add_number("Tolerance of the simulations", "simulation_tolerance", 3, "");
+  add_number("Residuals", "residual_count", 12, "");
+  add_number("Evaluations", "evaluations", 12, "");
+  add_number("Time", "wall_seconds", 3, " s");
+  add_number("Cost", "cost", 8, "");
+  add_number("Reduced chi-square", "reduced_chi_square", 5, "");
   view["inputs"] = Json::array();
   for (const Json& input : provenance.at("inputs"))
     view["inputs"].push_back(

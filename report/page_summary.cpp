@@ -12,7 +12,7 @@ namespace {
 
 /// Without limits of the campaign, agreement below this is called poor.
 constexpr double kPoorRho2 = 0.9;
-constexpr std::size_t kReasonsShown = 3;
+constexpr std::size_t kLeastReasons = 3;
 
 struct Reason {
   double weight = 0.0;
@@ -159,7 +159,7 @@ std::vector<Reason> reasons_of(const Json& result) {
                      std::sqrt(*chi)),
          "conditions"});
   }
-  if (reasons.size() < kReasonsShown && status == "converged") {
+  if (reasons.size() < kLeastReasons && status == "converged") {
     for (Reason& reason : praise(result)) {
       reason.weight *= 1e-3;
       const bool good = text_of(result, "verdict") == "PASS";
@@ -172,17 +172,15 @@ std::vector<Reason> reasons_of(const Json& result) {
   return reasons;
 }
 
-struct Headline {
-  std::string word, mark, css, sentence;
-};
-
-Headline headline_of(const Json& result) {
+Json headline_of(const Json& result) {
   const std::string status = text_of(result, "status");
   if (status == "failed")
-    return {"FAILED", "✕", "bad", "There is no usable result: no number below may be used."};
+    return make_headline("FAILED", "✕", "bad",
+                         "There is no usable result: no number below may be used.");
   if (status == "stopped") {
-    return {"STOPPED", "✕", "bad",
-            "Ended before it converged: these are the best values so far, not a calibration."};
+    return make_headline(
+        "STOPPED", "✕", "bad",
+        "Ended before it converged: these are the best values so far, not a calibration.");
   }
   const std::string verdict = text_of(result, "verdict");
   int failed = 0;
@@ -194,29 +192,31 @@ Headline headline_of(const Json& result) {
     warned += each == "WARN" ? 1 : 0;
   }
   if (verdict == "FAIL") {
-    return {"FAIL", "✕", "bad",
-            fmt::format("{} of {} conditions are outside the campaign's limits: the model is not "
-                        "validated.",
-                        failed, all)};
+    return make_headline(
+        "FAIL", "✕", "bad",
+        fmt::format("{} of {} conditions are outside the campaign's limits: the model is not "
+                    "validated.",
+                    failed, all));
   }
   if (verdict == "WARN") {
-    return {
+    return make_headline(
         "WARN", "!", "warn",
-        fmt::format("{} of {} conditions keep the limits only just: use with care.", warned, all)};
+        fmt::format("{} of {} conditions keep the limits only just: use with care.", warned, all));
   }
   if (verdict == "PASS") {
-    return {"PASS", "✓", "good",
-            fmt::format("All {} conditions are within the campaign's limits.", all)};
+    return make_headline("PASS", "✓", "good",
+                         fmt::format("All {} conditions are within the campaign's limits.", all));
   }
   if (is_poor(result)) {
-    return {
+    return make_headline(
         "POOR", "✕", "bad",
         fmt::format("No limits were given, but at least one signal is reproduced with rho2 below "
                     "{}: the model does not describe the records.",
-                    kPoorRho2)};
+                    kPoorRho2));
   }
-  return {"NOT JUDGED", "○", "none",
-          "The campaign gives no limits: whether this is good enough is for you to say."};
+  return make_headline(
+      "NOT JUDGED", "○", "none",
+      "The campaign gives no limits: whether this is good enough is for you to say.");
 }
 
 Json range_row(const Json& validity, const char* key, const char* name, std::string_view unit) {
@@ -274,26 +274,33 @@ Json matrix_entry(const Json& result, const Json& condition, const std::string& 
 }  // namespace
 
 Json headline_view(const Json& result) {
-  const Headline headline = headline_of(result);
-  const std::vector<Reason> reasons = reasons_of(result);
-  Json view;
-  view["word"] = headline.word;
-  view["mark"] = headline.mark;
-  view["class"] = headline.css;
-  view["bad"] = headline.css == "bad";
-  view["sentence"] = headline.sentence;
-  view["reasons"] = Json::array();
-  for (std::size_t i = 0; i < std::min(reasons.size(), kReasonsShown); ++i) {
-    view["reasons"].push_back({{"text", reasons[i].text},
-                               {"link", reasons[i].link},
-                               {"linked", !reasons[i].link.empty()}});
-  }
-  view["has_more"] = reasons.size() > kReasonsShown;
-  view["more"] = reasons.size() > kReasonsShown ? fmt::format("{}", reasons.size() - kReasonsShown)
-                                                : std::string();
+  Json view = headline_of(result);
+  for (const Reason& reason : reasons_of(result)) add_reason(view, reason.text, reason.link);
   view["coverage"] = coverage_rows(result.at("validity"));
   view["levels"] = joined(result.at("validity").at("leak_levels"));
   view["has_levels"] = !result.at("validity").at("leak_levels").empty();
+  view["has_coverage"] = text_of(result, "status") != "failed";
+  view["status"] = text_of(result, "status");
+  view["message"] = text_of(result, "message");
+  return view;
+}
+
+Json tables_headline(const Json& result) {
+  const std::string status = text_of(result, "status");
+  if (status != "converged") {
+    Json view = headline_of(result);
+    add_reason(view, text_of(result, "message"), {});
+    return view;
+  }
+  Json view = make_headline(
+      "FITTED", "○", "none",
+      fmt::format("Estimated from {} published numbers; their weighted logarithms are off by "
+                  "{:.1f} % rms.",
+                  result.at("residual_count").get<int>(),
+                  100.0 * number_of(result, "rms").value_or(0.0)));
+  std::vector<Reason> reasons;
+  add_parameters(result, reasons);
+  for (const Reason& reason : reasons) add_reason(view, reason.text, reason.link);
   return view;
 }
 
@@ -340,6 +347,7 @@ Json matrix_view(const Json& result) {
           Json entry = matrix_entry(result, condition, channel);
           if (!entry.is_null()) entries.push_back(std::move(entry));
         }
+        for (Json& entry : entries) entry["several"] = entries.size() > 1;
         row["cells"].push_back({{"entries", std::move(entries)}});
       }
       table["rows"].push_back(std::move(row));

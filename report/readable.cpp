@@ -50,4 +50,8 @@ std::string readable(double value_si, std::string_view si_unit, int digits) {
   return text;
 }
 
+std::string p_value_text(double p) {
+  return p < 1e-4 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p);
+}
+
 }  // namespace rigcal::report

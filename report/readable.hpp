@@ -18,4 +18,7 @@ ReadableUnit readable_unit(double value_si, std::string_view si_unit);
 /// "6.2 MPa", "0.35", "-": `digits` significant digits; "-" where the value is not finite.
 std::string readable(double value_si, std::string_view si_unit, int digits = 6);
 
+/// "p = 0.012", "p < 0.0001".
+std::string p_value_text(double p);
+
 }  // namespace rigcal::report

@@ -27,10 +27,16 @@ data converted(const nlohmann::ordered_json& json) {
 
 }  // namespace
 
-std::string render(std::string_view text, const nlohmann::ordered_json& json) {
+std::string render(std::string_view text, const nlohmann::ordered_json& json,
+                   const std::vector<Partial>& partials) {
   kainjow::mustache::mustache page{std::string(text)};
   if (!page.is_valid()) throw std::logic_error("template: " + page.error_message());
-  std::string result = page.render(converted(json));
+  data values = converted(json);
+  for (const Partial& each : partials) {
+    const kainjow::mustache::partial made{[&each] { return std::string(each.text); }};
+    values.set(each.name, made);
+  }
+  std::string result = page.render(values);
   if (!page.error_message().empty()) throw std::logic_error("template: " + page.error_message());
   return result;
 }

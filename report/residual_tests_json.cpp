@@ -13,18 +13,19 @@ using metrics::ResidualTests;
 
 std::string hertz(double value) { return fmt::format("{:.3g} Hz", value); }
 
-std::string p_text(double p) {
-  return p < 1e-4 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p);
-}
-
 std::string autocorrelation_words(const ResidualTests& tests) {
   const auto& test = tests.autocorrelation;
   if (test.passed)
-    return fmt::format("white: no sample tells of the next ({})", p_text(test.p_value));
+    return fmt::format("white: no sample tells of the next ({})", p_value_text(test.p_value));
+  constexpr double kNoLoss = 0.99;
+  if (tests.effective_samples > kNoLoss * static_cast<double>(tests.samples)) {
+    return fmt::format("slightly coloured ({}): no sample weighs less for it",
+                       p_value_text(test.p_value));
+  }
   return fmt::format(
       "coloured ({}): correlated for {}, so that {} samples weigh like {:.0f}; the model misses "
       "something, or the noise is not white",
-      p_text(test.p_value), readable(test.correlation_time_s, "s", 2), tests.samples,
+      p_value_text(test.p_value), readable(test.correlation_time_s, "s", 2), tests.samples,
       tests.effective_samples);
 }
 
@@ -50,8 +51,8 @@ std::string periodogram_words(const metrics::Periodogram& test) {
 }
 
 std::string normality_words(const metrics::Normality& test) {
-  if (test.passed) return fmt::format("normal ({})", p_text(test.p_value));
-  std::string text = fmt::format("not normal ({})", p_text(test.p_value));
+  if (test.passed) return fmt::format("normal ({})", p_value_text(test.p_value));
+  std::string text = fmt::format("not normal ({})", p_value_text(test.p_value));
   if (test.excess_kurtosis > 0.5) text += ", heavy tails or rare bursts";
   if (test.excess_kurtosis < -0.5) text += ", flatter than a bell, as a wave is";
   if (std::abs(test.skewness) > 0.3)
@@ -65,8 +66,8 @@ std::string drift_words(const ResidualTests& tests, std::string_view unit) {
   const double span =
       test.slope_per_s * tests.sample_interval_s * static_cast<double>(tests.samples);
   return fmt::format("offset {} ({}), trend {} over the record ({})", readable(test.mean, unit, 3),
-                     p_text(test.mean_p_value), readable(span, unit, 3),
-                     p_text(test.slope_p_value));
+                     p_value_text(test.mean_p_value), readable(span, unit, 3),
+                     p_value_text(test.slope_p_value));
 }
 
 /// Every k-th value, so that at most about 200 are left.

@@ -20,6 +20,7 @@ struct Axis {
   double low = 0.0;
   double high = 1.0;
   bool logarithmic = false;
+  bool whole = false;  ///< counts
   double start = 0.0;  ///< pixel of `low`
   double length = 0.0;
 
@@ -59,6 +60,12 @@ struct Tick {
 
 std::vector<Tick> ticks_of(const Axis& axis, int count) {
   std::vector<Tick> ticks;
+  if (axis.whole) {
+    const double step = std::max(1.0, std::ceil((axis.high - axis.low) / std::max(1, count)));
+    for (double k = std::ceil(axis.low); k <= axis.high; k += step)
+      ticks.push_back({k, fmt::format("{:g}", k)});
+    return ticks;
+  }
   if (axis.logarithmic) {
     const double decades = std::max(1.0, std::ceil((axis.high - axis.low) / count));
     // Less than two decades need the twos and fives too.
@@ -134,11 +141,26 @@ void put_bars(std::string& out, const Trace& trace, const Axis& x, const Axis& y
   out += "\"/>";
 }
 
+void put_intervals(std::string& out, const Trace& trace, const Axis& x, const Axis& y) {
+  constexpr double kCap = 3.0;
+  fmt::format_to(std::back_inserter(out), "<path class=\"line {}\" d=\"", trace.style);
+  for (std::size_t i = 0; i < trace.x.size(); ++i) {
+    if (!x.shows(trace.x[i]) || !y.shows(trace.y[i]) || !y.shows(trace.upper[i])) continue;
+    const double middle = x.pixel(trace.x[i]);
+    const double low = y.pixel(trace.y[i]);
+    const double high = y.pixel(trace.upper[i]);
+    fmt::format_to(std::back_inserter(out), "M{0:.1f} {2:.1f}H{1:.1f}M{0:.1f} {3:.1f}H{1:.1f}",
+                   middle - kCap, middle + kCap, low, high);
+    fmt::format_to(std::back_inserter(out), "M{:.1f} {:.1f}V{:.1f}", middle, low, high);
+  }
+  out += "\"/>";
+}
+
 void put_axes(std::string& out, const Plot& plot, const Axis& x, const Axis& y) {
   const double bottom = y.start;
   const double top = y.start + y.length;
   const auto into = std::back_inserter(out);
-  for (const Tick& tick : ticks_of(x, static_cast<int>(x.length / 80.0))) {
+  for (const Tick& tick : ticks_of(x, static_cast<int>(x.length / (x.whole ? 20.0 : 70.0)))) {
     const double at = x.pixel(tick.value);
     fmt::format_to(into, "<path class=\"grid\" d=\"M{0:.1f} {1:.1f}V{2:.1f}\"/>", at, bottom, top);
     fmt::format_to(into, "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>", at,
@@ -161,12 +183,21 @@ void put_legend(std::string& out, const Plot& plot) {
   for (auto trace = plot.traces.rbegin(); trace != plot.traces.rend(); ++trace) {
     if (trace->name.empty()) continue;
     at -= 6.4 * static_cast<double>(trace->name.size());
-    const bool band = trace->kind == Trace::Kind::band;
-    fmt::format_to(std::back_inserter(out), "<text x=\"{:.1f}\" y=\"13\">{}</text>", at,
-                   escaped(trace->name));
-    fmt::format_to(std::back_inserter(out), "<path class=\"{} {}\" d=\"M{:.1f} {}h14{}\"/>",
-                   band ? "band" : "line", trace->style, at - 18.0, band ? 5 : 9,
-                   band ? "v8h-14Z" : "");
+    const auto into = std::back_inserter(out);
+    fmt::format_to(into, "<text x=\"{:.1f}\" y=\"13\">{}</text>", at, escaped(trace->name));
+    switch (trace->kind) {
+      case Trace::Kind::points:
+        fmt::format_to(into, "<circle class=\"point {}\" cx=\"{:.1f}\" cy=\"9\" r=\"2.2\"/>",
+                       trace->style, at - 9.0);
+        break;
+      case Trace::Kind::band:
+        fmt::format_to(into, "<path class=\"band {}\" d=\"M{:.1f} 5h14v8h-14Z\"/>", trace->style,
+                       at - 18.0);
+        break;
+      default:
+        fmt::format_to(into, "<path class=\"line {}\" d=\"M{:.1f} 9h14\"/>", trace->style,
+                       at - 18.0);
+    }
     at -= 32.0;
   }
 }
@@ -178,10 +209,11 @@ std::vector<double> round_ticks(double low, double high, int count) {
   const double raw = (high - low) / std::max(1, count);
   if (!(raw > 0.0) || !std::isfinite(raw)) return ticks;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
-  const double step = power * (raw <= power         ? 1.0
-                               : raw <= 2.0 * power ? 2.0
-                               : raw <= 5.0 * power ? 5.0
-                                                    : 10.0);
+  // The nearest of 1, 2, 5 and 10 on a scale of ratios: bounds are the geometric means.
+  const double step = power * (raw <= std::sqrt(2.0) * power    ? 1.0
+                               : raw <= std::sqrt(10.0) * power ? 2.0
+                               : raw <= std::sqrt(50.0) * power ? 5.0
+                                                                : 10.0);
   const double first = std::ceil(low / step - 1e-9);
   for (double k = first; k * step <= high + 1e-9 * step; k += 1.0) ticks.push_back(k * step);
   return ticks;
@@ -201,7 +233,13 @@ std::string svg(const Plot& plot, const std::string& style_sheet) {
     if (trace.kind == Trace::Kind::bars) widen(y, {0.0}, any_y);
   }
   widen(y, plot.levels, any_y);
-  leave_room(x, 0.0);
+  x.whole = plot.whole_x;
+  if (x.whole) {
+    x.low -= 0.5;
+    x.high += 0.5;
+  } else {
+    leave_room(x, 0.0);
+  }
   leave_room(y, 0.06);
   x.start = kLeft;
   x.length = plot.width - kLeft - kRight;
@@ -232,6 +270,9 @@ std::string svg(const Plot& plot, const std::string& style_sheet) {
         break;
       case Trace::Kind::band:
         put_band(out, trace, x, y);
+        break;
+      case Trace::Kind::intervals:
+        put_intervals(out, trace, x, y);
         break;
     }
   }

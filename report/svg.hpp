@@ -8,13 +8,13 @@ namespace rigcal::report {
 
 /// What a picture shows, in the units that its axes name.
 struct Trace {
-  enum class Kind { line, points, bars, band };
+  enum class Kind { line, points, bars, band, intervals };
   std::string name;   ///< in the legend; none if empty
   std::string style;  ///< class of the style sheet: "measured", "model", "residual", ...
   Kind kind = Kind::line;
   std::vector<double> x;
   std::vector<double> y;      ///< NaN: a gap
-  std::vector<double> upper;  ///< of a band alone; `y` is its lower edge
+  std::vector<double> upper;  ///< of a band or of intervals; `y` is the lower edge
 };
 
 struct Plot {
@@ -25,6 +25,7 @@ struct Plot {
   double height = 200.0;
   bool log_x = false;
   bool log_y = false;
+  bool whole_x = false;  ///< x counts: ticks at whole numbers, room beside the first and last
   std::vector<Trace> traces;
   std::vector<double> levels;  ///< dashed horizontal lines, in units of y
 };

@@ -9,6 +9,7 @@
 
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/parallel.hpp"
 #include "datasets/single_repeats.hpp"
@@ -65,14 +66,15 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
 
 ExitCode write_diagnosis(const DiagnoseRequest& options, const report::DiagnosisResult& result) {
   const report::Json json = report::diagnosis_json(result);
-  report::write_results(options.common.out,
-                        {{"diagnosis.csv", report::diagnosis_csv(result)},
-                         {"diagnosis.json", report::json_text(json)}},
-                        result.provenance.inputs);
+  std::vector<report::ResultFile> files{{"diagnosis.csv", report::diagnosis_csv(result)},
+                                        {"diagnosis.json", report::json_text(json)}};
+  add_page(options.common.out, options.common.threads, files);
+  report::write_results(options.common.out, files, result.provenance.inputs);
   const std::string text =
       report::diagnosis_text(result, diagnosis_style()) +
-      fmt::format("files: {} {}\n", (options.common.out / "diagnosis.json").string(),
-                  (options.common.out / "diagnosis.csv").string());
+      fmt::format("files: {} {} {}\n", (options.common.out / "diagnosis.json").string(),
+                  (options.common.out / "diagnosis.csv").string(),
+                  (options.common.out / "report.html").string());
   print(options.common.print, text, json);
   return report::status_of(result) == "done" ? ExitCode::done : ExitCode::no_result;
 }

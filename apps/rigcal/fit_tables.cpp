@@ -39,6 +39,7 @@ ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invoca
         {"fitted.toml", fitted_leak_table_text(input.campaign, fit.settings, options.out)});
   }
   files.push_back({"fit.json", report::json_text(report::tables_fit_json(result))});
+  add_page(options.out, options.threads, files);
   report::write_results(options.out, files, provenance.inputs);
   if (fit.status != FitStatus::converged) {
     // Of an earlier run: they would contradict this one.

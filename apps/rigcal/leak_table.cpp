@@ -9,6 +9,7 @@
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/leak_table_files.hpp"
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "report/folder.hpp"
 #include "report/leak_table.hpp"
@@ -63,12 +64,14 @@ ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invoc
   provenance.options.emplace_back("signals", fmt::format("{}", fmt::join(options.signals, ",")));
   provenance.inputs = report::hash_inputs(input.campaign, {});
   const report::LeakTableResult result{input.campaign, input.settings, table, provenance};
-  const auto files = leak_table_files(result);
+  auto files = leak_table_files(result);
+  add_page(options.common.out, options.common.threads, files);
   report::write_results(options.common.out, files, provenance.inputs);
   print(options.common.print,
         report::leak_table_text(result, terminal_style()) +
-            fmt::format("files: {} {}\n", (options.common.out / "leak_table.csv").string(),
-                        (options.common.out / "leak_table.json").string()),
+            fmt::format("files: {} {} {}\n", (options.common.out / "leak_table.csv").string(),
+                        (options.common.out / "leak_table.json").string(),
+                        (options.common.out / "report.html").string()),
         report::leak_table_json(result));
   return ExitCode::done;
 }

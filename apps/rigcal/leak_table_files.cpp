@@ -2,21 +2,12 @@
 
 #include <algorithm>
 
+#include "report/stored.hpp"
+
 namespace rigcal::app {
 namespace {
 
 constexpr std::string_view kResidualScale = "residual_scale=";
-
-/// A level as the name of a file.
-std::string file_name(const std::string& level) {
-  std::string name;
-  for (const char c : level) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                       c == '.' || c == '-';
-    name += plain ? c : '_';
-  }
-  return name + ".csv";
-}
 
 }  // namespace
 
@@ -58,7 +49,7 @@ std::vector<report::ResultFile> leak_table_files(const report::LeakTableResult& 
     files.push_back({"features.csv", report::features_csv(result)});
     files.push_back({levels / "healthy.csv", report::level_csv(signal, *table.healthy, nullptr)});
     for (const calib::FeatureRow& row : table.features) {
-      files.push_back({levels / file_name(row.printed.level),
+      files.push_back({levels / report::level_file(row.printed.level),
                        report::level_csv(signal, row.series, &*table.healthy)});
     }
   }

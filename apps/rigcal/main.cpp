@@ -42,6 +42,8 @@ constexpr std::array kVerbs{
             rigcal::app::add_diagnose},
     VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},
     VerbRow{"init", "Draft a campaign file from recordings", rigcal::app::add_init},
+    VerbRow{"compare", "Fits side by side: what differs, and the leak's trend",
+            rigcal::app::add_compare},
     VerbRow{"report", "Draw the report of a result folder again", rigcal::app::add_report},
     VerbRow{"params", "List every parameter", rigcal::app::add_params},
 };

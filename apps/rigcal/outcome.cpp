@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <optional>
-#include <utility>
-
+#include "apps/rigcal/result_page.hpp"
 #include "report/csv.hpp"
 #include "report/folder.hpp"
-#include "report/page.hpp"
 #include "report/residual_tests_json.hpp"
 #include "report/terminal.hpp"
 
@@ -24,19 +21,6 @@ std::string fitted_toml(const CampaignOptions& options, const report::Result& re
   const std::string text = fitted_campaign_text(result.campaign, values, options.out);
   if (report::status_of(result.fit) == FitStatus::converged) return text;
   return "# status: stopped: the best so far, not a fit that converged\n" + text;
-}
-
-/// The page, drawn from what the other files hold.
-report::ResultFile page_of(const CampaignOptions& options,
-                           const std::vector<report::ResultFile>& files) {
-  const report::ReadFile read =
-      [&](const std::filesystem::path& path) -> std::optional<std::string> {
-    for (const report::ResultFile& file : files) {
-      if (file.path == path) return file.content;
-    }
-    return std::nullopt;
-  };
-  return {"report.html", report::result_page(read, options.out.string(), options.threads)};
 }
 
 std::vector<report::ResultFile> files_of(const CampaignOptions& options,
@@ -62,11 +46,10 @@ std::vector<report::ResultFile> files_of(const CampaignOptions& options,
   if (is_fit && report::status_of(result.fit) != FitStatus::failed) {
     files.push_back({"fitted.toml", fitted_toml(options, result)});
   }
+  // Last, so that whoever finds it finds the others too.
   files.push_back(
       {is_fit ? "fit.json" : "validation.json", report::json_text(result_json(result))});
-  files.push_back(page_of(options, files));
-  // The JSON is written last, so that whoever finds it finds the others too.
-  std::swap(files[files.size() - 2], files.back());
+  add_page(options.out, options.threads, files);
   return files;
 }
 

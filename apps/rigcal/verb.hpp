@@ -28,6 +28,7 @@ Run add_fit_tables(CLI::App& verb);
 Run add_diagnose(CLI::App& verb);
 Run add_synthesize(CLI::App& verb);
 Run add_init(CLI::App& verb);
+Run add_compare(CLI::App& verb);
 Run add_report(CLI::App& verb);
 Run add_params(CLI::App& verb);
 

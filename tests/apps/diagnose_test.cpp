@@ -4,6 +4,7 @@
 #include <string>
 
 #include "tests/apps/cli_fixture.hpp"
+#include "tests/apps/schema.hpp"
 
 using namespace rigcal::test;
 using Catch::Contains;
@@ -57,6 +58,12 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   CHECK(result["confusion"]["counts"][0][0] == 3);
   CHECK(result["smallest_leak_l_per_min"][0]["averaged"].is_number());
   CHECK_THAT(folder.read("diagnosis/diagnosis.csv"), StartsWith("condition,repeat,signal,"));
+  CHECK(violations(result, "diagnosis") == "");
+  const std::string page = folder.read("diagnosis/report.html");
+  CHECK_THAT(page, Contains("<title>LEAK") && Contains("id=\"diagnosis\"") &&
+                       Contains("Against the known classes"));
+  REQUIRE(folder.run({"report", "diagnosis"}).exit_code == 0);
+  CHECK(folder.read("diagnosis/report.html") == page);
 }
 
 TEST_CASE("diagnose: without a fit it is a wrong use", "[apps]") {
@@ -87,4 +94,7 @@ TEST_CASE("diagnose: a seal defect in counts is declined with every reason", "[a
     CHECK_THAT(reasons, Contains(part));
   CHECK(result["records"].empty());
   CHECK_THAT(folder.read("declined/diagnosis.csv"), StartsWith("# status: declined: "));
+  CHECK(violations(result, "diagnosis") == "");
+  CHECK_THAT(folder.read("declined/report.html"),
+             Contains("<title>DECLINED") && Contains("<body class=\"bad\">"));
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/apps/cli_fixture.hpp"
+#include "tests/apps/schema.hpp"
 
 using namespace rigcal::test;
 using Catch::Contains;
@@ -90,6 +91,13 @@ TEST_CASE("leak-table: any rig, without records, writes table and JSON", "[apps]
   CHECK_THAT(csv, StartsWith("waveform,frequency_hz,amplitude_m,target_percent,coefficients"));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 3);
   CHECK_FALSE(folder.has("out/features.csv"));
+  CHECK(violations(table, "leak_table") == "");
+  const std::string page = folder.read("out/report.html");
+  CHECK_THAT(page, Contains("id=\"leak-table\"") && Contains("2 Hz sine, 5 mm"));
+  const double first = table["entries"][0]["coefficients"][0].get<double>();
+  const std::size_t at = page.find("class=\"root\" value=\"");
+  REQUIRE(at != std::string::npos);
+  CHECK(std::stod(page.substr(at + 20)) == first);
 }
 
 TEST_CASE("leak-table: --set reaches it, a rig with a tenfold volume has a table too", "[apps]") {
@@ -180,6 +188,13 @@ TEST_CASE("fit-tables: finds the values behind tables that leak-table made", "[a
   const json fit = json::parse(folder.read("out/fit.json"));
   CHECK(fit["status"] == "converged");
   CHECK(fit["residual_count"] == 4);
+  CHECK(violations(json::parse(folder.read("out/leak_table.json")), "leak_table") == "");
+  // Both results are on the page: what was fitted, and the table that comes out, graded.
+  const std::string page = folder.read("out/report.html");
+  CHECK_THAT(page, Contains("<title>FITTED") && Contains("leakage_area") &&
+                       Contains("id=\"leak-table\"") && Contains("class=\"cell good\""));
+  REQUIRE(folder.run({"report", "out"}).exit_code == 0);
+  CHECK(folder.read("out/report.html") == page);
   REQUIRE(fit["parameters"].size() == 2);
   // The flows are good to a few 1e-4.
   CHECK_THAT(fit["parameters"][0]["value"].get<double>(), WithinRel(1000.0, 0.01));

@@ -1,3 +1,5 @@
+#include "tests/apps/schema.hpp"
+
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,14 +14,12 @@
 
 using nlohmann::json;
 using rigcal::test::CommandFolder;
+using rigcal::test::violations;
 using rigcal::test::write_twin;
 
-namespace {
-
-/// What a document lacks, in words; empty if it is as the schema says.
-std::string violations(const json& document) {
+std::string rigcal::test::violations(const json& document, const std::string& name) {
   json rules;
-  const std::string file = std::string(RIGCAL_SOURCE_DIR) + "/docs/schema/result.schema.json";
+  const std::string file = std::string(RIGCAL_SOURCE_DIR) + "/docs/schema/" + name + ".schema.json";
   REQUIRE(valijson::utils::loadDocument(file, rules));
   valijson::Schema schema;
   valijson::SchemaParser().populateSchema(valijson::adapters::NlohmannJsonAdapter(rules), schema);
@@ -35,26 +35,24 @@ std::string violations(const json& document) {
   return text;
 }
 
-}  // namespace
-
 TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") {
   const CommandFolder folder;
   REQUIRE(write_twin(folder).exit_code == 0);
   folder.run({"fit", "twin/campaign.toml", "--out", "fit", "--quiet"});
   const json fit = json::parse(folder.read("fit/fit.json"));
-  CHECK(violations(fit).empty());
+  CHECK(violations(fit, "result") == "");
   folder.run(
       {"validate", "twin/campaign.toml", "--fit", "fit/fit.json", "--out", "val", "--quiet"});
-  CHECK(violations(json::parse(folder.read("val/validation.json"))).empty());
+  CHECK(violations(json::parse(folder.read("val/validation.json")), "result").empty());
   folder.write("twin/hopeless.toml",
                folder.read("twin/campaign.toml") + "\n[simulation]\nmax_seconds = 1e-9\n");
   folder.run({"fit", "twin/hopeless.toml", "--out", "failed", "--quiet"});
-  CHECK(violations(json::parse(folder.read("failed/fit.json"))).empty());
+  CHECK(violations(json::parse(folder.read("failed/fit.json")), "result").empty());
 
   json broken = fit;
   broken["parameters"][0]["value"] = "60 kg";
-  CHECK_FALSE(violations(broken).empty());
+  CHECK_FALSE(violations(broken, "result").empty());
   broken = fit;
   broken.erase("status");
-  CHECK_FALSE(violations(broken).empty());
+  CHECK_FALSE(violations(broken, "result").empty());
 }

@@ -5,48 +5,16 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.hpp"
+#include "tests/report/stored_fixture.hpp"
 
 using Catch::Contains;
 using Json = nlohmann::ordered_json;
 using namespace rigcal::report;
+using rigcal::test::stored_result;
 
 namespace {
 
 const std::string kNasty = "</script><script>alert(1)</script> \"q\" 'a' & \n\xc3\xbc";
-
-/// A small result, as fit.json holds it.
-Json stored_result() {
-  Json json = Json::parse(R"({
-    "status": "converged", "schema": "rigcal.fit/1", "verdict": "PASS", "message": "converged",
-    "campaign": "rig", "synthetic": false, "cost": 10.5, "residual_count": 100, "evaluations": 3,
-    "wall_seconds": 0.1, "simulation_tolerance": 1e-7,
-    "parameters": [
-      {"name": "mass_kg", "key": "mass", "symbol": "m", "unit": "kg", "scope": "rig", "level": null,
-       "value": 85.01139529, "start": 60, "lower": 10, "upper": 500, "fitted": true,
-       "nuisance": false, "standard_error": 0.026, "robust_standard_error": null,
-       "ci95": [84.9, 85.1], "at_bound": false, "identifiability": "identified", "reason": ""},
-      {"name": "supply_pressure_pa", "key": "supply_pressure", "symbol": "P_s", "unit": "Pa",
-       "scope": "rig", "level": null, "value": 6.2e6, "start": 6.2e6, "lower": null, "upper": null,
-       "fitted": false, "nuisance": false, "standard_error": null, "robust_standard_error": null,
-       "ci95": null, "at_bound": false, "identifiability": null, "reason": ""}],
-    "correlation": {"names": ["mass"], "matrix": [[1.0]]}, "rank": 1, "singular_values": [1.0],
-    "reduced_chi_square": 1.01,
-    "validity": {"frequency_hz": [0.1, 10], "amplitude_m": [0.05, 0.05], "amplitude_v": null,
-      "supply_pressure_pa": null, "leakage_coefficient": null, "leak_levels": ["none"]},
-    "acceptance": [{"channel": "position", "metric": "rho2", "limit": 0.9, "warn": 0.95}],
-    "conditions": [{"id": "sine", "waveform": "sine", "frequency_hz": 2.0, "amplitude_m": 0.005,
-      "leak_level": "none", "use": "fit", "samples": 4, "failure": null,
-      "metrics": {"position": {"rho2": 0.99876543, "r": 0.999, "ccc": 0.998,
-        "absolute_error_percent": 0.5, "rmse": 1e-5, "nrmse_fit_percent": 96.0,
-        "maximum_error": 2e-5, "gain_ratio": 1.0, "phase_deg": 0.1, "delay_s": 1e-4,
-        "problem": null}},
-      "noise_floor": {"position": null}, "residual_tests": {"position": null},
-      "verdict": "PASS", "reasons": []}],
-    "groups": [], "starts": [], "best_start": 0, "failure_count": 0, "failures": [], "warnings": [],
-    "provenance": {"version": "0", "revision": "r", "machine": "m", "command": "rigcal fit",
-      "seed": 1, "options": {}, "inputs": []}})");
-  return json;
-}
 
 std::string page(const Json& json, const std::string& file = "fit.json", int threads = 2) {
   const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
@@ -208,8 +176,8 @@ TEST_CASE("page: 24 conditions stay below 8 MB, however long they are", "[report
   const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
     if (path == "fit.json") return json.dump();
     if (path == "residual_tests.json") return "{}";
-    if (path == "validation.json") return std::nullopt;
-    return csv;
+    if (path.parent_path() == "residuals") return csv;
+    return std::nullopt;
   };
   const std::string html = result_page(read, "folder", 2);
   CHECK(html.size() < 8'000'000);

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Opens reports in headless Chromium as a reader does: page_test.py RIGCAL. Exit code 77: no browser."""
+"""Opens reports in headless Chromium as a reader does: page_test.py RIGCAL SOURCES. Exit code 77: no browser."""
 
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -85,10 +86,29 @@ def values(page, selector):
     return page.run(f"[...document.querySelectorAll({json.dumps(selector)})].map(d => d.value)")
 
 
-def check_sections(page):
+def check_sections(page, sections=SECTIONS):
     found = page.run("[...document.querySelectorAll('main > section')].map(s => s.id)")
-    check(found == SECTIONS, f"sections in their order: {found}")
-    check(page.run("document.querySelectorAll('main h2, main h1').length") == len(SECTIONS), "a title each")
+    check(found == sections, f"sections in their order: {found}")
+    check(page.run("document.querySelectorAll('main h2, main h1').length") == len(sections), "a title each")
+    lost = page.run("[...document.querySelectorAll('a[href^=\"#\"]')].map(a => a.getAttribute('href').slice(1))"
+                    ".filter(id => !document.getElementById(id))")
+    check(not lost, f"links that lead nowhere: {lost}")
+
+
+def check_widths(page):
+    for width in (1280, 400):
+        page.size(width)
+        page.wait_for(f"document.documentElement.scrollWidth <= {width}", f"no sideways scroll at {width}")
+
+
+def check_printed(page, folder, words):
+    """The printed page holds these words, whatever the screen shows."""
+    if shutil.which("pdftotext") is None:
+        return
+    page.pdf(folder / "page.pdf")
+    text = subprocess.run(["pdftotext", "-layout", folder / "page.pdf", "-"], capture_output=True, check=True).stdout.decode()
+    for word in words:
+        check(word in text, f"on paper: {word}")
 
 
 def check_numbers(page, result):
@@ -153,9 +173,8 @@ def check_good(binary, work):
         check_numbers(page, result)
         check_cells(page)
         check_zoom(page)
-        for width in (1280, 400):
-            page.size(width)
-            page.wait_for(f"document.documentElement.scrollWidth <= {width}", f"no sideways scroll at {width}")
+        check_widths(page)
+        check_printed(page, work, ["PASS", "Known values", "What the residual tells", "How each number is computed"])
         check_quiet(page, path)
 
 
@@ -177,7 +196,91 @@ def check_bad(binary, work):
             check(page.run("document.querySelector('.verdict .word').textContent").split()[-1] == word, folder)
             check(page.run("document.body.className") == "bad", f"{folder}: the page is marked")
             check_sections(page)
+            check_printed(page, work, [word])
             check_quiet(page, path)
+
+
+def check_leak_table(binary, work, sources):
+    """The paper's table: every coefficient of leak_table.json is on the page, with its grade."""
+    campaign = sources / "datasets" / "uis_shake_table" / "campaign.toml"
+    check(rigcal(binary, work, "leak-table", campaign, "--out", "leaks") == 0, "leak table")
+    path = work / "leaks" / "report.html"
+    entries = json.loads((work / "leaks" / "leak_table.json").read_text())["entries"]
+    with Browser() as page:
+        page.open(path)
+        check_sections(page, ["verdict", "leak-table", "provenance", "formulas"])
+        shown = [float(v) for v in values(page, ".leaks data.root")]
+        check(shown == [c for e in entries for c in e["coefficients"]], "the coefficients are those of the file")
+        grades = page.run("[...document.querySelectorAll('.leaks .mark')].map(m => m.getAttribute('aria-label'))")
+        check(grades == [e["grade"] for e in entries], f"grades: {grades}")
+        check_widths(page)
+        check_quiet(page, path)
+
+
+def check_diagnosis(binary, work):
+    """A leak that is there is found; the numbers are those of diagnosis.json."""
+    leaking = (CAMPAIGN.replace("[acceptance]", "[leak_level.leaking]\n[acceptance]")
+               .replace("leakage_coefficient = 0.3", "leakage_coefficient = 0")
+               .replace('use = "validate"', 'use = "diagnose"\nparameters = { leakage_coefficient = 0.3 }')
+               .replace('waveform = "square"\nfrequency = "1 Hz"\namplitude = "4 mm"\nleak_level = ' + json.dumps(LEVEL),
+                        'waveform = "sine"\nfrequency = "2 Hz"\namplitude = "5 mm"\nleak_level = "leaking"'))
+    (work / "leaking.toml").write_text(leaking)
+    check(rigcal(binary, work, "synthesize", "leaking.toml", "--seed", "4", "--out", "leaking") == 0, "synthesize")
+    check(rigcal(binary, work, "fit", "leaking/campaign.toml", "--out", "healthy") == 0, "fit of the healthy records")
+    check(rigcal(binary, work, "diagnose", "leaking/campaign.toml", "--fit", "healthy/fit.json", "--out", "found") == 0,
+          "diagnose")
+    path = work / "found" / "report.html"
+    records = json.loads((work / "found" / "diagnosis.json").read_text())["records"]
+    with Browser() as page:
+        page.open(path)
+        check_sections(page, ["verdict", "diagnosis", "provenance", "formulas"])
+        check(page.run("document.title").startswith("LEAK "), "the leak is said at the top")
+        shown = [float(v) for v in values(page, ".diagnosis data.share")]
+        check(shown == [r["leak_share_percent"] for r in records if r["repeat"] is None], f"shares: {shown}")
+        check_widths(page)
+        check_quiet(page, path)
+
+
+def check_comparison(binary, work):
+    """The estimates of both fits side by side, and what lies together in one folder on one page."""
+    check(rigcal(binary, work, "compare", "good", "healthy", "--out", "both") == 0, "compare")
+    path = work / "both" / "report.html"
+    compared = json.loads((work / "both" / "comparison.json").read_text())
+    with Browser() as page:
+        page.open(path)
+        check_sections(page, ["verdict", "results", "estimates", "scores", "records", "provenance", "formulas"])
+        shown = {float(v) for v in values(page, ".estimates data.value")}
+        for parameter in compared["parameters"]:
+            for estimate in parameter["estimates"]:
+                if estimate and estimate["fitted"]:
+                    check(estimate["value"] in shown, f"{parameter['key']} is shown")
+        check_widths(page)
+        check_quiet(page, path)
+    shutil.copy(work / "found" / "diagnosis.json", work / "good")
+    check(rigcal(binary, work, "report", "good") == 0, "draw again")
+    with Browser() as page:
+        page.open(work / "good" / "report.html")
+        check_sections(page, SECTIONS[:-2] + ["diagnosis"] + SECTIONS[-2:])
+        check(page.run("document.querySelector('.beside').textContent").count("Diagnosis") == 1, "named at the top")
+
+
+def check_recordings(binary, work, sources):
+    """A real machine's report, where its recordings are."""
+    data = sources.parent / "shared" / "data" / "utfsm_mts_servohydraulic_chirp"
+    if not data.is_dir():
+        print(f"skipped: no recordings at {data}")
+        return
+    campaign = sources / "datasets" / "utfsm_mts" / "campaign.toml"
+    check(rigcal(binary, work, "fit", campaign, "--data", data, "--out", "utfsm") in (0, 1), "fit of a real machine")
+    path = work / "utfsm" / "report.html"
+    result = json.loads((work / "utfsm" / "fit.json").read_text())
+    with Browser() as page:
+        page.open(path)
+        check_sections(page)
+        check([float(v) for v in values(page, ".parameters data.value")]
+              == [p["value"] for p in result["parameters"] if p["fitted"]], "parameters of a real machine")
+        check_widths(page)
+        check_quiet(page, path)
 
 
 def main():
@@ -185,12 +288,17 @@ def main():
         print("skipped: no chromium (scripts/setup --dev installs it)")
         return 77
     binary = str(pathlib.Path(sys.argv[1]).resolve())
+    sources = pathlib.Path(sys.argv[2]).resolve()
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
         (work / "truth.toml").write_text(CAMPAIGN)
         check(rigcal(binary, work, "synthesize", "truth.toml", "--seed", "3", "--out", "twin") == 0, "synthesize")
         check_good(binary, work)
         check_bad(binary, work)
+        check_leak_table(binary, work, sources)
+        check_diagnosis(binary, work)
+        check_comparison(binary, work)
+        check_recordings(binary, work, sources)
     print("reports open, zoom, print their numbers, and ask for nothing")
     return 0
 

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/result_page.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "common/error.hpp"
+#include "common/file.hpp"
+#include "report/comparison.hpp"
+#include "report/folder.hpp"
+
+namespace rigcal::app {
+namespace {
+
+struct CompareOptions {
+  std::vector<std::filesystem::path> folders;
+  std::filesystem::path out = "rigcal-out";
+  PrintOptions print;
+};
+
+ExitCode run_compare(const CompareOptions& options, const Invocation& invocation) {
+  if (options.folders.size() < 2)
+    throw UsageError("compare: expected two result folders or more, the one to compare with first");
+  const std::vector<report::Compared> results = report::load_compared(options.folders);
+  report::require_writable(options.out);
+  report::Provenance provenance;
+  provenance.command = invocation.command;
+  for (const report::Compared& each : results)
+    provenance.inputs.push_back({each.file.string(), sha256_of_file(each.file)});
+  const report::Json json = report::comparison_json(results, provenance);
+  std::vector<report::ResultFile> files{{"comparison.json", report::json_text(json)}};
+  add_page(options.out, hardware_threads(), files);
+  report::write_results(options.out, files, provenance.inputs);
+  print(options.print,
+        report::comparison_text(json, terminal_style()) +
+            fmt::format("files: {} {}\n", (options.out / "comparison.json").string(),
+                        (options.out / "report.html").string()),
+        json);
+  return json.at("status") == "done" ? ExitCode::done : ExitCode::no_result;
+}
+
+}  // namespace
+
+Run add_compare(CLI::App& verb) {
+  const auto options = std::make_shared<CompareOptions>();
+  verb.add_option("DIR", options->folders,
+                  "Folders of fits or validations; the first is what the others are compared with")
+      ->required()
+      ->check(CLI::ExistingDirectory);
+  verb.add_option("--out", options->out, "Folder of the results")->capture_default_str();
+  add_print_options(verb, options->print);
+  return [options](const Invocation& invocation) { return run_compare(*options, invocation); };
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,389 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "report/page_parts.hpp"
+#include "report/readable.hpp"
+
+namespace rigcal::report {
+namespace {
+
+/// The unit in which the largest value of a row is a number of few digits.
+RowUnit unit_of_estimates(const Json& parameter) {
+  double size = 0.0;
+  for (const Json& estimate : parameter.at("estimates")) {
+    if (estimate.is_object())
+      size = std::max(size, std::abs(number_of(estimate, "value").value_or(0.0)));
+  }
+  return row_unit(size, parameter);
+}
+
+Json estimate_cell(const Json& estimate, const RowUnit& unit) {
+  if (!estimate.is_object()) return {{"there", false}};
+  const Json& ci = estimate.at("ci95");
+  const bool known_interval = ci.is_array() && ci[0].is_number() && ci[1].is_number();
+  const std::string grade = text_of(estimate, "identifiability");
+  return {{"there", true},
+          {"value", shown_in(estimate.at("value"), unit.si, 6)},
+          {"fitted", estimate.at("fitted")},
+          {"interval", known_interval},
+          {"low", shown_in(known_interval ? ci[0] : Json(), unit.si, 5)},
+          {"high", shown_in(known_interval ? ci[1] : Json(), unit.si, 5)},
+          {"doubtful", grade == "weak" || grade == "not_identifiable"},
+          {"grade", grade == "weak" ? "weak" : "not identifiable"}};
+}
+
+Json change_cell(const Json& difference) {
+  if (!difference.is_object()) return {{"there", false}};
+  const auto percent = number_of(difference, "percent");
+  const auto p = number_of(difference, "p_value_of_all");
+  const bool significant = p && difference.at("significant").get<bool>();
+  return {{"there", percent.has_value()},
+          {"percent", percent ? fmt::format("{:+.3g} %", *percent) : std::string()},
+          {"exact", shown_in(difference.at("difference"), 1.0).at("exact")},
+          {"judged", p.has_value()},
+          {"p", p ? p_value_text(*p) : std::string()},
+          {"class", !p            ? "none"
+                    : significant ? "warn"
+                                  : "good"},
+          {"word", significant ? "differs" : "not told apart"},
+          {"reason", text_of(difference, "reason")}};
+}
+
+/// Estimates that some result has; known values only where they differ.
+bool is_compared(const Json& parameter) {
+  for (const Json& estimate : parameter.at("estimates"))
+    if (estimate.is_object() && estimate.at("fitted").get<bool>()) return true;
+  for (const Json& difference : parameter.at("differences")) {
+    if (difference.is_object() && number_of(difference, "difference").value_or(0.0) != 0.0)
+      return true;
+  }
+  return false;
+}
+
+Json parameter_rows(const Json& parameters) {
+  Json rows = Json::array();
+  for (const Json& parameter : parameters) {
+    if (!is_compared(parameter)) continue;
+    const RowUnit unit = unit_of_estimates(parameter);
+    Json cells = Json::array();
+    const Json& estimates = parameter.at("estimates");
+    for (std::size_t i = 0; i < estimates.size(); ++i) {
+      Json cell{{"estimate", estimate_cell(estimates[i], unit)}};
+      cell["later"] = i > 0;
+      cell["change"] = change_cell(parameter.at("differences")[i]);
+      cells.push_back(std::move(cell));
+    }
+    rows.push_back({{"name", parameter_label(parameter)},
+                    {"unit", unit.name.empty() ? std::string("1") : unit.name},
+                    {"cells", std::move(cells)}});
+  }
+  return rows;
+}
+
+Trace intervals_trace() {
+  Trace trace;
+  trace.kind = Trace::Kind::intervals;
+  trace.style = "model";
+  return trace;
+}
+
+Trace points_trace() {
+  Trace trace;
+  trace.kind = Trace::Kind::points;
+  trace.style = "model";
+  return trace;
+}
+
+/// Each fitted parameter by result, with its interval.
+Json parameter_plots(const Json& parameters) {
+  Json plots = Json::array();
+  for (const Json& parameter : parameters) {
+    const RowUnit unit = unit_of_estimates(parameter);
+    Trace spans = intervals_trace();
+    Trace middles = points_trace();
+    double number = 0.0;
+    for (const Json& estimate : parameter.at("estimates")) {
+      number += 1.0;
+      if (!estimate.is_object() || !estimate.at("fitted").get<bool>()) continue;
+      const auto value = number_of(estimate, "value");
+      if (!value) continue;
+      middles.x.push_back(number);
+      middles.y.push_back(*value / unit.si);
+      const Json& ci = estimate.at("ci95");
+      if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number()) continue;
+      spans.x.push_back(number);
+      spans.y.push_back(ci[0].get<double>() / unit.si);
+      spans.upper.push_back(ci[1].get<double>() / unit.si);
+    }
+    if (middles.x.size() < 2) continue;
+    Plot plot;
+    plot.title = fmt::format("{} by result, with 95 % intervals", parameter_label(parameter));
+    plot.x_label = "result";
+    plot.y_label = unit.name.empty()
+                       ? parameter_label(parameter)
+                       : fmt::format("{} [{}]", parameter_label(parameter), unit.name);
+    plot.width = 300.0;
+    plot.height = 170.0;
+    plot.whole_x = true;
+    plot.traces = {std::move(spans), std::move(middles)};
+    plots.push_back({{"svg_html", svg(plot)}});
+  }
+  return plots;
+}
+
+std::string date_of(double day) {
+  const std::chrono::sys_days date{std::chrono::days(static_cast<int>(std::floor(day)))};
+  const std::chrono::year_month_day whole{date};
+  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(whole.year()),
+                     static_cast<unsigned>(whole.month()), static_cast<unsigned>(whole.day()));
+}
+
+struct TrendAxis {
+  const char* key;
+  const char* trend;
+  const char* slope;
+  const char* per_unit;
+};
+constexpr std::array kTrendAxes{
+    TrendAxis{"day", "along_date", "slope_per_day", "per day"},
+    TrendAxis{"temperature_k", "along_temperature", "slope_per_k", "per K"}};
+
+Plot trend_plot(const Json& series, const TrendAxis& axis) {
+  const bool by_day = std::string_view(axis.key) == "day";
+  Trace spans = intervals_trace();
+  Trace middles = points_trace();
+  double first = HUGE_VAL;
+  double last = -HUGE_VAL;
+  for (const Json& point : series.at("points")) {
+    const auto at = number_of(point, axis.key);
+    const auto value = number_of(point, "value");
+    if (!at || !value) continue;
+    first = std::min(first, *at);
+    last = std::max(last, *at);
+    middles.x.push_back(*at);
+    middles.y.push_back(*value);
+    const Json& ci = point.at("ci95");
+    if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number()) continue;
+    spans.x.push_back(*at);
+    spans.y.push_back(ci[0].get<double>());
+    spans.upper.push_back(ci[1].get<double>());
+  }
+  const double origin = by_day ? first : 273.15;
+  Plot plot;
+  plot.title = fmt::format("Leakage coefficient of {} along {}", text_of(series, "of"),
+                           by_day ? "dates" : "temperatures");
+  plot.x_label = by_day ? "days since " + (std::isfinite(first) ? date_of(first) : std::string())
+                        : std::string("temperature [°C]");
+  plot.y_label = "leakage coefficient, " + text_of(series, "of");
+  plot.width = 460.0;
+  plot.height = 220.0;
+  const Json& trend = series.at(axis.trend);
+  if (const auto slope = number_of(trend, axis.slope)) {
+    Trace line;
+    line.style = "reference";
+    line.x = {first, last};
+    for (const double x : line.x) line.y.push_back(*number_of(trend, "intercept") + *slope * x);
+    plot.traces.push_back(std::move(line));
+  }
+  plot.traces.push_back(std::move(spans));
+  plot.traces.push_back(std::move(middles));
+  for (Trace& trace : plot.traces)
+    for (double& x : trace.x) x -= origin;
+  return plot;
+}
+
+bool differ(const Json& points, const char* key) {
+  std::optional<double> first;
+  for (const Json& point : points) {
+    const auto value = number_of(point, key);
+    if (!value) continue;
+    if (first && *first != *value) return true;
+    first = value;
+  }
+  return false;
+}
+
+Json trend_views(const Json& trends) {
+  Json list = Json::array();
+  for (const Json& series : trends) {
+    for (const TrendAxis& axis : kTrendAxes) {
+      if (!differ(series.at("points"), axis.key)) continue;
+      const Json& trend = series.at(axis.trend);
+      const auto slope = number_of(trend, axis.slope);
+      std::string reading = text_of(trend, "reason");
+      if (slope) {
+        const double p = trend.at("p_value").get<double>();
+        reading = fmt::format(
+            "{}: {:+.3g} {} ({:.3g} to {:.3g}), {}: {}.", text_of(series, "of"), *slope,
+            axis.per_unit, trend.at("ci95")[0].get<double>(), trend.at("ci95")[1].get<double>(),
+            p_value_text(p),
+            trend.at("significant").get<bool>() ? "the leak changes" : "no change can be told");
+      }
+      list.push_back({{"svg_html", svg(trend_plot(series, axis))}, {"reading", reading}});
+    }
+  }
+  return list;
+}
+
+Json score_rows_of(const Json& conditions) {
+  Json rows = Json::array();
+  for (const Json& condition : conditions) {
+    Json cells = Json::array();
+    for (const Json& score : condition.at("scores")) {
+      Json cell{{"there", score.is_object()}};
+      if (score.is_object()) {
+        const bool failed = !text_of(score, "failure").empty();
+        cell["failed"] = failed;
+        cell["badge"] = badge(failed ? Json("FAIL") : score.at("verdict"));
+        cell["rho2"] = shown_agreement(score.at("rho2"));
+        cell["error"] = shown_in(score.at("absolute_error_percent"), 1.0, 3);
+        cell["use"] = text_of(score, "use");
+      }
+      cells.push_back(std::move(cell));
+    }
+    rows.push_back({{"condition", text_of(condition, "id")},
+                    {"channel", text_of(condition, "channel")},
+                    {"cells", std::move(cells)}});
+  }
+  return rows;
+}
+
+Json metric_rows(const Json& comparison) {
+  Json rows = Json::array();
+  for (const Json& metric : comparison.at("metrics")) {
+    const Json& against = metric.at("against_first");
+    for (std::size_t i = 1; i < against.size(); ++i) {
+      if (!against[i].is_object()) continue;
+      rows.push_back({{"channel", text_of(metric, "channel")},
+                      {"metric", text_of(metric, "metric")},
+                      {"result", text_of(comparison.at("results")[i], "name")},
+                      {"conditions", fmt::format("{}", against[i].at("conditions").get<int>())},
+                      {"first", shown_in(against[i].at("mean_of_first"), 1.0, 7)},
+                      {"mean", shown_in(against[i].at("mean"), 1.0, 7)},
+                      {"better", fmt::format("{}", against[i].at("better").get<int>())},
+                      {"worse", fmt::format("{}", against[i].at("worse").get<int>())},
+                      {"p", p_value_text(against[i].at("p_value").get<double>())},
+                      {"significant", against[i].at("significant").get<bool>()}});
+    }
+  }
+  return rows;
+}
+
+Json result_rows(const Json& results) {
+  Json rows = Json::array();
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const Json& result = results[i];
+    const std::string status = text_of(result, "status");
+    Json mark = badge(result.at("verdict"));
+    if (status != "converged") mark = {{"word", status}, {"mark", "✕"}, {"class", "bad"}};
+    const Json& dates = result.at("dates");
+    const Json& kelvin = result.at("temperature_k");
+    std::string when;
+    if (dates.is_array()) {
+      when = dates[0].get<std::string>();
+      if (dates[0] != dates[1]) when += " to " + dates[1].get<std::string>();
+    }
+    std::string warm;
+    if (kelvin.is_array()) {
+      warm = fmt::format("{:.4g}", kelvin[0].get<double>() - 273.15);
+      if (kelvin[0] != kelvin[1])
+        warm += fmt::format(" to {:.4g}", kelvin[1].get<double>() - 273.15);
+    }
+    rows.push_back({{"number", fmt::format("{}", i + 1)},
+                    {"name", text_of(result, "name")},
+                    {"badge", std::move(mark)},
+                    {"campaign", text_of(result, "campaign")},
+                    {"conditions", fmt::format("{}", result.at("conditions").get<int>())},
+                    {"dates", when},
+                    {"temperature", warm},
+                    {"cost", shown_in(result.at("cost"), 1.0, 6)},
+                    {"residuals", fmt::format("{}", result.at("residual_count").get<long>())},
+                    {"chi", shown_in(result.at("reduced_chi_square"), 1.0, 4)},
+                    {"command", text_of(result, "command")}});
+  }
+  return rows;
+}
+
+/// Changes that are significant for all parameters together, the surest first.
+std::vector<std::pair<double, std::string>> changes_of(const Json& comparison) {
+  std::vector<std::pair<double, std::string>> changes;
+  for (const Json& parameter : comparison.at("parameters")) {
+    for (std::size_t i = 1; i < parameter.at("differences").size(); ++i) {
+      const Json cell = change_cell(parameter.at("differences")[i]);
+      if (!cell.at("there").get<bool>() || cell.at("class") != "warn") continue;
+      changes.emplace_back(
+          parameter.at("differences")[i].at("p_value").get<double>(),
+          fmt::format("{} differs in {}: {} ({})", parameter_label(parameter),
+                      text_of(comparison.at("results")[i], "name"),
+                      cell.at("percent").get<std::string>(), cell.at("p").get<std::string>()));
+    }
+  }
+  std::stable_sort(changes.begin(), changes.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  return changes;
+}
+
+}  // namespace
+
+Json comparison_headline(const Json& comparison) {
+  const Json& results = comparison.at("results");
+  const auto changes = changes_of(comparison);
+  const bool failed = text_of(comparison, "status") != "done";
+  Json view =
+      failed ? make_headline("FAILED", "✕", "bad",
+                             "Fewer than two results are usable: there is nothing to compare.")
+      : changes.empty()
+          ? make_headline(
+                "COMPARED", "○", "none",
+                fmt::format("{} results; no parameter differs significantly.", results.size()))
+          : make_headline("DIFFERENT", "!", "warn",
+                          fmt::format("{} results; estimates that differ significantly: {}.",
+                                      results.size(), changes.size()));
+  for (const Json& result : results) {
+    if (text_of(result, "status") == "converged") continue;
+    view["class"] = "bad";
+    add_reason(view,
+               fmt::format("{}: {}: {}", text_of(result, "name"), text_of(result, "status"),
+                           text_of(result, "message")),
+               "results");
+  }
+  for (const auto& change : changes) add_reason(view, change.second, "estimates");
+  return view;
+}
+
+Json comparison_view(const Json& comparison) {
+  Json view;
+  view["results"] = result_rows(comparison.at("results"));
+  view["parameters"] = parameter_rows(comparison.at("parameters"));
+  view["plots"] = parameter_plots(comparison.at("parameters"));
+  view["metrics"] = metric_rows(comparison);
+  view["has_metrics"] = !view["metrics"].empty();
+  view["conditions"] = score_rows_of(comparison.at("conditions"));
+  view["trends"] = trend_views(comparison.at("leak_trends"));
+  view["has_trends"] = !view["trends"].empty();
+  view["records"] = Json::array();
+  std::size_t shared = 0;
+  for (const Json& record : comparison.at("records")) {
+    Json cells = Json::array();
+    bool everywhere = true;
+    for (const Json& in : record.at("in")) {
+      cells.push_back(in.get<bool>() ? "✓" : "–");
+      everywhere = everywhere && in.get<bool>();
+    }
+    shared += everywhere ? 1 : 0;
+    view["records"].push_back({{"file", text_of(record, "file")},
+                               {"sha256", text_of(record, "sha256")},
+                               {"cells", std::move(cells)}});
+  }
+  view["record_count"] = fmt::format("{}", view["records"].size());
+  view["shared"] = fmt::format("{}", shared);
+  view["warnings"] = comparison.at("warnings");
+  view["has_warnings"] = !comparison.at("warnings").empty();
+  return view;
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,86 @@
+#include "report/stored.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "common/error.hpp"
+#include "common/parallel.hpp"
+#include "report/page_parts.hpp"
+
+namespace rigcal::report {
+namespace {
+
+std::string path_in(const std::string& where, const std::string& name) {
+  return (std::filesystem::path(where) / name).string();
+}
+
+}  // namespace
+
+ReadFile files_in(const std::filesystem::path& folder) {
+  return [folder](const std::filesystem::path& path) -> std::optional<std::string> {
+    std::ifstream stream(folder / path, std::ios::binary | std::ios::ate);
+    if (!stream) return std::nullopt;
+    std::string text(static_cast<std::size_t>(stream.tellg()), '\0');
+    stream.seekg(0);
+    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+    if (!stream) return std::nullopt;
+    return text;
+  };
+}
+
+Json load_json(const ReadFile& read, const std::string& where, const std::string& name) {
+  const auto text = read(name);
+  if (!text)
+    throw InputError({path_in(where, name)}, "is missing; make the result again with this version");
+  try {
+    return Json::parse(*text);
+  } catch (const Json::parse_error& error) {
+    throw InputError({path_in(where, name)}, fmt::format("this is not JSON: {}", error.what()));
+  }
+}
+
+Calibration load_calibration(const ReadFile& read, const std::string& where, int threads) {
+  Calibration stored;
+  const bool has_fit = read("fit.json").has_value();
+  const bool both = has_fit && read("validation.json").has_value();
+  if (both) stored.curves = load_json(read, where, "residual_tests.json");
+  const bool is_fit = both ? text_of(stored.curves, "of") == "rigcal.fit/1" : has_fit;
+  stored.file = is_fit ? "fit.json" : "validation.json";
+  stored.result = load_json(read, where, stored.file);
+  stored.of_tables =
+      stored.result.is_object() && text_of(stored.result, "of") == "published tables";
+  if (stored.of_tables) return stored;
+  if (!both) stored.curves = load_json(read, where, "residual_tests.json");
+  const Json& conditions = stored.result.at("conditions");
+  stored.series.resize(conditions.size());
+  parallel_for(conditions.size(), threads, [&](std::size_t i) {
+    const std::string name = "residuals/" + text_of(conditions[i], "id") + ".csv";
+    if (const auto text = read(name)) stored.series[i] = parse_table(*text, path_in(where, name));
+  });
+  return stored;
+}
+
+LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
+  LeakTableFiles stored;
+  stored.table = load_json(read, where, "leak_table.json");
+  for (const Json& feature : stored.table.at("features")) {
+    const std::string level = text_of(feature, "level");
+    const std::string name = "levels/" + level_file(level);
+    if (const auto series = read(name))
+      stored.levels.emplace_back(level, parse_table(*series, path_in(where, name)));
+  }
+  return stored;
+}
+
+std::string level_file(const std::string& level) {
+  std::string name;
+  for (const char c : level) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '.' || c == '-';
+    name += plain ? c : '_';
+  }
+  return name + ".csv";
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,55 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "tests/apps/cli_fixture.hpp"
+#include "tests/apps/schema.hpp"
+
+using namespace rigcal::test;
+using Catch::Contains;
+using nlohmann::json;
+
+TEST_CASE("compare: fits of two days, one with another valve", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "before", "--quiet"}).exit_code == 0);
+  folder.write("other.toml", kCampaign + edited(kSynthetic, {{"\"3e-5 m/V\"", "\"2.5e-5 m/V\""}}));
+  REQUIRE(folder.run({"synthesize", "other.toml", "--seed", "5", "--out", "other"}).exit_code == 0);
+  REQUIRE(folder.run({"fit", "other/campaign.toml", "--out", "after", "--quiet"}).exit_code == 0);
+
+  const Outcome outcome = folder.run({"compare", "before", "after", "--out", "both"});
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("valve_gain") && Contains("before") && Contains("after"));
+  const json result = json::parse(folder.read("both/comparison.json"));
+  CHECK(violations(result, "comparison") == "");
+  bool found = false;
+  for (const json& parameter : result["parameters"]) {
+    if (parameter["key"] != "valve_gain") continue;
+    found = true;
+    const json fit = json::parse(folder.read("before/fit.json"));
+    for (const json& p : fit["parameters"]) {
+      if (p["key"] == "valve_gain") CHECK(parameter["estimates"][0]["value"] == p["value"]);
+    }
+    // 3e-5 against 2.5e-5 m/V at 0.01 mm of noise.
+    CHECK(parameter["differences"][1]["significant"] == true);
+    CHECK(parameter["differences"][1]["difference"].get<double>() < 0.0);
+  }
+  CHECK(found);
+  const std::string page = folder.read("both/report.html");
+  CHECK_THAT(page, Contains("<title>DIFFERENT") && Contains("id=\"estimates\""));
+  REQUIRE(folder.run({"report", "both"}).exit_code == 0);
+  CHECK(folder.read("both/report.html") == page);
+}
+
+TEST_CASE("compare: what it refuses", "[apps]") {
+  const CommandFolder folder;
+  folder.write("empty/note.txt", "");
+  Outcome outcome = folder.run({"compare", "empty"});
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("two result folders"));
+  outcome = folder.run({"compare", "empty", "empty"});
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("neither fit.json nor validation.json"));
+  CHECK_FALSE(folder.has("rigcal-out"));
+}

@@ -1,0 +1,134 @@
+#include "report/comparison.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "tests/report/stored_fixture.hpp"
+
+using Catch::Contains;
+using Catch::WithinRel;
+using rigcal::report::Compared;
+using rigcal::report::comparison_json;
+using rigcal::report::comparison_text;
+using rigcal::report::Json;
+using rigcal::report::Provenance;
+using rigcal::test::stored_result;
+
+namespace {
+
+/// A fit with this mass and leak, of records of its own.
+Compared compared_fit(const std::string& name, double mass_kg, double leak,
+                      double day_shift = 0.0) {
+  Json result = stored_result();
+  result["parameters"][0]["value"] = mass_kg;
+  result["parameters"][0]["standard_error"] = 0.3;
+  result["parameters"][0]["robust_standard_error"] = 0.4;
+  Json leakage = result["parameters"][0];
+  leakage["name"] = leakage["key"] = "leakage_coefficient";
+  leakage["unit"] = "1";
+  leakage["value"] = leak;
+  leakage["standard_error"] = 0.01;
+  leakage["robust_standard_error"] = nullptr;
+  leakage["ci95"] = {leak - 0.02, leak + 0.02};
+  result["parameters"].push_back(leakage);
+  const int day = 1 + static_cast<int>(day_shift);
+  result["conditions"][0]["date"] =
+      "2026-03-" + std::string(day < 10 ? "0" : "") + std::to_string(day);
+  result["conditions"][0]["temperature_k"] = 311.15;
+  result["provenance"]["inputs"] = {{{"path", "campaign.toml"}, {"sha256", "same"}},
+                                    {{"path", "a/sine_1.csv"}, {"sha256", name}}};
+  return {name, name + "/fit.json", result};
+}
+
+}  // namespace
+
+TEST_CASE("comparison: the difference with the larger errors of both", "[report]") {
+  const Json json =
+      comparison_json({compared_fit("before", 85.0, 0.3), compared_fit("after", 86.0, 0.3)}, {});
+  CHECK(json["status"] == "done");
+  const Json& mass = json["parameters"][0];
+  CHECK(mass["name"] == "mass_kg");
+  const Json& difference = mass["differences"][1];
+  CHECK(difference["difference"] == 1.0);
+  CHECK_THAT(difference["percent"].get<double>(), WithinRel(100.0 / 85.0, 1e-12));
+  CHECK_THAT(difference["standard_error"].get<double>(), WithinRel(std::hypot(0.4, 0.4), 1e-12));
+  // 2 Phi(-1.7678), by an independent computation (scipy.stats.norm)
+  CHECK_THAT(difference["p_value"].get<double>(), WithinRel(0.07709987174, 1e-8));
+  // The smallest of two, the other being 1.
+  CHECK_THAT(difference["p_value_of_all"].get<double>(), WithinRel(2.0 * 0.07709987174, 1e-8));
+  CHECK(difference["significant"] == false);
+}
+
+TEST_CASE("comparison: a clear change is significant, and said so", "[report]") {
+  const Json json =
+      comparison_json({compared_fit("before", 85.0, 0.3), compared_fit("after", 85.0, 0.6)}, {});
+  CHECK(json["parameters"][2]["differences"][1]["significant"] == true);
+  CHECK(json["parameters"][1]["differences"][1]["reason"] == "known in both");
+  const std::string text = comparison_text(json, {});
+  CHECK_THAT(text, Contains("+100 %") && Contains("*"));
+  CHECK_THAT(text, Contains("before") && Contains("after"));
+}
+
+TEST_CASE("comparison: fits to the same records are not independent", "[report]") {
+  Compared other = compared_fit("other", 90.0, 0.3);
+  other.result["provenance"]["inputs"][1]["sha256"] = "one";
+  const Json json = comparison_json({compared_fit("one", 85.0, 0.3), other}, {});
+  const Json& difference = json["parameters"][0]["differences"][1];
+  CHECK(difference["significant"].is_null());
+  CHECK_THAT(difference["reason"].get<std::string>(), Contains("same records"));
+  CHECK(json["records"].size() == 1);
+  CHECK(json["records"][0]["in"] == Json::array({true, true}));
+  CHECK(json["warnings"].dump().find("share records") != std::string::npos);
+}
+
+TEST_CASE("comparison: a failed fit has no values, and two usable ones are needed", "[report]") {
+  Compared failed = compared_fit("failed", 85.0, 0.3);
+  failed.result["status"] = "failed";
+  failed.result["message"] = "no start could be simulated";
+  const Json json = comparison_json({compared_fit("good", 85.0, 0.3), failed}, {});
+  CHECK(json["status"] == "failed");
+  CHECK(json["parameters"][0]["estimates"][1]["value"].is_null());
+  CHECK(json["conditions"][0]["scores"][1]["rho2"].is_null());
+  CHECK(json["parameters"][0]["differences"][1]["reason"] == "one has no value");
+  CHECK_THAT(comparison_text(json, {}), Contains("failed: no start could be simulated"));
+}
+
+TEST_CASE("comparison: the leak's trend along dates", "[report]") {
+  const Json json =
+      comparison_json({compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
+                       compared_fit("c", 85.0, 0.40, 10), compared_fit("d", 85.0, 0.44, 14)},
+                      {});
+  const Json& along = json["leak_trends"][0]["along_date"];
+  CHECK_THAT(along["slope_per_day"].get<double>(), WithinRel(0.01, 1e-9));
+  CHECK(along["significant"] == true);
+  CHECK(along["points"] == 4);
+  const Json& warm = json["leak_trends"][0]["along_temperature"];
+  CHECK(warm["slope_per_k"].is_null());
+  CHECK_THAT(warm["reason"].get<std::string>(), Contains("same place"));
+  // 2026-03-01 is day 20513 since 1970-01-01.
+  CHECK(json["leak_trends"][0]["points"][0]["day"] == 20513.0);
+}
+
+TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
+  Compared worse = compared_fit("worse", 85.0, 0.3);
+  worse.result["conditions"][0]["metrics"]["position"]["rho2"] = 0.9;
+  Json extra = worse.result["conditions"][0];
+  extra["id"] = "only here";
+  worse.result["conditions"].push_back(extra);
+  const Json json = comparison_json({compared_fit("good", 85.0, 0.3), worse}, {});
+  const Json& rho2 = json["metrics"][0]["against_first"][1];
+  CHECK(json["metrics"][0]["metric"] == "rho2");
+  CHECK(rho2["conditions"] == 1);
+  CHECK(rho2["worse"] == 1);
+  CHECK(rho2["mean"] == 0.9);
+  CHECK(rho2["p_value"] == 1.0);
+  CHECK(json["conditions"][1]["scores"][0].is_null());
+}
+
+TEST_CASE("comparison: names the file that is no result of this version", "[report]") {
+  Compared broken = compared_fit("broken", 85.0, 0.3);
+  broken.result.erase("conditions");
+  CHECK_THROWS_WITH(comparison_json({compared_fit("good", 85.0, 0.3), broken}, {}),
+                    Contains("broken/fit.json") && Contains("conditions"));
+}
