@@ -12,6 +12,9 @@ namespace {
 constexpr double kWeak = 0.2;
 constexpr double kNotIdentifiable = 1.0;
 constexpr double kRobustMatters = 1.5;
+/// Below this share of the noise residuals tell of the simulation or of a wrong `sd`, not of noise.
+constexpr double kSuspiciouslySmall = 0.5;
+constexpr double kLeastFreedom = 3.0;
 constexpr double kStrongCorrelation = 0.9;
 
 using datasets::Scope;
@@ -80,6 +83,25 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
                          partner(problem, found, unknown)));
 }
 
+/// Half width of the interval to believe.
+double half_width_of(const Problem& problem, const Uncertainty& found, std::size_t unknown,
+                     FittedParameter& parameter) {
+  const double plain = *parameter.standard_error;
+  const double robust = parameter.robust_standard_error.value_or(0.0);
+  const double freedom = found.robust_freedom[unknown];
+  const double least = kSuspiciouslySmall * problem.least_noise();
+  const bool unresolved = found.reduced_chi_square < least * least;
+  if (!(robust > 0.0) || unresolved || (freedom < kLeastFreedom && robust < plain))
+    return student_t(found.freedom) * plain;
+  if (robust > kRobustMatters * plain) {
+    add_reason(parameter,
+               fmt::format("residuals are correlated in time: the robust error, on which the "
+                           "interval rests, is {:.2g} times the plain one",
+                           robust / plain));
+  }
+  return student_t(freedom) * robust;
+}
+
 void describe_bound(const Problem& problem, const OptimumCheck& check, std::size_t unknown,
                     FittedParameter& parameter) {
   const BoundSide side = check.side[unknown];
@@ -129,13 +151,7 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
     parameter.standard_error = found.standard_error[j];
     parameter.robust_standard_error = found.robust_standard_error[j];
     if (parameter.standard_error) {
-      double error = *parameter.standard_error;
-      const double robust = parameter.robust_standard_error.value_or(0.0);
-      if (robust > kRobustMatters * error) {
-        add_reason(parameter, "residuals are correlated in time: interval from the robust error");
-        error = robust;
-      }
-      const double half_width = found.student_t * error;
+      const double half_width = half_width_of(problem, found, j, parameter);
       parameter.ci95 = {std::max(spec.lower, parameter.value - half_width),
                         std::min(spec.upper, parameter.value + half_width)};
       grade(problem, found, j, half_width, parameter);

@@ -14,9 +14,10 @@ namespace rigcal::calib {
 /// is identified, in words where it is not.
 ///
 /// Interval: value +- t SE, cut at the limits beyond which the parameter makes no sense; with the
-/// robust error where that exceeds the plain one by half. Half width above 20 % of the value: weak;
-/// above 100 %, or no standard error: not identifiable. Where zero is arbitrary (offsets, initial
-/// states, bounds of both signs) or the effect may be absent (leakage, friction, optional terms
+/// robust error, and with the plain one where residuals are below half of what the noise is known
+/// to be, or too few to tell their own correlation. Half width above 20 % of the value: weak; above
+/// 100 %, or no standard error: not identifiable. Where zero is arbitrary (offsets, initial states,
+/// bounds of both signs) or the effect may be absent (leakage, friction, optional terms
 /// whose interval reaches 0) the half width is judged against the width of the bounds instead.
 std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Evaluation& optimum,
                                                const OptimumCheck& check,

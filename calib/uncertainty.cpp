@@ -18,47 +18,35 @@ namespace {
 /// of it, or in how far it moves in the box against the one that moves most.
 constexpr double kFelt = 0.1;
 constexpr double kMoves = 0.05;
-constexpr Eigen::Index kBlocksPerCondition = 20;
 
-/// J^T r of each block of one condition, shape (blocks, unknowns).
-Eigen::MatrixXd block_gradients(const Problem& problem, std::size_t condition,
-                                std::span<const double> z) {
-  ConditionRows rows;
-  if (!evaluate_condition(problem, condition, z, nullptr, &rows).ok()) return {};
-  const auto samples = static_cast<Eigen::Index>(problem.conditions[condition].rows.size());
-  const auto channels = static_cast<Eigen::Index>(problem.conditions[condition].channels.size());
-  const Eigen::Index blocks = std::min(kBlocksPerCondition, samples);
-  const std::vector<int>& acting = problem.map.acting(condition);
-  Eigen::MatrixXd gradients =
-      Eigen::MatrixXd::Zero(blocks, static_cast<Eigen::Index>(problem.map.unknowns().size()));
-  for (Eigen::Index b = 0; b < blocks; ++b) {
-    const Eigen::Index first = b * samples / blocks;
-    const Eigen::Index count = (b + 1) * samples / blocks - first;
-    for (Eigen::Index k = 0; k < channels; ++k) {
-      const Eigen::VectorXd g = rows.jacobian.middleRows(k * samples + first, count).transpose() *
-                                rows.residual.segment(k * samples + first, count);
-      for (std::size_t j = 0; j < acting.size(); ++j)
-        gradients(b, acting[j]) += g(static_cast<Eigen::Index>(j));
-    }
-  }
-  return gradients;
+/// Scores of every condition in coordinates of `root`; empty where one cannot be simulated.
+std::vector<ScoreRows> score_rows(const Problem& problem, std::span<const double> z,
+                                  const Eigen::MatrixXd& root, int threads) {
+  std::vector<ScoreRows> result(problem.conditions.size());
+  parallel_for(result.size(), threads, [&](std::size_t i) {
+    ConditionRows rows;
+    if (!evaluate_condition(problem, i, z, nullptr, &rows).ok()) return;
+    result[i].jacobian = rows.jacobian * root(problem.map.acting(i), Eigen::all);
+    result[i].residual = std::move(rows.residual);
+    result[i].channels = static_cast<Eigen::Index>(problem.conditions[i].channels.size());
+  });
+  const bool whole = std::all_of(result.begin(), result.end(),
+                                 [](const ScoreRows& rows) { return rows.residual.size() > 0; });
+  return whole ? result : std::vector<ScoreRows>{};
 }
 
-/// Sum over blocks of g g^T with the small-sample factor; empty where there are too few blocks.
-Eigen::MatrixXd meat(const Problem& problem, std::span<const double> z, int threads) {
-  std::vector<Eigen::MatrixXd> gradients(problem.conditions.size());
-  parallel_for(gradients.size(), threads,
-               [&](std::size_t i) { gradients[i] = block_gradients(problem, i, z); });
-  const auto unknowns = static_cast<Eigen::Index>(z.size());
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(unknowns, unknowns);
-  Eigen::Index blocks = 0;
-  for (const Eigen::MatrixXd& each : gradients) {
-    if (each.size() == 0) return {};
-    sum += each.transpose() * each;
-    blocks += each.rows();
+/// J^T J of the priors in coordinates of `root`.
+Eigen::MatrixXd prior_information(const Problem& problem, std::span<const double> z,
+                                  const Eigen::MatrixXd& root) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(root.cols(), root.cols());
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const auto& prior = problem.map.unknowns()[j].prior;
+    if (!prior) continue;
+    const auto row = static_cast<Eigen::Index>(j);
+    const double weight = problem.map.slope(static_cast<int>(j), z[j]) / prior->sd;
+    sum += weight * weight * root.row(row).transpose() * root.row(row);
   }
-  if (blocks <= unknowns) return {};
-  return sum * (static_cast<double>(blocks) / static_cast<double>(blocks - unknowns));
+  return sum;
 }
 
 std::string null_reason(const Problem& problem, const std::vector<std::size_t>& members,
@@ -74,6 +62,11 @@ std::string null_reason(const Problem& problem, const std::vector<std::size_t>& 
 }
 
 }  // namespace
+
+double student_t(double freedom) {
+  const boost::math::students_t distribution(std::max(freedom, 1.0));
+  return boost::math::quantile(distribution, 0.975);
+}
 
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int threads) {
   const Linearisation system = linearise(problem, optimum);
@@ -93,16 +86,18 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
   result.singular_values.assign(s.data(), s.data() + s.size());
   const double freedom = static_cast<double>(problem.residual_count() - rank);
   result.reduced_chi_square = freedom > 0.0 ? 2.0 * optimum.cost / freedom : 0.0;
-  result.student_t = boost::math::quantile(boost::math::students_t(std::max(freedom, 1.0)), 0.975);
+  result.freedom = std::max(freedom, 1.0);
 
   // (J^T J)^-1 in the unit box, on the directions that the data determine.
   const Eigen::MatrixXd root =
       inverse_norms.asDiagonal() * V.leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal();
   const Eigen::MatrixXd inverse = root * root.transpose();
   const double sigma = std::sqrt(std::max(1.0, result.reduced_chi_square));
-  const Eigen::MatrixXd scatter = meat(problem, optimum.z, threads);
-  Eigen::MatrixXd sandwich;
-  if (scatter.size() > 0) sandwich = inverse * scatter * inverse;
+  const Eigen::MatrixXd priors = prior_information(problem, optimum.z, root);
+  if (rank > 0 && freedom > 0.0) {
+    const auto rows = score_rows(problem, optimum.z, root, threads);
+    result.scatter = score_scatter(rows, priors, root);
+  }
 
   // A parameter is named with those that share a null direction with it.
   std::vector<std::vector<std::size_t>> directions;
@@ -116,6 +111,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
   }
   result.standard_error.resize(optimum.z.size());
   result.robust_standard_error.resize(optimum.z.size());
+  result.robust_freedom.resize(optimum.z.size(), 0.0);
   result.reason.resize(optimum.z.size());
   result.correlation = Eigen::MatrixXd::Identity(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -134,8 +130,11 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
     }
     const double slope = problem.map.slope(static_cast<int>(j), optimum.z[u]);
     result.standard_error[u] = sigma * slope * std::sqrt(inverse(j, j));
-    if (sandwich.size() > 0)
-      result.robust_standard_error[u] = slope * std::sqrt(std::max(0.0, sandwich(j, j)));
+    if (!result.scatter.empty()) {
+      const RobustVariance robust = robust_variance(result.scatter, priors, root, j);
+      result.robust_standard_error[u] = slope * std::sqrt(std::max(0.0, robust.variance));
+      result.robust_freedom[u] = robust.freedom;
+    }
     for (Eigen::Index k = 0; k < n; ++k) {
       const double scale = std::sqrt(inverse(j, j) * inverse(k, k));
       if (k != j && scale > 0.0)
