@@ -12,6 +12,7 @@
 #include "calib/evaluator.hpp"
 #include "calib/identifiability.hpp"
 #include "calib/known_values.hpp"
+#include "calib/lack_of_fit.hpp"
 #include "calib/multi_start.hpp"
 #include "calib/scorecard.hpp"
 #include "calib/weights.hpp"
@@ -119,6 +120,29 @@ Evaluator::Options evaluator_options(const Campaign& campaign, const FitOptions&
   return result;
 }
 
+/// Akaike's and Schwarz's criteria. The noise is known, or was estimated from the residual: 2 cost
+/// is -2 ln(likelihood) but for a constant, of which correlated residuals tell only their share.
+void rate_model(const Uncertainty& spread, Fit& fit) {
+  const double residuals = std::max(1.0, static_cast<double>(fit.residual_count));
+  const double effective = spread.scatter.empty() ? residuals : spread.effective_samples;
+  const double weighed = 2.0 * fit.cost * std::min(1.0, effective / residuals);
+  fit.aic = weighed + 2.0 * spread.rank;
+  fit.bic = weighed + spread.rank * std::log(std::max(1.0, effective));
+}
+
+/// What the residuals say of the noise, and of the intervals that rest on it.
+void judge_residuals(const Problem& problem, const Uncertainty& spread, Fit& fit) {
+  fit.effective_samples = spread.effective_samples;
+  fit.lack_of_fit = lack_of_fit(problem, spread);
+  fit.misfit = misfit(fit.lack_of_fit);
+  fit.interval_advice = interval_advice(problem, spread, fit.lack_of_fit);
+  if (!spread.known.names.empty()) {
+    fit.interval_advice += fmt::format("; the errors hold those of known values: {}",
+                                       fmt::join(spread.known.names, ", "));
+  }
+  rate_model(spread, fit);
+}
+
 /// Solves a problem and describes what was found, all but the scores.
 Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options,
                          Fit& fit) {
@@ -154,6 +178,7 @@ Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOption
   fit.singular_values = spread.singular_values;
   fit.reduced_chi_square = spread.reduced_chi_square;
   fit.parameters = describe_unknowns(problem, found.optimum, found.result.check, spread);
+  judge_residuals(problem, spread, fit);
   add_correlation(problem, spread, fit);
   warn_of_noise(problem, spread, fit);
   warn_of_parameters(problem, fit.parameters, fit);
@@ -259,6 +284,18 @@ std::string_view to_string(Identifiability identifiability) {
       return "weak";
     case Identifiability::not_identifiable:
       return "not_identifiable";
+  }
+  return "";
+}
+
+std::string_view to_string(IntervalSource source) {
+  switch (source) {
+    case IntervalSource::none:
+      return "none";
+    case IntervalSource::standard_error:
+      return "standard_error";
+    case IntervalSource::robust_standard_error:
+      return "robust_standard_error";
   }
   return "";
 }

@@ -45,6 +45,10 @@ std::string_view to_string(FitStatus status);
 enum class Identifiability { identified, weak, not_identifiable };
 std::string_view to_string(Identifiability identifiability);
 
+/// What an interval rests on.
+enum class IntervalSource { none, standard_error, robust_standard_error };
+std::string_view to_string(IntervalSource source);
+
 /// One parameter in the result: fitted or known.
 struct FittedParameter {
   int index = 0;
@@ -60,9 +64,21 @@ struct FittedParameter {
   /// From the scatter of the residuals themselves: larger where they are correlated in time.
   std::optional<double> robust_standard_error;
   std::optional<std::pair<double, double>> ci95;
+  IntervalSource interval = IntervalSource::none;  ///< of ci95
   bool at_bound = false;
   Identifiability identifiability = Identifiability::identified;
   std::string reason;  ///< in words: why no error, why weak, at which bound
+};
+
+/// Model error of one channel of one condition against its pure error (lack_of_fit.hpp).
+struct LackOfFit {
+  std::string condition;
+  datasets::Channel channel = datasets::Channel::position;
+  double ratio = 0.0;         ///< variance of the residual over that of the pure error
+  double freedom = 0.0;       ///< effective degrees of freedom of the residual
+  double pure_freedom = 0.0;  ///< and of the pure error; infinite where `sd` states it
+  bool by_repeats = false;    ///< pure error from repeats; else from `sd`
+  double p = 1.0;             ///< probability of such a ratio, or a larger one, of noise alone
 };
 
 /// One start of a multi-start fit.
@@ -128,8 +144,13 @@ struct Fit {
   double reduced_chi_square = 0.0;  ///< 2 cost / (residuals - rank); about 1 if the noise is all
   long evaluations = 0;             ///< of all residuals
   double wall_seconds = 0.0;
-  double tolerance = 0.0;  ///< of the simulations
+  double tolerance = 0.0;          ///< of the simulations
+  double effective_samples = 0.0;  ///< residuals in independent ones; 0: not known
+  double aic = 0.0, bic = 0.0;  ///< with the effective samples; to compare models of one campaign
   std::vector<FittedParameter> parameters;
+  std::vector<LackOfFit> lack_of_fit;  ///< channels of known noise
+  std::optional<bool> misfit;          ///< the model leaves more than noise; absent: not known
+  std::string interval_advice;         ///< which interval to believe, and why
   std::vector<std::string> correlation_names;
   Eigen::MatrixXd correlation;  ///< shape (unknowns that have a standard error)^2
   int rank = 0;                 ///< of the scaled Jacobian at the optimum

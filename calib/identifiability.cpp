@@ -83,16 +83,19 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
                          partner(problem, found, unknown)));
 }
 
-/// Half width of the interval to believe.
-double half_width_of(const Problem& problem, const Uncertainty& found, std::size_t unknown,
-                     FittedParameter& parameter) {
+/// Half width of the interval to believe, and on what it rests.
+double choose_interval(const Problem& problem, const Uncertainty& found, std::size_t unknown,
+                       FittedParameter& parameter) {
   const double plain = *parameter.standard_error;
   const double robust = parameter.robust_standard_error.value_or(0.0);
   const double freedom = found.robust_freedom[unknown];
   const double least = kSuspiciouslySmall * problem.least_noise();
   const bool unresolved = found.reduced_chi_square < least * least;
-  if (!(robust > 0.0) || unresolved || (freedom < kLeastFreedom && robust < plain))
+  if (!(robust > 0.0) || unresolved || (freedom < kLeastFreedom && robust < plain)) {
+    parameter.interval = IntervalSource::standard_error;
     return student_t(found.freedom) * plain;
+  }
+  parameter.interval = IntervalSource::robust_standard_error;
   if (robust > kRobustMatters * plain) {
     add_reason(parameter,
                fmt::format("residuals are correlated in time: the robust error, on which the "
@@ -151,7 +154,7 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
     parameter.standard_error = found.standard_error[j];
     parameter.robust_standard_error = found.robust_standard_error[j];
     if (parameter.standard_error) {
-      const double half_width = half_width_of(problem, found, j, parameter);
+      const double half_width = choose_interval(problem, found, j, parameter);
       parameter.ci95 = {std::max(spec.lower, parameter.value - half_width),
                         std::min(spec.upper, parameter.value + half_width)};
       grade(problem, found, j, half_width, parameter);

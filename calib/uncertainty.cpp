@@ -93,10 +93,13 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
       inverse_norms.asDiagonal() * V.leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal();
   const Eigen::MatrixXd inverse = root * root.transpose();
   const double sigma = std::sqrt(std::max(1.0, result.reduced_chi_square));
+  result.known = known_uncertainty(problem, optimum.z, root, threads);
   const Eigen::MatrixXd priors = prior_information(problem, optimum.z, root);
   if (rank > 0 && freedom > 0.0) {
     const auto rows = score_rows(problem, optimum.z, root, threads);
     result.scatter = score_scatter(rows, priors, root);
+    for (const ScoreScatter& each : result.scatter)
+      result.effective_samples += each.effective_samples;
   }
 
   // A parameter is named with those that share a null direction with it.
@@ -129,10 +132,12 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
       continue;
     }
     const double slope = problem.map.slope(static_cast<int>(j), optimum.z[u]);
-    result.standard_error[u] = sigma * slope * std::sqrt(inverse(j, j));
+    const double carried = result.known.response.row(j).norm();
+    result.standard_error[u] = slope * std::hypot(sigma * std::sqrt(inverse(j, j)), carried);
     if (!result.scatter.empty()) {
       const RobustVariance robust = robust_variance(result.scatter, priors, root, j);
-      result.robust_standard_error[u] = slope * std::sqrt(std::max(0.0, robust.variance));
+      result.robust_standard_error[u] =
+          slope * std::hypot(std::sqrt(std::max(0.0, robust.variance)), carried);
       result.robust_freedom[u] = robust.freedom;
     }
     for (Eigen::Index k = 0; k < n; ++k) {

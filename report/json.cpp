@@ -9,6 +9,7 @@
 #include "metrics/metric_table.hpp"
 #include "report/groups.hpp"
 #include "report/residual_tests_json.hpp"
+#include "report/trust_json.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -57,6 +58,7 @@ Json parameter_json(const calib::FittedParameter& p, const model::ParameterSpec&
   json["robust_standard_error"] = number(p.robust_standard_error);
   json["ci95"] =
       p.ci95 ? Json::array({number(p.ci95->first), number(p.ci95->second)}) : Json(nullptr);
+  json["ci95_from"] = p.ci95 ? Json(std::string(to_string(p.interval))) : Json(nullptr);
   json["at_bound"] = p.at_bound;
   json["identifiability"] =
       p.fitted ? Json(std::string(to_string(p.identifiability))) : Json(nullptr);
@@ -293,6 +295,7 @@ Json result_json(const Result& result) {
   json["rank"] = fit.rank;
   json["singular_values"] = numbers(fit.singular_values);
   json["reduced_chi_square"] = fit.rank > 0 ? number(fit.reduced_chi_square) : Json(nullptr);
+  add_trust(fit, json);
   json["validity"] = validity_json(result);
   json["acceptance"] = acceptance_json(result.campaign);
   json["conditions"] = Json::array();

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/problem.hpp"
+
+namespace rigcal::calib {
+
+/// Known values of the rig whose uncertainty the campaign states (`prior` and `prior_sd` of a
+/// parameter that is not fitted), and what it does to the estimates.
+struct KnownUncertainty {
+  std::vector<std::string> names;
+  /// Change of the unknowns in the unit box per standard deviation of each, to first order:
+  /// -(J^T J)^-1 J^T J_known sd. Shape (unknowns, names).
+  Eigen::MatrixXd response;
+};
+
+/// @param root  R with R R^T = (J^T J)^-1 on the directions that the data determine
+KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
+                                   const Eigen::MatrixXd& root, int threads);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/fit.hpp"
+#include "calib/problem.hpp"
+#include "calib/uncertainty.hpp"
+
+namespace rigcal::calib {
+
+/// Compares the residual of every channel of known noise with its pure error: F = variance of the
+/// residual / variance of the mean of the repeats. Both come from records that are correlated in
+/// time, so each sum of n squares counts n / (1 + 2 sum rho_h^2) degrees of freedom, rho_h the
+/// autocorrelation of the residual (Bartlett; that of the noise too if the model is right), times
+/// repeats - 1 for the pure error; without end where the campaign's `sd` tells it. The variance of
+/// the residual is that of its noise model, corrected for what the fit has removed.
+///
+/// @param found  with scatter; without, there is no test
+std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& found);
+
+/// Whether the model leaves more than noise, at 5 % for all tests together (Bonferroni). Empty
+/// without a test.
+std::optional<bool> misfit(const std::vector<LackOfFit>& tests);
+
+/// Which interval to believe, and why, in words.
+std::string interval_advice(const Problem& problem, const Uncertainty& found,
+                            const std::vector<LackOfFit>& tests);
+
+}  // namespace rigcal::calib

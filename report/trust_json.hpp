@@ -1,0 +1,11 @@
+#pragma once
+
+#include "report/json.hpp"
+
+namespace rigcal::report {
+
+/// What fit.json says of how far a fit can be trusted, beside the errors of its parameters: noise
+/// and model error, information criteria, which interval to believe. Adds keys.
+void add_trust(const calib::Fit& fit, Json& json);
+
+}  // namespace rigcal::report

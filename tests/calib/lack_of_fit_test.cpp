@@ -1,0 +1,112 @@
+#include "calib/lack_of_fit.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "datasets/noise.hpp"
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::Contains;
+using Catch::WithinRel;
+using datasets::Channel;
+using datasets::Waveform;
+
+Twin one_square() {
+  Twin twin;
+  twin.free("mass", 80.0, 10.0, 500.0);
+  twin.free("valve_gain", 0.04e-3, 0.01e-3, 0.2e-3);
+  twin.add("square", Waveform::square, 2.0, 0.01);
+  return twin;
+}
+
+/// Records of five repeats with AR(1) noise, as averaging would give them.
+std::vector<datasets::Record> repeated(Twin twin, double rho, std::uint64_t seed) {
+  const double sd = twin.noise_sd_m;
+  twin.noise_sd_m = 0.0;
+  auto records = twin.records(800, 1000.0, 1);
+  datasets::Series& series = records[0].channels[Channel::position];
+  std::vector<std::vector<double>> noise;
+  for (int repeat = 0; repeat < 5; ++repeat) {
+    auto stream = datasets::random_stream(seed, {std::to_string(repeat)});
+    noise.push_back(datasets::ar1_noise(stream, series.mean.size(), sd, rho));
+  }
+  double total = 0.0;
+  for (std::size_t t = 0; t < series.mean.size(); ++t) {
+    double mean = 0.0;
+    double squares = 0.0;
+    for (const auto& each : noise) mean += each[t] / 5.0;
+    for (const auto& each : noise) squares += (each[t] - mean) * (each[t] - mean) / 4.0;
+    series.mean[t] += mean;
+    series.sd.push_back(std::sqrt(squares));
+    total += squares;
+  }
+  series.repeats = 5;
+  series.pooled_sd = std::sqrt(total / static_cast<double>(series.mean.size()));
+  series.sd_of_mean = series.pooled_sd / std::sqrt(5.0);
+  return records;
+}
+
+}  // namespace
+
+TEST_CASE("lack of fit: noise alone, white or not, is no misfit", "[calib]") {
+  const Twin twin = one_square();
+  for (const double rho : {0.0, 0.9}) {
+    const Fit found = fit(twin.campaign, repeated(twin, rho, 7), {});
+    REQUIRE(found.lack_of_fit.size() == 1);
+    const LackOfFit& test = found.lack_of_fit[0];
+    CAPTURE(rho, test.ratio, test.freedom, test.p);
+    CHECK(test.by_repeats);
+    CHECK(test.p > 0.001);  // a false alarm once in a thousand
+    CHECK_FALSE(found.misfit.value());
+    CHECK_THAT(test.pure_freedom, WithinRel(4.0 * test.freedom, 1e-12));
+    CHECK((rho > 0.0) == (found.effective_samples < 400.0));
+    CHECK_THAT(found.interval_advice, Contains(rho > 0.0 ? "believe the robust" : "agree"));
+  }
+}
+
+TEST_CASE("lack of fit: unmodelled friction is a misfit, and the advice says so", "[calib]") {
+  Twin twin = one_square();
+  datasets::ParameterSetting friction;
+  friction.index = Twin::index("coulomb_friction");
+  friction.value = 300.0;
+  twin.truth.parameters.push_back(friction);
+  const Fit found = fit(twin.campaign, repeated(twin, 0.0, 7), {});
+  REQUIRE(found.lack_of_fit.size() == 1);
+  CHECK(found.lack_of_fit[0].ratio > 1.5);
+  CHECK(found.misfit.value());
+  CHECK_THAT(found.interval_advice, Contains("more than noise") && Contains("square"));
+}
+
+TEST_CASE("lack of fit: without repeats the stated sd is compared, without it nothing", "[calib]") {
+  const Twin twin = one_square();
+  const Fit stated = fit(twin.campaign, twin.records(500, 500.0, 3), {});
+  REQUIRE(stated.lack_of_fit.size() == 1);
+  CHECK_FALSE(stated.lack_of_fit[0].by_repeats);
+  CHECK(std::isinf(stated.lack_of_fit[0].pure_freedom));
+  const Fit unknown =
+      fit(twin.campaign, twin.records(500, 500.0, 3, model::InitialState::rest, false), {});
+  CHECK(unknown.lack_of_fit.empty());
+  CHECK_FALSE(unknown.misfit.has_value());
+  CHECK_THAT(unknown.interval_advice, Contains("cannot be told apart"));
+}
+
+TEST_CASE("known values: their uncertainty is carried into the errors", "[calib]") {
+  Twin twin = one_square();
+  const auto records = twin.records(500, 500.0, 3);
+  const double alone =
+      parameter(fit(twin.campaign, records, {}), "valve_gain").standard_error.value();
+  // Servo flow goes as valve gain times the root of the supply pressure: 10 % of the one is 5 % of
+  // the other, which is far more than the noise leaves.
+  twin.setting("supply_pressure").prior = datasets::Prior{6.2e6, 0.62e6};
+  const Fit carried = fit(twin.campaign, records, {});
+  const FittedParameter& gain = parameter(carried, "valve_gain");
+  CHECK(alone < 0.005 * gain.value);
+  CHECK_THAT(gain.standard_error.value(), WithinRel(0.05 * gain.value, 0.2));
+  CHECK_THAT(gain.robust_standard_error.value(), WithinRel(0.05 * gain.value, 0.2));
+  CHECK_THAT(carried.interval_advice, Contains("supply_pressure_pa"));
+}
+
+}  // namespace rigcal::calib
