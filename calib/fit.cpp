@@ -9,12 +9,15 @@
 #include <stdexcept>
 
 #include "calib/acceptance.hpp"
+#include "calib/combinations.hpp"
 #include "calib/evaluator.hpp"
 #include "calib/identifiability.hpp"
+#include "calib/information.hpp"
 #include "calib/known_values.hpp"
 #include "calib/lack_of_fit.hpp"
 #include "calib/multi_start.hpp"
 #include "calib/scorecard.hpp"
+#include "calib/symmetry.hpp"
 #include "calib/weights.hpp"
 
 namespace rigcal::calib {
@@ -143,6 +146,36 @@ void judge_residuals(const Problem& problem, const Uncertainty& spread, Fit& fit
   rate_model(spread, fit);
 }
 
+/// Says what would tell parameters that the records do not; the first few, since each is tried.
+void add_remedies(const Problem& problem, const Evaluation& optimum,
+                  std::vector<FittedParameter>& parameters) {
+  constexpr int kMostTried = 4;
+  int tried = 0;
+  const Eigen::MatrixXd jacobian = linearise(problem, optimum).jacobian;
+  for (std::size_t j = 0; j < parameters.size() && tried < kMostTried; ++j) {
+    FittedParameter& each = parameters[j];
+    if (each.nuisance || each.identifiability != Identifiability::not_identifiable) continue;
+    ++tried;
+    const auto words = remedies(problem, optimum.z, jacobian, j);
+    if (!words.empty()) each.reason += fmt::format("; {} would tell it", fmt::join(words, ", or "));
+  }
+}
+
+/// What is fixed where single parameters are not, and what would tell them.
+void judge_identifiability(const Problem& problem, const Evaluation& optimum,
+                           const Uncertainty& spread, int threads, Fit& fit) {
+  fit.combinations = name_combinations(problem, optimum.z, spread, fit.parameters);
+  const double sigma = std::sqrt(std::max(1.0, spread.reduced_chi_square));
+  const auto symmetry =
+      scaling_symmetry(problem, optimum.z, linearise(problem, optimum).jacobian, sigma, threads);
+  if (symmetry) {
+    grade_symmetric(*symmetry, fit.parameters);
+    const std::string words = describe(problem, *symmetry);
+    if (!words.empty()) fit.combinations.insert(fit.combinations.begin(), words);
+  }
+  add_remedies(problem, optimum, fit.parameters);
+}
+
 /// Solves a problem and describes what was found, all but the scores.
 Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options,
                          Fit& fit) {
@@ -178,10 +211,12 @@ Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOption
   fit.singular_values = spread.singular_values;
   fit.reduced_chi_square = spread.reduced_chi_square;
   fit.parameters = describe_unknowns(problem, found.optimum, found.result.check, spread);
+  judge_identifiability(problem, found.optimum, spread, options.threads, fit);
   judge_residuals(problem, spread, fit);
   add_correlation(problem, spread, fit);
   warn_of_noise(problem, spread, fit);
   warn_of_parameters(problem, fit.parameters, fit);
+  fit.warnings.insert(fit.warnings.end(), fit.combinations.begin(), fit.combinations.end());
   return found.optimum;
 }
 

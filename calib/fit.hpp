@@ -152,8 +152,9 @@ struct Fit {
   std::optional<bool> misfit;          ///< the model leaves more than noise; absent: not known
   std::string interval_advice;         ///< which interval to believe, and why
   std::vector<std::string> correlation_names;
-  Eigen::MatrixXd correlation;  ///< shape (unknowns that have a standard error)^2
-  int rank = 0;                 ///< of the scaled Jacobian at the optimum
+  std::vector<std::string> combinations;  ///< what is fixed where single parameters are not
+  Eigen::MatrixXd correlation;            ///< shape (unknowns that have a standard error)^2
+  int rank = 0;                           ///< of the scaled Jacobian at the optimum
   std::vector<double> singular_values;
   std::vector<StartReport> starts;
   int best_start = 0;

@@ -18,39 +18,46 @@ std::vector<datasets::ParameterSetting> uncertain_settings(const Problem& proble
   return result;
 }
 
-/// Weighted sensitivities of one condition to the known values times their standard deviations;
-/// empty where it cannot be simulated.
+/// Sensitivities to known values times their standard deviations.
 Eigen::MatrixXd known_rows(const Problem& problem, std::size_t i, std::span<const double> z,
                            const std::vector<datasets::ParameterSetting>& settings) {
-  const ProblemCondition& condition = problem.conditions[i];
-  std::vector<int> free;
-  for (const auto& setting : settings) free.push_back(setting.index);
-  model::SimulationOptions options;
-  options.method = problem.campaign->simulation.method;
-  options.tolerance = problem.tolerance;
-  options.max_seconds = problem.campaign->simulation.max_seconds;
-  const auto run = model::simulate(condition.rig, problem.values_at(i, z), free, condition.inputs,
-                                   condition.fit_times(), condition.outputs, options);
-  if (!run.ok()) return {};
-  const auto samples = static_cast<Eigen::Index>(condition.rows.size());
-  const auto channels = static_cast<Eigen::Index>(condition.channels.size());
-  Eigen::MatrixXd rows(samples * channels, static_cast<Eigen::Index>(settings.size()));
-  for (Eigen::Index k = 0; k < channels; ++k) {
-    const auto channel = static_cast<std::size_t>(k);
-    for (Eigen::Index t = 0; t < samples; ++t) {
-      const auto sample = static_cast<Eigen::Index>(condition.rows[static_cast<std::size_t>(t)]);
-      rows.row(k * samples + t) =
-          run.sensitivities[channel].row(sample) / condition.channels[channel].sd;
-    }
-  }
+  std::vector<int> indices;
+  for (const auto& setting : settings) indices.push_back(setting.index);
+  Eigen::MatrixXd rows = known_sensitivities(problem, i, z, indices);
+  if (rows.size() == 0) return rows;
   for (std::size_t p = 0; p < settings.size(); ++p) {
-    const bool own = known_in(*problem.campaign, *condition.condition, settings[p].index);
+    const bool own =
+        known_in(*problem.campaign, *problem.conditions[i].condition, settings[p].index);
     rows.col(static_cast<Eigen::Index>(p)) *= own ? 0.0 : settings[p].prior->sd;
   }
   return rows;
 }
 
 }  // namespace
+
+Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t condition,
+                                    std::span<const double> z, const std::vector<int>& indices) {
+  const ProblemCondition& each = problem.conditions[condition];
+  model::SimulationOptions options;
+  options.method = problem.campaign->simulation.method;
+  options.tolerance = problem.tolerance;
+  options.max_seconds = problem.campaign->simulation.max_seconds;
+  const auto run = model::simulate(each.rig, problem.values_at(condition, z), indices, each.inputs,
+                                   each.fit_times(), each.outputs, options);
+  if (!run.ok()) return {};
+  const auto samples = static_cast<Eigen::Index>(each.rows.size());
+  const auto channels = static_cast<Eigen::Index>(each.channels.size());
+  Eigen::MatrixXd rows(samples * channels, static_cast<Eigen::Index>(indices.size()));
+  for (Eigen::Index k = 0; k < channels; ++k) {
+    const auto channel = static_cast<std::size_t>(k);
+    for (Eigen::Index t = 0; t < samples; ++t) {
+      const auto sample = static_cast<Eigen::Index>(each.rows[static_cast<std::size_t>(t)]);
+      rows.row(k * samples + t) =
+          run.sensitivities[channel].row(sample) / each.channels[channel].sd;
+    }
+  }
+  return rows;
+}
 
 KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
                                    const Eigen::MatrixXd& root, int threads) {

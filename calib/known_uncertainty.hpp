@@ -18,6 +18,13 @@ struct KnownUncertainty {
   Eigen::MatrixXd response;
 };
 
+/// Weighted sensitivities of one condition to parameters that are known in it: shape (channels *
+/// samples that count, indices), per SI unit; empty where it cannot be simulated.
+///
+/// @param indices  rows of the parameter table, none of them free in the condition
+Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t condition,
+                                    std::span<const double> z, const std::vector<int>& indices);
+
 /// @param root  R with R R^T = (J^T J)^-1 on the directions that the data determine
 KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
                                    const Eigen::MatrixXd& root, int threads);

@@ -196,10 +196,14 @@ std::vector<double> Problem::start() const {
   return z;
 }
 
+const model::ParameterSpec& Problem::spec(std::size_t unknown) const {
+  const auto row = static_cast<std::size_t>(map.unknowns()[unknown].index);
+  return model::parameter_table(campaign->rig.plant)[row];
+}
+
 std::string Problem::name(std::size_t unknown) const {
   const Unknown& u = map.unknowns()[unknown];
-  const auto row = static_cast<std::size_t>(u.index);
-  const auto name = model::parameter_table(campaign->rig.plant)[row].name;
+  const auto name = spec(unknown).name;
   switch (u.scope) {
     case datasets::Scope::rig:
       break;

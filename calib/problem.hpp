@@ -61,6 +61,8 @@ struct Problem {
   std::vector<double> to_physical(std::span<const double> z) const;
   /// Unit-box coordinates of the start values.
   std::vector<double> start() const;
+  /// Row of the parameter table of an unknown.
+  const model::ParameterSpec& spec(std::size_t unknown) const;
   /// "mass_kg", "leakage_coefficient (leak level 33 %)".
   std::string name(std::size_t unknown) const;
 };

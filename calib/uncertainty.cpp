@@ -93,6 +93,9 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
       inverse_norms.asDiagonal() * V.leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal();
   const Eigen::MatrixXd inverse = root * root.transpose();
   const double sigma = std::sqrt(std::max(1.0, result.reduced_chi_square));
+  const double least = std::max(s(0) * rank_threshold(problem.tolerance), 1e-150);
+  const Eigen::VectorXd lengths = sigma * s.cwiseMax(least).cwiseInverse();
+  result.spread = inverse_norms.asDiagonal() * V * lengths.asDiagonal();
   result.known = known_uncertainty(problem, optimum.z, root, threads);
   const Eigen::MatrixXd priors = prior_information(problem, optimum.z, root);
   if (rank > 0 && freedom > 0.0) {

@@ -24,9 +24,12 @@ struct Uncertainty {
   std::vector<double> singular_values;  ///< of the Jacobian with columns of length 1, descending
   double reduced_chi_square = 0.0;      ///< 2 cost / (residuals - rank)
   double freedom = 1.0;                 ///< degrees of freedom of standard_error, at least 1
-  KnownUncertainty known;               ///< is in all errors
-  std::vector<ScoreScatter> scatter;    ///< per condition; empty: no robust errors
-  double effective_samples = 0.0;       ///< of all conditions and channels
+  /// S with S S^T the covariance in the unit box; directions that the data do not determine have
+  /// the least singular value that would count. Shape (unknowns)^2.
+  Eigen::MatrixXd spread;
+  KnownUncertainty known;             ///< is in all errors
+  std::vector<ScoreScatter> scatter;  ///< per condition; empty: no robust errors
+  double effective_samples = 0.0;     ///< of all conditions and channels
 };
 
 /// Standard errors from the Gauss-Newton matrix, sigma^2 (J^T J)^-1, at all unknowns, those at a

@@ -29,6 +29,7 @@ void add_trust(const calib::Fit& fit, Json& json) {
   json["effective_samples"] =
       fit.effective_samples > 0.0 ? number(fit.effective_samples) : Json(nullptr);
   json["interval_advice"] = fit.interval_advice;
+  json["combinations"] = fit.combinations;
   json["lack_of_fit"] = lack_of_fit_json(fit);
   json["aic"] = solved ? number(fit.aic) : Json(nullptr);
   json["bic"] = solved ? number(fit.bic) : Json(nullptr);

@@ -1,0 +1,17 @@
+#include "common/unit_product.hpp"
+
+#include <catch2/catch.hpp>
+#include <stdexcept>
+
+namespace rigcal {
+
+TEST_CASE("unit_product: quotients and roots in base units", "[common]") {
+  CHECK(unit_product("kg", "N s/m", -1.0) == "s");
+  CHECK(unit_product("Pa", "Pa", -1.0) == "1");
+  CHECK(unit_product("m/V", "Pa", 0.5) == "kg^0.5 m^0.5/(s V)");
+  CHECK(unit_product("m3/(s Pa)", "1", 1.0) == "m4 s/kg");
+  CHECK(unit_product("rad/s", "1", 2.0) == "1/s");
+  CHECK_THROWS_AS(unit_product("furlong", "1", 1.0), std::invalid_argument);
+}
+
+}  // namespace rigcal
