@@ -93,7 +93,7 @@ Solved solve(const Problem& data, const calib::FitOptions& options) {
   settings.threads = options.threads;
   calib::Evaluator evaluator(solved.problem, settings);
   solved.found = calib::multi_start(solved.problem, evaluator, options);
-  solved.evaluations = evaluator.evaluations();
+  solved.evaluations = evaluator.ledger().evaluations;
   return solved;
 }
 

@@ -31,6 +31,22 @@ bool is_at(const Evaluation& evaluation, std::span<const double> z) {
 
 }  // namespace
 
+Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
+                       const std::atomic<bool>* cancel, std::optional<double> tolerance) {
+  Evaluation evaluation;
+  evaluation.z.assign(z.begin(), z.end());
+  evaluation.conditions.resize(problem.conditions.size());
+  parallel_for(problem.conditions.size(), threads, [&](std::size_t i) {
+    evaluation.conditions[i] = evaluate_condition(problem, i, z, cancel, nullptr, tolerance);
+  });
+  evaluation.ok = std::all_of(evaluation.conditions.begin(), evaluation.conditions.end(),
+                              [](const ConditionEvaluation& each) { return each.ok(); });
+  if (!evaluation.ok) return evaluation;
+  evaluation.cost = prior_cost(problem, z);
+  for (const ConditionEvaluation& each : evaluation.conditions) evaluation.cost += each.cost();
+  return evaluation;
+}
+
 const Evaluation& Evaluator::evaluate(std::span<const double> z) {
   if (!last_.conditions.empty() && is_at(last_, z)) {
     keep_best();  // it may be of an earlier start
@@ -40,30 +56,19 @@ const Evaluation& Evaluator::evaluate(std::span<const double> z) {
     last_ = best_;
     return last_;
   }
-  Evaluation evaluation;
-  evaluation.z.assign(z.begin(), z.end());
-  evaluation.conditions.resize(problem_.conditions.size());
   if (aborted()) {
-    for (ConditionEvaluation& each : evaluation.conditions)
+    last_ = {};
+    last_.z.assign(z.begin(), z.end());
+    last_.conditions.resize(problem_.conditions.size());
+    for (ConditionEvaluation& each : last_.conditions)
       each.status = model::SimulationStatus::cancelled;
-    last_ = std::move(evaluation);
     return last_;
   }
   const double tolerance =
       coarse_ ? std::max(kCoarseTolerance, problem_.tolerance) : problem_.tolerance;
-  parallel_for(problem_.conditions.size(), options_.threads, [&](std::size_t i) {
-    evaluation.conditions[i] =
-        evaluate_condition(problem_, i, z, options_.cancel, nullptr, tolerance);
-  });
-  ++evaluations_;
-  evaluation.ok = std::all_of(evaluation.conditions.begin(), evaluation.conditions.end(),
-                              [](const ConditionEvaluation& each) { return each.ok(); });
-  if (evaluation.ok) {
-    evaluation.cost = prior_cost(problem_, z);
-    for (const ConditionEvaluation& each : evaluation.conditions) evaluation.cost += each.cost();
-  } else {
-    record_failures(evaluation);
-  }
+  Evaluation evaluation = evaluate_at(problem_, z, options_.threads, options_.cancel, tolerance);
+  ++ledger_.evaluations;
+  if (!evaluation.ok) record_failures(evaluation);
   last_ = std::move(evaluation);
   keep_best();
   return last_;
@@ -113,8 +118,8 @@ void Evaluator::record_failures(const Evaluation& evaluation) {
   for (std::size_t i = 0; i < evaluation.conditions.size(); ++i) {
     const ConditionEvaluation& each = evaluation.conditions[i];
     if (each.ok() || each.status == model::SimulationStatus::cancelled) continue;
-    ++failure_count_;
-    if (++kept_[{i, each.status}] > kFailuresKept) continue;
+    ++ledger_.failure_count;
+    if (++ledger_.kept[{i, each.status}] > kFailuresKept) continue;
     SimulationFailure failure;
     failure.condition = problem_.conditions[i].condition->id;
     for (const int j : problem_.map.acting(i)) {
@@ -125,7 +130,7 @@ void Evaluator::record_failures(const Evaluation& evaluation) {
     failure.time_s = each.failed_at_s;
     failure.reason = each.reason;
     failure.start = start_;
-    failures_.push_back(std::move(failure));
+    ledger_.failures.push_back(std::move(failure));
   }
 }
 

@@ -14,6 +14,21 @@
 
 namespace rigcal::calib {
 
+/// What an evaluator has counted.
+struct EvaluationLedger {
+  long evaluations = 0;
+  long failure_count = 0;
+  std::vector<SimulationFailure> failures;  ///< the first few of each condition and kind
+  std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept;
+};
+
+/// Every condition at z, whatever signals and limits say.
+///
+/// @param tolerance  of the simulations, if not the problem's
+Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
+                       const std::atomic<bool>* cancel = nullptr,
+                       std::optional<double> tolerance = std::nullopt);
+
 /// Evaluates all conditions of a problem in parallel and hands the results to Ceres' cost
 /// functions.
 ///
@@ -28,6 +43,7 @@ class Evaluator final : public ceres::EvaluationCallback {
     int threads = 1;
     const std::atomic<bool>* cancel = nullptr;
     std::optional<Clock::time_point> deadline;
+    std::optional<long> max_evaluations;
   };
 
   /// Borrows the problem, whose weights may change between solves: call forget() then.
@@ -59,16 +75,19 @@ class Evaluator final : public ceres::EvaluationCallback {
   /// The evaluation that PrepareForEvaluation made.
   const Evaluation& prepared() const { return last_; }
 
-  /// A signal or the time limit ends the fit.
+  /// A signal, the time limit or that of evaluations ends the fit.
   bool out_of_time() const { return options_.deadline && Clock::now() >= *options_.deadline; }
+  bool out_of_evaluations() const {
+    return options_.max_evaluations && ledger_.evaluations >= *options_.max_evaluations;
+  }
   bool cancelled() const;
-  bool aborted() const { return cancelled() || out_of_time(); }
+  bool aborted() const { return cancelled() || out_of_time() || out_of_evaluations(); }
   /// Throws what an evaluation threw inside Ceres.
   void rethrow() const;
 
-  long evaluations() const { return evaluations_; }
-  long failure_count() const { return failure_count_; }
-  const std::vector<SimulationFailure>& failures() const { return failures_; }
+  const EvaluationLedger& ledger() const { return ledger_; }
+  /// Goes on counting from there, as after a resumed fit.
+  void set_ledger(EvaluationLedger ledger) { ledger_ = std::move(ledger); }
 
  private:
   void keep_best();
@@ -82,10 +101,7 @@ class Evaluator final : public ceres::EvaluationCallback {
   std::exception_ptr error_;
   bool coarse_ = false;
   int start_ = 1;
-  long evaluations_ = 0;
-  long failure_count_ = 0;
-  std::vector<SimulationFailure> failures_;
-  std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept_;
+  EvaluationLedger ledger_;
 };
 
 }  // namespace rigcal::calib

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "calib/acceptance.hpp"
+#include "calib/basins.hpp"
 #include "calib/combinations.hpp"
 #include "calib/evaluator.hpp"
 #include "calib/identifiability.hpp"
@@ -115,6 +116,7 @@ Evaluator::Options evaluator_options(const Campaign& campaign, const FitOptions&
   Evaluator::Options result;
   result.threads = options.threads;
   result.cancel = options.cancel;
+  result.max_evaluations = options.max_evaluations;
   const auto limit_s = options.max_seconds ? options.max_seconds : campaign.fit.max_seconds;
   if (limit_s) {
     result.deadline = began + std::chrono::duration_cast<Clock::duration>(
@@ -195,9 +197,9 @@ Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOption
                               options.starts, fit.message);
   }
   fit.best_start = found.best;
-  fit.evaluations = evaluator.evaluations();
-  fit.failures = evaluator.failures();
-  fit.failure_count = evaluator.failure_count();
+  fit.evaluations = evaluator.ledger().evaluations;
+  fit.failures = evaluator.ledger().failures;
+  fit.failure_count = evaluator.ledger().failure_count;
   fit.residual_count = problem.residual_count();
   fit.tolerance = problem.tolerance;
   if (!found.optimum.ok) {
@@ -211,6 +213,8 @@ Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOption
   fit.singular_values = spread.singular_values;
   fit.reduced_chi_square = spread.reduced_chi_square;
   fit.parameters = describe_unknowns(problem, found.optimum, found.result.check, spread);
+  fit.basins = basins(fit.starts, fit.parameters);
+  fit.agreement = agreement_of(fit.starts, fit.basins, std::max(1.0, fit.reduced_chi_square));
   judge_identifiability(problem, found.optimum, spread, options.threads, fit);
   judge_residuals(problem, spread, fit);
   add_correlation(problem, spread, fit);
@@ -247,6 +251,8 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
   Evaluator evaluator(problem, evaluator_options(campaign, options, began));
   FitOptions once = options;
   once.starts = 1;
+  once.resume = nullptr;
+  once.checkpoint = nullptr;
   std::vector<double> z = problem.start();
   if (problem.map.unknowns().empty()) {
     fit.status = FitStatus::converged;
@@ -293,6 +299,7 @@ void FitOptions::validate() const {
   require(starts >= 1, "starts must be at least 1");
   require(threads >= 1, "threads must be at least 1");
   require(max_iterations >= 0, "max_iterations must not be negative");
+  require(!max_evaluations || *max_evaluations > 0, "max_evaluations must be positive");
   require(!max_seconds || *max_seconds > 0.0, "max_seconds must be positive");
   require(function_tolerance > 0.0, "function_tolerance must be positive");
   require(gradient_tolerance > 0.0, "gradient_tolerance must be positive");

@@ -18,17 +18,22 @@
 
 namespace rigcal::calib {
 
+struct Checkpoint;  // checkpoint.hpp
+
 /// What a fit needs beside the campaign and its records.
 struct FitOptions {
   int starts = 1;            ///< 1: the campaign's start values; more: latin hypercube around them
   std::uint64_t seed = 1;    ///< of the latin hypercube
   int threads = 1;           ///< results are the same bits for any number
   int max_iterations = 200;  ///< per start
-  std::optional<double> max_seconds;  ///< of all starts together; beyond: status `stopped`
-  double function_tolerance = 1e-10;  ///< |d cost| / cost of Ceres
+  std::optional<long> max_evaluations;  ///< of all residuals, all starts; beyond: `stopped`
+  std::optional<double> max_seconds;    ///< of all starts together; beyond: status `stopped`
+  double function_tolerance = 1e-10;    ///< |d cost| / cost of Ceres
   double gradient_tolerance = 1e-10;
   double parameter_tolerance = 1e-9;
-  const std::atomic<bool>* cancel = nullptr;  ///< ends the fit with the best so far
+  const Checkpoint* resume = nullptr;                 ///< goes on from there
+  std::function<void(const Checkpoint&)> checkpoint;  ///< told after every start that is finished
+  const std::atomic<bool>* cancel = nullptr;          ///< ends the fit with the best so far
   /// Told of every iteration: start (from 1), iteration, cost, relative change of cost, seconds.
   std::function<void(int, int, double, double, double)> progress;
 
@@ -91,6 +96,13 @@ struct StartReport {
   int iterations = 0;
   FitStatus status = FitStatus::failed;
   std::string message;
+};
+
+/// Converged starts that ended at one point.
+struct Basin {
+  double cost = 0.0;           ///< least of its starts
+  std::vector<int> starts;     ///< numbers, by cost
+  std::vector<double> values;  ///< SI, of its best start
 };
 
 /// A simulation that failed during the fit (first few of each kind are kept, all are counted).
@@ -158,6 +170,8 @@ struct Fit {
   std::vector<double> singular_values;
   std::vector<StartReport> starts;
   int best_start = 0;
+  std::vector<Basin> basins;  ///< by cost
+  std::string agreement;      ///< of the starts, in words; empty for a single one
   std::vector<SimulationFailure> failures;
   long failure_count = 0;
   std::vector<std::string> warnings;

@@ -3,6 +3,9 @@
 #include <boost/random/mersenne_twister.hpp>
 #include <numeric>
 
+#include "calib/checkpoint.hpp"
+#include "common/error.hpp"
+
 namespace rigcal::calib {
 namespace {
 
@@ -32,6 +35,30 @@ bool better(const StartReport& a, const StartReport& b) {
   return a_converged != b_converged ? a_converged : a.final_cost < b.final_cost;
 }
 
+/// The state after the starts of a checkpoint; evaluates the best point again.
+MultiStart resumed(const Problem& problem, Evaluator& evaluator, const FitOptions& options) {
+  const Checkpoint& from = *options.resume;
+  MultiStart result;
+  result.starts = from.starts;
+  result.best = from.best;
+  evaluator.set_ledger(from.ledger);
+  if (from.starts.empty()) return result;
+  const bool any = from.best > 0;
+  const StartReport& report = from.starts[any ? static_cast<std::size_t>(from.best) - 1 : 0];
+  result.result.status = report.status;
+  result.result.message = report.message;
+  result.result.iterations = report.iterations;
+  if (!any) return result;
+  if (from.best_z.size() == problem.map.unknowns().size())
+    result.optimum = evaluate_at(problem, from.best_z, options.threads);
+  if (!result.optimum.ok) {
+    throw InputError({"checkpoint"},
+                     "its best point cannot be simulated: expected one of this fit");
+  }
+  result.result.check = check_optimum(problem, result.optimum);
+  return result;
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> latin_hypercube(std::size_t points, std::size_t dimensions,
@@ -55,8 +82,9 @@ std::vector<std::vector<double>> latin_hypercube(std::size_t points, std::size_t
 
 MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options) {
   MultiStart result;
+  if (options.resume != nullptr) result = resumed(problem, evaluator, options);
   const auto points = start_points(problem, options);
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  for (std::size_t i = result.starts.size(); i < points.size(); ++i) {
     if (i > 0 && evaluator.aborted()) break;
     const int number = static_cast<int>(i) + 1;
     evaluator.begin_start(number);
@@ -86,7 +114,11 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
       result.result = solved;
     }
     result.starts.push_back(std::move(report));
+    // A start that was cut short is made again.
+    if (options.checkpoint && !evaluator.aborted())
+      options.checkpoint({result.starts, result.best, result.optimum.z, evaluator.ledger()});
   }
+  evaluator.be_coarse(false);  // a last start that failed, or none that was left, leaves it coarse
   return result;
 }
 

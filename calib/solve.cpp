@@ -132,6 +132,10 @@ ceres::Solver::Summary call_ceres(const Problem& problem, Evaluator& evaluator,
 std::string stop_reason(const Evaluator& evaluator, int iterations) {
   if (evaluator.cancelled()) return "stopped on request";
   if (evaluator.out_of_time()) return "stopped at the time limit";
+  if (evaluator.out_of_evaluations()) {
+    return fmt::format("stopped after {} evaluations, the most allowed",
+                       evaluator.ledger().evaluations);
+  }
   return fmt::format("stopped after {} iterations, the most allowed, before it converged",
                      iterations);
 }

@@ -22,6 +22,19 @@ Json lack_of_fit_json(const calib::Fit& fit) {
   return json;
 }
 
+Json basins_json(const calib::Fit& fit) {
+  Json list = Json::array();
+  for (const calib::Basin& basin : fit.basins) {
+    Json json;
+    json["cost"] = number(basin.cost);
+    json["starts"] = basin.starts;
+    json["values"] = Json::array();
+    for (const double value : basin.values) json["values"].push_back(number(value));
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 }  // namespace
 
 void add_trust(const calib::Fit& fit, Json& json) {
@@ -31,6 +44,8 @@ void add_trust(const calib::Fit& fit, Json& json) {
   json["interval_advice"] = fit.interval_advice;
   json["combinations"] = fit.combinations;
   json["lack_of_fit"] = lack_of_fit_json(fit);
+  json["basins"] = basins_json(fit);
+  json["agreement"] = fit.agreement;
   json["aic"] = solved ? number(fit.aic) : Json(nullptr);
   json["bic"] = solved ? number(fit.bic) : Json(nullptr);
 }

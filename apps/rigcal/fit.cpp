@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/rigcal/checkpoint_file.hpp"
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/outcome.hpp"
@@ -23,6 +24,9 @@ struct FitRequest {
   CampaignOptions common;
   std::optional<int> starts;
   std::uint64_t seed = 1;
+  bool resume = false;
+  std::optional<double> max_time_s;
+  std::optional<long> max_evaluations;
 };
 
 ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
@@ -32,11 +36,19 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
   settings.starts = options.starts.value_or(settings.starts);
   settings.seed = options.seed;
+  settings.max_evaluations = options.max_evaluations;
+  if (options.max_time_s) settings.max_seconds = options.max_time_s;
   report::Provenance provenance{invocation.command, options.seed, recorded(options.common),
                                 report::hash_inputs(campaign, records)};
   provenance.options.emplace_back("starts", fmt::format("{}", settings.starts));
   stop_if(invocation.cancel);
   report::require_writable(options.common.out);
+
+  CheckpointFile checkpoint(options.common.out, provenance);
+  const auto earlier = options.resume ? checkpoint.read() : std::nullopt;
+  if (earlier) settings.resume = &*earlier;
+  if (settings.starts > 1)
+    settings.checkpoint = [&](const calib::Checkpoint& reached) { checkpoint.keep(reached); };
 
   calib::Fit fit;
   {
@@ -44,8 +56,10 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
     settings.progress = std::ref(progress);
     fit = calib::fit(campaign, records, settings);
   }
-  return write_and_print(options.common,
-                         {report::ResultKind::fit, campaign, records, fit, provenance});
+  const ExitCode code = write_and_print(
+      options.common, {report::ResultKind::fit, campaign, records, fit, provenance});
+  checkpoint.finish(fit.status);
+  return code;
 }
 
 }  // namespace
@@ -59,6 +73,14 @@ Run add_fit(CLI::App& verb) {
   verb.add_option("--seed", options->seed, "Seed of the further starts")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  verb.add_flag("--resume", options->resume,
+                "Go on where a fit of the same inputs and options was stopped or killed");
+  verb.add_option("--max-time", options->max_time_s,
+                  "Stop after so many seconds (default: the campaign's, or none)")
+      ->check(CLI::PositiveNumber);
+  verb.add_option("--max-evaluations", options->max_evaluations,
+                  "Stop after so many evaluations of all conditions")
+      ->check(CLI::PositiveNumber);
   return [options](const Invocation& invocation) { return run_fit(*options, invocation); };
 }
 

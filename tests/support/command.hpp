@@ -82,6 +82,20 @@ class CommandFolder {
     return finish(process);
   }
 
+  /// Runs the command and kills it once a file of its working folder holds `sign`; returns how it
+  /// ended, which is by itself if it was faster.
+  Outcome run_and_kill(const Arguments& arguments, const std::string& file,
+                       const std::string& sign) const {
+    const pid_t process = start(arguments, {});
+    int status = 0;
+    while (::waitpid(process, &status, WNOHANG) == 0) {
+      if (has(file) && read(file).find(sign) != std::string::npos) ::kill(process, SIGKILL);
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    const int code = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    return {code, text_of(out_file()), text_of(err_file())};
+  }
+
  private:
   static std::string text_of(const std::filesystem::path& file) {
     std::ifstream stream(file, std::ios::binary);

@@ -1,0 +1,40 @@
+#include "apps/rigcal/checkpoint_file.hpp"
+
+#include "common/file.hpp"
+#include "report/checkpoint.hpp"
+#include "report/folder.hpp"
+
+namespace rigcal::app {
+
+CheckpointFile::CheckpointFile(const std::filesystem::path& out,
+                               const report::Provenance& provenance)
+    : file_(out / report::kCheckpointFile), provenance_(provenance) {}
+
+std::optional<calib::Checkpoint> CheckpointFile::read() const {
+  if (!std::filesystem::exists(file_)) return std::nullopt;
+  return report::read_checkpoint(file_, provenance_);
+}
+
+void CheckpointFile::keep(const calib::Checkpoint& checkpoint) {
+  unwritten_ = checkpoint;
+  if (Clock::now() >= not_before_) write();
+}
+
+void CheckpointFile::finish(calib::FitStatus status) {
+  if (status != calib::FitStatus::stopped) {
+    report::remove_stale(file_);
+  } else if (unwritten_) {
+    write();
+  }
+}
+
+void CheckpointFile::write() {
+  constexpr int kShare = 20;  // one part of writing to so many of fitting
+  const auto began = Clock::now();
+  write_file_atomically(file_, report::checkpoint_text(*unwritten_, provenance_));
+  const auto ended = Clock::now();
+  not_before_ = ended + kShare * (ended - began);
+  unwritten_.reset();
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <optional>
+
+#include "calib/checkpoint.hpp"
+#include "calib/fit.hpp"
+#include "report/provenance.hpp"
+
+namespace rigcal::app {
+
+/// What a fit keeps in its result folder so that it can go on after a kill.
+class CheckpointFile {
+ public:
+  /// @param provenance  of the fit; borrowed
+  CheckpointFile(const std::filesystem::path& out, const report::Provenance& provenance);
+
+  /// The checkpoint of an earlier run of the same fit; empty where there is none.
+  ///
+  /// @throws InputError  it is one of another fit, or none at all
+  std::optional<calib::Checkpoint> read() const;
+
+  /// Writes a checkpoint unless that would take more than a twentieth of the time.
+  void keep(const calib::Checkpoint& checkpoint);
+
+  /// Writes what was held back if the fit was stopped; else removes the file, which no one needs.
+  void finish(calib::FitStatus status);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void write();
+
+  std::filesystem::path file_;
+  const report::Provenance& provenance_;
+  std::optional<calib::Checkpoint> unwritten_;
+  Clock::time_point not_before_{};
+};
+
+}  // namespace rigcal::app

@@ -1,0 +1,142 @@
+#include "report/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "common/error.hpp"
+#include "report/json.hpp"
+
+namespace rigcal::report {
+namespace {
+
+constexpr const char* kSchema = "rigcal.checkpoint/1";
+
+/// What must be the same for a fit to go on.
+Json identity(const Provenance& provenance) {
+  Json json;
+  json["version"] = std::string(version());
+  json["revision"] = std::string(revision());
+  json["seed"] = provenance.seed;
+  json["options"] = Json::object();
+  for (const auto& [name, value] : provenance.options) json["options"][name] = value;
+  json["inputs"] = Json::array();
+  for (const InputFile& input : provenance.inputs) json["inputs"].push_back(input.sha256);
+  return json;
+}
+
+Json start_json(const calib::StartReport& start) {
+  return {{"number", start.number},
+          {"start_values", start.start_values},
+          {"end_values", start.end_values},
+          {"initial_cost", start.initial_cost},
+          {"final_cost", start.final_cost},
+          {"iterations", start.iterations},
+          {"status", static_cast<int>(start.status)},
+          {"message", start.message}};
+}
+
+calib::StartReport start_from(const Json& json) {
+  calib::StartReport start;
+  start.number = json.at("number").get<int>();
+  start.start_values = json.at("start_values").get<std::vector<double>>();
+  start.end_values = json.at("end_values").get<std::vector<double>>();
+  start.initial_cost = json.at("initial_cost").get<double>();
+  start.final_cost = json.at("final_cost").get<double>();
+  start.iterations = json.at("iterations").get<int>();
+  start.status = static_cast<calib::FitStatus>(json.at("status").get<int>());
+  start.message = json.at("message").get<std::string>();
+  return start;
+}
+
+Json ledger_json(const calib::EvaluationLedger& ledger) {
+  Json failures = Json::array();
+  for (const calib::SimulationFailure& each : ledger.failures) {
+    failures.push_back({{"condition", each.condition},
+                        {"parameters", each.parameters},
+                        {"time_s", each.time_s},
+                        {"reason", each.reason},
+                        {"start", each.start}});
+  }
+  Json kept = Json::array();
+  for (const auto& [key, count] : ledger.kept)
+    kept.push_back({key.first, static_cast<int>(key.second), count});
+  return {{"evaluations", ledger.evaluations},
+          {"failure_count", ledger.failure_count},
+          {"failures", failures},
+          {"kept", kept}};
+}
+
+calib::EvaluationLedger ledger_from(const Json& json) {
+  calib::EvaluationLedger ledger;
+  ledger.evaluations = json.at("evaluations").get<long>();
+  ledger.failure_count = json.at("failure_count").get<long>();
+  for (const Json& each : json.at("failures")) {
+    calib::SimulationFailure& failure = ledger.failures.emplace_back();
+    failure.condition = each.at("condition").get<std::string>();
+    failure.parameters = each.at("parameters").get<std::vector<std::pair<std::string, double>>>();
+    failure.time_s = each.at("time_s").get<double>();
+    failure.reason = each.at("reason").get<std::string>();
+    failure.start = each.at("start").get<int>();
+  }
+  for (const Json& each : json.at("kept")) {
+    const auto status = static_cast<model::SimulationStatus>(each.at(1).get<int>());
+    ledger.kept[{each.at(0).get<std::size_t>(), status}] = each.at(2).get<int>();
+  }
+  return ledger;
+}
+
+void require_same_fit(const std::string& file, const Json& found, const Json& expected) {
+  for (const auto& [key, value] : expected.items()) {
+    const auto other = found.find(key);
+    if (other != found.end() && *other == value) continue;
+    throw InputError({file}, fmt::format("is the checkpoint of another fit: its {} differ{}; "
+                                         "expected the same, or a fit without --resume",
+                                         key, key.back() == 's' ? "" : "s"));
+  }
+}
+
+}  // namespace
+
+std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenance& provenance) {
+  Json json;
+  json["schema"] = kSchema;
+  json["fit"] = identity(provenance);
+  json["starts"] = Json::array();
+  for (const calib::StartReport& start : checkpoint.starts)
+    json["starts"].push_back(start_json(start));
+  json["best"] = checkpoint.best;
+  json["best_z"] = checkpoint.best_z;
+  json["ledger"] = ledger_json(checkpoint.ledger);
+  return json_text(json);
+}
+
+calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Provenance& provenance) {
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError({file.string()}, "cannot be read; expected a checkpoint");
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  try {
+    const Json json = Json::parse(text);
+    if (json.at("schema") != kSchema) {
+      throw InputError({file.string()}, fmt::format("key 'schema': expected \"{}\"", kSchema));
+    }
+    require_same_fit(file.string(), json.at("fit"), identity(provenance));
+    calib::Checkpoint checkpoint;
+    for (const Json& start : json.at("starts")) checkpoint.starts.push_back(start_from(start));
+    checkpoint.best = json.at("best").get<int>();
+    checkpoint.best_z = json.at("best_z").get<std::vector<double>>();
+    checkpoint.ledger = ledger_from(json.at("ledger"));
+    const auto most = static_cast<int>(checkpoint.starts.size());
+    if (checkpoint.best < 0 || checkpoint.best > most)
+      throw InputError({file.string()}, "key 'best': expected the number of one of its starts");
+    return checkpoint;
+  } catch (const Json::exception& error) {
+    throw InputError({file.string()},
+                     fmt::format("is no checkpoint of rigcal fit: {}; expected one, or a fit "
+                                 "without --resume",
+                                 error.what()));
+  }
+}
+
+}  // namespace rigcal::report

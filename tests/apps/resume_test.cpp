@@ -1,0 +1,77 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/cli_fixture.hpp"
+
+namespace rigcal::test {
+namespace {
+
+using Catch::Contains;
+
+/// A fit.json without what may differ between two runs.
+nlohmann::json comparable(const CommandFolder& folder, const std::string& file) {
+  auto json = nlohmann::json::parse(folder.read(file));
+  json.erase("wall_seconds");
+  json.erase("provenance");
+  return json;
+}
+
+}  // namespace
+
+TEST_CASE("resume: a killed fit goes on to the result of one that was not", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  const CommandFolder::Arguments whole{
+      "fit", "twin/campaign.toml", "--starts", "12", "--out", "whole", "--quiet", "--threads", "1"};
+  REQUIRE(folder.run(whole).exit_code == 0);
+  CHECK_FALSE(folder.has("whole/checkpoint.json"));  // a fit that ended needs none
+
+  CommandFolder::Arguments parts = whole;
+  parts[5] = "parts";
+  parts.back() = "2";  // nor does the number of threads matter
+  int killed = 0;
+  for (const char* start : {"\"number\": 2", "\"number\": 5", "\"number\": 9"}) {
+    killed += folder.run_and_kill(parts, "parts/checkpoint.json", start).exit_code == -SIGKILL;
+    if (parts.back() != "--resume") parts.push_back("--resume");
+  }
+  CHECK(killed >= 1);
+  REQUIRE(folder.run(parts).exit_code == 0);
+  CHECK(comparable(folder, "parts/fit.json") == comparable(folder, "whole/fit.json"));
+}
+
+TEST_CASE("resume: a stopped fit keeps what it needs, and only the same fit takes it", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  CommandFolder::Arguments fit{"fit",   "twin/campaign.toml", "--starts", "5",      "--out",
+                               "parts", "--max-evaluations",  "20",       "--quiet"};
+  REQUIRE(folder.run(fit).exit_code == 4);
+  REQUIRE(folder.has("parts/checkpoint.json"));
+  CHECK_THAT(comparable(folder, "parts/fit.json")["message"].get<std::string>(),
+             Contains("of 5 starts"));
+
+  SECTION("another number of starts is another fit") {
+    fit[3] = "6";
+    fit.push_back("--resume");
+    const Outcome outcome = folder.run(fit);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains("checkpoint.json") && Contains("options"));
+  }
+  SECTION("a checkpoint that is none is named") {
+    folder.write("parts/checkpoint.json", "{\"schema\": 1");
+    fit.push_back("--resume");
+    const Outcome outcome = folder.run(fit);
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains("checkpoint.json"));
+  }
+  SECTION("without the limit it ends as if it had never had one") {
+    fit[7] = "1000000";
+    fit.push_back("--resume");
+    REQUIRE(folder.run(fit).exit_code == 0);
+    fit.pop_back();
+    fit[5] = "whole";
+    REQUIRE(folder.run(fit).exit_code == 0);
+    CHECK(comparable(folder, "parts/fit.json") == comparable(folder, "whole/fit.json"));
+  }
+}
+
+}  // namespace rigcal::test
