@@ -10,13 +10,17 @@
 
 #include "calib/acceptance.hpp"
 #include "calib/basins.hpp"
+#include "calib/bootstrap.hpp"
 #include "calib/combinations.hpp"
+#include "calib/cross_validation.hpp"
 #include "calib/evaluator.hpp"
 #include "calib/identifiability.hpp"
 #include "calib/information.hpp"
+#include "calib/interval_advice.hpp"
 #include "calib/known_values.hpp"
 #include "calib/lack_of_fit.hpp"
 #include "calib/multi_start.hpp"
+#include "calib/profile.hpp"
 #include "calib/scorecard.hpp"
 #include "calib/symmetry.hpp"
 #include "calib/weights.hpp"
@@ -178,9 +182,14 @@ void judge_identifiability(const Problem& problem, const Evaluation& optimum,
   add_remedies(problem, optimum, fit.parameters);
 }
 
+/// What every later look at a fit needs; the optimum is not ok where there is none.
+struct Solved {
+  Evaluation optimum;
+  Uncertainty spread;
+};
+
 /// Solves a problem and describes what was found, all but the scores.
-Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options,
-                         Fit& fit) {
+Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options, Fit& fit) {
   evaluator.be_coarse(true);
   budget_steps(problem, evaluator.evaluate(problem.start()));
   MultiStart found = multi_start(problem, evaluator, options);
@@ -208,7 +217,7 @@ Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOption
     return {};
   }
   fit.cost = found.optimum.cost;
-  const Uncertainty spread = uncertainty(problem, found.optimum, options.threads);
+  Uncertainty spread = uncertainty(problem, found.optimum, options.threads);
   fit.rank = spread.rank;
   fit.singular_values = spread.singular_values;
   fit.reduced_chi_square = spread.reduced_chi_square;
@@ -221,7 +230,29 @@ Evaluation solve_problem(Problem& problem, Evaluator& evaluator, const FitOption
   warn_of_noise(problem, spread, fit);
   warn_of_parameters(problem, fit.parameters, fit);
   fit.warnings.insert(fit.warnings.end(), fit.combinations.begin(), fit.combinations.end());
-  return found.optimum;
+  return {std::move(found.optimum), std::move(spread)};
+}
+
+/// What was asked for beside the fit: bootstrap, profiles, cross-validation.
+void look_again(const Problem& problem, const Campaign& campaign,
+                const std::vector<Record>& records, const Solved& solved, const FitOptions& options,
+                Fit& fit) {
+  if (options.bootstrap > 0)
+    bootstrap(problem, solved.optimum, solved.spread, fit.conditions, options, fit);
+  if (options.profiles) profiles(problem, records, solved.optimum, options, fit);
+  const std::string compared = compare_intervals(problem, fit.parameters);
+  if (!compared.empty()) fit.interval_advice += "; " + compared;
+  if (options.cross_validate) {
+    fit.cross_validation = cross_validate(campaign, records, fit, options);
+    const auto words = cross_validation_words(fit.cross_validation);
+    fit.warnings.insert(fit.warnings.end(), words.begin(), words.end());
+  }
+  const bool asked = options.bootstrap > 0 || options.profiles || options.cross_validate;
+  const bool cancelled =
+      options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
+  if (!asked || !cancelled) return;
+  fit.status = FitStatus::stopped;
+  fit.message += "; stopped on request before all that was asked for was done";
 }
 
 /// Puts scores in the order of the campaign and judges them together.
@@ -260,7 +291,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
     fit.residual_count = problem.residual_count();
     fit.tolerance = problem.tolerance;
   } else {
-    const Evaluation optimum = solve_problem(problem, evaluator, once, fit);
+    const Evaluation optimum = solve_problem(problem, evaluator, once, fit).optimum;
     if (optimum.ok) z = optimum.z;
     fit.message = "nuisance parameters: " + fit.message;
   }
@@ -299,6 +330,7 @@ void FitOptions::validate() const {
   require(starts >= 1, "starts must be at least 1");
   require(threads >= 1, "threads must be at least 1");
   require(max_iterations >= 0, "max_iterations must not be negative");
+  require(bootstrap >= 0, "bootstrap must not be negative");
   require(!max_evaluations || *max_evaluations > 0, "max_evaluations must be positive");
   require(!max_seconds || *max_seconds > 0.0, "max_seconds must be positive");
   require(function_tolerance > 0.0, "function_tolerance must be positive");
@@ -385,9 +417,11 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
 
   Fit result;
   Evaluator evaluator(problem, evaluator_options(campaign, options, began));
-  const Evaluation optimum = solve_problem(problem, evaluator, options, result);
-  if (optimum.ok) {
-    result.conditions = score_conditions(problem, optimum.z, options.threads);
+  const Solved solved = solve_problem(problem, evaluator, options, result);
+  if (solved.optimum.ok) {
+    result.conditions = score_conditions(problem, solved.optimum.z, options.threads);
+    if (result.status == FitStatus::converged)
+      look_again(problem, campaign, records, solved, options, result);
     const auto values = values_of(result.parameters);
     if (!validated.empty()) {
       FitOptions quiet = options;

@@ -31,7 +31,10 @@ struct FitOptions {
   double function_tolerance = 1e-10;    ///< |d cost| / cost of Ceres
   double gradient_tolerance = 1e-10;
   double parameter_tolerance = 1e-9;
-  const Checkpoint* resume = nullptr;                 ///< goes on from there
+  int bootstrap = 0;                   ///< replicates, each fitted from the optimum; 0: none
+  bool profiles = false;               ///< profile likelihood of every unknown that is no nuisance
+  bool cross_validate = false;         ///< leave one condition out after the other
+  const Checkpoint* resume = nullptr;  ///< goes on from there
   std::function<void(const Checkpoint&)> checkpoint;  ///< told after every start that is finished
   const std::atomic<bool>* cancel = nullptr;          ///< ends the fit with the best so far
   /// Told of every iteration: start (from 1), iteration, cost, relative change of cost, seconds.
@@ -54,6 +57,28 @@ std::string_view to_string(Identifiability identifiability);
 enum class IntervalSource { none, standard_error, robust_standard_error };
 std::string_view to_string(IntervalSource source);
 
+/// One end of a profile: where the cost has risen by what a 95 % interval allows.
+struct ProfileEnd {
+  std::optional<double> value;  ///< absent: the cost stays below up to the bound, an open profile
+  double reached = 0.0;         ///< value up to which the profile was followed
+};
+
+/// Profile likelihood of one unknown: least cost of all others at fixed values of this one.
+struct Profile {
+  ProfileEnd low, high;
+  std::vector<double> values;     ///< SI, ascending
+  std::vector<double> rises;      ///< of 2 cost, in units of the threshold: 1 ends the interval
+  bool lower_cost_found = false;  ///< the fit was not at the minimum
+};
+
+/// One parameter over bootstrap replicates.
+struct BootstrapSpread {
+  double standard_error = 0.0;
+  double bias = 0.0;                 ///< mean of the replicates minus the estimate
+  double freedom = 0.0;              ///< with which the spread is known
+  std::pair<double, double> ci95{};  ///< percentiles, widened for the freedom
+};
+
 /// One parameter in the result: fitted or known.
 struct FittedParameter {
   int index = 0;
@@ -70,6 +95,8 @@ struct FittedParameter {
   std::optional<double> robust_standard_error;
   std::optional<std::pair<double, double>> ci95;
   IntervalSource interval = IntervalSource::none;  ///< of ci95
+  std::optional<BootstrapSpread> bootstrap;
+  std::optional<Profile> profile;
   bool at_bound = false;
   Identifiability identifiability = Identifiability::identified;
   std::string reason;  ///< in words: why no error, why weak, at which bound
@@ -103,6 +130,16 @@ struct Basin {
   double cost = 0.0;           ///< least of its starts
   std::vector<int> starts;     ///< numbers, by cost
   std::vector<double> values;  ///< SI, of its best start
+};
+
+/// A condition that was left out of the fit and predicted by it.
+struct HeldOut {
+  std::string condition;
+  std::string problem;  ///< why there is no prediction, in words; empty if there is one
+  std::vector<std::pair<datasets::Channel, double>> rms;         ///< of the prediction, SI
+  std::vector<std::pair<datasets::Channel, double>> fitted_rms;  ///< where it took part, SI
+  double largest_shift = 0.0;  ///< of a parameter, in its error; 0 if none has one
+  std::string shifted;         ///< that parameter
 };
 
 /// A simulation that failed during the fit (first few of each kind are kept, all are counted).
@@ -170,8 +207,11 @@ struct Fit {
   std::vector<double> singular_values;
   std::vector<StartReport> starts;
   int best_start = 0;
-  std::vector<Basin> basins;  ///< by cost
-  std::string agreement;      ///< of the starts, in words; empty for a single one
+  std::vector<Basin> basins;      ///< by cost
+  int bootstrap_replicates = 0;   ///< that converged
+  std::string bootstrap_message;  ///< how they were drawn, what went wrong
+  std::vector<HeldOut> cross_validation;
+  std::string agreement;  ///< of the starts, in words; empty for a single one
   std::vector<SimulationFailure> failures;
   long failure_count = 0;
   std::vector<std::string> warnings;

@@ -1,7 +1,5 @@
 #include "calib/lack_of_fit.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <boost/math/distributions/fisher_f.hpp>
@@ -13,8 +11,6 @@ namespace {
 
 constexpr double kMisfitLevel = 0.05;
 constexpr int kLongestMemory = 5000;
-/// Effective share of the residuals from which on correlation is worth a word.
-constexpr double kCorrelated = 0.5;
 
 /// 1 + 2 sum rho_h^2: by how much correlation thins a sum of squares out.
 double square_inflation(const metrics::Autoregression& noise, double samples) {
@@ -38,13 +34,13 @@ double exceedance(const LackOfFit& test) {
   return bm::cdf(bm::complement(distribution, test.ratio));
 }
 
+}  // namespace
+
 const LackOfFit* least_likely(const std::vector<LackOfFit>& tests) {
   const auto found = std::min_element(tests.begin(), tests.end(),
                                       [](const auto& a, const auto& b) { return a.p < b.p; });
   return found == tests.end() ? nullptr : &*found;
 }
-
-}  // namespace
 
 std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& found) {
   std::vector<LackOfFit> result;
@@ -75,44 +71,6 @@ std::optional<bool> misfit(const std::vector<LackOfFit>& tests) {
   const LackOfFit* least = least_likely(tests);
   if (least == nullptr) return std::nullopt;
   return least->p * static_cast<double>(tests.size()) < kMisfitLevel;
-}
-
-std::string interval_advice(const Problem& problem, const Uncertainty& found,
-                            const std::vector<LackOfFit>& tests) {
-  if (found.scatter.empty()) {
-    return "only the plain standard errors exist: too few residuals to tell their correlation, or "
-           "a record that could not be simulated again";
-  }
-  const double residuals = static_cast<double>(problem.residual_count());
-  const double share = found.effective_samples / residuals;
-  std::string text =
-      share < kCorrelated
-          ? fmt::format(
-                "residuals are correlated in time: {:.0f} of them count as {:.0f} "
-                "independent ones, so believe the robust errors; the plain ones are too "
-                "small",
-                residuals, found.effective_samples)
-          : std::string(
-                "residuals are all but uncorrelated in time: robust and plain errors agree "
-                "where the noise is even");
-  const auto flagged = misfit(tests);
-  if (!flagged) {
-    return text +
-           "; neither repeats nor `sd` tell the noise, so errors of the model and noise "
-           "cannot be told apart";
-  }
-  const LackOfFit& test = *least_likely(tests);
-  const std::string against = test.by_repeats ? "the scatter of the repeats" : "the stated `sd`";
-  if (*flagged) {
-    return text + fmt::format(
-                      "; the model leaves more than noise (condition \"{}\", {}: variance {:.3g} "
-                      "times that of {}, p = {:.2g}): intervals hold for the values that fit this "
-                      "model best to these signals, and other signals may ask for others",
-                      test.condition, datasets::info(test.channel).key, test.ratio, against,
-                      test.p);
-  }
-  return text + fmt::format("; what the model leaves is no more than {} (least p = {:.2g} of {})",
-                            against, test.p, tests.size());
 }
 
 }  // namespace rigcal::calib

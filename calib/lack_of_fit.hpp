@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string>
+#include <optional>
 #include <vector>
 
 #include "calib/fit.hpp"
@@ -23,8 +23,7 @@ std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& fo
 /// without a test.
 std::optional<bool> misfit(const std::vector<LackOfFit>& tests);
 
-/// Which interval to believe, and why, in words.
-std::string interval_advice(const Problem& problem, const Uncertainty& found,
-                            const std::vector<LackOfFit>& tests);
+/// The test of the least p; null without one.
+const LackOfFit* least_likely(const std::vector<LackOfFit>& tests);
 
 }  // namespace rigcal::calib

@@ -96,6 +96,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
   const double least = std::max(s(0) * rank_threshold(problem.tolerance), 1e-150);
   const Eigen::VectorXd lengths = sigma * s.cwiseMax(least).cwiseInverse();
   result.spread = inverse_norms.asDiagonal() * V * lengths.asDiagonal();
+  result.root = root;
   result.known = known_uncertainty(problem, optimum.z, root, threads);
   const Eigen::MatrixXd priors = prior_information(problem, optimum.z, root);
   if (rank > 0 && freedom > 0.0) {

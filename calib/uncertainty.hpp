@@ -27,6 +27,9 @@ struct Uncertainty {
   /// S with S S^T the covariance in the unit box; directions that the data do not determine have
   /// the least singular value that would count. Shape (unknowns)^2.
   Eigen::MatrixXd spread;
+  /// R with R R^T = (J^T J)^-1 on the directions that the data determine, shape (unknowns, rank);
+  /// `scatter` is in its coordinates.
+  Eigen::MatrixXd root;
   KnownUncertainty known;             ///< is in all errors
   std::vector<ScoreScatter> scatter;  ///< per condition; empty: no robust errors
   double effective_samples = 0.0;     ///< of all conditions and channels

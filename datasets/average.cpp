@@ -113,6 +113,18 @@ Series moments(const Stack& stack, Span span) {
   return series;
 }
 
+/// Each row minus the mean over the span.
+std::vector<std::vector<double>> deviations_from(const Stack& stack, const Series& series,
+                                                 Span span) {
+  std::vector<std::vector<double>> result;
+  for (const auto& row : stack.rows) {
+    std::vector<double>& own = result.emplace_back();
+    for (std::size_t i = span.begin; i < span.end; ++i)
+      own.push_back(row[i] - series.mean[i - span.begin]);
+  }
+  return result;
+}
+
 /// Fills in the standard deviations that a fit divides by.
 void conclude_sd(Series& series, Channel channel, const AverageOptions& options,
                  std::vector<std::string>& warnings) {
@@ -266,6 +278,8 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
   for (const auto& [channel, stack] : stacks) {
     Series series = moments(stack, span);
     conclude_sd(series, channel, options, record.warnings);
+    if (options.keep_deviations && stack.rows.size() > 1)
+      series.deviations = deviations_from(stack, series, span);
     judge_repeats(stack, series, channel, span, options, repeats, record);
     if (repeats.size() == 1) series.repeats = options.repeats_averaged;
     record.channels.emplace(channel, std::move(series));

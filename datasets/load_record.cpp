@@ -125,10 +125,11 @@ std::vector<Repeat> load_all_repeats(const Campaign& campaign, const Condition& 
 }
 
 Record average_of(const Campaign& campaign, const Condition& condition,
-                  std::vector<Repeat>& repeats) {
+                  std::vector<Repeat>& repeats, bool keep_deviations) {
   try {
     const Conditioning done = condition_repeats(campaign, repeats);
     AverageOptions options = options_of(campaign, condition);
+    options.keep_deviations = keep_deviations;
     for (auto& [channel, sd] : options.known_sd) sd *= done.noise_gain;
     Record record = average(condition.id, repeats, options);
     record.notes = done.notes;
@@ -141,22 +142,23 @@ Record average_of(const Campaign& campaign, const Condition& condition,
   }
 }
 
-Record load_record(const Campaign& campaign, const Condition& condition) {
+Record load_record(const Campaign& campaign, const Condition& condition, bool keep_deviations) {
   std::vector<Repeat> repeats = load_all_repeats(campaign, condition);
-  Record record = average_of(campaign, condition, repeats);
+  Record record = average_of(campaign, condition, repeats, keep_deviations);
   record.files = files_of(campaign, condition);
   return record;
 }
 
 std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use>& uses,
-                                 int threads) {
+                                 int threads, bool keep_deviations) {
   std::vector<const Condition*> wanted;
   for (const Condition& condition : campaign.conditions)
     if (std::find(uses.begin(), uses.end(), condition.use) != uses.end())
       wanted.push_back(&condition);
   std::vector<Record> records(wanted.size());
-  parallel_for(wanted.size(), threads,
-               [&](std::size_t i) { records[i] = load_record(campaign, *wanted[i]); });
+  parallel_for(wanted.size(), threads, [&](std::size_t i) {
+    records[i] = load_record(campaign, *wanted[i], keep_deviations);
+  });
   return records;
 }
 

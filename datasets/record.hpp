@@ -55,6 +55,9 @@ struct Series {
   /// Standard deviation of the mean: what a residual is divided by. NaN where unknown.
   double sd_of_mean = std::numeric_limits<double>::quiet_NaN();
   int repeats = 1;  ///< repeats that carry this channel
+  /// Each repeat minus the mean, NaN where it has no sample, shape (repeats, samples); empty unless
+  /// asked for.
+  std::vector<std::vector<double>> deviations;
 };
 
 /// What became of one repeat when it was averaged.

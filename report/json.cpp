@@ -25,12 +25,6 @@ Json text_or_null(const std::optional<std::string>& text) {
   return text ? Json(*text) : Json(nullptr);
 }
 
-Json numbers(const std::vector<double>& values) {
-  Json list = Json::array();
-  for (const double value : values) list.push_back(number(value));
-  return list;
-}
-
 Json range_json(const std::optional<Range>& range) {
   return range ? Json::array({number(range->low), number(range->high)}) : Json(nullptr);
 }
@@ -59,6 +53,7 @@ Json parameter_json(const calib::FittedParameter& p, const model::ParameterSpec&
   json["ci95"] =
       p.ci95 ? Json::array({number(p.ci95->first), number(p.ci95->second)}) : Json(nullptr);
   json["ci95_from"] = p.ci95 ? Json(std::string(to_string(p.interval))) : Json(nullptr);
+  add_intervals(p, json);
   json["at_bound"] = p.at_bound;
   json["identifiability"] =
       p.fitted ? Json(std::string(to_string(p.identifiability))) : Json(nullptr);
@@ -242,6 +237,12 @@ Json failures_json(const calib::Fit& fit) {
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json number(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+
+Json numbers(const std::vector<double>& values) {
+  Json list = Json::array();
+  for (const double value : values) list.push_back(number(value));
+  return list;
+}
 
 Json correlation_json(const std::vector<std::string>& names, const Eigen::MatrixXd& correlation) {
   Json matrix = Json::array();

@@ -23,6 +23,8 @@ inline constexpr const char* kValidationSchema = "rigcal.validation/1";
 /// A number, or null where it is not finite: JSON knows neither NaN nor infinity.
 Json number(double value);
 Json number(const std::optional<double>& value);
+/// A list of such.
+Json numbers(const std::vector<double>& values);
 
 /// `correlation` of a result: names of the estimates and the matrix, shape (names)^2.
 Json correlation_json(const std::vector<std::string>& names, const Eigen::MatrixXd& correlation);

@@ -28,14 +28,59 @@ Json basins_json(const calib::Fit& fit) {
     Json json;
     json["cost"] = number(basin.cost);
     json["starts"] = basin.starts;
-    json["values"] = Json::array();
-    for (const double value : basin.values) json["values"].push_back(number(value));
+    json["values"] = numbers(basin.values);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+Json profile_end(const calib::ProfileEnd& end) {
+  Json json;
+  json["value"] = number(end.value);
+  json["reached"] = number(end.reached);
+  return json;
+}
+
+Json rms_json(const std::vector<std::pair<datasets::Channel, double>>& values) {
+  Json json = Json::object();
+  for (const auto& [channel, value] : values) json[std::string(info(channel).key)] = number(value);
+  return json;
+}
+
+Json cross_validation_json(const calib::Fit& fit) {
+  Json list = Json::array();
+  for (const calib::HeldOut& held : fit.cross_validation) {
+    Json json;
+    json["condition"] = held.condition;
+    json["problem"] = held.problem.empty() ? Json(nullptr) : Json(held.problem);
+    json["rmse"] = rms_json(held.rms);
+    json["fitted_rmse"] = rms_json(held.fitted_rms);
+    json["largest_shift"] = number(held.largest_shift);
+    json["shifted"] = held.shifted.empty() ? Json(nullptr) : Json(held.shifted);
     list.push_back(std::move(json));
   }
   return list;
 }
 
 }  // namespace
+
+void add_intervals(const calib::FittedParameter& parameter, Json& json) {
+  if (parameter.bootstrap) {
+    Json& entry = json["bootstrap"];
+    entry["standard_error"] = number(parameter.bootstrap->standard_error);
+    entry["bias"] = number(parameter.bootstrap->bias);
+    entry["freedom"] = number(parameter.bootstrap->freedom);
+    entry["ci95"] = Json::array(
+        {number(parameter.bootstrap->ci95.first), number(parameter.bootstrap->ci95.second)});
+  }
+  if (parameter.profile) {
+    Json& entry = json["profile"];
+    entry["low"] = profile_end(parameter.profile->low);
+    entry["high"] = profile_end(parameter.profile->high);
+    entry["values"] = numbers(parameter.profile->values);
+    entry["rises"] = numbers(parameter.profile->rises);
+  }
+}
 
 void add_trust(const calib::Fit& fit, Json& json) {
   const bool solved = fit.rank > 0;
@@ -46,6 +91,11 @@ void add_trust(const calib::Fit& fit, Json& json) {
   json["lack_of_fit"] = lack_of_fit_json(fit);
   json["basins"] = basins_json(fit);
   json["agreement"] = fit.agreement;
+  if (!fit.bootstrap_message.empty()) {
+    json["bootstrap"]["replicates"] = fit.bootstrap_replicates;
+    json["bootstrap"]["message"] = fit.bootstrap_message;
+  }
+  if (!fit.cross_validation.empty()) json["cross_validation"] = cross_validation_json(fit);
   json["aic"] = solved ? number(fit.aic) : Json(nullptr);
   json["bic"] = solved ? number(fit.bic) : Json(nullptr);
 }

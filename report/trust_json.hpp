@@ -8,4 +8,7 @@ namespace rigcal::report {
 /// and model error, information criteria, which interval to believe. Adds keys.
 void add_trust(const calib::Fit& fit, Json& json);
 
+/// Bootstrap and profile of a parameter, where they were asked for. Adds keys.
+void add_intervals(const calib::FittedParameter& parameter, Json& json);
+
 }  // namespace rigcal::report

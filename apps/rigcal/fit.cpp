@@ -19,11 +19,15 @@ namespace rigcal::app {
 namespace {
 
 constexpr int kMostStarts = 100'000;
+constexpr int kMostReplicates = 1'000'000;
 
 struct FitRequest {
   CampaignOptions common;
   std::optional<int> starts;
   std::uint64_t seed = 1;
+  int bootstrap = 0;
+  bool profiles = false;
+  bool cross_validate = false;
   bool resume = false;
   std::optional<double> max_time_s;
   std::optional<long> max_evaluations;
@@ -31,11 +35,15 @@ struct FitRequest {
 
 ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
-  const auto records = datasets::load_records(
-      campaign, {datasets::Use::fit, datasets::Use::validate}, options.common.threads);
+  const auto records =
+      datasets::load_records(campaign, {datasets::Use::fit, datasets::Use::validate},
+                             options.common.threads, options.bootstrap > 0);
   calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
   settings.starts = options.starts.value_or(settings.starts);
   settings.seed = options.seed;
+  settings.bootstrap = options.bootstrap;
+  settings.profiles = options.profiles;
+  settings.cross_validate = options.cross_validate;
   settings.max_evaluations = options.max_evaluations;
   if (options.max_time_s) settings.max_seconds = options.max_time_s;
   report::Provenance provenance{invocation.command, options.seed, recorded(options.common),
@@ -73,6 +81,12 @@ Run add_fit(CLI::App& verb) {
   verb.add_option("--seed", options->seed, "Seed of the further starts")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  verb.add_option("--bootstrap", options->bootstrap,
+                  "Intervals from so many fits to redrawn repeats or residuals")
+      ->check(CLI::Range(0, kMostReplicates));
+  verb.add_flag("--profiles", options->profiles, "Profile likelihood of every parameter");
+  verb.add_flag("--cross-validate", options->cross_validate,
+                "Leave out one condition after the other and predict it");
   verb.add_flag("--resume", options->resume,
                 "Go on where a fit of the same inputs and options was stopped or killed");
   verb.add_option("--max-time", options->max_time_s,

@@ -1,0 +1,137 @@
+#include "calib/cross_validation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "common/parallel.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Campaign;
+using datasets::Use;
+
+/// A prediction this many times worse than the fit is worth a word, and a shift of so many errors.
+constexpr double kMuchWorse = 1.5;
+constexpr double kFarShift = 3.0;
+
+Campaign without(const Campaign& campaign, const std::string& id, const Fit& whole) {
+  Campaign result = campaign;
+  for (auto& condition : result.conditions) {
+    if (condition.use == Use::validate) condition.use = Use::ignore;
+    if (condition.id == id) condition.use = Use::validate;
+  }
+  for (auto& setting : result.parameters) {
+    for (const FittedParameter& found : whole.parameters) {
+      const bool same = found.fitted && found.index == setting.index &&
+                        found.scope == datasets::Scope::rig && setting.fit;
+      if (same) setting.value = std::clamp(found.value, setting.lower, setting.upper);
+    }
+  }
+  return result;
+}
+
+const ConditionScore* score_of(const Fit& fit, const std::string& id) {
+  const auto found = std::find_if(fit.conditions.begin(), fit.conditions.end(),
+                                  [&](const ConditionScore& score) { return score.id == id; });
+  return found == fit.conditions.end() ? nullptr : &*found;
+}
+
+std::vector<std::pair<datasets::Channel, double>> rms_of(const ConditionScore& score) {
+  std::vector<std::pair<datasets::Channel, double>> result;
+  for (const ChannelScore& channel : score.channels) {
+    if (channel.agreement) result.emplace_back(channel.channel, channel.agreement->rmse);
+  }
+  return result;
+}
+
+void add_shift(const Fit& whole, const Fit& part, const Campaign& campaign, HeldOut& held) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  for (const FittedParameter& a : whole.parameters) {
+    if (!a.fitted || a.nuisance || !a.standard_error) continue;
+    const double error = a.robust_standard_error.value_or(*a.standard_error);
+    if (!(error > 0.0)) continue;
+    for (const FittedParameter& b : part.parameters) {
+      if (!b.fitted || a.index != b.index || a.level != b.level) continue;
+      const double shift = (b.value - a.value) / error;
+      if (std::abs(shift) <= std::abs(held.largest_shift)) continue;
+      held.largest_shift = shift;
+      const auto name = table[static_cast<std::size_t>(a.index)].name;
+      held.shifted = a.level.empty() ? std::string(name) : fmt::format("{} ({})", name, a.level);
+    }
+  }
+}
+
+HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>& records,
+                  const std::string& id, const Fit& whole, const FitOptions& options) {
+  HeldOut held;
+  held.condition = id;
+  if (const ConditionScore* fitted = score_of(whole, id)) held.fitted_rms = rms_of(*fitted);
+  try {
+    const Campaign others = without(campaign, id, whole);
+    const Fit part = fit(others, records, options);
+    const ConditionScore* predicted = score_of(part, id);
+    if (part.status != FitStatus::converged) {
+      held.problem = "the fit of the others: " + part.message;
+    } else if (predicted == nullptr || !predicted->failure.empty()) {
+      held.problem = predicted == nullptr ? "not predicted" : predicted->failure;
+    } else {
+      held.rms = rms_of(*predicted);
+      add_shift(whole, part, campaign, held);
+    }
+  } catch (const InputError& error) {  // nothing else tells of one of its unknowns
+    held.problem = error.what();
+  }
+  return held;
+}
+
+}  // namespace
+
+std::vector<HeldOut> cross_validate(const Campaign& campaign,
+                                    const std::vector<datasets::Record>& records, const Fit& whole,
+                                    const FitOptions& options) {
+  std::vector<std::string> ids;
+  for (const auto& condition : campaign.conditions) {
+    if (condition.use == Use::fit) ids.push_back(condition.id);
+  }
+  FitOptions once;
+  once.seed = options.seed;
+  once.max_iterations = options.max_iterations;
+  once.cancel = options.cancel;
+  std::vector<HeldOut> result(ids.size());
+  parallel_for(ids.size(), options.threads, [&](std::size_t i) {
+    result[i] = leave_out(campaign, records, ids[i], whole, once);
+  });
+  return result;
+}
+
+std::vector<std::string> cross_validation_words(const std::vector<HeldOut>& held_out) {
+  std::vector<std::string> words;
+  for (const HeldOut& held : held_out) {
+    if (!held.problem.empty()) {
+      words.push_back(fmt::format("condition \"{}\" left out: no prediction ({})", held.condition,
+                                  held.problem));
+      continue;
+    }
+    for (const auto& [channel, rms] : held.rms) {
+      for (const auto& [fitted_channel, fitted] : held.fitted_rms) {
+        if (fitted_channel != channel || !(rms > kMuchWorse * fitted)) continue;
+        words.push_back(fmt::format(
+            "condition \"{}\" left out: {} is predicted {:.3g} times worse than it is fitted",
+            held.condition, datasets::info(channel).key, rms / fitted));
+      }
+    }
+    if (std::abs(held.largest_shift) > kFarShift) {
+      words.push_back(fmt::format(
+          "condition \"{}\" left out: {} moves by {:.2g} of its errors, so this condition decides "
+          "it or contradicts the others",
+          held.condition, held.shifted, held.largest_shift));
+    }
+  }
+  return words;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/fit.hpp"
+#include "calib/problem.hpp"
+#include "calib/uncertainty.hpp"
+
+namespace rigcal::calib {
+
+/// Which errors to believe, and why, in words: how far residuals are correlated, whether the model
+/// leaves more than noise, which uncertain known values are carried.
+std::string interval_advice(const Problem& problem, const Uncertainty& found,
+                            const std::vector<LackOfFit>& tests);
+
+/// Where bootstrap or profile say otherwise than `ci95`, and which of them is right; empty where
+/// neither was asked for.
+///
+/// @param parameters  of the problem's unknowns
+std::string compare_intervals(const Problem& problem,
+                              const std::vector<FittedParameter>& parameters);
+
+}  // namespace rigcal::calib

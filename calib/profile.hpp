@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "calib/evaluation.hpp"
+#include "calib/fit.hpp"
+#include "calib/problem.hpp"
+
+namespace rigcal::calib {
+
+/// The problem with one unknown known: same records, weights, tolerance and budgets.
+///
+/// @param campaign  receives the campaign of that problem, which borrows it
+Problem with_known(const Problem& problem, const std::vector<datasets::Record>& records,
+                   std::size_t unknown, double value, datasets::Campaign& campaign);
+
+/// Profile likelihood of the unknowns that are no nuisance: from the optimum outwards, all others
+/// fitted anew at each fixed value, until 2 cost has risen by (h / standard error)^2 sigma^2, h the
+/// half width of `ci95` and sigma^2 as in uncertainty(): a quadratic cost gives `ci95` again, so
+/// that correlated residuals widen a profile as they widen the robust error. The crossing is
+/// found to 2 % of the distance. An end that meets the bound first is open, and the parameter then
+/// not identifiable.
+///
+/// @param fit  with parameters of the problem's unknowns; receives the profiles
+void profiles(const Problem& problem, const std::vector<datasets::Record>& records,
+              const Evaluation& optimum, const FitOptions& options, Fit& fit);
+
+}  // namespace rigcal::calib

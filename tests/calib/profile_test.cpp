@@ -1,0 +1,114 @@
+#include "calib/profile.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "calib/bootstrap.hpp"
+#include "calib/cross_validation.hpp"
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::Contains;
+using Catch::WithinRel;
+using datasets::Scope;
+using datasets::Waveform;
+
+Twin small_twin() {
+  Twin twin;
+  twin.free("mass", 80.0, 10.0, 500.0);
+  twin.free("valve_gain", 0.04e-3, 0.01e-3, 0.2e-3);
+  twin.add("square", Waveform::square, 2.0, 0.01);
+  return twin;
+}
+
+}  // namespace
+
+TEST_CASE("profile: where the cost is all but quadratic it ends where the interval does",
+          "[calib]") {
+  const Twin twin = small_twin();
+  FitOptions options;
+  options.profiles = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  for (const auto* key : {"mass", "valve_gain"}) {
+    const FittedParameter& p = parameter(found, key);
+    CAPTURE(key, p.reason);
+    REQUIRE(p.profile.has_value());
+    const auto interval = p.ci95.value();
+    // 10 %: curvature, the quantile of t, and a crossing that is found to 2 %.
+    CHECK_THAT(p.profile->high.value.value() - p.value, WithinRel(interval.second - p.value, 0.1));
+    CHECK_THAT(p.value - p.profile->low.value.value(), WithinRel(p.value - interval.first, 0.1));
+    CHECK_FALSE(p.profile->lower_cost_found);
+  }
+}
+
+TEST_CASE("profile: an open one makes a parameter not identifiable", "[calib]") {
+  Twin twin = small_twin();
+  twin.free("bulk_modulus", 700e6, 300e6, 1500e6);
+  twin.campaign.conditions[0].waveform = Waveform::sine;
+  twin.campaign.conditions[0].frequency_hz = 0.5;
+  FitOptions options;
+  options.profiles = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 100.0, 3), options);
+  const FittedParameter& bulk = parameter(found, "bulk_modulus");
+  REQUIRE(bulk.profile.has_value());
+  CHECK_FALSE(bulk.profile->high.value.has_value());
+  CHECK(bulk.identifiability == Identifiability::not_identifiable);
+  CHECK_THAT(bulk.reason, Contains("profile is open"));
+}
+
+TEST_CASE("bootstrap: its spread is that of the noise, the same for any number of threads",
+          "[calib]") {
+  const Twin twin = small_twin();
+  const auto records = twin.records(250, 500.0, 3);
+  FitOptions options;
+  options.bootstrap = 100;
+  const Fit found = fit(twin.campaign, records, options);
+  options.threads = 3;
+  const Fit again = fit(twin.campaign, records, options);
+  CHECK(found.bootstrap_replicates == 100);
+  for (const auto* key : {"mass", "valve_gain"}) {
+    const FittedParameter& p = parameter(found, key);
+    REQUIRE(p.bootstrap.has_value());
+    // A standard deviation of 100 draws is known to 7 %; four times that.
+    CHECK_THAT(p.bootstrap->standard_error, WithinRel(p.robust_standard_error.value(), 0.3));
+    CHECK(std::abs(p.bootstrap->bias) < 0.5 * p.bootstrap->standard_error);
+    CHECK(p.bootstrap->ci95.first < p.value);
+    CHECK(p.bootstrap->ci95.second > p.value);
+    CHECK(p.bootstrap->standard_error == parameter(again, key).bootstrap->standard_error);
+  }
+}
+
+TEST_CASE("bootstrap: blocks grow with the memory of the noise", "[calib]") {
+  CHECK(block_length({{}, 1.0}, 1000) == 1);
+  const std::size_t slow = block_length({{0.95}, 1.0}, 1000);
+  CHECK(slow > block_length({{0.5}, 1.0}, 1000));
+  CHECK(slow < 200);
+  CHECK(block_length({{0.99}, 1.0}, 5) <= 5);
+}
+
+TEST_CASE("cross-validation: each condition is predicted from the others", "[calib]") {
+  Twin twin = small_twin();
+  twin.add("sine", Waveform::sine, 3.0, 0.01);
+  twin.add("leaking", Waveform::square, 1.0, 0.01, "leak");
+  twin.level_leakage = {{"leak", 0.5}};
+  twin.campaign.leak_levels["none"] = {{Twin::index("leakage_coefficient"), 0.35}};
+  for (std::size_t i : {0U, 1U}) twin.campaign.conditions[i].leak_level = "none";
+  twin.free("leakage_coefficient", 0.3, 0.05, 2.0, Scope::leak_level);
+  FitOptions options;
+  options.cross_validate = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  REQUIRE(found.cross_validation.size() == 3);
+  for (std::size_t i : {0U, 1U}) {
+    const HeldOut& held = found.cross_validation[i];
+    CAPTURE(held.condition, held.problem);
+    REQUIRE(held.rms.size() == 1);
+    // Two parameters against 250 samples: the noise decides, not what was left out.
+    CHECK_THAT(held.rms[0].second, WithinRel(held.fitted_rms[0].second, 0.1));
+    CHECK(std::abs(held.largest_shift) < 5.0);
+  }
+  CHECK_THAT(found.cross_validation[2].problem, Contains("leak"));
+}
+
+}  // namespace rigcal::calib
