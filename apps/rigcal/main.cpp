@@ -40,6 +40,8 @@ constexpr std::array kVerbs{
             rigcal::app::add_fit_tables},
     VerbRow{"diagnose", "Leak, share of the servo flow and fault class per record",
             rigcal::app::add_diagnose},
+    VerbRow{"plan", "What each record, and each planned one, tells about each parameter",
+            rigcal::app::add_plan},
     VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},
     VerbRow{"init", "Draft a campaign file from recordings", rigcal::app::add_init},
     VerbRow{"compare", "Fits side by side: what differs, and the leak's trend",

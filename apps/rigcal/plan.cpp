@@ -1,0 +1,64 @@
+#include "calib/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "datasets/load_record.hpp"
+#include "report/folder.hpp"
+#include "report/plan.hpp"
+
+namespace rigcal::app {
+namespace {
+
+struct PlanRequest {
+  CampaignOptions common;
+  std::filesystem::path fit;
+};
+
+ExitCode run_plan(const PlanRequest& options, const Invocation& invocation) {
+  const datasets::Campaign campaign = load(options.common);
+  std::optional<report::EarlierFit> earlier;
+  std::vector<std::filesystem::path> more_inputs;
+  if (!options.fit.empty()) {
+    earlier = report::read_fit(options.fit, campaign.rig.plant);
+    more_inputs.push_back(options.fit);
+  }
+  std::vector<datasets::Record> records;
+  for (const datasets::Condition& condition : campaign.conditions) {
+    const bool taken =
+        condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
+    if (taken && condition.has_record())
+      records.push_back(datasets::load_record(campaign, condition));
+  }
+  stop_if(invocation.cancel);
+  report::require_writable(options.common.out);
+  const report::Provenance provenance{invocation.command, 1, recorded(options.common),
+                                      report::hash_inputs(campaign, records, more_inputs)};
+  const calib::Plan plan =
+      calib::plan(campaign, records, earlier ? &earlier->values : nullptr, options.common.threads);
+  const report::Json json = report::plan_json(campaign, plan, provenance);
+  report::write_results(options.common.out, {{"plan.json", report::json_text(json)}},
+                        provenance.inputs);
+  print(options.common.print,
+        report::plan_text(campaign, plan) +
+            fmt::format("files: {}\n", (options.common.out / "plan.json").string()),
+        json);
+  return ExitCode::done;
+}
+
+}  // namespace
+
+Run add_plan(CLI::App& verb) {
+  const auto options = std::make_shared<PlanRequest>();
+  add_campaign_options(verb, options->common);
+  verb.add_option("--fit", options->fit,
+                  "fit.json whose values are taken (default: the campaign's own)");
+  return [options](const Invocation& invocation) { return run_plan(*options, invocation); };
+}
+
+}  // namespace rigcal::app

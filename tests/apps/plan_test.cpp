@@ -1,0 +1,40 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+
+#include "tests/apps/cli_fixture.hpp"
+
+namespace rigcal::test {
+namespace {
+
+using Catch::Contains;
+
+}  // namespace
+
+TEST_CASE("plan: planned records are compared with those that exist", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  const std::string planned = R"(
+[[condition]]
+id = "planned_10Hz"
+waveform = "square"
+frequency = "10 Hz"
+amplitude = "2 mm"
+duration = "1 s"
+sample_rate = "1 kHz"
+leak_level = "none"
+use = "fit"
+)";
+  folder.write("twin/plan.toml", folder.read("twin/campaign.toml") + planned);
+  const Outcome outcome = folder.run({"plan", "twin/plan.toml", "--out", "out"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  const auto json = nlohmann::json::parse(folder.read("out/plan.json"));
+  REQUIRE(json["records"].size() == 3);
+  CHECK(json["records"][2]["recorded"] == false);
+  REQUIRE(json["parameters"].size() == 2);
+  for (const auto& parameter : json["parameters"])
+    CHECK(parameter["sd_all"].get<double>() < parameter["sd_recorded"].get<double>());
+  CHECK_THAT(outcome.out, Contains("planned_10Hz alone (planned)"));
+}
+
+}  // namespace rigcal::test
