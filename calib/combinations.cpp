@@ -15,6 +15,9 @@ namespace {
 constexpr double kWellKnown = 0.2;
 constexpr double kMuchBetter = 1.0 / 3.0;
 constexpr double kRoundedPower = 0.1;
+/// Outside, one of the two is all but alone in what is fixed.
+constexpr double kLeastPower = 0.2;
+constexpr double kMostPower = 5.0;
 constexpr double kNormal95 = 1.96;
 
 struct PowerLaw {
@@ -71,7 +74,7 @@ std::optional<PowerLaw> best_partner(const Eigen::MatrixXd& log_spread,
     const double half_width = kNormal95 * (own - power * other).norm();
     const bool useful = half_width < kWellKnown &&
                         half_width < kMuchBetter * kNormal95 * own.norm() &&
-                        std::abs(power) > kRoundedPower;
+                        std::abs(power) > kLeastPower && std::abs(power) < kMostPower;
     if (useful && (!best || half_width < best->half_width))
       best = PowerLaw{unknown, k, power, half_width};
   }

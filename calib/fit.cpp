@@ -22,6 +22,7 @@
 #include "calib/multi_start.hpp"
 #include "calib/profile.hpp"
 #include "calib/scorecard.hpp"
+#include "calib/sharpen.hpp"
 #include "calib/symmetry.hpp"
 #include "calib/weights.hpp"
 
@@ -193,6 +194,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   evaluator.be_coarse(true);
   budget_steps(problem, evaluator.evaluate(problem.start()));
   MultiStart found = multi_start(problem, evaluator, options);
+  sharpen(problem, evaluator, options, found);
   if (found.optimum.ok && problem.has_estimated_sd())
     estimate_weights(problem, evaluator, options, found, fit.warnings);
   fit.status = found.result.status;
