@@ -208,6 +208,8 @@ std::string verdict_text(const Result& result, const Style& style) {
   }
   text += fit.verdict ? fmt::format("verdict: {}\n", coloured(*fit.verdict, style))
                       : "verdict: none (the campaign has no [acceptance])\n";
+  if (!fit.agreement.empty()) text += fmt::format("starts: {}\n", fit.agreement);
+  if (!fit.bootstrap_message.empty()) text += fmt::format("bootstrap: {}\n", fit.bootstrap_message);
   if (!fit.interval_advice.empty()) text += fmt::format("intervals: {}\n", fit.interval_advice);
   for (const std::string& warning : fit.warnings) text += fmt::format("warning: {}\n", warning);
   if (result.campaign.synthetic) text += "note: the records of this campaign are synthetic\n";

@@ -7,6 +7,7 @@
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/leak_table_files.hpp"
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "report/fit_tables.hpp"
 #include "report/folder.hpp"

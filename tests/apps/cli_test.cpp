@@ -179,8 +179,8 @@ const std::vector<BadCall> kBadCalls{
     {{"fit", "campaign.toml", "other.toml"}, {"fit: ", "other.toml"}},
     {{"fit", "nowhere.toml"}, {"nowhere.toml"}},
     {{"fit", "records"}, {"records"}},
-    {{"fit", "campaign.toml", "--bootstrap", "10"}, {"--bootstrap"}},
-    {{"fit", "campaign.toml", "--resume"}, {"--resume"}},
+    {{"fit", "campaign.toml", "--bootstrap", "-1"}, {"--bootstrap"}},
+    {{"fit", "campaign.toml", "--max-time", "0"}, {"--max-time"}},
     {{"fit", "campaign.toml", "--threads", "0"}, {"--threads"}},
     {{"fit", "campaign.toml", "--threads=-2"}, {"--threads"}},
     {{"fit", "campaign.toml", "--threads", "many"}, {"--threads"}},
@@ -558,7 +558,9 @@ TEST_CASE("fit: stopped by a signal it keeps the best so far", "[apps]") {
           {"fit", "twin/campaign.toml", "--out", "out", "--starts", "5000"}, "iteration", signal);
       CAPTURE(outcome.err);
       CHECK(outcome.exit_code == 4);
-      CHECK(files_in(folder, "out/") == kFitFiles);
+      auto files = files_in(folder, "out/");
+  files.erase("out/checkpoint.json");  // there once a start is finished
+  CHECK(files == kFitFiles);
       CHECK(json::parse(folder.read("out/fit.json"))["status"] == "stopped");
       check_complete(folder.read("out/fit.json"));
       CHECK_THAT(folder.read("out/fit.json"), StartsWith("{\n  \"status\": \"stopped\""));
