@@ -345,16 +345,19 @@ Json metrics_json_of(const Json& conditions, std::size_t count) {
 
 Json records_json_of(const std::vector<Compared>& results) {
   std::vector<std::map<std::string, std::string>> hashes;
-  std::map<std::string, std::string> all;  // by file name first, so that the list is readable
+  std::set<std::pair<std::string, std::string>> all;  // file and hash
   for (const Compared& compared : results) {
     hashes.push_back(record_hashes(compared.result));
-    for (const auto& [hash, path] : hashes.back()) all.emplace(path + "\n" + hash, hash);
+    for (const auto& [hash, file] : hashes.back()) all.emplace(file, hash);
   }
   Json list = Json::array();
-  for (const auto& [key, hash] : all) {
+  std::set<std::string> listed;
+  for (const auto& [file, hash] : all) {
+    // The same content under another name is the same record.
+    if (!listed.insert(hash).second) continue;
     Json in = Json::array();
     for (const auto& each : hashes) in.push_back(each.contains(hash));
-    list.push_back({{"file", key.substr(0, key.find('\n'))}, {"sha256", hash}, {"in", in}});
+    list.push_back({{"file", file}, {"sha256", hash}, {"in", in}});
   }
   return list;
 }

@@ -9,6 +9,7 @@
 #include "common/parallel.hpp"
 #include "report/assets.hpp"
 #include "report/page_parts.hpp"
+#include "report/pdf.hpp"
 #include "report/render.hpp"
 
 namespace rigcal::report {
@@ -100,7 +101,7 @@ Part leak_table_part(const ReadFile& read, const std::string& where) {
   part.name = "Leak table";
   part.campaign = text_of(stored.table, "campaign");
   part.headline = leak_table_headline(stored.table);
-  part.view["leak_table"] = leak_table_view(stored.table, stored.levels);
+  part.view["leak_table"] = leak_table_view(stored);
   part.provenance = provenance_view(stored.table, part.name, "leak_table.json");
   part.nav = {{"leak-table", "Leak table"}};
   return part;
@@ -140,6 +141,17 @@ Part comparison_part(const ReadFile& read, const std::string& where) {
   return part;
 }
 
+/// What is JSON but no result of this version, as an error of the input.
+template <typename Work>
+void with_json_errors(const std::string& where, const Work& work) {
+  try {
+    work();
+  } catch (const Json::exception& error) {
+    throw InputError({where},
+                     fmt::format("the result is not as this version writes it: {}", error.what()));
+  }
+}
+
 struct Parts {
   std::vector<Part> drawn;
   Json problems = Json::array();  ///< results that are there but could not be drawn
@@ -152,12 +164,7 @@ Parts parts_of(const ReadFile& read, const std::string& where, int threads) {
   const auto add = [&](bool is_there, const auto& make) {
     if (!is_there) return;
     try {
-      try {
-        parts.drawn.push_back(make());
-      } catch (const Json::exception& error) {
-        throw InputError(
-            {where}, fmt::format("the result is not as this version writes it: {}", error.what()));
-      }
+      with_json_errors(where, [&] { parts.drawn.push_back(make()); });
     } catch (const InputError& error) {
       if (!first) first = std::current_exception();
       parts.problems.push_back(fmt::format("Left out: {}", error.what()));
@@ -230,17 +237,29 @@ std::string result_page(const ReadFile& read, const std::string& where, int thre
 
 std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& read,
                                                              const std::string& where) {
-  std::vector<std::pair<fs::path, std::string>> files;
-  if (!read("fit.json") && !read("validation.json")) return files;
-  const Calibration stored = load_calibration(read, where, 1);
-  const std::string style(asset("figure.css"));
-  for (std::size_t i = 0; i < stored.series.size(); ++i) {
-    const Json& condition = stored.result.at("conditions")[i];
-    for (const Figure& figure : condition_figures(condition, stored.series[i])) {
-      files.emplace_back(
-          fs::path("figures") / fmt::format("{}_{}.svg", text_of(condition, "id"), figure.name),
-          svg(figure.plot, style) + "\n");
+  std::vector<Figure> figures;
+  const auto add = [&](std::vector<Figure> more, const std::string& prefix = {}) {
+    for (Figure& figure : more) figures.push_back({prefix + figure.name, std::move(figure.plot)});
+  };
+  const auto has = [&](const char* file) { return read(file).has_value(); };
+  with_json_errors(where, [&] {
+    if (has("fit.json") || has("validation.json")) {
+      const Calibration stored = load_calibration(read, where, 1);
+      for (std::size_t i = 0; i < stored.series.size(); ++i) {
+        const Json& condition = stored.result.at("conditions")[i];
+        add(condition_figures(condition, stored.series[i]), text_of(condition, "id") + "_");
+      }
     }
+    if (has("leak_table.json")) add(leak_table_figures(load_leak_table(read, where)));
+    if (has("diagnosis.json")) add(diagnosis_figures(load_json(read, where, "diagnosis.json")));
+    if (has("comparison.json")) add(comparison_figures(load_json(read, where, "comparison.json")));
+  });
+  std::vector<std::pair<fs::path, std::string>> files;
+  const std::string style(asset("figure.css"));
+  for (const Figure& figure : figures) {
+    files.emplace_back(fs::path("figures") / (figure.name + ".svg"),
+                       svg(figure.plot, style) + "\n");
+    files.emplace_back(fs::path("figures") / (figure.name + ".pdf"), pdf(figure.plot));
   }
   return files;
 }

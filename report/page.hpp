@@ -17,7 +17,8 @@ namespace rigcal::report {
 /// @throws InputError  there is no result, or none that this version can read
 std::string result_page(const ReadFile& read, const std::string& where, int threads);
 
-/// Pictures of every condition as SVG files that stand alone: figures/<condition>_<plot>.svg.
+/// Every picture as a file of its own beneath figures/, as SVG and as PDF: <condition>_<plot>,
+/// leak_table, leak_levels, diagnosis, comparison_<parameter>, trend_<along>_<level>.
 ///
 /// @throws InputError  a file is missing, or is not what this version writes
 std::vector<std::pair<std::filesystem::path, std::string>> result_figures(const ReadFile& read,

@@ -99,8 +99,8 @@ Trace points_trace() {
 }
 
 /// Each fitted parameter by result, with its interval.
-Json parameter_plots(const Json& parameters) {
-  Json plots = Json::array();
+std::vector<Figure> parameter_figures(const Json& parameters) {
+  std::vector<Figure> figures;
   for (const Json& parameter : parameters) {
     const RowUnit unit = unit_of_estimates(parameter);
     Trace spans = intervals_trace();
@@ -130,9 +130,9 @@ Json parameter_plots(const Json& parameters) {
     plot.height = 170.0;
     plot.whole_x = true;
     plot.traces = {std::move(spans), std::move(middles)};
-    plots.push_back({{"svg_html", svg(plot)}});
+    figures.push_back({"comparison_" + plain_name(parameter_label(parameter)), std::move(plot)});
   }
-  return plots;
+  return figures;
 }
 
 std::string date_of(double day) {
@@ -355,11 +355,25 @@ Json comparison_headline(const Json& comparison) {
   return view;
 }
 
+std::vector<Figure> comparison_figures(const Json& comparison) {
+  std::vector<Figure> figures = parameter_figures(comparison.at("parameters"));
+  for (const Json& series : comparison.at("leak_trends")) {
+    for (const TrendAxis& axis : kTrendAxes) {
+      if (!differ(series.at("points"), axis.key)) continue;
+      figures.push_back({fmt::format("trend_{}_{}", axis.key, plain_name(text_of(series, "of"))),
+                         trend_plot(series, axis)});
+    }
+  }
+  return figures;
+}
+
 Json comparison_view(const Json& comparison) {
   Json view;
   view["results"] = result_rows(comparison.at("results"));
   view["parameters"] = parameter_rows(comparison.at("parameters"));
-  view["plots"] = parameter_plots(comparison.at("parameters"));
+  view["plots"] = Json::array();
+  for (const Figure& figure : parameter_figures(comparison.at("parameters")))
+    view["plots"].push_back({{"svg_html", svg(figure.plot)}});
   view["metrics"] = metric_rows(comparison);
   view["has_metrics"] = !view["metrics"].empty();
   view["conditions"] = score_rows_of(comparison.at("conditions"));

@@ -285,6 +285,12 @@ Json diagnosis_headline(const Json& diagnosis) {
   return view;
 }
 
+std::vector<Figure> diagnosis_figures(const Json& diagnosis) {
+  const Json& records = diagnosis.at("records");
+  if (std::none_of(records.begin(), records.end(), is_average)) return {};
+  return {{"diagnosis", share_plot(diagnosis)}};
+}
+
 Json diagnosis_view(const Json& diagnosis) {
   const std::string status = text_of(diagnosis, "status");
   Json view;

@@ -231,7 +231,16 @@ Json leak_table_headline(const Json& table) {
   return view;
 }
 
-Json leak_table_view(const Json& table, const std::vector<std::pair<std::string, Table>>& levels) {
+std::vector<Figure> leak_table_figures(const LeakTableFiles& stored) {
+  std::vector<Figure> figures;
+  if (stored.table.at("summary").at("published").get<int>() > 0)
+    figures.push_back({"leak_table", agreement_plot(stored.table.at("entries"))});
+  if (!stored.levels.empty()) figures.push_back({"leak_levels", levels_plot(stored.levels)});
+  return figures;
+}
+
+Json leak_table_view(const LeakTableFiles& stored) {
+  const Json& table = stored.table;
   const Json& entries = table.at("entries");
   const std::vector<double> targets = targets_of(entries);
   const bool published = table.at("summary").at("published").get<int>() > 0;
@@ -265,8 +274,8 @@ Json leak_table_view(const Json& table, const std::vector<std::pair<std::string,
   view["features"] = feature_rows(table.at("features"));
   view["has_features"] = !view["features"].empty();
   view["residual"] = text_of(table, "residual");
-  view["has_levels"] = !levels.empty();
-  if (!levels.empty()) view["levels_html"] = svg(levels_plot(levels));
+  view["has_levels"] = !stored.levels.empty();
+  if (!stored.levels.empty()) view["levels_html"] = svg(levels_plot(stored.levels));
   view["assumptions"] = Json::array();
   for (const Json& each : table.at("assumptions")) {
     view["assumptions"].push_back({{"name", text_of(each, "key")},

@@ -180,8 +180,9 @@ Json parameters_view(const Json& result) {
   }
   const Json& correlation = result.at("correlation");
   Json view;
-  view["common"] = lift_common_reasons(fitted);
-  view["has_common"] = view["common"] != "";
+  const std::string common = lift_common_reasons(fitted);
+  view["common"] = common;
+  view["has_common"] = !common.empty();
   view["has_fitted"] = !fitted.empty();
   view["fitted"] = std::move(fitted);
   view["has_known"] = !known.empty();

@@ -93,10 +93,14 @@ struct Figure {
   Plot plot;
 };
 std::vector<Figure> condition_figures(const Json& condition, const Table& series);
+/// Those of the other results, likewise.
+std::vector<Figure> leak_table_figures(const LeakTableFiles& stored);
+std::vector<Figure> diagnosis_figures(const Json& diagnosis);
+std::vector<Figure> comparison_figures(const Json& comparison);
 
 /// leak_table.json against what was published.
 Json leak_table_headline(const Json& table);
-Json leak_table_view(const Json& table, const std::vector<std::pair<std::string, Table>>& levels);
+Json leak_table_view(const LeakTableFiles& stored);
 
 /// diagnosis.json: classes, their probabilities, and how often they are right.
 Json diagnosis_headline(const Json& diagnosis);

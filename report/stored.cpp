@@ -73,14 +73,16 @@ LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
   return stored;
 }
 
-std::string level_file(const std::string& level) {
+std::string plain_name(const std::string& text) {
   std::string name;
-  for (const char c : level) {
+  for (const char c : text) {
     const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                        c == '.' || c == '-';
     name += plain ? c : '_';
   }
-  return name + ".csv";
+  return name;
 }
+
+std::string level_file(const std::string& level) { return plain_name(level) + ".csv"; }
 
 }  // namespace rigcal::report

@@ -47,6 +47,9 @@ LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where);
 /// A JSON file.
 Json load_json(const ReadFile& read, const std::string& where, const std::string& name);
 
+/// A text as part of the name of a file: letters, digits, ".", "-", and "_" for all else.
+std::string plain_name(const std::string& text);
+
 /// File of one leak level's series beneath levels/.
 std::string level_file(const std::string& level);
 

@@ -42,10 +42,11 @@ ExitCode run_report(const Options& options) {
 Run add_report(CLI::App& verb) {
   const auto options = std::make_shared<Options>();
   options->threads = hardware_threads();
-  verb.add_option("DIR", options->folder, "Folder of a fit or validation")
+  verb.add_option("DIR", options->folder, "Folder of results")
       ->required()
       ->check(CLI::ExistingDirectory);
-  verb.add_flag("--figures", options->figures, "Also write every time plot as SVG into figures/");
+  verb.add_flag("--figures", options->figures,
+                "Also write every picture as SVG and PDF into figures/");
   add_print_options(verb, options->print);
   return [options](const Invocation&) { return run_report(*options); };
 }
