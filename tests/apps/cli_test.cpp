@@ -559,8 +559,8 @@ TEST_CASE("fit: stopped by a signal it keeps the best so far", "[apps]") {
       CAPTURE(outcome.err);
       CHECK(outcome.exit_code == 4);
       auto files = files_in(folder, "out/");
-  files.erase("out/checkpoint.json");  // there once a start is finished
-  CHECK(files == kFitFiles);
+      files.erase("out/checkpoint.json");  // there once a start is finished
+      CHECK(files == kFitFiles);
       CHECK(json::parse(folder.read("out/fit.json"))["status"] == "stopped");
       check_complete(folder.read("out/fit.json"));
       CHECK_THAT(folder.read("out/fit.json"), StartsWith("{\n  \"status\": \"stopped\""));

@@ -38,7 +38,8 @@ std::string rigcal::test::violations(const json& document, const std::string& na
 TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") {
   const CommandFolder folder;
   REQUIRE(write_twin(folder).exit_code == 0);
-  folder.run({"fit", "twin/campaign.toml", "--out", "fit", "--quiet"});
+  folder.run({"fit", "twin/campaign.toml", "--out", "fit", "--profiles", "--bootstrap", "20",
+              "--cross-validate", "--starts", "2", "--quiet"});
   const json fit = json::parse(folder.read("fit/fit.json"));
   CHECK(violations(fit, "result") == "");
   folder.run(
@@ -48,6 +49,13 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
                folder.read("twin/campaign.toml") + "\n[simulation]\nmax_seconds = 1e-9\n");
   folder.run({"fit", "twin/hopeless.toml", "--out", "failed", "--quiet"});
   CHECK(violations(json::parse(folder.read("failed/fit.json")), "result").empty());
+
+  REQUIRE(fit["parameters"][0].contains("identifiability"));
+  REQUIRE(fit.contains("cross_validation"));
+  // What such a fit knows more is on its page.
+  const std::string page = folder.read("fit/report.html");
+  for (const char* title : {"<h3>Profiles", "<h3>Bootstrap", "<h3>Lack of fit", "left out"})
+    CHECK_THAT(page, Catch::Contains(title));
 
   json broken = fit;
   broken["parameters"][0]["value"] = "60 kg";

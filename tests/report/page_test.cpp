@@ -141,6 +141,35 @@ TEST_CASE("page: the same bytes for any number of threads", "[report]") {
   CHECK(page(json, "fit.json", 1) == page(json, "fit.json", 4));
 }
 
+TEST_CASE("page: what a fit holds beyond is drawn, what it lacks is left out", "[report]") {
+  Json json = stored_result();
+  const std::string without = page(json);
+  for (const char* title : {"<h3>Profiles", "<h3>Bootstrap", "<h3>Lack of fit", "Predictions of"})
+    CHECK_THAT(without, !Contains(title));
+  json["parameters"][0]["profile"] = {{"low", {{"value", 84.9}, {"reached", 84.0}}},
+                                      {"high", {{"value", nullptr}, {"reached", 500.0}}},
+                                      {"values", {84.9, 85.0, 500.0}},
+                                      {"rises", {1.0, 0.0, 0.4}}};
+  json["combinations"] = {"only valve_gain / <mass> is fixed"};
+  json["lack_of_fit"] = {{"misfit", true}, {"tests", Json::array()}};
+  const std::string html = page(json);
+  CHECK_THAT(html, Contains("mass: lower end 84.9 kg, open at its upper end: followed to 500 kg"));
+  CHECK_THAT(html, Contains("only valve_gain / &lt;mass&gt; is fixed"));
+  CHECK_THAT(html, Contains("The model leaves more than noise."));
+}
+
+TEST_CASE("page: a result that cannot be read is named beside those that can", "[report]") {
+  const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+    if (path == "fit.json") return stored_result().dump();
+    if (path == "residual_tests.json") return R"({"of": "rigcal.fit/1", "conditions": {}})";
+    if (path == "leak_table.json") return R"({"schema": "rigcal.leak_table/1"})";
+    return std::nullopt;
+  };
+  const std::string html = result_page(read, "folder", 1);
+  CHECK_THAT(word_of(html), Contains("PASS"));
+  CHECK_THAT(html, Contains("Left out: folder") && !Contains("id=\"leak-table\""));
+}
+
 TEST_CASE("page: refuses what is no result of this version", "[report]") {
   using rigcal::InputError;
   CHECK_THROWS_AS(page(Json::array()), InputError);
