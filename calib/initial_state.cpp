@@ -19,23 +19,25 @@ constexpr double kLeastTravel_m = 1e-6;
 constexpr double kLeastSpeed_m_per_s = 1e-6;
 constexpr double kLeastPressure_pa = 1e3;
 
+/// Recorded mean of a channel; empty if it is not there.
+std::vector<double> recorded(const Record& record, Channel channel) {
+  const auto found = record.channels.find(channel);
+  return found == record.channels.end() ? std::vector<double>{} : found->second.mean;
+}
+
 /// What a sensor of the load pressure reads, from those of both chambers if need be; empty if
 /// neither is there.
 std::vector<double> load_pressure(const Record& record, const model::ParameterValues& values) {
-  if (const auto found = record.channels.find(Channel::load_pressure);
-      found != record.channels.end()) {
-    return found->second.mean;
-  }
-  const auto a = record.channels.find(Channel::pressure_a);
-  const auto b = record.channels.find(Channel::pressure_b);
-  if (a == record.channels.end() || b == record.channels.end()) return {};
-  const double offset_pa =
-      values["load_pressure_offset"] - (values["pressure_a_offset"] - values["pressure_b_offset"]);
-  std::vector<double> reading(a->second.mean.size());
-  std::transform(a->second.mean.begin(), a->second.mean.end(), b->second.mean.begin(),
-                 reading.begin(),
-                 [offset_pa](double p_a, double p_b) { return p_a - p_b + offset_pa; });
-  return reading;
+  if (auto direct = recorded(record, Channel::load_pressure); !direct.empty()) return direct;
+  std::vector<double> a = recorded(record, Channel::pressure_a);
+  const std::vector<double> b = recorded(record, Channel::pressure_b);
+  if (a.empty() || b.empty()) return {};
+  std::transform(a.begin(), a.end(), b.begin(), a.begin(), [&](double p_a, double p_b) {
+    const double P_A = (p_a - values["pressure_a_offset"]) / values["pressure_a_gain"];
+    const double P_B = (p_b - values["pressure_b_offset"]) / values["pressure_b_gain"];
+    return values["load_pressure_gain"] * (P_A - P_B) + values["load_pressure_offset"];
+  });
+  return a;
 }
 
 double initial_mean(const Record& record, const std::vector<double>& signal, double window_s) {
@@ -68,6 +70,7 @@ struct Guess {
   std::string_view key;
   double value = 0.0;
   double half_width = 0.0;
+  bool recorded = false;
 };
 
 }  // namespace
@@ -88,20 +91,29 @@ InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condit
   const auto& x = position->second.mean;
   const double window_s = campaign.initial_window_s;
   const double supply_pa = values["supply_pressure"];
-  const std::vector<double> P_L = load_pressure(record, values);
-  const std::vector<Guess> guesses{
+  std::vector<Guess> guesses{
       {"initial_position", initial_mean(record, x, window_s),
-       std::max(peak_to_peak(x), kLeastTravel_m)},
-      {"initial_velocity", 0.0, std::max(fastest_change(record, x), kLeastSpeed_m_per_s)},
-      {"initial_load_pressure", P_L.empty() ? 0.0 : initial_mean(record, P_L, window_s),
-       std::max(P_L.empty() ? supply_pa : peak_to_peak(P_L), kLeastPressure_pa)},
+       std::max(peak_to_peak(x), kLeastTravel_m), true},
+      {"initial_velocity", 0.0, std::max(fastest_change(record, x), kLeastSpeed_m_per_s), true},
   };
+  const auto add_pressure = [&](std::string_view key, const std::vector<double>& signal,
+                                double unrecorded_pa) {
+    if (model::parameter_index(campaign.rig.plant, key) < 0) return;
+    if (signal.empty()) {
+      guesses.push_back({key, unrecorded_pa, std::max(supply_pa, kLeastPressure_pa), false});
+    } else {
+      guesses.push_back({key, initial_mean(record, signal, window_s),
+                         std::max(peak_to_peak(signal), kLeastPressure_pa), true});
+    }
+  };
+  add_pressure("initial_load_pressure", load_pressure(record, values), 0.0);
+  add_pressure("initial_pressure_a", recorded(record, Channel::pressure_a), 0.5 * supply_pa);
+  add_pressure("initial_pressure_b", recorded(record, Channel::pressure_b), 0.5 * supply_pa);
   for (const Guess& guess : guesses) {
     const int index = model::parameter_index(campaign.rig.plant, guess.key);
     if (campaign.setting(index) != nullptr || known_in(campaign, condition, index)) continue;
-    const bool unrecorded = P_L.empty() && guess.key == "initial_load_pressure";
     if (campaign.initial == InitialMode::record) {
-      if (unrecorded) continue;  // the model then starts in equilibrium with the load
+      if (!guess.recorded) continue;  // the model then starts in equilibrium with the load
       plan.known.emplace_back(index, guess.value);
     } else {
       plan.unknowns.push_back({index, datasets::Scope::condition, condition.id, guess.value,

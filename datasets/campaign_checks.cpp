@@ -58,6 +58,18 @@ void check_controller(const Campaign& campaign) {
   }
 }
 
+void check_tank(const Campaign& campaign) {
+  const auto tank = campaign.channels.find(Channel::tank_pressure);
+  if (tank == campaign.channels.end() || tank->second.role != ChannelRole::input ||
+      campaign.rig.plant == model::PlantKind::two_chamber) {
+    return;
+  }
+  throw InputError({campaign.file.string()},
+                   "key 'recording.channels.tank_pressure': the plant load_pressure counts its "
+                   "pressures from the tank's: expected role = \"ignore\", or "
+                   "model = \"two_chamber\"");
+}
+
 void check_values(const Campaign& campaign, const Condition& condition) {
   const auto conflict = find_conflict(campaign.rig, values_in(campaign, condition));
   if (!conflict) return;
@@ -202,6 +214,7 @@ void check_campaign(const Campaign& campaign, const Location& start) {
   }
   check_initial(campaign);
   check_controller(campaign);
+  check_tank(campaign);
   for (const Condition& condition : campaign.conditions) {
     if (condition.use == Use::ignore) continue;
     if (condition.use == Use::diagnose) {

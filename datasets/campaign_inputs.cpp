@@ -73,6 +73,7 @@ model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& con
   inputs.drive = drive(campaign, condition, record);
   inputs.external_force_n = side_input(campaign, record, Channel::force);
   inputs.supply_pressure_pa = side_input(campaign, record, Channel::supply_pressure);
+  inputs.tank_pressure_pa = side_input(campaign, record, Channel::tank_pressure);
   return inputs;
 }
 

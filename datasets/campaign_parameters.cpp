@@ -180,6 +180,21 @@ Overrides read_overrides(const TomlNode& table, model::PlantKind plant, Paramete
   return overrides;
 }
 
+namespace {
+
+std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValues& values) {
+  if (values.plant != model::PlantKind::two_chamber) return std::nullopt;
+  const bool resistance = values.is_given("supply_resistance");
+  if (resistance == values.is_given("supply_capacity")) return std::nullopt;
+  return ParameterConflict{
+      resistance ? "supply_resistance" : "supply_capacity",
+      fmt::format("a supply that gives way needs both supply_resistance and supply_capacity: "
+                  "expected {} as well",
+                  resistance ? "supply_capacity" : "supply_resistance")};
+}
+
+}  // namespace
+
 std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                                                const model::ParameterValues& values) {
   const auto given = [&](std::string_view key) { return values.is_given(key); };
@@ -201,6 +216,12 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                     "expected {} as well",
                     frequency ? "valve_damping_ratio" : "valve_frequency")};
   }
+  if (given("valve_rate_limit") && !given("valve_time_constant") && !given("valve_frequency")) {
+    return ParameterConflict{"valve_rate_limit",
+                             "valve_rate_limit without the valve's own lag: expected "
+                             "valve_time_constant, or valve_frequency, as well"};
+  }
+  if (const auto conflict = find_supply_conflict(values)) return conflict;
   if (rig.controller == model::ControllerKind::none) return std::nullopt;
   if (!given("kp")) {
     return ParameterConflict{"", "the pid controller has no kp: expected one in [rig.controller]"};

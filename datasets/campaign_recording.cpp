@@ -55,6 +55,7 @@ ChannelRole default_role(Channel channel, model::ControllerKind controller) {
     case Channel::command:
       return pid ? ChannelRole::ignore : ChannelRole::input;
     case Channel::supply_pressure:
+    case Channel::tank_pressure:
       return ChannelRole::input;
     default:
       return info(channel).is_output ? ChannelRole::output : ChannelRole::ignore;
@@ -66,8 +67,8 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role,
                 model::ControllerKind controller) {
   const bool pid = controller == model::ControllerKind::pid;
   const bool drives = channel == (pid ? Channel::reference : Channel::command);
-  const bool can_be_input =
-      drives || channel == Channel::supply_pressure || channel == Channel::force;
+  const bool can_be_input = drives || channel == Channel::supply_pressure ||
+                            channel == Channel::tank_pressure || channel == Channel::force;
   const bool can_be_output = info(channel).is_output || (channel == Channel::command && !drives);
   if (role == ChannelRole::input && !can_be_input) {
     node.fail(fmt::format("{} cannot be an input {}: expected \"output\" or \"ignore\"",

@@ -18,6 +18,7 @@ std::optional<model::Output> model_output(Channel channel) {
       return model::Output::command;
     case Channel::reference:
     case Channel::supply_pressure:
+    case Channel::tank_pressure:
     case Channel::temperature:
       break;
   }

@@ -13,6 +13,7 @@ const std::vector<ChannelInfo>& channel_table() {
       {Channel::pressure_a, "pressure_a", "pressure_a_pa", "Pa", true},
       {Channel::pressure_b, "pressure_b", "pressure_b_pa", "Pa", true},
       {Channel::supply_pressure, "supply_pressure", "supply_pressure_pa", "Pa", false},
+      {Channel::tank_pressure, "tank_pressure", "tank_pressure_pa", "Pa", false},
       {Channel::force, "force", "force_n", "N", true},
       {Channel::temperature, "temperature", "temperature_k", "K", false},
   };

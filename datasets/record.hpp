@@ -18,6 +18,7 @@ enum class Channel {
   pressure_a,       ///< [Pa]
   pressure_b,       ///< [Pa]
   supply_pressure,  ///< [Pa]
+  tank_pressure,    ///< [Pa]
   force,            ///< [N]
   temperature,      ///< [K]
 };

@@ -128,6 +128,11 @@ Channels clean_channels(const Campaign& truth, const Condition& condition, const
     if (channel == Channel::supply_pressure)
       return inputs.supply_pressure_pa ? inputs.supply_pressure_pa->value(t)
                                        : values["supply_pressure"];
+    if (channel == Channel::tank_pressure) {
+      if (inputs.tank_pressure_pa) return inputs.tank_pressure_pa->value(t);
+      const bool in_table = model::parameter_index(truth.rig.plant, "tank_pressure") >= 0;
+      return in_table ? values["tank_pressure"] : 0.0;
+    }
     return condition.temperature_k.value_or(kRoomTemperatureK);
   };
   Channels result;

@@ -133,6 +133,11 @@ inline Dual<T, N> exp(const Dual<T, N>& a) {
   return chain(a, f, f);
 }
 template <typename T, int N>
+inline Dual<T, N> log(const Dual<T, N>& a) {
+  using std::log;
+  return chain(a, T(log(a.value)), T(1.0 / a.value));
+}
+template <typename T, int N>
 inline Dual<T, N> tanh(const Dual<T, N>& a) {
   using std::tanh;
   const T f = tanh(a.value);

@@ -18,11 +18,20 @@ struct PresentTerms {
   bool null_leak = false;       ///< likewise, across the null of the valve
   bool spool_shape = false;     ///< null shift or overlap: not zero, or free
   bool external_force = false;  ///< recorded, or not zero, or free
+  bool null_opening = false;    ///< covered edges leak through an orifice
+  bool air = false;             ///< the bulk modulus falls at low pressure
+  bool external_leak = false;   ///< of either chamber: not zero, or free
+  bool valve_rate_limit = false;
+  bool retracted_position = false;     ///< else half a stroke below zero
+  bool initial_load_pressure = false;  ///< else the load pressure starts in equilibrium
+  bool initial_pressure_a = false;     ///< else from the other and the load
+  bool initial_pressure_b = false;
 };
 
 /// Which states a rig has beside those of its plant, and where they stand in the state vector.
 struct Layout {
   int plant_states = 0;
+  int supply = -1;      ///< supply pressure at the valve [Pa]
   int valve_order = 0;  ///< 0: spool follows the command; 1, 2: lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
   bool pid = false;
@@ -30,7 +39,6 @@ struct Layout {
   int filter = -1;    ///< filtered error [m]
   int held = -1;      ///< output of a sampled controller, held [V]
   PresentTerms terms;
-  bool initial_pressure_given = false;  ///< else the load pressure starts in equilibrium
   int states = 0;
 
   bool sampled() const { return held >= 0; }
@@ -42,6 +50,11 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   Layout layout;
   layout.plant_states = plant_states;
   int next = plant_states;
+  // Terms of another plant are not in the table of this one.
+  const auto given = [&values](std::string_view key) {
+    return parameter_index(values.plant, key) >= 0 && values.is_given(key);
+  };
+  if (given("supply_capacity")) layout.supply = next++;
   if (values.is_given("valve_frequency")) {
     layout.valve_order = 2;
   } else if (values.is_given("valve_time_constant")) {
@@ -59,14 +72,22 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.friction = layout.terms.stribeck || values.is_given("coulomb_friction");
   const auto acts = [&](std::string_view key) {
     const int index = parameter_index(values.plant, key);
-    return values[key] != 0.0 || std::find(free.begin(), free.end(), index) != free.end();
+    return index >= 0 &&
+           (values[key] != 0.0 || std::find(free.begin(), free.end(), index) != free.end());
   };
   layout.terms.orifice_leak = acts("leakage_coefficient");
   layout.terms.laminar_leak = acts("laminar_leakage");
   layout.terms.null_leak = acts("valve_null_leakage");
   layout.terms.external_force = force_recorded || acts("external_force");
   layout.terms.spool_shape = acts("valve_offset") || acts("valve_dead_band");
-  layout.initial_pressure_given = values.is_given("initial_load_pressure");
+  layout.terms.external_leak = acts("external_leakage_a") || acts("external_leakage_b");
+  layout.terms.null_opening = given("valve_null_opening");
+  layout.terms.air = given("air_fraction");
+  layout.terms.valve_rate_limit = given("valve_rate_limit");
+  layout.terms.retracted_position = given("retracted_position");
+  layout.terms.initial_load_pressure = given("initial_load_pressure");
+  layout.terms.initial_pressure_a = given("initial_pressure_a");
+  layout.terms.initial_pressure_b = given("initial_pressure_b");
   layout.states = next;
   return layout;
 }

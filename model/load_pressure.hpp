@@ -3,19 +3,10 @@
 #include <array>
 #include <optional>
 
-#include "model/layout.hpp"
-#include "model/parameter_values.hpp"
+#include "model/plant_input.hpp"
 #include "model/terms.hpp"
 
 namespace rigcal::model {
-
-/// What acts on a plant at one instant; X carries time derivatives where they are wanted.
-template <typename X>
-struct PlantInput {
-  X spool_command_v;     ///< valve signal after its dynamics [V]
-  X external_force_n;    ///< load against positive travel [N]; set where that term takes part
-  X supply_pressure_pa;  ///< P_s [Pa]
-};
 
 /// The paper's plant: piston and load pressure of a symmetric cylinder of constant volume.
 ///
@@ -53,7 +44,7 @@ struct LoadPressurePlant {
   /// Size below which a state counts as zero in the error control [m, m/s, Pa].
   static constexpr std::array<double, kStates> kFloor{1e-6, 1e-5, 100.0};
 
-  /// The state that an output reads, but for its sensor's offset; none: it takes more.
+  /// The state that an output reads, but for its sensor; none: it takes more.
   static constexpr std::optional<int> state_of(Output output) {
     switch (output) {
       case Output::position:
@@ -96,15 +87,6 @@ struct LoadPressurePlant {
     return laminar + orifice_leakage(P_L, p.leak_conductance, p.leakage_smoothing_pa);
   }
 
-  /// Dry friction of piston and rod [N].
-  template <typename X, typename C>
-  static X friction(const X& v, const Coefficients<C>& p, const PresentTerms& terms) {
-    if (!terms.friction) return X(0.0);
-    if (!terms.stribeck) return p.coulomb_friction_n * smooth_sign(v, p.friction_smoothing_m_per_s);
-    return dry_friction(v, p.coulomb_friction_n, p.stribeck_friction_n, p.stribeck_velocity_m_per_s,
-                        p.friction_smoothing_m_per_s);
-  }
-
   /// Time derivative of the state [m/s, m/s2, Pa/s].
   ///
   /// @param x  shape (kStates or more): the plant's states come first
@@ -121,22 +103,56 @@ struct LoadPressurePlant {
     return {v, force * p.inverse_mass, flow * p.inverse_capacity};
   }
 
-  /// What a load cell in the rod reads: the force that the rod passes to mass, damper and spring of
-  /// the load, A P_L less the dry friction of the cylinder (docs/model.md).
+  /// What the plant tells beside position and velocity. Its chamber pressures share the load
+  /// pressure equally; `force` is what a load cell in the rod reads: the force that the rod passes
+  /// to mass, damper and spring of the load, A P_L less the dry friction of the cylinder
+  /// (docs/model.md).
   template <typename C, std::size_t M>
-  static C rod_force(const std::array<C, M>& x, const Coefficients<C>& p,
-                     const PresentTerms& terms) {
-    return x[load_pressure] * p.piston_area_m2 - friction(x[velocity], p, terms);
+  static C output(Output output, const std::array<C, M>& x, const PlantInput<C>& in,
+                  const Coefficients<C>& p, const PresentTerms& terms) {
+    const C& P_L = x[load_pressure];
+    switch (output) {
+      case Output::load_pressure:
+        return P_L;
+      case Output::pressure_a:
+        return 0.5 * (in.supply_pressure_pa + P_L);
+      case Output::pressure_b:
+        return 0.5 * (in.supply_pressure_pa - P_L);
+      case Output::force:
+        return P_L * p.piston_area_m2 - friction(x[velocity], p, terms);
+      case Output::spool:
+        return spool(in, p, terms);
+      case Output::servo_flow:
+        return servo_flow(P_L, in, p, terms);
+      case Output::leakage_flow:
+        return leakage_flow(P_L, p, terms);
+      case Output::work_flow:
+        return x[velocity] * p.piston_area_m2;
+      case Output::position:
+      case Output::velocity:
+      case Output::command:
+        break;
+    }
+    return C(0.0);
   }
 
-  /// Initial state: recorded position and load pressure less the offsets of their sensors; where no
+  /// State at rest: zero.
+  template <typename C>
+  static std::array<C, kStates> rest(const PlantInput<C>& /*in*/, const Coefficients<C>& /*p*/,
+                                     const PresentTerms& /*terms*/) {
+    return {C(0.0), C(0.0), C(0.0)};
+  }
+
+  /// Initial state: recorded position and load pressure as their sensors mean them; where no
   /// initial load pressure is given, the one that holds load and spring in equilibrium.
   template <typename C>
-  static std::array<C, kStates> initial(const Parameters<C>& p, bool pressure_given) {
-    const C x = p.initial_position_m - p.position_offset_m;
-    const C P_L = pressure_given
-                      ? C(p.initial_load_pressure_pa - p.load_pressure_offset_pa)
-                      : C((p.external_force_n + p.stiffness_n_per_m * x) / p.piston_area_m2);
+  static std::array<C, kStates> initial(const PlantInput<C>& /*in*/, const Coefficients<C>& p,
+                                        const PresentTerms& terms) {
+    const C x = (p.initial_position_m - p.position_offset_m) / p.position_gain;
+    const C P_L =
+        terms.initial_load_pressure
+            ? C((p.initial_load_pressure_pa - p.load_pressure_offset_pa) / p.load_pressure_gain)
+            : C((p.external_force_n + p.stiffness_n_per_m * x) / p.piston_area_m2);
     return {x, p.initial_velocity_m_per_s, P_L};
   }
 };

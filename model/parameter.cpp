@@ -5,16 +5,19 @@
 #include <stdexcept>
 
 #include "model/parameter_values.hpp"
+#include "model/two_chamber_parameters.hpp"
 
 namespace rigcal::model {
 namespace {
 
-constexpr auto kLoadPressureTable = [] {
-  constexpr auto& fields = kLoadPressureFields<double>;
-  std::array<ParameterSpec, fields.size()> table{};
+template <typename Fields>
+constexpr auto table_of(const Fields& fields) {
+  std::array<ParameterSpec, std::tuple_size_v<Fields>> table{};
   for (std::size_t i = 0; i < fields.size(); ++i) table[i] = fields[i].spec;
   return table;
-}();
+}
+constexpr auto kLoadPressureTable = table_of(kLoadPressureFields<double>);
+constexpr auto kTwoChamberTable = table_of(kTwoChamberFields<double>);
 
 int checked_index(PlantKind plant, std::string_view key) {
   const int index = parameter_index(plant, key);
@@ -42,6 +45,7 @@ std::string_view to_string(ParameterKind kind) {
 
 std::optional<PlantKind> plant_from_name(std::string_view name) {
   if (name == "load_pressure") return PlantKind::load_pressure;
+  if (name == "two_chamber") return PlantKind::two_chamber;
   return std::nullopt;
 }
 
@@ -49,16 +53,20 @@ std::string_view to_string(PlantKind plant) {
   switch (plant) {
     case PlantKind::load_pressure:
       return "load_pressure";
+    case PlantKind::two_chamber:
+      return "two_chamber";
   }
   return "";
 }
 
-std::vector<std::string> plant_names() { return {"load_pressure"}; }
+std::vector<std::string> plant_names() { return {"load_pressure", "two_chamber"}; }
 
 std::span<const ParameterSpec> parameter_table(PlantKind plant) {
   switch (plant) {
     case PlantKind::load_pressure:
       return kLoadPressureTable;
+    case PlantKind::two_chamber:
+      return kTwoChamberTable;
   }
   return {};
 }

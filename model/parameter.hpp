@@ -12,7 +12,7 @@ enum class ParameterKind {
   plant,       ///< physical parameter of the plant; must have a value
   term,        ///< optional term, absent unless given
   controller,  ///< gains and limits; off unless given
-  sensor,      ///< offsets of recorded channels
+  sensor,      ///< offset, gain and lag of recorded channels
   initial,     ///< state at the first sample
 };
 
@@ -34,7 +34,7 @@ struct ParameterSpec {
   bool can_be_fitted = true;              ///< false where the model is not differentiable in it
 };
 
-enum class PlantKind { load_pressure };
+enum class PlantKind { load_pressure, two_chamber };
 
 /// "load_pressure" -> PlantKind; empty if unknown.
 std::optional<PlantKind> plant_from_name(std::string_view name);

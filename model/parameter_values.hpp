@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <limits>
 
 #include "model/parameter.hpp"
@@ -37,6 +38,7 @@ struct CommonParameters {
   T valve_damping_ratio{};
   T valve_offset_v{};
   T valve_dead_band_v{};
+  T valve_rate_limit_v_per_s{};
   T valve_null_leakage_m3_per_s_pa{};
   T coulomb_friction_n{};
   T stribeck_friction_n{};
@@ -45,6 +47,16 @@ struct CommonParameters {
   T external_force_n{};
   T laminar_leakage_m3_per_s_pa{};
   T transport_delay_s{};
+  T position_gain{};
+  T load_pressure_gain{};
+  T pressure_a_gain{};
+  T pressure_b_gain{};
+  T force_gain{};
+  T position_lag_s{};
+  T load_pressure_lag_s{};
+  T pressure_a_lag_s{};
+  T pressure_b_lag_s{};
+  T force_lag_s{};
   T position_offset_m{};
   T load_pressure_offset_pa{};
   T pressure_a_offset_pa{};
@@ -52,7 +64,6 @@ struct CommonParameters {
   T force_offset_n{};
   T initial_position_m{};
   T initial_velocity_m_per_s{};
-  T initial_load_pressure_pa{};
   T kp_v_per_m{};
   T ki_v_per_m_s{};
   T kd_v_s_per_m{};
@@ -66,23 +77,47 @@ template <typename T>
 struct LoadPressureParameters : CommonParameters<T> {
   T piston_area_m2{};
   T total_volume_m3{};
+  T initial_load_pressure_pa{};
 };
 
-/// The rows of the load-pressure plant, in the order of `rigcal params`. To add a parameter: a
-/// member above and a row here; the campaign file, the results, the fit and the documents follow.
-template <typename T>
-constexpr auto load_pressure_fields() {
-  using P = LoadPressureParameters<T>;
+/// Rows one after the other.
+template <typename F, std::size_t... N>
+constexpr auto joined(const std::array<F, N>&... rows) {
+  std::array<F, (N + ...)> all{};
+  std::size_t next = 0;
+  const auto append = [&](const auto& part) {
+    for (const F& row : part) all[next++] = row;
+  };
+  (append(rows), ...);
+  return all;
+}
+
+// Rows that every plant shares. To add a parameter: a member above and a row here; the campaign
+// file, the results, the fit and the documents follow.
+
+/// Mass, damper and spring.
+template <template <typename> class Parameters, typename T>
+constexpr auto motion_rows() {
+  using P = Parameters<T>;
   using K = ParameterKind;
-  constexpr double kInf = std::numeric_limits<double>::infinity();
   using F = ParameterField<P, T>;
   return std::array{
       // clang-format off
       F{&P::mass_kg, {"mass", "mass_kg", "m", "kg", "piston, rods and load", "eq. 12", K::plant, 1e-3, 1e6}},
       F{&P::damping_n_s_per_m, {"damping", "damping_n_s_per_m", "b", "N s/m", "viscous friction", "eq. 12", K::plant, 0, 1e9}},
       F{&P::stiffness_n_per_m, {"stiffness", "stiffness_n_per_m", "k", "N/m", "spring of the load", "eq. 12", K::plant, 0, 1e12}},
-      F{&P::piston_area_m2, {"piston_area", "piston_area_m2", "A", "m2", "annulus area of the piston", "eqs. 12, 13", K::plant, 1e-8, 10}},
-      F{&P::total_volume_m3, {"total_volume", "total_volume_m3", "V_t", "m3", "oil in both chambers and hoses", "eq. 13", K::plant, 1e-9, 10}},
+      // clang-format on
+  };
+}
+
+/// Oil, valve, leak, friction, sensors, and the initial motion.
+template <template <typename> class Parameters, typename T>
+constexpr auto shared_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
       F{&P::supply_pressure_pa, {"supply_pressure", "supply_pressure_pa", "P_s", "Pa", "supply above tank", "eq. 4", K::plant, 1e3, 1e9}},
       F{&P::density_kg_per_m3, {"density", "density_kg_per_m3", "rho", "kg/m3", "density of the oil", "eqs. 4, 11", K::plant, 100, 5000}},
       F{&P::bulk_modulus_pa, {"bulk_modulus", "bulk_modulus_pa", "beta", "Pa", "effective bulk modulus", "eq. 13", K::plant, 1e5, 1e11}},
@@ -97,7 +132,8 @@ constexpr auto load_pressure_fields() {
       F{&P::valve_damping_ratio, {"valve_damping_ratio", "valve_damping_ratio", "zeta_v", "1", "damping ratio of a second-order valve", "docs/model.md", K::term, 0.01, 100, 0.0}},
       F{&P::valve_offset_v, {"valve_offset", "valve_offset_v", "u_0", "V", "voltage added at the spool: null shift", "docs/model.md", K::term, -100, 100, 0.0}},
       F{&P::valve_dead_band_v, {"valve_dead_band", "valve_dead_band_v", "u_db", "V", "half width of the spool overlap, in volts", "docs/model.md", K::term, 0, 100, 0.0}},
-      F{&P::valve_null_leakage_m3_per_s_pa, {"valve_null_leakage", "valve_null_leakage_m3_per_s_pa", "G_0", "m3/(s Pa)", "loss of servo flow per load pressure across the valve's null", "docs/model.md", K::term, 0, 1, 0.0}},
+      F{&P::valve_rate_limit_v_per_s, {"valve_rate_limit", "valve_rate_limit_v_per_s", "r_v", "V/s", "fastest change of the spool signal, both signs", "docs/model.md", K::term, 1e-3, 1e9, 0.0}},
+      F{&P::valve_null_leakage_m3_per_s_pa, {"valve_null_leakage", "valve_null_leakage_m3_per_s_pa", "G_0", "m3/(s Pa)", "laminar leak of each closed metering edge: servo flow lost per load pressure", "docs/model.md", K::term, 0, 1, 0.0}},
       F{&P::coulomb_friction_n, {"coulomb_friction", "coulomb_friction_n", "F_c", "N", "dry friction of piston and rod", "docs/model.md", K::term, 0, 1e8, 0.0}},
       F{&P::stribeck_friction_n, {"stribeck_friction", "stribeck_friction_n", "F_st", "N", "friction at breakaway above Coulomb's", "docs/model.md", K::term, 0, 1e8, 0.0}},
       F{&P::stribeck_velocity_m_per_s, {"stribeck_velocity", "stribeck_velocity_m_per_s", "v_st", "m/s", "velocity at which the breakaway friction fades", "docs/model.md", K::term, 1e-6, 100, 0.01}},
@@ -105,6 +141,16 @@ constexpr auto load_pressure_fields() {
       F{&P::external_force_n, {"external_force", "external_force_n", "F_ext", "N", "constant load against positive travel", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
       F{&P::laminar_leakage_m3_per_s_pa, {"laminar_leakage", "laminar_leakage_m3_per_s_pa", "G_leak", "m3/(s Pa)", "laminar internal leak", "docs/model.md", K::term, 0, 1, 0.0}},
       F{&P::transport_delay_s, {"transport_delay", "transport_delay_s", "T_d", "s", "dead time of the reference or command", "docs/model.md", K::term, 0, 10, 0.0}},
+      F{&P::position_gain, {"position_gain", "position_gain", "s_x", "1", "recorded position per position", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::load_pressure_gain, {"load_pressure_gain", "load_pressure_gain", "s_PL", "1", "recorded load pressure per load pressure", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::pressure_a_gain, {"pressure_a_gain", "pressure_a_gain", "s_pA", "1", "recorded pressure A per pressure A", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::pressure_b_gain, {"pressure_b_gain", "pressure_b_gain", "s_pB", "1", "recorded pressure B per pressure B", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::force_gain, {"force_gain", "force_gain", "s_F", "1", "recorded force per force", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::position_lag_s, {"position_lag", "position_lag_s", "tau_x", "s", "first-order lag of the position sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::load_pressure_lag_s, {"load_pressure_lag", "load_pressure_lag_s", "tau_PL", "s", "first-order lag of the load pressure sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::pressure_a_lag_s, {"pressure_a_lag", "pressure_a_lag_s", "tau_pA", "s", "first-order lag of the pressure A sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::pressure_b_lag_s, {"pressure_b_lag", "pressure_b_lag_s", "tau_pB", "s", "first-order lag of the pressure B sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::force_lag_s, {"force_lag", "force_lag_s", "tau_F", "s", "first-order lag of the force sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
       F{&P::position_offset_m, {"position_offset", "position_offset_m", "x_0", "m", "recorded position minus position", "docs/model.md", K::sensor, -100, 100, 0.0}},
       F{&P::load_pressure_offset_pa, {"load_pressure_offset", "load_pressure_offset_pa", "P_L0", "Pa", "recorded load pressure minus load pressure", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
       F{&P::pressure_a_offset_pa, {"pressure_a_offset", "pressure_a_offset_pa", "p_A0", "Pa", "recorded pressure A minus pressure A", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
@@ -112,7 +158,19 @@ constexpr auto load_pressure_fields() {
       F{&P::force_offset_n, {"force_offset", "force_offset_n", "F_0", "N", "recorded force minus force", "docs/model.md", K::sensor, -1e8, 1e8, 0.0}},
       F{&P::initial_position_m, {"initial_position", "initial_position_m", "x(0)", "m", "recorded position at the first sample", "docs/model.md", K::initial, -100, 100, 0.0}},
       F{&P::initial_velocity_m_per_s, {"initial_velocity", "initial_velocity_m_per_s", "v(0)", "m/s", "velocity at the first sample", "docs/model.md", K::initial, -100, 100, 0.0}},
-      F{&P::initial_load_pressure_pa, {"initial_load_pressure", "initial_load_pressure_pa", "P_L(0)", "Pa", "load pressure at the first sample", "docs/model.md", K::initial, -1e9, 1e9, 0.0}},
+      // clang-format on
+  };
+}
+
+/// The controller.
+template <template <typename> class Parameters, typename T>
+constexpr auto controller_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
       F{&P::kp_v_per_m, {"kp", "kp_v_per_m", "K_p", "V/m", "proportional gain", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::ki_v_per_m_s, {"ki", "ki_v_per_m_s", "K_i", "V/(m s)", "integral gain", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::kd_v_s_per_m, {"kd", "kd_v_s_per_m", "K_d", "V s/m", "derivative gain", "docs/model.md", K::controller, 0, 1e9, 0.0}},
@@ -121,6 +179,28 @@ constexpr auto load_pressure_fields() {
       F{&P::sample_time_s, {"sample_time", "sample_time_s", "T_s", "s", "period of a sampled controller; continuous if not given", "docs/model.md", K::controller, 1e-6, 100, 0.0, false}},
       // clang-format on
   };
+}
+
+/// The load-pressure plant, in the order of `rigcal params`.
+template <typename T>
+constexpr auto load_pressure_fields() {
+  using P = LoadPressureParameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  const auto cylinder = std::array{
+      // clang-format off
+      F{&P::piston_area_m2, {"piston_area", "piston_area_m2", "A", "m2", "annulus area of the piston", "eqs. 12, 13", K::plant, 1e-8, 10}},
+      F{&P::total_volume_m3, {"total_volume", "total_volume_m3", "V_t", "m3", "oil in both chambers and hoses", "eq. 13", K::plant, 1e-9, 10}},
+      // clang-format on
+  };
+  const auto initial = std::array{
+      // clang-format off
+      F{&P::initial_load_pressure_pa, {"initial_load_pressure", "initial_load_pressure_pa", "P_L(0)", "Pa", "load pressure at the first sample", "docs/model.md", K::initial, -1e9, 1e9, 0.0}},
+      // clang-format on
+  };
+  return joined(motion_rows<LoadPressureParameters, T>(), cylinder,
+                shared_rows<LoadPressureParameters, T>(), initial,
+                controller_rows<LoadPressureParameters, T>());
 }
 
 template <typename T>

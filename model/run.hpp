@@ -84,6 +84,7 @@ class Run {
     std::array<double, static_cast<std::size_t>(N)> floor;
     floor.fill(1e-3);  // volts
     std::copy(Plant::kFloor.begin(), Plant::kFloor.end(), floor.begin());
+    if (layout.supply >= 0) floor[static_cast<std::size_t>(layout.supply)] = 100.0;
     if (layout.valve_order == 2) floor[static_cast<std::size_t>(layout.valve) + 1] = 1.0;  // V/s
     if (layout.filter >= 0) floor[static_cast<std::size_t>(layout.filter)] = Plant::kFloor[0];
     return floor;
@@ -94,6 +95,7 @@ class Run {
     f(system_.drive());
     if (system_.external_force()) f(*system_.external_force());
     if (system_.supply_pressure()) f(*system_.supply_pressure());
+    if (system_.tank_pressure()) f(*system_.tank_pressure());
   }
 
   double sample_time(std::size_t sample) const { return times_s_[sample] - times_s_.front(); }

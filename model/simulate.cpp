@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <type_traits>
 
 #include "model/layout.hpp"
 #include "model/load_pressure.hpp"
+#include "model/sensors.hpp"
 #include "model/simulate_sized.hpp"
+#include "model/two_chamber.hpp"
 
 namespace rigcal::model {
 namespace {
@@ -54,34 +57,47 @@ void require(bool condition, const char* message) {
   if (!condition) throw std::invalid_argument(std::string("simulate: ") + message);
 }
 
-template <int N>
-void run_sized(const SizedRequest& request, Simulation& result) {
-#ifdef RIGCAL_AVX2
-  if constexpr (N <= kMaxStatesAvx2) {
-    if (best_instruction_set() == InstructionSet::avx2)
-      return simulate_sized<N, InstructionSet::avx2>(request, result);
-  }
-#endif
-  simulate_sized<N, InstructionSet::base>(request, result);
+int plant_states(PlantKind plant) {
+  return plant == PlantKind::two_chamber ? TwoChamberPlant::kStates : LoadPressurePlant::kStates;
 }
 
-void dispatch(const SizedRequest& request, Simulation& result) {
-  switch (request.layout.states) {
-    case 3:
-      return run_sized<3>(request, result);
-    case 4:
-      return run_sized<4>(request, result);
-    case 5:
-      return run_sized<5>(request, result);
-    case 6:
-      return run_sized<6>(request, result);
-    case 7:
-      return run_sized<7>(request, result);
-    case 8:
-      return run_sized<8>(request, result);
-    default:
-      throw std::logic_error("simulate: a layout with an unexpected number of states");
+template <typename Plant, int N>
+void run_sized(const SizedRequest& request, Simulation& result) {
+#ifdef RIGCAL_AVX2
+  if constexpr (std::is_same_v<Plant, LoadPressurePlant> && N <= kMaxStatesAvx2) {
+    if (best_instruction_set() == InstructionSet::avx2)
+      return simulate_sized<Plant, N, InstructionSet::avx2>(request, result);
   }
+#endif
+  simulate_sized<Plant, N, InstructionSet::base>(request, result);
+}
+
+/// The sizes that were compiled (CMakeLists.txt).
+void dispatch(const SizedRequest& request, Simulation& result) {
+  const int states = request.layout.states;
+  if (request.parameters.plant == PlantKind::two_chamber) {
+    if (states <= 5) return run_sized<TwoChamberPlant, 5>(request, result);
+    if (states <= 6) return run_sized<TwoChamberPlant, 6>(request, result);
+    if (states <= 10) return run_sized<TwoChamberPlant, 10>(request, result);
+  } else {
+    switch (states) {
+      case 3:
+        return run_sized<LoadPressurePlant, 3>(request, result);
+      case 4:
+        return run_sized<LoadPressurePlant, 4>(request, result);
+      case 5:
+        return run_sized<LoadPressurePlant, 5>(request, result);
+      case 6:
+        return run_sized<LoadPressurePlant, 6>(request, result);
+      case 7:
+        return run_sized<LoadPressurePlant, 7>(request, result);
+      case 8:
+        return run_sized<LoadPressurePlant, 8>(request, result);
+      default:
+        break;
+    }
+  }
+  throw std::logic_error("simulate: a layout with an unexpected number of states");
 }
 
 }  // namespace
@@ -146,7 +162,7 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
   }
 
   Simulation result;
-  const Layout layout = layout_of(rig, parameters, free, LoadPressurePlant::kStates,
+  const Layout layout = layout_of(rig, parameters, free, plant_states(rig.plant),
                                   inputs.external_force_n.has_value());
   result.reason = bad_parameter(parameters, layout);
   if (!result.reason.empty()) {
@@ -154,14 +170,16 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
     result.failed_at_s = times_s.front();
     return result;
   }
-  const auto samples = static_cast<Eigen::Index>(times_s.size());
+  const SensorTimes at = sensor_times(outputs, parameters, times_s);
+  const auto samples = static_cast<Eigen::Index>(at.times_s.size());
   // Not set to zero: a simulation that ends well writes all of them.
   result.outputs.resize(samples, static_cast<Eigen::Index>(outputs.size()));
   result.sensitivities.resize(outputs.size());
   for (Eigen::MatrixXd& each : result.sensitivities)
     each.resize(samples, static_cast<Eigen::Index>(free.size()));
-  dispatch({layout, rig.initial, parameters, free, inputs, times_s, outputs, options, started},
+  dispatch({layout, rig.initial, parameters, free, inputs, at.times_s, outputs, options, started},
            result);
+  if (result.ok()) read_sensors(at, outputs, parameters, free, result);
   const bool finite = result.outputs.allFinite() &&
                       std::all_of(result.sensitivities.begin(), result.sensitivities.end(),
                                   [](const Eigen::MatrixXd& s) { return s.allFinite(); });

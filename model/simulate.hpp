@@ -51,6 +51,7 @@ struct SimulationInputs {
   Signal drive = Signal::constant(0.0);      ///< reference [m] or command [V]
   std::optional<Signal> external_force_n;    ///< added to the parameter `external_force`
   std::optional<Signal> supply_pressure_pa;  ///< in place of the parameter `supply_pressure`
+  std::optional<Signal> tank_pressure_pa{};  ///< in place of the parameter `tank_pressure`
 };
 
 enum class Method {

@@ -4,15 +4,14 @@
 #include <cmath>
 
 #include "model/run.hpp"
+#include RIGCAL_PLANT_HEADER
 
-#if !defined(RIGCAL_STATES) || !defined(RIGCAL_INSTRUCTION_SET)
-#error "compiled once per number of states and instruction set, which CMake defines"
+#if !defined(RIGCAL_STATES) || !defined(RIGCAL_PLANT) || !defined(RIGCAL_INSTRUCTION_SET)
+#error "compiled once per plant, number of states and instruction set: model/CMakeLists.txt"
 #endif
 
 namespace rigcal::model {
 namespace {
-
-using Plant = LoadPressurePlant;
 
 /// Typical size of a parameter, for the error scale of its sensitivity.
 double scale_of(const ParameterSpec& spec, double value) {
@@ -22,7 +21,7 @@ double scale_of(const ParameterSpec& spec, double value) {
 }
 
 /// One pass with the sensitivities to at most P of the free parameters.
-template <int N, int P>
+template <typename Plant, int N, int P>
 void pass(const SizedRequest& request, int first, int count, Simulation& result) {
   const double start_s = request.times_s.front();
   const auto track = [start_s](const Signal& signal, double delay_s) {
@@ -30,8 +29,10 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   };
   std::optional<InputTrack> force;
   std::optional<InputTrack> supply;
+  std::optional<InputTrack> tank;
   if (request.inputs.external_force_n) force = track(*request.inputs.external_force_n, 0.0);
   if (request.inputs.supply_pressure_pa) supply = track(*request.inputs.supply_pressure_pa, 0.0);
+  if (request.inputs.tank_pressure_pa) tank = track(*request.inputs.tank_pressure_pa, 0.0);
   const auto free =
       request.free.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
   std::array<double, static_cast<std::size_t>(P)> scale;
@@ -43,7 +44,7 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   }
   System<Plant, N, P> system(request.layout, request.parameters, free,
                              track(request.inputs.drive, request.parameters["transport_delay"]),
-                             std::move(force), std::move(supply));
+                             std::move(force), std::move(supply), std::move(tank));
   Run<Plant, N, P> run(std::move(system), scale, request.times_s, request.outputs, request.options,
                        request.started);
   run(request.initial, result, first, count);
@@ -51,18 +52,18 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
 
 /// Passes until every free parameter had its turn: up to eight sensitivities at a time, four where
 /// they suffice.
-template <int N>
+template <typename Plant, int N>
 void passes(const SizedRequest& request, Simulation& result) {
   const int free = static_cast<int>(request.free.size());
-  if (free == 0) return pass<N, 0>(request, 0, 0, result);
+  if (free == 0) return pass<Plant, N, 0>(request, 0, 0, result);
   for (int first = 0; first < free && result.ok();) {
     const int left = free - first;
     if (left <= 4) {
-      pass<N, 4>(request, first, left, result);
+      pass<Plant, N, 4>(request, first, left, result);
       first += left;
     } else {
       const int count = std::min(left, 8);
-      pass<N, 8>(request, first, count, result);
+      pass<Plant, N, 8>(request, first, count, result);
       first += count;
     }
   }
@@ -70,12 +71,12 @@ void passes(const SizedRequest& request, Simulation& result) {
 
 }  // namespace
 
-template <int N, InstructionSet Set>
+template <typename Plant, int N, InstructionSet Set>
 void simulate_sized(const SizedRequest& request, Simulation& result) {
-  passes<N>(request, result);
+  passes<Plant, N>(request, result);
 }
 
-template void simulate_sized<RIGCAL_STATES, InstructionSet::RIGCAL_INSTRUCTION_SET>(
+template void simulate_sized<RIGCAL_PLANT, RIGCAL_STATES, InstructionSet::RIGCAL_INSTRUCTION_SET>(
     const SizedRequest&, Simulation&);
 
 }  // namespace rigcal::model

@@ -8,12 +8,10 @@
 
 namespace rigcal::model {
 
-inline constexpr int kMinStates = 3;
-inline constexpr int kMaxStates = 8;
-inline constexpr int kMaxStatesAvx2 = 4;  ///< as in CMakeLists.txt
+inline constexpr int kMaxStatesAvx2 = 4;  ///< of the load-pressure plant, as in CMakeLists.txt
 
-/// Everything that one simulation needs, its number of states fixed at compile time in
-/// simulate_sized.cpp (compiled once per number, so that the parts build side by side).
+/// Everything that one simulation needs, its plant and number of states fixed at compile time in
+/// simulate_sized.cpp (compiled once per plant and number, so that the parts build side by side).
 struct SizedRequest {
   const Layout& layout;
   InitialState initial;
@@ -32,7 +30,8 @@ enum class InstructionSet { base, avx2 };
 /// @return  of this processor, the best that the solver is compiled for
 InstructionSet best_instruction_set();
 
-template <int N, InstructionSet Set>
+/// @tparam N  room for the layout's states, at least as many
+template <typename Plant, int N, InstructionSet Set>
 void simulate_sized(const SizedRequest& request, Simulation& result);
 
 }  // namespace rigcal::model

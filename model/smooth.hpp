@@ -43,4 +43,16 @@ X dead_band(const X& x, const C& width) {
   return x * 0.0;
 }
 
+/// x where positive, else zero: what a contact or an opened edge sees.
+template <typename X>
+X positive_part(const X& x) {
+  return value_of(x) > 0.0 ? x : X(x * 0.0);
+}
+
+/// x, but `least` where x falls below it.
+template <typename X>
+X at_least(const X& x, double least) {
+  return value_of(x) > least ? x : X(x * 0.0 + least);
+}
+
 }  // namespace rigcal::model

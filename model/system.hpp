@@ -10,7 +10,7 @@
 #include "model/controller.hpp"
 #include "model/input_track.hpp"
 #include "model/layout.hpp"
-#include "model/load_pressure.hpp"
+#include "model/plant_input.hpp"
 #include "model/simulate.hpp"
 #include "model/state.hpp"
 
@@ -28,11 +28,12 @@ class System {
   /// @param free  table indices of the P (or fewer) parameters of the sensitivity columns
   System(const Layout& layout, const ParameterValues& values, std::span<const int> free,
          InputTrack drive, std::optional<InputTrack> external_force,
-         std::optional<InputTrack> supply_pressure)
+         std::optional<InputTrack> supply_pressure, std::optional<InputTrack> tank_pressure)
       : layout_(layout),
         drive_(std::move(drive)),
         external_force_(std::move(external_force)),
-        supply_pressure_(std::move(supply_pressure)) {
+        supply_pressure_(std::move(supply_pressure)),
+        tank_pressure_(std::move(tank_pressure)) {
     const auto& fields = Plant::template fields<C>();
     Parameters parameters;
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -53,6 +54,7 @@ class System {
   InputTrack& drive() { return drive_; }
   std::optional<InputTrack>& external_force() { return external_force_; }
   std::optional<InputTrack>& supply_pressure() { return supply_pressure_; }
+  std::optional<InputTrack>& tank_pressure() { return tank_pressure_; }
   /// Sensitivity column of the transport delay among the P directions, or -1.
   int delay_direction() const { return delay_direction_; }
 
@@ -80,7 +82,7 @@ class System {
     controller_tick(error, x, parameters_, layout_);
   }
 
-  /// Value of each wanted output, with sensitivities.
+  /// Value of each wanted output, with sensitivities; sensors come after (sensors.hpp).
   void observe(const X& x, double t, std::span<const Output> outputs, std::span<C> result) const {
     C command{};
     PlantInput<C> in{};
@@ -90,43 +92,19 @@ class System {
       command = valve_command(x, input_value<C>(drive_, t, true));
       in = plant_input<C>(x, command, t);
     }
-    const Coefficients& p = parameters_;
-    const C& P_L = x[Plant::load_pressure];
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       switch (outputs[k]) {
         case Output::position:
-          result[k] = x[Plant::position] + p.position_offset_m;
+          result[k] = x[Plant::position];
           break;
         case Output::velocity:
           result[k] = x[Plant::velocity];
           break;
-        case Output::load_pressure:
-          result[k] = P_L + p.load_pressure_offset_pa;
-          break;
-        case Output::pressure_a:
-          result[k] = 0.5 * (in.supply_pressure_pa + P_L) + p.pressure_a_offset_pa;
-          break;
-        case Output::pressure_b:
-          result[k] = 0.5 * (in.supply_pressure_pa - P_L) + p.pressure_b_offset_pa;
-          break;
-        case Output::force:
-          result[k] = Plant::rod_force(x, p, layout_.terms) + p.force_offset_n;
-          break;
         case Output::command:
           result[k] = command;
           break;
-        case Output::spool:
-          result[k] = Plant::spool(in, p, layout_.terms);
-          break;
-        case Output::servo_flow:
-          result[k] = Plant::servo_flow(P_L, in, p, layout_.terms);
-          break;
-        case Output::leakage_flow:
-          result[k] = Plant::leakage_flow(P_L, p, layout_.terms);
-          break;
-        case Output::work_flow:
-          result[k] = x[Plant::velocity] * p.piston_area_m2;
-          break;
+        default:
+          result[k] = Plant::output(outputs[k], x, in, parameters_, layout_.terms);
       }
     }
   }
@@ -135,9 +113,14 @@ class System {
   X initial(InitialState mode, double t) const {
     X states;
     states.fill(C(0.0));
-    if (mode == InitialState::given) {
-      const auto plant = Plant::initial(parameters_, layout_.initial_pressure_given);
-      for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
+    if (layout_.supply >= 0)
+      states[static_cast<std::size_t>(layout_.supply)] = source_pressure<C>(t);
+    const PlantInput<C> in = plant_input<C>(states, C(0.0), t);
+    const bool given = mode == InitialState::given;
+    const auto plant = given ? Plant::initial(in, parameters_, layout_.terms)
+                             : Plant::rest(in, parameters_, layout_.terms);
+    for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
+    if (given) {
       // The loop was closed before the record began: no kick of the derivative, spool at rest.
       const C drive = input_value<C>(drive_, t, true);
       if (layout_.filter >= 0) {
@@ -222,9 +205,28 @@ class System {
       if (external_force_)
         in.external_force_n = in.external_force_n + input_value<D>(*external_force_, t, false);
     }
-    in.supply_pressure_pa = supply_pressure_ ? input_value<D>(*supply_pressure_, t, false)
-                                             : D(parameters_.supply_pressure_pa);
+    in.supply_pressure_pa =
+        layout_.supply >= 0 ? x[static_cast<std::size_t>(layout_.supply)] : source_pressure<D>(t);
+    if constexpr (requires { parameters_.tank_pressure_pa; }) {
+      in.tank_pressure_pa = tank_pressure_ ? input_value<D>(*tank_pressure_, t, false)
+                                           : D(parameters_.tank_pressure_pa);
+    }
     return in;
+  }
+
+  /// Supply pressure before its resistance.
+  template <typename D>
+  D source_pressure(double t) const {
+    return supply_pressure_ ? input_value<D>(*supply_pressure_, t, false)
+                            : D(parameters_.supply_pressure_pa);
+  }
+
+  /// Rate of the spool signal within its limit [V/s].
+  template <typename D>
+  D spool_rate(const D& rate) const {
+    return layout_.terms.valve_rate_limit
+               ? clamp_symmetric(rate, parameters_.valve_rate_limit_v_per_s)
+               : rate;
   }
 
   template <typename D>
@@ -264,16 +266,25 @@ class System {
     }
     if (layout_.valve_order == 1) {
       const auto spool = static_cast<std::size_t>(layout_.valve);
-      dx[spool] = (command - x[spool]) / p.valve_time_constant_s;
+      dx[spool] = spool_rate(D((command - x[spool]) / p.valve_time_constant_s));
     } else if (layout_.valve_order == 2) {
       const auto spool = static_cast<std::size_t>(layout_.valve);
       const C& omega = p.valve_frequency_rad_per_s;
-      dx[spool] = x[spool + 1];
+      dx[spool] = spool_rate(x[spool + 1]);
       dx[spool + 1] = (command - x[spool]) * (omega * omega) -
                       x[spool + 1] * (2.0 * p.valve_damping_ratio * omega);
     }
-    const auto plant_dx = Plant::derivative(x, plant_input<D>(x, command, t), p, layout_.terms);
+    const PlantInput<D> in = plant_input<D>(x, command, t);
+    const auto plant_dx = Plant::derivative(x, in, p, layout_.terms);
     for (std::size_t i = 0; i < plant_dx.size(); ++i) dx[i] = plant_dx[i];
+    if constexpr (requires { p.supply_capacity_m3_per_pa; }) {
+      if (layout_.supply >= 0) {
+        const D inflow =
+            (source_pressure<D>(t) - in.supply_pressure_pa) / p.supply_resistance_pa_s_per_m3;
+        dx[static_cast<std::size_t>(layout_.supply)] =
+            (inflow - Plant::supply_flow(x, in, p, layout_.terms)) / p.supply_capacity_m3_per_pa;
+      }
+    }
     return dx;
   }
 
@@ -282,6 +293,7 @@ class System {
   InputTrack drive_;
   std::optional<InputTrack> external_force_;
   std::optional<InputTrack> supply_pressure_;
+  std::optional<InputTrack> tank_pressure_;
   int delay_direction_ = -1;
 };
 

@@ -56,4 +56,53 @@ X dry_friction(const X& velocity_m_per_s, const C& coulomb_n, const C& stribeck_
          smooth_sign(velocity_m_per_s, smoothing_m_per_s);
 }
 
+/// Opening of a metering edge that leaks while it is covered: c + y where it is open, c^2 / (c - y)
+/// beyond, so that the leak fades as the land covers more of it. Continuous with its slope.
+///
+/// @param y  spool travel since the land's edge met the port's, positive when open
+/// @param c  opening at y = 0, > 0, in the unit of y
+/// @source   B. Eryilmaz and B. H. Wilson, Unified modeling and analysis of a proportional valve,
+///           J. Franklin Institute 343 (2006) 48-68, with k = 1
+template <typename X, typename C>
+X leaking_opening(const X& y, const C& c) {
+  if (value_of(y) > 0.0) return y + c;
+  return c * c / (c - y);
+}
+
+/// Force of an end stop on the piston [N], away from the stop: k d (1 + lambda d'), never a pull.
+///
+/// @param depth_m     d, how far the piston is beyond the stop; no force where negative
+/// @param approach_m_per_s  d'
+/// @source   K. H. Hunt and F. R. E. Crossley, Coefficient of restitution interpreted as damping in
+///           vibroimpact, J. Applied Mechanics 42 (1975) 440-445, with exponent 1
+template <typename X, typename C>
+X stop_force(const X& depth_m, const X& approach_m_per_s, const C& stiffness_n_per_m,
+             const C& damping_s_per_m) {
+  return positive_part(depth_m) * stiffness_n_per_m *
+         positive_part(X(approach_m_per_s * damping_s_per_m + 1.0));
+}
+
+/// Bulk modulus of oil with undissolved air [Pa]: the air is compressed polytropically, the oil at
+/// its own modulus.
+///
+///   beta = (1 - a + a r) / ((1 - a) / beta_l + a r / (n p)),  r = (p_0 / p)^(1/n)
+///
+/// @param pressure_pa  above atmosphere; at 1 kPa absolute the fall ends
+/// @param air_fraction a, volume share at atmospheric pressure p_0
+/// @source   H. Gholizadeh, R. Burton and G. Schoenau, Fluid bulk modulus: a literature survey,
+/// Int.
+///           J. Fluid Power 12 (2011) 5-15: the compression only model
+template <typename X, typename C>
+X aerated_bulk_modulus(const X& pressure_pa, const C& oil_pa, const C& air_fraction,
+                       const C& exponent) {
+  using std::exp;
+  using std::log;
+  constexpr double kAtmosphere_pa = 101325.0;
+  constexpr double kLeast_pa = 1e3;
+  const X p = at_least(X(pressure_pa + kAtmosphere_pa), kLeast_pa);
+  const X air = exp(log(kAtmosphere_pa / p) / exponent) * air_fraction;
+  const C oil = 1.0 - air_fraction;
+  return (air + oil) / (air / (p * exponent) + oil / oil_pa);
+}
+
 }  // namespace rigcal::model

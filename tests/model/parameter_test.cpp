@@ -1,5 +1,6 @@
 #include "model/parameter.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cctype>
 #include <cmath>
@@ -38,12 +39,14 @@ std::string unit_suffix(std::string_view unit) {
   return suffix;
 }
 
+constexpr std::array kPlants{PlantKind::load_pressure, PlantKind::two_chamber};
+
 }  // namespace
 
 TEST_CASE("parameters: every name is its key with the SI unit at its end", "[model]") {
   CHECK(unit_suffix("m3/(s Pa)") == "_m3_per_s_pa");
   CHECK(unit_suffix("bar") == "_?");
-  for (const PlantKind plant : {PlantKind::load_pressure}) {
+  for (const PlantKind plant : kPlants) {
     for (const ParameterSpec& spec : parameter_table(plant)) {
       CAPTURE(spec.key, spec.name, spec.unit);
       CHECK(std::string(spec.name) == std::string(spec.key) + unit_suffix(spec.unit));
@@ -52,11 +55,11 @@ TEST_CASE("parameters: every name is its key with the SI unit at its end", "[mod
 }
 
 TEST_CASE("parameters: keys, names and symbols are unique, words are there", "[model]") {
+  const PlantKind plant = GENERATE(from_range(kPlants));
   std::set<std::string_view> keys;
   std::set<std::string_view> names;
   std::set<std::string_view> symbols;
-  const auto table = parameter_table(PlantKind::load_pressure);
-  for (const ParameterSpec& spec : table) {
+  for (const ParameterSpec& spec : parameter_table(plant)) {
     CAPTURE(spec.key);
     CHECK(keys.insert(spec.key).second);
     CHECK(names.insert(spec.name).second);
@@ -68,7 +71,7 @@ TEST_CASE("parameters: keys, names and symbols are unique, words are there", "[m
 }
 
 TEST_CASE("parameters: bounds are in order and hold the default", "[model]") {
-  for (const ParameterSpec& spec : parameter_table(PlantKind::load_pressure)) {
+  for (const ParameterSpec& spec : parameter_table(GENERATE(from_range(kPlants)))) {
     CAPTURE(spec.key);
     CHECK(spec.lower < spec.upper);
     CHECK(std::isfinite(spec.lower));
@@ -79,7 +82,8 @@ TEST_CASE("parameters: bounds are in order and hold the default", "[model]") {
     // A 0 below the bounds stands for a term that is absent and must be given with its value.
     const bool absent =
         *spec.default_value == 0.0 && spec.lower > 0.0 &&
-        (spec.kind == ParameterKind::term || spec.kind == ParameterKind::controller);
+        (spec.kind == ParameterKind::term || spec.kind == ParameterKind::controller ||
+         spec.kind == ParameterKind::sensor);
     CHECK((absent || (*spec.default_value >= spec.lower && *spec.default_value <= spec.upper)));
   }
 }

@@ -75,3 +75,43 @@ TEST_CASE("dry_friction: breakaway, Coulomb limit, odd, nothing at rest", "[mode
   CHECK_THAT(friction(0.01), WithinRel(200.0 + 80.0 * std::exp(-1.0), 1e-14));
   CHECK_THAT(friction(D::variable(0.0, 0)).derivative[0], WithinRel(280.0 / 1e-4, 1e-14));
 }
+
+TEST_CASE("leaking_opening: fades under the land, continuous with its slope", "[model]") {
+  const double c = 0.2;
+  CHECK_THAT(leaking_opening(0.0, c), WithinRel(c, 1e-14));
+  CHECK_THAT(leaking_opening(1.0, c), WithinRel(1.2, 1e-14));
+  CHECK_THAT(leaking_opening(-1.0, c), WithinRel(c * c / 1.2, 1e-14));
+  const double h = 1e-6;
+  const double left = (leaking_opening(0.0, c) - leaking_opening(-h, c)) / h;
+  const double right = (leaking_opening(h, c) - leaking_opening(0.0, c)) / h;
+  CHECK_THAT(left, WithinRel(right, 1e-4));
+}
+
+TEST_CASE("stop_force: a spring that never pulls", "[model]") {
+  CHECK(stop_force(-1e-3, 5.0, 1e8, 100.0) == 0.0);
+  CHECK_THAT(stop_force(1e-5, 0.0, 1e8, 100.0), WithinRel(1e3, 1e-12));
+  CHECK_THAT(stop_force(1e-5, 0.02, 1e8, 100.0), WithinRel(3e3, 1e-12));
+  CHECK(stop_force(1e-5, -0.02, 1e8, 100.0) == 0.0);
+}
+
+TEST_CASE("aerated_bulk_modulus: oil at high pressure, the air's at low", "[model]") {
+  const double oil = 1.4e9;
+  CHECK_THAT(aerated_bulk_modulus(1e6, oil, 0.0, 1.4), WithinRel(oil, 1e-14));
+  CHECK_THAT(aerated_bulk_modulus(5e8, oil, 0.01, 1.4), WithinRel(oil, 1e-2));
+  // All air: the modulus of a gas, n p.
+  CHECK_THAT(aerated_bulk_modulus(0.0, 1e15, 0.5, 1.4), WithinRel(2.0 * 1.4 * 101325.0, 1e-6));
+  double before = 0.0;
+  for (const double p : {-1e5, 0.0, 1e5, 1e6, 1e7}) {
+    const double beta = aerated_bulk_modulus(p, oil, 0.01, 1.4);
+    CHECK(beta > before);
+    before = beta;
+  }
+  // beta = -V dp/dV of oil and air that are compressed each for itself.
+  const double p = 8e5;
+  const auto volume = [&](double at) {
+    return 0.99 * std::exp(-at / oil) + 0.01 * std::pow(101325.0 / (at + 101325.0), 1.0 / 1.4);
+  };
+  const double slope = (volume(p + 10.0) - volume(p - 10.0)) / 20.0;
+  // The law leaves out how much the oil itself has shrunk: p / beta.
+  CHECK_THAT(aerated_bulk_modulus(p, oil, 0.01, 1.4), WithinRel(-volume(p) / slope, 2.0 * p / oil));
+}

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "rig.hpp"
+
+// Sensitivities of a scenario against central differences.
+
+namespace rigcal::model {
+
+using Values = std::vector<std::pair<const char*, double>>;
+
+struct Scenario {
+  const char* name;
+  Signal drive;
+  Values values;
+  ControllerKind controller = ControllerKind::pid;
+  InitialState initial = InitialState::rest;
+  bool recorded_loads = false;
+};
+
+inline Experiment experiment(const Scenario& s, const Experiment& rig = {}) {
+  Experiment e = rig;
+  e.rig.controller = s.controller;
+  e.rig.initial = s.initial;
+  e.inputs.drive = s.drive;
+  e.set("kp", 900.0);
+  for (const auto& [key, value] : s.values) e.set(key, value);
+  if (s.recorded_loads) {
+    e.inputs.external_force_n = Signal::linear({0.0, 0.05, 0.1}, {0.0, 500.0, -200.0});
+    e.inputs.supply_pressure_pa = Signal::ripple(6e6, 2e5, 20.0, 0.4);
+  }
+  e.times_s.clear();
+  for (int i = 0; i < 50; ++i) e.times_s.push_back(0.00131 + 0.00253 * i);  // off every edge
+  if (s.initial == InitialState::rest) e.times_s.insert(e.times_s.begin(), 0.0);
+  e.outputs.assign(kAllOutputs.begin(), kAllOutputs.end());
+  e.options.tolerance = 1e-9;
+  // One method: where two take turns, the errors of the runs of a difference are not alike.
+  e.options.method = Method::rosenbrock;
+  return e;
+}
+
+/// Parameters in use that may be fitted.
+inline std::vector<int> fittable(const Experiment& e) {
+  std::vector<int> result;
+  const auto table = parameter_table(e.rig.plant);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const bool in_use = e.values.given[i] || table[i].kind == ParameterKind::plant;
+    if (in_use && table[i].can_be_fitted) result.push_back(static_cast<int>(i));
+  }
+  return result;
+}
+
+/// Central difference of all outputs by one parameter.
+inline Eigen::MatrixXd difference_by(Experiment e, int index, double relative_step) {
+  e.free.clear();
+  const double value = e.values.value[static_cast<std::size_t>(index)];
+  const double step = value != 0.0 ? relative_step * std::abs(value) : relative_step;
+  e.values.set(index, value + step);
+  const Simulation above = e();
+  e.values.set(index, value - step);
+  const Simulation below = e();
+  REQUIRE(above.ok());
+  REQUIRE(below.ok());
+  return (above.outputs - below.outputs) / (2.0 * step);
+}
+
+/// Step of the differences: (587 rad/s 0.13 s / 2 1e-4)^2 / 6 = 2e-6 of truncation in the ringing.
+inline constexpr double kRelativeStep = 1e-4;
+
+/// Compares all sensitivities of an experiment with differences; adds to `seen` the parameters that
+/// matter in it.
+///
+/// @param parts  peak of what an output is the difference of: its noise is theirs
+inline void check_sensitivities(Experiment e, std::set<int>& seen,
+                                const std::map<Output, double>& parts = {}) {
+  e.free = fittable(e);
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  for (std::size_t j = 0; j < e.free.size(); ++j) {
+    const auto index = static_cast<std::size_t>(e.free[j]);
+    const std::string key(parameter_table(e.rig.plant)[index].key);
+    const bool at_zero = e.values.value[index] == 0.0;
+    if (at_zero || std::isinf(e.values.value[index])) continue;
+    const Eigen::MatrixXd expected = difference_by(e, e.free[j], kRelativeStep);
+    for (std::size_t k = 0; k < e.outputs.size(); ++k) {
+      const Eigen::VectorXd exact = run.sensitivities[k].col(static_cast<Eigen::Index>(j));
+      const Eigen::VectorXd by_difference = expected.col(static_cast<Eigen::Index>(k));
+      const auto part = parts.find(e.outputs[k]);
+      const double least = part == parts.end() ? 0.0 : part->second;
+      const double output_peak =
+          std::max(least, peak(run.outputs.col(static_cast<Eigen::Index>(k))));
+      // Noise of the difference: errors of 1e-9 a step, mostly alike in both runs, over the step;
+      // more where the leak's root is steep, at zero pressure.
+      const double noise = 5e-8 * output_peak / (kRelativeStep * std::abs(e.values.value[index]));
+      CAPTURE(key, output_name(e.outputs[k]), peak(exact));
+      CHECK(peak(exact - by_difference) <= 2e-3 * peak(by_difference) + noise);
+      if (peak(exact) > 10.0 * noise) seen.insert(e.free[j]);
+    }
+  }
+}
+
+/// Every parameter that can be fitted was seen, and no other.
+inline void check_all_seen(PlantKind plant, const std::set<int>& seen) {
+  const auto table = parameter_table(plant);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    CAPTURE(table[i].key);
+    CHECK((seen.count(static_cast<int>(i)) == 1) == table[i].can_be_fitted);
+  }
+}
+
+}  // namespace rigcal::model
