@@ -20,7 +20,7 @@ std::vector<std::pair<Scenario, Experiment>> scenarios() {
                      {"position_offset", 1e-3},
                      {"pressure_a_offset", 2e4},
                      {"pressure_b_offset", -3e4},
-                     {"load_pressure_offset", 1e4},
+                     {"load_pressure_offset", 1e5},
                      {"force_offset", 20.0},
                      {"position_gain", 1.05},
                      {"pressure_a_gain", 1.02},
