@@ -53,6 +53,7 @@ enum class Interpolation { hold, linear };
 struct ChannelSetting {
   Channel channel = Channel::position;
   std::string column;        ///< empty: only where `columns` of a repeat names one
+  std::string minus;         ///< second column that is taken off `column`; empty: none
   UnitConversion to_si;      ///< SI = conversion(gain * raw + offset), from the file's number
   std::optional<double> sd;  ///< of the samples in the file, SI, after `gain`
   ChannelRole role = ChannelRole::output;

@@ -83,10 +83,15 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role,
 
 ChannelSetting read_channel(const TomlNode& node, Channel channel,
                             model::ControllerKind controller) {
-  node.allow_only({"column", "unit", "gain", "offset", "sd", "role", "interpolation"});
+  node.allow_only({"column", "minus", "unit", "gain", "offset", "sd", "role", "interpolation"});
   ChannelSetting setting;
   setting.channel = channel;
   if (const auto column = node.find("column")) setting.column = column->name("a column name");
+  if (const auto minus = node.find("minus")) {
+    setting.minus = minus->name("a column name");
+    if (setting.column.empty())
+      minus->fail("nothing to take this column off: expected a column as well");
+  }
   setting.in_counts = is_in_counts(node);
   setting.to_si = setting.in_counts ? read_counts(node) : read_conversion(node, info(channel).unit);
   if (const auto sd = node.find("sd")) {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 
 #include "common/parallel.hpp"
@@ -100,6 +101,13 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
                                  source.label));
   std::vector<std::string> names{campaign.time_column};
   for (const auto& [channel, column] : source.columns) names.push_back(column);
+  // Columns that a repeat names itself stand alone.
+  const auto minus_of = [&](Channel channel, const std::string& column) {
+    const ChannelSetting& setting = campaign.channels.at(channel);
+    return column == setting.column ? setting.minus : std::string();
+  };
+  for (const auto& [channel, column] : source.columns)
+    if (const auto minus = minus_of(channel, column); !minus.empty()) names.push_back(minus);
   auto columns = read_columns(campaign, source.path, std::move(names));
 
   const auto converted = [&](std::size_t column, const UnitConversion& to_si) {
@@ -111,8 +119,15 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
   repeat.source = source.label;
   repeat.time_s = converted(0, campaign.time_to_s);
   std::size_t column = 1;
-  for (const auto& [channel, name] : source.columns)
+  std::size_t minus = 1 + source.columns.size();
+  for (const auto& [channel, name] : source.columns) {
+    if (!minus_of(channel, name).empty()) {
+      const std::vector<double>& taken_off = columns[minus++];
+      std::transform(columns[column].begin(), columns[column].end(), taken_off.begin(),
+                     columns[column].begin(), std::minus<>());
+    }
     repeat.values[channel] = converted(column++, campaign.channels.at(channel).to_si);
+  }
   return repeat;
 }
 

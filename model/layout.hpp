@@ -19,6 +19,7 @@ struct PresentTerms {
   bool spool_shape = false;     ///< null shift or overlap: not zero, or free
   bool external_force = false;  ///< recorded, or not zero, or free
   bool null_opening = false;    ///< covered edges leak through an orifice
+  bool line_loss = false;       ///< the lines throttle too
   bool air = false;             ///< the bulk modulus falls at low pressure
   bool external_leak = false;   ///< of either chamber: not zero, or free
   bool valve_rate_limit = false;
@@ -82,6 +83,7 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.spool_shape = acts("valve_offset") || acts("valve_dead_band");
   layout.terms.external_leak = acts("external_leakage_a") || acts("external_leakage_b");
   layout.terms.null_opening = given("valve_null_opening");
+  layout.terms.line_loss = given("valve_line_opening");
   layout.terms.air = given("air_fraction");
   layout.terms.valve_rate_limit = given("valve_rate_limit");
   layout.terms.retracted_position = given("retracted_position");

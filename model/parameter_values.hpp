@@ -57,6 +57,11 @@ struct CommonParameters {
   T pressure_a_lag_s{};
   T pressure_b_lag_s{};
   T force_lag_s{};
+  T position_maximum_m{};
+  T load_pressure_maximum_pa{};
+  T pressure_a_maximum_pa{};
+  T pressure_b_maximum_pa{};
+  T force_maximum_n{};
   T position_offset_m{};
   T load_pressure_offset_pa{};
   T pressure_a_offset_pa{};
@@ -115,6 +120,7 @@ template <template <typename> class Parameters, typename T>
 constexpr auto shared_rows() {
   using P = Parameters<T>;
   using K = ParameterKind;
+  constexpr double kInf = std::numeric_limits<double>::infinity();
   using F = ParameterField<P, T>;
   return std::array{
       // clang-format off
@@ -151,6 +157,11 @@ constexpr auto shared_rows() {
       F{&P::pressure_a_lag_s, {"pressure_a_lag", "pressure_a_lag_s", "tau_pA", "s", "first-order lag of the pressure A sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
       F{&P::pressure_b_lag_s, {"pressure_b_lag", "pressure_b_lag_s", "tau_pB", "s", "first-order lag of the pressure B sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
       F{&P::force_lag_s, {"force_lag", "force_lag_s", "tau_F", "s", "first-order lag of the force sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::position_maximum_m, {"position_maximum", "position_maximum_m", "max_x", "m", "largest position that its sensor and converter can tell", "docs/model.md", K::sensor, -100, kInf, kInf, false}},
+      F{&P::load_pressure_maximum_pa, {"load_pressure_maximum", "load_pressure_maximum_pa", "max_PL", "Pa", "largest load pressure that its sensor and converter can tell", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
+      F{&P::pressure_a_maximum_pa, {"pressure_a_maximum", "pressure_a_maximum_pa", "max_pA", "Pa", "largest pressure A that its sensor and converter can tell", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
+      F{&P::pressure_b_maximum_pa, {"pressure_b_maximum", "pressure_b_maximum_pa", "max_pB", "Pa", "largest pressure B that its sensor and converter can tell", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
+      F{&P::force_maximum_n, {"force_maximum", "force_maximum_n", "max_F", "N", "largest force that its sensor and converter can tell", "docs/model.md", K::sensor, -1e8, kInf, kInf, false}},
       F{&P::position_offset_m, {"position_offset", "position_offset_m", "x_0", "m", "recorded position minus position", "docs/model.md", K::sensor, -100, 100, 0.0}},
       F{&P::load_pressure_offset_pa, {"load_pressure_offset", "load_pressure_offset_pa", "P_L0", "Pa", "recorded load pressure minus load pressure", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
       F{&P::pressure_a_offset_pa, {"pressure_a_offset", "pressure_a_offset_pa", "p_A0", "Pa", "recorded pressure A minus pressure A", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},

@@ -54,7 +54,7 @@ Sensor sensor_of(Output output, const ParameterValues& values) {
   const std::string name(sensor_name(output));
   if (name.empty()) return {};
   const auto index = [&](const char* what) { return parameter_index(values.plant, name + what); };
-  Sensor sensor{index("_gain"), index("_offset"), index("_lag"), 0.0};
+  Sensor sensor{index("_gain"), index("_offset"), index("_lag"), index("_maximum"), 0.0};
   const auto lag = static_cast<std::size_t>(sensor.lag);
   if (values.given[lag]) sensor.lag_s = values.value[lag];
   return sensor;
@@ -120,6 +120,12 @@ void read_sensors(const SensorTimes& at, std::span<const Output> outputs,
       if (free[j] == sensor.lag) direction += gain * by_lag;
     }
     column = (gain * column.array() + offset).matrix();
+    const double maximum = values.value[static_cast<std::size_t>(sensor.maximum)];
+    for (Eigen::Index i = 0; i < column.size(); ++i) {
+      if (!(column(i) > maximum)) continue;
+      column(i) = maximum;
+      by.row(i).setZero();
+    }
   }
   if (!thinned) return;
   run.outputs = thin(run.outputs);

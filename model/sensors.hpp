@@ -10,11 +10,12 @@
 namespace rigcal::model {
 
 /// What a sensor makes of a quantity: y' = (x - y) / lag from y = x at the first sample, then
-/// reading = gain y + offset. Indices are rows of the parameter table.
+/// reading = gain y + offset, `maximum` at most. Indices are rows of the parameter table.
 struct Sensor {
   int gain = -1;
   int offset = -1;
   int lag = -1;
+  int maximum = -1;
   double lag_s = 0.0;  ///< 0: none
 };
 
@@ -32,6 +33,7 @@ SensorTimes sensor_times(std::span<const Output> outputs, const ParameterValues&
 
 /// Turns quantities at the times of `at` into readings at its samples, with the sensitivities to
 /// the sensors' own parameters among `free`. Between two times a quantity is taken to be straight.
+/// A reading at its maximum depends on nothing: a record that stands there too is not fitted.
 ///
 /// @param run  an ok one, its matrices of times_s.size() rows; afterwards of sample.size() rows
 void read_sensors(const SensorTimes& at, std::span<const Output> outputs,

@@ -69,6 +69,18 @@ X leaking_opening(const X& y, const C& c) {
   return c * c / (c - y);
 }
 
+/// Opening of the one orifice that passes what an edge and a fixed orifice in series with it pass:
+/// 1 / o^2 = 1 / y^2 + 1 / l^2.
+///
+/// @param y  opening of the edge, >= 0
+/// @param l  opening of an edge that throttles as bores and lines do, > 0, in the unit of y
+template <typename X, typename C>
+X series_opening(const X& y, const C& l) {
+  using std::sqrt;
+  const X share = y / l;
+  return y / sqrt(share * share + 1.0);
+}
+
 /// Force of an end stop on the piston [N], away from the stop: k d (1 + lambda d'), never a pull.
 ///
 /// @param depth_m     d, how far the piston is beyond the stop; no force where negative

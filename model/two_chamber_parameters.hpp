@@ -26,6 +26,7 @@ struct TwoChamberParameters : CommonParameters<T> {
   T overlap_supply_to_b_v{};
   T overlap_b_to_tank_v{};
   T valve_null_opening_v{};
+  T valve_line_opening_v{};
   T external_leakage_a_m3_per_s_pa{};
   T external_leakage_b_m3_per_s_pa{};
   T air_fraction{};
@@ -67,6 +68,7 @@ constexpr auto two_chamber_fields() {
       F{&P::overlap_supply_to_b_v, {"overlap_supply_to_b", "overlap_supply_to_b_v", "d_PB", "V", "overlap of the edge from supply to B beyond the dead band", "docs/model.md", K::term, -100, 100, 0.0}},
       F{&P::overlap_b_to_tank_v, {"overlap_b_to_tank", "overlap_b_to_tank_v", "d_BT", "V", "overlap of the edge from B to tank beyond the dead band", "docs/model.md", K::term, -100, 100, 0.0}},
       F{&P::valve_null_opening_v, {"valve_null_opening", "valve_null_opening_v", "u_c", "V", "opening of an edge where its land just covers it (orifice leak of the valve)", "docs/model.md", K::term, 1e-6, 100, 0.0}},
+      F{&P::valve_line_opening_v, {"valve_line_opening", "valve_line_opening_v", "u_l", "V", "opening at which an edge and the lines in series with it lose alike", "docs/model.md", K::term, 1e-3, 1e6, 0.0}},
       F{&P::external_leakage_a_m3_per_s_pa, {"external_leakage_a", "external_leakage_a_m3_per_s_pa", "G_A", "m3/(s Pa)", "laminar leak of chamber A to the tank", "docs/model.md", K::term, 0, 1, 0.0}},
       F{&P::external_leakage_b_m3_per_s_pa, {"external_leakage_b", "external_leakage_b_m3_per_s_pa", "G_B", "m3/(s Pa)", "laminar leak of chamber B to the tank", "docs/model.md", K::term, 0, 1, 0.0}},
       F{&P::air_fraction, {"air_fraction", "air_fraction", "alpha", "1", "volume share of undissolved air at atmospheric pressure", "docs/model.md", K::term, 0, 0.5, 0.0}},

@@ -65,6 +65,27 @@ Condition condition_of(const std::string& id, const std::string& pattern) {
 
 }  // namespace
 
+TEST_CASE("load_record: a second column is taken off the first before units", "[datasets]") {
+  const Files files("rigcal_load_record_minus");
+  files.write("a.csv", "t,x,a,b,c\n0,1,5,2,9\n10,2,6,2.5,8\n20,4,7,1,7\n");
+  Campaign campaign = campaign_in(files);
+  ChannelSetting load;
+  load.channel = Channel::load_pressure;
+  load.column = "a";
+  load.minus = "b";
+  load.to_si = {1e5, 10.0};
+  campaign.channels[Channel::load_pressure] = load;
+  Condition condition = condition_of("a", "a.csv");
+  const auto load_at = [&](std::size_t i) {
+    return load_record(campaign, condition).channels.at(Channel::load_pressure).mean[i];
+  };
+  CHECK_THAT(load_at(0), WithinRel(3e5 + 10.0, 1e-12));
+  CHECK_THAT(load_at(2), WithinRel(6e5 + 10.0, 1e-12));
+  // A column that the repeat names itself stands alone.
+  condition.repeats[0].columns[Channel::load_pressure] = "c";
+  CHECK_THAT(load_at(0), WithinRel(9e5 + 10.0, 1e-12));
+}
+
 TEST_CASE("load_record: columns become SI channels, repeats a mean", "[datasets]") {
   const Files files("rigcal_load_record_si");
   files.write("a_1.csv", "t,x,other\n0,1,a\n10,2,b\n20,4,c\n");

@@ -80,3 +80,27 @@ TEST_CASE("sensors: without a lag the times are the samples", "[model]") {
   CHECK(at.times_s == times);
   CHECK(at.sample.back() == 10);
 }
+
+TEST_CASE("sensors: at its limit a reading depends on nothing", "[model]") {
+  Experiment e = two_chamber_rig();
+  e.outputs = {Output::position, Output::pressure_a};
+  e.free = {parameter_index(PlantKind::two_chamber, "mass"),
+            parameter_index(PlantKind::two_chamber, "position_gain")};
+  e.set("position_gain", 1.0);
+  const Simulation free = e();
+  REQUIRE(free.ok());
+  const double limit = 0.5 * free.outputs.col(0).maxCoeff();
+  e.set("position_maximum", limit);
+  const Simulation limited = e();
+  REQUIRE(limited.ok());
+  int reached = 0;
+  for (Eigen::Index i = 0; i < free.outputs.rows(); ++i) {
+    const bool beyond = free.outputs(i, 0) > limit;
+    reached += beyond ? 1 : 0;
+    CHECK(limited.outputs(i, 0) == (beyond ? limit : free.outputs(i, 0)));
+    CHECK(limited.sensitivities[0].row(i).isZero() == (beyond || i == 0));
+  }
+  CHECK(reached > 0);
+  CHECK(reached < free.outputs.rows());
+  CHECK(limited.outputs.col(1) == free.outputs.col(1));  // the loop sees the position itself
+}

@@ -115,3 +115,14 @@ TEST_CASE("aerated_bulk_modulus: oil at high pressure, the air's at low", "[mode
   // The law leaves out how much the oil itself has shrunk: p / beta.
   CHECK_THAT(aerated_bulk_modulus(p, oil, 0.01, 1.4), WithinRel(-volume(p) / slope, 2.0 * p / oil));
 }
+
+TEST_CASE("terms: two orifices in series pass the flow of one", "[model]") {
+  // y sqrt(P - p) = l sqrt(p) = o sqrt(P) for the pressure p between them.
+  const double head_pa = 3e6;
+  for (const double y : {0.0, 0.3, 2.0, 40.0}) {
+    const double l = 7.0;
+    const double between_pa = head_pa * y * y / (y * y + l * l);
+    CHECK(series_opening(y, l) * std::sqrt(head_pa) ==
+          Approx(l * std::sqrt(between_pa)).epsilon(1e-12));
+  }
+}

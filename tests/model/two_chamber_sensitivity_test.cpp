@@ -8,11 +8,12 @@ namespace {
 /// Every combination of terms that changes the layout, every parameter of the plant once.
 std::vector<std::pair<Scenario, Experiment>> scenarios() {
   const Values edges{
-      {"gain_supply_to_a", 1.1},    {"gain_a_to_tank", 0.9},       {"gain_supply_to_b", 0.8},
-      {"gain_b_to_tank", 1.2},      {"overlap_supply_to_a", 0.2},  {"overlap_a_to_tank", -0.1},
-      {"overlap_supply_to_b", 0.1}, {"overlap_b_to_tank", -0.2},   {"valve_offset", 0.15},
-      {"valve_dead_band", 0.25},    {"valve_null_opening", 0.1},   {"valve_null_leakage", 2e-13},
-      {"laminar_leakage", 3e-13},   {"external_leakage_a", 2e-13}, {"external_leakage_b", 3e-13}};
+      {"gain_supply_to_a", 1.1},    {"gain_a_to_tank", 0.9},      {"gain_supply_to_b", 0.8},
+      {"gain_b_to_tank", 1.2},      {"overlap_supply_to_a", 0.2}, {"overlap_a_to_tank", -0.1},
+      {"overlap_supply_to_b", 0.1}, {"overlap_b_to_tank", -0.2},  {"valve_offset", 0.15},
+      {"valve_dead_band", 0.25},    {"valve_null_opening", 0.1},  {"valve_null_leakage", 2e-13},
+      {"valve_line_opening", 3.0},  {"laminar_leakage", 3e-13},   {"external_leakage_a", 2e-13},
+      {"external_leakage_b", 3e-13}};
   const Values given{{"initial_position", 0.01},
                      {"initial_velocity", 0.02},
                      {"initial_pressure_a", 1.5e6},

@@ -111,6 +111,7 @@ TEST_CASE("two_chamber: work in is stored or dissipated", "[model]") {
   e.inputs.drive = Signal::sine(2.0, 2.0);
   e.set("valve_null_leakage", 2e-13).set("coulomb_friction", 60.0).set("gravity", 3.0);
   e.set("leakage_coefficient", 0.02).set("friction_smoothing", 0.01).set("valve_null_opening", 0.1);
+  e.set("valve_line_opening", 4.0).set("air_fraction", 0.005);
   e.options.tolerance = 1e-9;
   // The trapezoidal rule on the samples is what remains: it falls with the square of their spacing.
   e.times_s = grid(0.0, 0.5, 2001);
