@@ -22,6 +22,7 @@ struct PresentTerms {
   bool line_loss = false;       ///< the lines throttle too
   bool air = false;             ///< the bulk modulus falls at low pressure
   bool external_leak = false;   ///< of either chamber: not zero, or free
+  int hoses = -1;               ///< where the states of hoses that yield begin; -1: rigid ones
   bool valve_rate_limit = false;
   bool retracted_position = false;     ///< else half a stroke below zero
   bool initial_load_pressure = false;  ///< else the load pressure starts in equilibrium
@@ -32,6 +33,7 @@ struct PresentTerms {
 /// Which states a rig has beside those of its plant, and where they stand in the state vector.
 struct Layout {
   int plant_states = 0;
+  int hoses = -1;       ///< strain memory of both hoses [1]
   int supply = -1;      ///< supply pressure at the valve [Pa]
   int valve_order = 0;  ///< 0: spool follows the command; 1, 2: lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
@@ -55,6 +57,10 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   const auto given = [&values](std::string_view key) {
     return parameter_index(values.plant, key) >= 0 && values.is_given(key);
   };
+  if (given("hose_yield")) {
+    layout.hoses = next;
+    next += 2;
+  }
   if (given("supply_capacity")) layout.supply = next++;
   if (values.is_given("valve_frequency")) {
     layout.valve_order = 2;
@@ -85,6 +91,7 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.null_opening = given("valve_null_opening");
   layout.terms.line_loss = given("valve_line_opening");
   layout.terms.air = given("air_fraction");
+  layout.terms.hoses = layout.hoses;
   layout.terms.valve_rate_limit = given("valve_rate_limit");
   layout.terms.retracted_position = given("retracted_position");
   layout.terms.initial_load_pressure = given("initial_load_pressure");

@@ -77,8 +77,8 @@ void dispatch(const SizedRequest& request, Simulation& result) {
   const int states = request.layout.states;
   if (request.parameters.plant == PlantKind::two_chamber) {
     if (states <= 5) return run_sized<TwoChamberPlant, 5>(request, result);
-    if (states <= 6) return run_sized<TwoChamberPlant, 6>(request, result);
-    if (states <= 10) return run_sized<TwoChamberPlant, 10>(request, result);
+    if (states <= 7) return run_sized<TwoChamberPlant, 7>(request, result);
+    if (states <= 12) return run_sized<TwoChamberPlant, 12>(request, result);
   } else {
     switch (states) {
       case 3:

@@ -51,14 +51,18 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
 }
 
 /// Passes until every free parameter had its turn: up to eight sensitivities at a time, four where
-/// they suffice.
+/// they suffice, or where so many states are rare and would take long to compile.
 template <typename Plant, int N>
 void passes(const SizedRequest& request, Simulation& result) {
   const int free = static_cast<int>(request.free.size());
   if (free == 0) return pass<Plant, N, 0>(request, 0, 0, result);
   for (int first = 0; first < free && result.ok();) {
     const int left = free - first;
-    if (left <= 4) {
+    if constexpr (N > 8) {
+      const int count = std::min(left, 4);
+      pass<Plant, N, 4>(request, first, count, result);
+      first += count;
+    } else if (left <= 4) {
       pass<Plant, N, 4>(request, first, left, result);
       first += left;
     } else {

@@ -120,6 +120,13 @@ class System {
     const auto plant = given ? Plant::initial(in, parameters_, layout_.terms)
                              : Plant::rest(in, parameters_, layout_.terms);
     for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
+    if constexpr (requires { parameters_.hose_yield_pa; }) {
+      if (layout_.hoses >= 0) {
+        const auto first = static_cast<std::size_t>(layout_.hoses);
+        states[first] = Plant::hose_memory(plant[Plant::pressure_a], in);
+        states[first + 1] = Plant::hose_memory(plant[Plant::pressure_b], in);
+      }
+    }
     if (given) {
       // The loop was closed before the record began: no kick of the derivative, spool at rest.
       const C drive = input_value<C>(drive_, t, true);
@@ -277,6 +284,13 @@ class System {
     const PlantInput<D> in = plant_input<D>(x, command, t);
     const auto plant_dx = Plant::derivative(x, in, p, layout_.terms);
     for (std::size_t i = 0; i < plant_dx.size(); ++i) dx[i] = plant_dx[i];
+    if constexpr (requires { p.hose_yield_pa; }) {
+      if (layout_.hoses >= 0) {
+        const auto rates = Plant::hose_rates(x, plant_dx, p, layout_.terms);
+        dx[static_cast<std::size_t>(layout_.hoses)] = rates[0];
+        dx[static_cast<std::size_t>(layout_.hoses) + 1] = rates[1];
+      }
+    }
     if constexpr (requires { p.supply_capacity_m3_per_pa; }) {
       if (layout_.supply >= 0) {
         const D inflow =

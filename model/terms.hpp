@@ -94,6 +94,22 @@ X stop_force(const X& depth_m, const X& approach_m_per_s, const C& stiffness_n_p
          positive_part(X(approach_m_per_s * damping_s_per_m + 1.0));
 }
 
+/// Share of a braided hose that yields to a change of pressure: none where the pressure turns, all
+/// of it once it has gone on in one direction.
+///
+/// @param memory  z, from -1 (has yielded to falling pressure) to 1 (to rising): it follows as
+///                z' = (1 - share) p' / p_h
+/// @param rises   the direction in which the pressure goes now
+/// @source   an operator of the kind of Bouc and Wen: Y.-K. Wen, Method for random vibration of
+///           hysteretic systems, J. Engineering Mechanics Division 102 (1976) 249-263; the
+///           exponent 2 from the records of docs/festo.md
+template <typename X>
+X yielding_share(const X& memory, bool rises) {
+  const X along = rises ? X(memory) : X(-memory);
+  const X half = positive_part(X(0.5 * along + 0.5));
+  return value_of(half) < 1.0 ? X(half * half) : X(half * 0.0 + 1.0);
+}
+
 /// Bulk modulus of oil with undissolved air [Pa]: the air is compressed polytropically, the oil at
 /// its own modulus.
 ///

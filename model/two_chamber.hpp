@@ -173,8 +173,43 @@ struct TwoChamberPlant {
       flow_a = flow_a - (x[pressure_a] - in.tank_pressure_pa) * p.external_leakage_a_m3_per_s_pa;
       flow_b = flow_b - (x[pressure_b] - in.tank_pressure_pa) * p.external_leakage_b_m3_per_s_pa;
     }
-    return {v, force * p.inverse_mass, flow_a * bulk_modulus(x[pressure_a], p, terms) / volume[0],
-            flow_b * bulk_modulus(x[pressure_b], p, terms) / volume[1]};
+    const X take_a = volume[0] / bulk_modulus(x[pressure_a], p, terms);
+    const X take_b = volume[1] / bulk_modulus(x[pressure_b], p, terms);
+    const auto yields = hose_shares(x, flow_a, flow_b, terms);
+    return {v, force * p.inverse_mass, flow_a / (take_a + yields[0] * p.hose_capacity_a_m3_per_pa),
+            flow_b / (take_b + yields[1] * p.hose_capacity_b_m3_per_pa)};
+  }
+
+  /// Share of each hose that yields; a pressure goes where the flow into its chamber goes.
+  template <typename X, std::size_t M>
+  static std::array<X, 2> hose_shares(const std::array<X, M>& x, const X& toward_a,
+                                      const X& toward_b, const PresentTerms& terms) {
+    if constexpr (M > kStates + 1) {
+      if (terms.hoses >= 0) {
+        const auto first = static_cast<std::size_t>(terms.hoses);
+        return {yielding_share(x[first], value_of(toward_a) > 0.0),
+                yielding_share(x[first + 1], value_of(toward_b) > 0.0)};
+      }
+    }
+    return {X(0.0), X(0.0)};
+  }
+
+  /// Time derivative of the hoses' memory [1/s].
+  /// @param dx  derivative() of the plant
+  template <typename X, std::size_t M, typename C>
+  static std::array<X, 2> hose_rates(const std::array<X, M>& x, const std::array<X, kStates>& dx,
+                                     const Coefficients<C>& p, const PresentTerms& terms) {
+    const auto yields = hose_shares(x, dx[pressure_a], dx[pressure_b], terms);
+    return {(1.0 - yields[0]) * dx[pressure_a] / p.hose_yield_pa,
+            (1.0 - yields[1]) * dx[pressure_b] / p.hose_yield_pa};
+  }
+
+  /// Memory of hoses that came to their pressure in one go, from the tank's or from the supply's.
+  template <typename X, typename C>
+  static X hose_memory(const X& pressure_pa, const PlantInput<C>& in) {
+    return clamp_symmetric(X((2.0 * pressure_pa - in.supply_pressure_pa - in.tank_pressure_pa) /
+                             (in.supply_pressure_pa - in.tank_pressure_pa)),
+                           C(1.0));
   }
 
   /// What the plant tells beside position and velocity. Servo and work flow are the means of both

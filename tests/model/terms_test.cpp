@@ -116,6 +116,28 @@ TEST_CASE("aerated_bulk_modulus: oil at high pressure, the air's at low", "[mode
   CHECK_THAT(aerated_bulk_modulus(p, oil, 0.01, 1.4), WithinRel(-volume(p) / slope, 2.0 * p / oil));
 }
 
+TEST_CASE("terms: a hose is stiff where its pressure turns and yields as it goes on", "[model]") {
+  const double yield_pa = 5e5;
+  double memory = 1.0;  // came up
+  const auto walk = [&](double to_pa) {
+    double taken = 0.0;
+    const double step_pa = to_pa / 20000.0;
+    for (int i = 0; i < 20000; ++i) {
+      const double share = yielding_share(memory, to_pa > 0.0);
+      memory += (1.0 - share) * step_pa / yield_pa;
+      taken += share * step_pa;
+    }
+    return taken / to_pa;
+  };
+  CHECK(yielding_share(memory, true) == 1.0);
+  CHECK(yielding_share(memory, false) == 0.0);
+  CHECK(walk(-0.1 * yield_pa) < 0.01);
+  CHECK(walk(-20.0 * yield_pa) > 0.7);
+  CHECK(memory < -0.9);
+  CHECK(memory >= -1.0);
+  CHECK(walk(0.1 * yield_pa) < 0.03);
+}
+
 TEST_CASE("terms: two orifices in series pass the flow of one", "[model]") {
   // y sqrt(P - p) = l sqrt(p) = o sqrt(P) for the pressure p between them.
   const double head_pa = 3e6;

@@ -40,6 +40,7 @@ std::vector<std::pair<Scenario, Experiment>> scenarios() {
                      {"valve_time_constant", 3e-3},
                      {"air_fraction", 0.01},
                      {"air_exponent", 1.3}};
+  const Values hoses{{"hose_capacity_a", 3e-13}, {"hose_capacity_b", 2e-13}, {"hose_yield", 6e5}};
   const Values loop{{"kp", 900.0},
                     {"ki", 3000.0},
                     {"kd", 2.0},
@@ -66,6 +67,7 @@ std::vector<std::pair<Scenario, Experiment>> scenarios() {
   rows.push_back({{"given state, sensors, aerated oil", Signal::sine(2.0, 10.0), given, none,
                    InitialState::given},
                   single_rod_rig()});
+  rows.push_back({{"hoses that yield", Signal::sine(2.0, 10.0), hoses, none}, single_rod_rig()});
   rows.push_back({{"recorded loads", Signal::sine(2.0, 10.0), {}, none, InitialState::rest, true},
                   single_rod_rig()});
   rows.push_back(

@@ -253,6 +253,24 @@ TEST_CASE("two_chamber: the spool is never faster than its limit", "[model]") {
   }
 }
 
+TEST_CASE("two_chamber: hoses that yield damp the ringing of a piston", "[model]") {
+  Experiment e = single_rod_rig();
+  e.inputs.drive = Signal::constant(0.0);
+  e.rig.initial = InitialState::given;
+  e.set("damping", 0.0).set("initial_velocity", 0.05);
+  e.set("initial_pressure_a", 1.8e6).set("initial_pressure_b", 3e6);
+  e.times_s = grid(0.0, 0.5, 2001);
+  e.outputs = {Output::velocity};
+  const Simulation rigid = e();
+  e.set("hose_capacity_a", 3e-13).set("hose_capacity_b", 3e-13).set("hose_yield", 3e5);
+  const Simulation soft = e();
+  REQUIRE(rigid.ok());
+  REQUIRE(soft.ok());
+  // Nothing else takes energy: a closed valve, no friction.
+  CHECK(peak(rigid.outputs.bottomRows(500)) > 0.045);
+  CHECK(peak(soft.outputs.bottomRows(500)) < 0.025);
+}
+
 TEST_CASE("two_chamber: at rest the pressures hold the load", "[model]") {
   Experiment e = single_rod_rig();
   e.inputs.drive = Signal::constant(0.0);
