@@ -153,8 +153,10 @@ void judge_residuals(const Problem& problem, const Uncertainty& spread, Fit& fit
   rate_model(spread, fit);
 }
 
-/// Says what would tell parameters that the records do not; the first few, since each is tried.
+/// Says what would tell parameters that the records do not; the first few, since each is tried. Of
+/// those that a symmetry leaves open its own words tell.
 void add_remedies(const Problem& problem, const Evaluation& optimum,
+                  const std::vector<std::size_t>& symmetric,
                   std::vector<FittedParameter>& parameters) {
   constexpr int kMostTried = 4;
   int tried = 0;
@@ -162,6 +164,7 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
   for (std::size_t j = 0; j < parameters.size() && tried < kMostTried; ++j) {
     FittedParameter& each = parameters[j];
     if (each.nuisance || each.identifiability != Identifiability::not_identifiable) continue;
+    if (std::find(symmetric.begin(), symmetric.end(), j) != symmetric.end()) continue;
     ++tried;
     const auto words = remedies(problem, optimum.z, jacobian, j);
     if (!words.empty()) each.reason += fmt::format("; {} would tell it", fmt::join(words, ", or "));
@@ -180,7 +183,9 @@ void judge_identifiability(const Problem& problem, const Evaluation& optimum,
     const std::string words = describe(problem, *symmetry);
     if (!words.empty()) fit.combinations.insert(fit.combinations.begin(), words);
   }
-  add_remedies(problem, optimum, fit.parameters);
+  const bool open = symmetry && symmetry->holds();
+  add_remedies(problem, optimum, open ? symmetry->unknowns : std::vector<std::size_t>(),
+               fit.parameters);
 }
 
 /// What every later look at a fit needs; the optimum is not ok where there is none.

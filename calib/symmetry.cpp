@@ -184,10 +184,16 @@ void grade_symmetric(const ScalingSymmetry& symmetry, std::vector<FittedParamete
   if (!symmetry.holds()) return;
   for (const std::size_t j : symmetry.unknowns) {
     FittedParameter& each = parameters[j];
-    if (each.nuisance || each.identifiability == Identifiability::not_identifiable) continue;
+    if (each.nuisance) continue;
     each.identifiability = Identifiability::not_identifiable;
-    each.reason += each.reason.empty() ? "" : "; ";
-    each.reason += "left open by the scaling symmetry";
+    each.standard_error.reset();
+    each.robust_standard_error.reset();
+    each.ci95.reset();
+    each.interval = IntervalSource::none;
+    each.reason =
+        "left open by the scaling symmetry: a prior on mass or supply pressure, or a recorded "
+        "pressure or force, would tell it" +
+        (each.reason.empty() ? std::string() : "; " + each.reason);
   }
 }
 

@@ -40,7 +40,8 @@ std::optional<ScalingSymmetry> scaling_symmetry(const Problem& problem, std::spa
 /// rests. Otherwise empty.
 std::string describe(const Problem& problem, const ScalingSymmetry& symmetry);
 
-/// Unknowns that a symmetry leaves open are not identifiable, whatever their errors.
+/// Unknowns that a symmetry leaves open are not identifiable, and have no errors: those of the
+/// Jacobian rest on the smoothing of the orifice roots, which is no physics.
 void grade_symmetric(const ScalingSymmetry& symmetry, std::vector<FittedParameter>& parameters);
 
 }  // namespace rigcal::calib

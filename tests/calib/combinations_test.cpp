@@ -51,6 +51,9 @@ TEST_CASE("combinations: the scaling symmetry is named, with mass and supply pre
   for (const auto* key : {"mass", "supply_pressure"}) {
     CHECK(parameter(found, key).identifiability == Identifiability::not_identifiable);
     CHECK_THAT(parameter(found, key).reason, Contains("a prior on"));
+    // The smoothing of the roots tells the scale of the model, but of no rig.
+    CHECK_FALSE(parameter(found, key).standard_error);
+    CHECK_FALSE(parameter(found, key).ci95);
   }
   // A known stiffness tells the scale, and the scale rests on it.
   twin.setting("stiffness").fit = false;
