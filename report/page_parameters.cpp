@@ -218,6 +218,7 @@ Json identifiability_view(const Json& result) {
   Plot plot;
   plot.title = "Singular values of the scaled Jacobian";
   plot.x_label = "direction";
+  plot.whole_x = true;
   plot.y_label = "singular value";
   plot.log_y = true;
   plot.height = 170.0;

@@ -116,7 +116,9 @@ Json starts_view(const Json& result) {
   if (costs.size() > 1) {
     Plot plot;
     plot.title = "Cost of every start, sorted";
-    plot.x_label = "start, best first";
+    plot.x_label = "start, best first; dashed: 1 % above the lowest";
+    plot.whole_x = true;
+    plot.levels = {1.01 * least};
     plot.y_label = "final cost";
     plot.log_y = true;
     plot.height = 170.0;

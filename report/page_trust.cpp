@@ -8,6 +8,8 @@
 namespace rigcal::report {
 namespace {
 
+constexpr double kHighestRise = 4.0;
+
 /// A key that not every fit has; null where it is missing.
 const Json& optional_part(const Json& json, const char* key) {
   static const Json kNothing;
@@ -41,16 +43,19 @@ Json profile_view(const Json& parameter) {
   plot.height = 170.0;
   plot.levels = {1.0};
   Trace trace;
-  trace.style = "model";
+  trace.style = "reference";
   const Json& values = profile.at("values");
   const Json& rises = profile.at("rises");
   for (std::size_t i = 0; i < std::min(values.size(), rises.size()); ++i) {
     if (!values[i].is_number() || !rises[i].is_number()) continue;
+    // Far beyond the end it would only flatten what counts.
+    if (rises[i].get<double>() > kHighestRise) continue;
     trace.x.push_back(values[i].get<double>() / unit.si);
     trace.y.push_back(rises[i].get<double>());
   }
   Trace points = trace;
   points.kind = Trace::Kind::points;
+  points.style = "model";
   plot.traces = {std::move(trace), std::move(points)};
   return {{"svg_html", svg(plot)},
           {"reading", fmt::format("{}: {}, {}.", parameter_label(parameter),

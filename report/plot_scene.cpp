@@ -75,6 +75,12 @@ std::vector<Tick> ticks_of(const Axis& axis, int count) {
           ticks.push_back({value, fmt::format("{:g}", value)});
       }
     }
+    if (ticks.size() > 1) return ticks;
+    // So short a stretch is as good as linear.
+    ticks.clear();
+    for (const double value :
+         round_ticks(std::pow(10.0, axis.low), std::pow(10.0, axis.high), count))
+      ticks.push_back({value, fmt::format("{:.6g}", value)});
     return ticks;
   }
   const std::vector<double> values = round_ticks(axis.low, axis.high, count);

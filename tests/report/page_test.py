@@ -271,7 +271,9 @@ def check_recordings(binary, work, sources):
         print(f"skipped: no recordings at {data}")
         return
     campaign = sources / "datasets" / "utfsm_mts" / "campaign.toml"
-    check(rigcal(binary, work, "fit", campaign, "--data", data, "--out", "utfsm") in (0, 1), "fit of a real machine")
+    # One parameter alone, for the time it takes: what is tested is the page.
+    status = rigcal(binary, work, "fit", campaign, "--data", data, "--out", "utfsm", "--free", "valve_gain")
+    check(status in (0, 1), "fit of a real machine")
     path = work / "utfsm" / "report.html"
     result = json.loads((work / "utfsm" / "fit.json").read_text())
     with Browser() as page:
