@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""Speeds, ringing and leakage of the Festo records, measured and simulated.
+
+    docs/festo/measures.py RESULT_DIR     (needs python3-numpy; RESULT_DIR from `rigcal fit`)
+"""
+import sys
+
+import numpy as np
+
+
+def residuals(path):
+    lines = [line for line in open(path) if not line.startswith("#")]
+    names = lines[0].strip().split(",")
+    table = np.genfromtxt(lines[1:], delimiter=",")
+    return {name: table[:, i] for i, name in enumerate(names)}
+
+
+def speed(t, x, begin, end):
+    """Slope between 60 and 160 mm of the first passage [mm/s]."""
+    inside = (t >= begin) & (t < end) & (x > 0.06) & (x < 0.16)
+    return 1e3 * np.polyfit(t[inside], x[inside], 1)[0]
+
+
+def ring(t, p, begin):
+    """First peak of a pressure after a step [bar], and frequency of what follows it [Hz]."""
+    w = (t >= begin) & (t < begin + 0.3)
+    t, p = t[w], 1e-5 * p[w]
+    smooth = np.convolve(p, np.ones(3) / 3, "same")
+    k = int(np.argmax(smooth[5:80])) + 5
+    valley = k + int(np.argmin(smooth[k:k + 40]))
+    second = valley + int(np.argmax(smooth[valley:valley + 40]))
+    return smooth[k], 1.0 / (t[second] - t[k])
+
+
+def taken_up(t, x, p, back, end):
+    """What chamber A takes up per pressure [m3/Pa] on its way down, around 33 and 16 bar, the piston at rest:
+    flow of the orifice that the steady way back gauges, over the rate of the pressure."""
+    area_m2, tank_pa = 2.011e-4, 1.15e5
+    steady = (t >= back) & (t < end) & (x > 0.06) & (x < 0.16)
+    gauge = area_m2 * abs(np.polyfit(t[steady], x[steady], 1)[0]) / np.sqrt(p[steady].mean() - tank_pa)
+    result = []
+    first = np.searchsorted(t, back)
+    for high, low in ((36e5, 30e5), (17.5e5, 14.5e5)):
+        begin, stop = (first + int(np.argmax(p[first:] < level)) for level in (high, low))
+        crossed = [t[i - 1] + (p[i - 1] - level) / (p[i - 1] - p[i]) * (t[i] - t[i - 1])
+                   for i, level in ((begin, high), (stop, low))]
+        rate = (high - low) / (crossed[1] - crossed[0])
+        result.append(gauge * np.sqrt(0.5 * (high + low) - tank_pa) / rate)
+    return result
+
+
+def main(folder):
+    for volts in (1, 2, 4):
+        r = residuals(f"{folder}/residuals/steps_{volts}V.csv")
+        t = r["time_s"]
+        u = r["drive_v"] if "drive_v" in r else r["command_v"]
+        first = np.flatnonzero(u > 0.9 * volts)
+        second = np.flatnonzero(u < -0.9 * volts)
+        out, stop, back = t[first[0]], t[first[-1]], t[second[0]]
+        closed = (t > stop + 0.01) & (t < back - 0.002)
+        for kind in ("measured", "simulated"):
+            x, a = r[f"{kind}_position_m"], r[f"{kind}_pressure_a_pa"]
+            peak, hertz = ring(t, a, out)
+            fall = 1e-5 * np.polyfit(t[closed], a[closed], 1)[0]
+            print(f"{volts} V {kind:9}: out {speed(t, x, out, stop):6.1f}, back {speed(t, x, back, t[-1]):6.1f} mm/s; "
+                  f"p_A first peak {peak:5.2f} bar, ring {hertz:4.1f} Hz; p_A at closed valve {fall:6.1f} bar/s")
+            if kind == "measured":
+                high, low = taken_up(t, x, a, back, t[-1])
+                print(f"{volts} V measured : chamber A takes up {1e13 * high:.2f}e-13 m3/Pa near 33 bar, "
+                      f"{1e13 * low:.2f}e-13 near 16 bar")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])
