@@ -136,7 +136,8 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
       continue;
     }
     const double slope = problem.map.slope(static_cast<int>(j), optimum.z[u]);
-    const double carried = result.known.response.row(j).norm();
+    const bool exact = result.known.names.empty();
+    const double carried = exact ? 0.0 : result.known.response.row(j).norm();
     result.standard_error[u] = slope * std::hypot(sigma * std::sqrt(inverse(j, j)), carried);
     if (!result.scatter.empty()) {
       const RobustVariance robust = robust_variance(result.scatter, priors, root, j);

@@ -89,6 +89,7 @@ void read_sensors(const SensorTimes& at, std::span<const Output> outputs,
   const bool thinned = at.times_s.size() != at.sample.size();
   const auto thin = [&](const Eigen::MatrixXd& all) {
     Eigen::MatrixXd kept(samples, all.cols());
+    if (all.cols() == 0) return kept;  // no row of a matrix without columns
     for (Eigen::Index i = 0; i < samples; ++i) {
       kept.row(i) = all.row(static_cast<Eigen::Index>(at.sample[static_cast<std::size_t>(i)]));
     }
@@ -124,7 +125,7 @@ void read_sensors(const SensorTimes& at, std::span<const Output> outputs,
     for (Eigen::Index i = 0; i < column.size(); ++i) {
       if (!(column(i) > maximum)) continue;
       column(i) = maximum;
-      by.row(i).setZero();
+      if (by.cols() > 0) by.row(i).setZero();
     }
   }
   if (!thinned) return;
