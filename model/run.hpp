@@ -33,7 +33,7 @@ class Run {
       std::span<const double> times_s, std::span<const Output> outputs,
       const SimulationOptions& options, std::chrono::steady_clock::time_point started)
       : system_(std::move(system)),
-        norm_(floors(), parameter_scale, options.tolerance),
+        norm_(floors(system_.layout()), parameter_scale, options.tolerance),
         times_s_(times_s),
         outputs_(outputs),
         options_(options),
@@ -47,13 +47,14 @@ class Run {
     for_each_track([this](InputTrack& track) { h_max_ = std::min(h_max_, track.max_step()); });
   }
 
-  /// Writes the outputs of every sample into `result` (matrices already sized); columns
-  /// [first_column, first_column + columns) of the sensitivities.
-  void operator()(InitialState initial, Simulation& result, int first_column, int columns) {
+  /// Writes the outputs of every sample, and the state at the last, into `result` (matrices already
+  /// sized); columns [first_column, first_column + columns) of the sensitivities.
+  /// @param start  state at the first sample
+  void operator()(const X& start, Simulation& result, int first_column, int columns) {
     result_ = &result;
     first_column_ = first_column;
     columns_ = columns;
-    x_ = system_.initial(initial, t_);
+    x_ = start;
     if (system_.layout().sampled()) system_.tick(x_, t_);
     norm_.see(x_);
     h_ = first_step(sample_time(times_s_.size() - 1));
@@ -66,6 +67,18 @@ class Run {
       pass_events();
       emit_present();
     }
+    store_end();
+  }
+
+  /// Size below which each state counts as zero.
+  static std::array<double, static_cast<std::size_t>(N)> floors(const Layout& layout) {
+    std::array<double, static_cast<std::size_t>(N)> floor;
+    floor.fill(1e-3);  // volts
+    std::copy(Plant::kFloor.begin(), Plant::kFloor.end(), floor.begin());
+    if (layout.supply >= 0) floor[static_cast<std::size_t>(layout.supply)] = 100.0;
+    if (layout.valve_order == 2) floor[static_cast<std::size_t>(layout.valve) + 1] = 1.0;  // V/s
+    if (layout.filter >= 0) floor[static_cast<std::size_t>(layout.filter)] = Plant::kFloor[0];
+    return floor;
   }
 
  private:
@@ -78,17 +91,6 @@ class Run {
   /// of the tolerance both are as far off on the six signals of bench/.
   static constexpr double kCare = 5.0;
   static constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-  std::array<double, static_cast<std::size_t>(N)> floors() const {
-    const Layout& layout = system_.layout();
-    std::array<double, static_cast<std::size_t>(N)> floor;
-    floor.fill(1e-3);  // volts
-    std::copy(Plant::kFloor.begin(), Plant::kFloor.end(), floor.begin());
-    if (layout.supply >= 0) floor[static_cast<std::size_t>(layout.supply)] = 100.0;
-    if (layout.valve_order == 2) floor[static_cast<std::size_t>(layout.valve) + 1] = 1.0;  // V/s
-    if (layout.filter >= 0) floor[static_cast<std::size_t>(layout.filter)] = Plant::kFloor[0];
-    return floor;
-  }
 
   template <typename F>
   void for_each_track(F f) {
@@ -300,6 +302,21 @@ class Run {
         for (int j = 0; j < columns_; ++j) {
           result_->sensitivities[k](row, first_column_ + j) =
               observed_[k].derivative[static_cast<std::size_t>(j)];
+        }
+      }
+    }
+  }
+
+  void store_end() {
+    const auto floor = floors(system_.layout());
+    for (Eigen::Index i = 0; i < result_->end_state.size(); ++i) {
+      const auto state = static_cast<std::size_t>(i);
+      result_->state_floor(i) = floor[state];
+      if (first_column_ == 0) result_->end_state(i) = value_of(x_[state]);
+      if constexpr (P > 0) {
+        for (int j = 0; j < columns_; ++j) {
+          result_->end_sensitivities(i, first_column_ + j) =
+              x_[state].derivative[static_cast<std::size_t>(j)];
         }
       }
     }

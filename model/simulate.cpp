@@ -142,9 +142,13 @@ void SimulationOptions::validate() const {
   require(max_seconds > 0.0, "max_seconds must be positive");
 }
 
-Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
-                    const SimulationInputs& inputs, std::span<const double> times_s,
-                    std::span<const Output> outputs, const SimulationOptions& options) {
+namespace {
+
+/// @param state  to go on from; null: the rig's initial one
+Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
+                           const ParameterValues& parameters, std::span<const int> free,
+                           const SimulationInputs& inputs, std::span<const double> times_s,
+                           std::span<const Output> outputs, const SimulationOptions& options) {
   const auto started = std::chrono::steady_clock::now();
   options.validate();
   const auto table = parameter_table(rig.plant);
@@ -164,6 +168,11 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
   Simulation result;
   const Layout layout = layout_of(rig, parameters, free, plant_states(rig.plant),
                                   inputs.external_force_n.has_value());
+  if (state != nullptr) {
+    require(state->size() == layout.states, "the state is that of another rig");
+    require(state->allFinite(), "the state must be finite");
+    require(!layout.sampled(), "a sampled controller cannot go on from a state");
+  }
   result.reason = bad_parameter(parameters, layout);
   if (!result.reason.empty()) {
     result.status = SimulationStatus::bad_parameters;
@@ -175,12 +184,19 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
   // Not set to zero: a simulation that ends well writes all of them.
   result.outputs.resize(samples, static_cast<Eigen::Index>(outputs.size()));
   result.sensitivities.resize(outputs.size());
-  for (Eigen::MatrixXd& each : result.sensitivities)
-    each.resize(samples, static_cast<Eigen::Index>(free.size()));
-  dispatch({layout, rig.initial, parameters, free, inputs, at.times_s, outputs, options, started},
-           result);
+  const Eigen::Index columns =
+      static_cast<Eigen::Index>(free.size()) + (state != nullptr ? layout.states : 0);
+  for (Eigen::MatrixXd& each : result.sensitivities) each.resize(samples, columns);
+  // Here, not where the solver runs: memory of code for AVX2 must not be freed by that for others.
+  result.end_state.resize(layout.states);
+  result.state_floor.resize(layout.states);
+  result.end_sensitivities.resize(layout.states, columns);
+  dispatch(
+      {layout, rig.initial, state, parameters, free, inputs, at.times_s, outputs, options, started},
+      result);
   if (result.ok()) read_sensors(at, outputs, parameters, free, result);
-  const bool finite = result.outputs.allFinite() &&
+  const bool finite = result.outputs.allFinite() && result.end_state.allFinite() &&
+                      result.end_sensitivities.allFinite() &&
                       std::all_of(result.sensitivities.begin(), result.sensitivities.end(),
                                   [](const Eigen::MatrixXd& s) { return s.allFinite(); });
   if (result.ok() && !finite) {
@@ -191,8 +207,25 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
   if (!result.ok()) {
     result.outputs.resize(0, 0);
     result.sensitivities.clear();
+    result.end_state.resize(0);
+    result.end_sensitivities.resize(0, 0);
   }
   return result;
+}
+
+}  // namespace
+
+Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
+                    const SimulationInputs& inputs, std::span<const double> times_s,
+                    std::span<const Output> outputs, const SimulationOptions& options) {
+  return simulate_either(nullptr, rig, parameters, free, inputs, times_s, outputs, options);
+}
+
+Simulation simulate_from(const Eigen::VectorXd& state, const Rig& rig,
+                         const ParameterValues& parameters, std::span<const int> free,
+                         const SimulationInputs& inputs, std::span<const double> times_s,
+                         std::span<const Output> outputs, const SimulationOptions& options) {
+  return simulate_either(&state, rig, parameters, free, inputs, times_s, outputs, options);
 }
 
 }  // namespace rigcal::model

@@ -92,6 +92,10 @@ struct Simulation {
   Eigen::MatrixXd outputs;   ///< shape (samples, outputs), SI
   /// d outputs / d parameter: one matrix of shape (samples, free) per output, SI.
   std::vector<Eigen::MatrixXd> sensitivities;
+  /// State at the last sample: of plant, hoses, supply, valve and controller, as in Layout.
+  Eigen::VectorXd end_state;
+  Eigen::MatrixXd end_sensitivities;  ///< shape (states, columns of `sensitivities`)
+  Eigen::VectorXd state_floor;        ///< below it a state counts as zero in the error control
   long steps = 0;
   long rejected_steps = 0;
   bool ok() const { return status == SimulationStatus::ok; }
@@ -115,5 +119,18 @@ struct Rig {
 Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span<const int> free,
                     const SimulationInputs& inputs, std::span<const double> times_s,
                     std::span<const Output> outputs, const SimulationOptions& options = {});
+
+/// The same from a state in the middle of a longer run, whatever the rig's initial one is: from the
+/// `end_state` of a run on times up to the first of these, it goes on as if it had never ended.
+/// Lags of sensors begin anew.
+///
+/// @param state  shape (states), at the first of `times_s`; behind the columns of `free`, all
+///               sensitivities have one per element of it
+/// @throws std::invalid_argument  also for a controller with `sample_time`, whose ticks it would
+///                                not know
+Simulation simulate_from(const Eigen::VectorXd& state, const Rig& rig,
+                         const ParameterValues& parameters, std::span<const int> free,
+                         const SimulationInputs& inputs, std::span<const double> times_s,
+                         std::span<const Output> outputs, const SimulationOptions& options = {});
 
 }  // namespace rigcal::model

@@ -13,6 +13,9 @@
 namespace rigcal::model {
 namespace {
 
+/// Typical size of a state over its floor, where it is near zero.
+constexpr double kFloorsOfAState = 1e3;
+
 /// Typical size of a parameter, for the error scale of its sensitivity.
 double scale_of(const ParameterSpec& spec, double value) {
   if (value != 0.0) return std::abs(value);
@@ -20,7 +23,26 @@ double scale_of(const ParameterSpec& spec, double value) {
   return std::isfinite(range) && range > 0.0 ? 1e-3 * range : 1.0;
 }
 
-/// One pass with the sensitivities to at most P of the free parameters.
+/// The state to go on from, with its own directions among [first, first + count) of all columns.
+template <int N, int P>
+State<N, P> state_to_go_on_from(const SizedRequest& request, int first, int count) {
+  State<N, P> x;
+  x.fill(Active<P>(0.0));
+  const Eigen::VectorXd& state = *request.state;
+  const auto parameters = static_cast<int>(request.free.size());
+  for (int i = 0; i < static_cast<int>(state.size()); ++i) {
+    Active<P>& each = x[static_cast<std::size_t>(i)];
+    each = Active<P>(state(i));
+    const int column = parameters + i - first;
+    if constexpr (P > 0) {
+      if (column >= 0 && column < count) each.derivative.set(static_cast<std::size_t>(column), 1.0);
+    }
+  }
+  return x;
+}
+
+/// One pass with at most P columns of the sensitivities: those of the free parameters, then those
+/// of the state to go on from.
 template <typename Plant, int N, int P>
 void pass(const SizedRequest& request, int first, int count, Simulation& result) {
   const double start_s = request.times_s.front();
@@ -33,8 +55,11 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   if (request.inputs.external_force_n) force = track(*request.inputs.external_force_n, 0.0);
   if (request.inputs.supply_pressure_pa) supply = track(*request.inputs.supply_pressure_pa, 0.0);
   if (request.inputs.tank_pressure_pa) tank = track(*request.inputs.tank_pressure_pa, 0.0);
+  const auto of_parameters = static_cast<int>(request.free.size());
+  const int begin = std::min(first, of_parameters);
+  const int end = std::min(first + count, of_parameters);
   const auto free =
-      request.free.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+      request.free.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
   std::array<double, static_cast<std::size_t>(P)> scale;
   scale.fill(1.0);
   const auto table = parameter_table(request.parameters.plant);
@@ -42,19 +67,30 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
     const auto index = static_cast<std::size_t>(free[j]);
     scale[j] = scale_of(table[index], request.parameters.value[index]);
   }
+  using ThisRun = Run<Plant, N, P>;
+  const auto floors = ThisRun::floors(request.layout);
+  for (int column = std::max(first, of_parameters); column < first + count; ++column) {
+    const int i = column - of_parameters;
+    scale[static_cast<std::size_t>(column - first)] = std::max(
+        std::abs((*request.state)(i)), kFloorsOfAState * floors[static_cast<std::size_t>(i)]);
+  }
   System<Plant, N, P> system(request.layout, request.parameters, free,
                              track(request.inputs.drive, request.parameters["transport_delay"]),
                              std::move(force), std::move(supply), std::move(tank));
-  Run<Plant, N, P> run(std::move(system), scale, request.times_s, request.outputs, request.options,
-                       request.started);
-  run(request.initial, result, first, count);
+  const State<N, P> start = request.state != nullptr
+                                ? state_to_go_on_from<N, P>(request, first, count)
+                                : system.initial(request.initial, 0.0);
+  ThisRun run(std::move(system), scale, request.times_s, request.outputs, request.options,
+              request.started);
+  run(start, result, first, count);
 }
 
-/// Passes until every free parameter had its turn: up to eight sensitivities at a time, four where
+/// Passes until every column had its turn: up to eight sensitivities at a time, four where
 /// they suffice, or where so many states are rare and would take long to compile.
 template <typename Plant, int N>
 void passes(const SizedRequest& request, Simulation& result) {
-  const int free = static_cast<int>(request.free.size());
+  const int free = static_cast<int>(request.free.size()) +
+                   (request.state != nullptr ? request.layout.states : 0);
   if (free == 0) return pass<Plant, N, 0>(request, 0, 0, result);
   for (int first = 0; first < free && result.ok();) {
     const int left = free - first;

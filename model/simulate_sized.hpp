@@ -15,6 +15,7 @@ inline constexpr int kMaxStatesAvx2 = 4;  ///< of the load-pressure plant, as in
 struct SizedRequest {
   const Layout& layout;
   InitialState initial;
+  const Eigen::VectorXd* state;  ///< to go on from, in place of `initial`; null: none
   const ParameterValues& parameters;
   std::span<const int> free;
   const SimulationInputs& inputs;
