@@ -289,7 +289,8 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m)
         "no healthy record of this signal: what the model lacks is not in the interval");
 }
 
-void judge(const Campaign& campaign, RecordDiagnosis& record) {
+/// The class that the record is known to have, if any.
+void set_truth(const Campaign& campaign, RecordDiagnosis& record) {
   const Condition& condition = *campaign.find(record.condition);
   const auto& known = campaign.diagnosis.level_class;
   if (condition.leak_level) {
@@ -412,7 +413,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     }
     result.signals.push_back(limits_of(campaign, members, errors, curves, signal));
   }
-  for (RecordDiagnosis& record : result.records) judge(campaign, record);
+  for (RecordDiagnosis& record : result.records) set_truth(campaign, record);
   classify_by_features(result.records);
   const auto by_leak = [](const RecordDiagnosis& record) { return record.leak_class; };
   result.single = accuracy(result.records, Method::fitted_leak, true, by_leak);

@@ -83,7 +83,19 @@ std::map<std::string, std::string> record_hashes(const Json& result) {
   return hashes;
 }
 
+bool is_of_tables(const Json& result) { return text_of(result, "of") == "published tables"; }
+
+/// Fits to published tables name their numbers; they have no records.
+bool share_published_numbers(const Json& a, const Json& b) {
+  if (!is_of_tables(a) || !is_of_tables(b)) return false;
+  for (const Json& x : a.at("residuals"))
+    for (const Json& y : b.at("residuals"))
+      if (x.at("of") == y.at("of")) return true;
+  return false;
+}
+
 bool share_records(const Json& a, const Json& b) {
+  if (share_published_numbers(a, b)) return true;
   const auto theirs = record_hashes(b);
   for (const auto& [hash, path] : record_hashes(a))
     if (theirs.contains(hash)) return true;
@@ -100,6 +112,8 @@ Json compared_result_json(const Compared& compared) {
     const auto found = result.find(key);
     json[key] = found == result.end() ? Json(nullptr) : *found;
   }
+  // Published numbers are no synthetic records.
+  if (is_of_tables(result)) json["synthetic"] = false;
   std::set<std::string> dates;
   std::vector<double> kelvins;
   for (const Json& condition : result.at("conditions")) {
@@ -176,7 +190,7 @@ Json difference_json(const Json& first, const Json& other, bool same_records) {
   const auto error_b = error(other);
   if (!error_a || !error_b) return reason("an estimate has no standard error");
   if (first_fitted && other_fitted && same_records)
-    return reason("estimated from the same records, so not independent of each other");
+    return reason("estimated from the same data, so not independent of each other");
   const double both = std::hypot(*error_a, *error_b);
   if (!(both > 0.0)) return reason("an estimate has no standard error");
   json["standard_error"] = number(both);
@@ -484,9 +498,10 @@ Json comparison_warnings(const std::vector<Compared>& results) {
   for (std::size_t i = 1; i < results.size(); ++i) {
     if (share_records(results[0].result, results[i].result)) {
       list.push_back(fmt::format(
-          "{} and {} share records: their estimates are not independent, so that no significance "
+          "{} and {} share {}: their estimates are not independent, so that no significance "
           "is given for differences between them",
-          results[0].name, results[i].name));
+          results[0].name, results[i].name,
+          is_of_tables(results[i].result) ? "published numbers" : "records"));
     }
   }
   return list;
@@ -501,7 +516,9 @@ std::vector<Compared> load_compared(const std::vector<std::filesystem::path>& fo
     const ReadFile read = files_in(folders[i]);
     for (const char* name : {"fit.json", "validation.json"}) {
       if (!read(name)) continue;
-      results.push_back({names[i], folders[i] / name, load_json(read, folders[i].string(), name)});
+      Json result = load_json(read, folders[i].string(), name);
+      if (result.is_object() && is_of_tables(result)) result["conditions"] = Json::array();
+      results.push_back({names[i], folders[i] / name, std::move(result)});
       break;
     }
     if (results.size() == i + 1) continue;

@@ -19,7 +19,7 @@ struct Compared {
   Json result;
 };
 
-/// Reads the fit (else the validation) of each folder.
+/// Reads the fit (else the validation) of each folder; a fit to published tables has no conditions.
 ///
 /// @throws InputError  a folder holds neither; a file is no JSON, or not what this version writes
 std::vector<Compared> load_compared(const std::vector<std::filesystem::path>& folders);

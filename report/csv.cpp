@@ -11,18 +11,10 @@
 namespace rigcal::report {
 namespace {
 
-/// A text as a comment must stay in one line.
-std::string comment(std::string text) {
-  for (char& c : text) {
-    if (c == '\n' || c == '\r') c = ' ';
-  }
-  return "# " + text + "\n";
-}
-
 std::string status_line(const calib::Fit& fit) {
   const calib::FitStatus status = status_of(fit);
   if (status == calib::FitStatus::converged) return {};
-  return comment(fmt::format("status: {}: {}", to_string(status), fit.message));
+  return csv_comment(fmt::format("status: {}: {}", to_string(status), fit.message));
 }
 
 std::vector<std::string> score_fields(const calib::ChannelScore& score) {
@@ -110,7 +102,7 @@ std::string scorecard_csv(const Result& result) {
 
 std::string residuals_csv(const Result& result, const calib::ConditionScore& score) {
   std::string text = status_line(result.fit);
-  if (!score.failure.empty()) text += comment("not simulated: " + score.failure);
+  if (!score.failure.empty()) text += csv_comment("not simulated: " + score.failure);
   std::vector<std::string> titles{"time_s"};
   for (const auto& [channel, series] : score.series) {
     for (const char* what : {"measured", "simulated", "residual", "sd"}) {
@@ -201,9 +193,9 @@ std::string simulation_csv(std::span<const double> time_s, std::span<const doubl
   if (!simulation.ok()) {
     const char* status =
         simulation.status == model::SimulationStatus::cancelled ? "stopped" : "failed";
-    text +=
-        comment(fmt::format("status: {}: {} at {:.6g} s: {}", status, to_string(simulation.status),
-                            simulation.failed_at_s, simulation.reason));
+    text += csv_comment(fmt::format("status: {}: {} at {:.6g} s: {}", status,
+                                    to_string(simulation.status), simulation.failed_at_s,
+                                    simulation.reason));
   }
   std::vector<std::string> titles{"time_s"};
   if (!reference_m.empty()) titles.emplace_back("reference_m");

@@ -25,6 +25,13 @@ std::string csv_text(const std::string& text) {
   return result + "\"";
 }
 
+std::string csv_comment(std::string text) {
+  for (char& c : text) {
+    if (c == '\n' || c == '\r') c = ' ';
+  }
+  return "# " + text + "\n";
+}
+
 std::string csv_row(const std::vector<std::string>& fields) {
   return fmt::format("{}\n", fmt::join(fields, ","));
 }

@@ -13,6 +13,9 @@ std::string csv_number(const std::optional<double>& value);
 /// A text as a CSV field: in quotes where it holds a comma, a quote or a line end.
 std::string csv_text(const std::string& text);
 
+/// A text as a line that begins with "#".
+std::string csv_comment(std::string text);
+
 /// Fields as a line of CSV, its end included.
 std::string csv_row(const std::vector<std::string>& fields);
 

@@ -52,26 +52,29 @@ std::vector<double> thinned_times(std::span<const double> time_s, const Buckets&
   return result;
 }
 
-std::vector<double> thinned(std::span<const double> values, const Buckets& buckets) {
+std::vector<double> thinned_where(std::span<const double> values, std::span<const double> extremes,
+                                  const Buckets& buckets) {
   if (buckets.size == 1) return {values.begin(), values.end()};
   std::vector<double> result;
   result.reserve(buckets.points());
-  for (std::size_t begin = 0; begin < values.size(); begin += buckets.size) {
-    const std::size_t end = std::min(begin + buckets.size, values.size());
+  for (std::size_t begin = 0; begin < extremes.size(); begin += buckets.size) {
+    const std::size_t end = std::min(begin + buckets.size, extremes.size());
     std::size_t least = end;
     std::size_t largest = end;
     for (std::size_t i = begin; i < end; ++i) {
-      if (std::isnan(values[i])) continue;
-      if (least == end || values[i] < values[least]) least = i;
-      if (largest == end || values[i] > values[largest]) largest = i;
+      if (std::isnan(extremes[i])) continue;
+      if (least == end || extremes[i] < extremes[least]) least = i;
+      if (largest == end || extremes[i] > extremes[largest]) largest = i;
     }
     const bool empty = least == end;
-    result.push_back(empty ? std::numeric_limits<double>::quiet_NaN()
-                           : values[std::min(least, largest)]);
-    result.push_back(empty ? std::numeric_limits<double>::quiet_NaN()
-                           : values[std::max(least, largest)]);
+    for (const std::size_t i : {std::min(least, largest), std::max(least, largest)})
+      result.push_back(empty ? std::numeric_limits<double>::quiet_NaN() : values[i]);
   }
   return result;
+}
+
+std::vector<double> thinned(std::span<const double> values, const Buckets& buckets) {
+  return thinned_where(values, values, buckets);
 }
 
 Quantised quantised(std::span<const double> values) {

@@ -25,6 +25,11 @@ std::vector<double> thinned_times(std::span<const double> time_s, const Buckets&
 /// holds no number.
 std::vector<double> thinned(std::span<const double> values, const Buckets& buckets);
 
+/// Values at the samples that thinned() keeps of `extremes`: what belongs to a series stays with
+/// it.
+std::vector<double> thinned_where(std::span<const double> values, std::span<const double> extremes,
+                                  const Buckets& buckets);
+
 /// Values as 16-bit steps above the least one: little endian, base64; 65535 is NaN.
 struct Quantised {
   double low = 0.0;

@@ -242,7 +242,7 @@ std::string limit_table(const diagnosis::Diagnosis& found) {
   return table.empty() ? std::string() : table.text();
 }
 
-/// Warnings of records, each once with all that it holds for.
+/// What failed, and the warnings of averages, of repeats that no leak explains, and of all.
 std::string warning_lines(const diagnosis::Diagnosis& found) {
   std::string text;
   for (const RecordDiagnosis& record : found.records) {

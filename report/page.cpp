@@ -136,7 +136,8 @@ Part comparison_part(const ReadFile& read, const std::string& where) {
   part.provenance = provenance_view(comparison, part.name, "comparison.json");
   part.nav = {{"results", "Results"}, {"estimates", "Parameters"}};
   if (part.view["comparison"].at("has_trends").get<bool>()) part.nav.push_back({"trends", "Trend"});
-  part.nav.push_back({"scores", "Scores"});
+  if (part.view["comparison"].at("has_conditions").get<bool>())
+    part.nav.push_back({"scores", "Scores"});
   part.nav.push_back({"records", "Records"});
   return part;
 }

@@ -84,27 +84,13 @@ Json parameter_rows(const Json& parameters) {
   return rows;
 }
 
-Trace intervals_trace() {
-  Trace trace;
-  trace.kind = Trace::Kind::intervals;
-  trace.style = "model";
-  return trace;
-}
-
-Trace points_trace() {
-  Trace trace;
-  trace.kind = Trace::Kind::points;
-  trace.style = "model";
-  return trace;
-}
-
 /// Each fitted parameter by result, with its interval.
 std::vector<Figure> parameter_figures(const Json& parameters) {
   std::vector<Figure> figures;
   for (const Json& parameter : parameters) {
     const RowUnit unit = unit_of_estimates(parameter);
-    Trace spans = intervals_trace();
-    Trace middles = points_trace();
+    Trace spans = empty_trace(Trace::Kind::intervals, "model");
+    Trace middles = empty_trace(Trace::Kind::points, "model");
     double number = 0.0;
     for (const Json& estimate : parameter.at("estimates")) {
       number += 1.0;
@@ -113,11 +99,7 @@ std::vector<Figure> parameter_figures(const Json& parameters) {
       if (!value) continue;
       middles.x.push_back(number);
       middles.y.push_back(*value / unit.si);
-      const Json& ci = estimate.at("ci95");
-      if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number()) continue;
-      spans.x.push_back(number);
-      spans.y.push_back(ci[0].get<double>() / unit.si);
-      spans.upper.push_back(ci[1].get<double>() / unit.si);
+      add_interval(spans, number, estimate.at("ci95"), unit.si);
     }
     if (middles.x.size() < 2) continue;
     Plot plot;
@@ -154,8 +136,8 @@ constexpr std::array kTrendAxes{
 
 Plot trend_plot(const Json& series, const TrendAxis& axis) {
   const bool by_day = std::string_view(axis.key) == "day";
-  Trace spans = intervals_trace();
-  Trace middles = points_trace();
+  Trace spans = empty_trace(Trace::Kind::intervals, "model");
+  Trace middles = empty_trace(Trace::Kind::points, "model");
   double first = HUGE_VAL;
   double last = -HUGE_VAL;
   for (const Json& point : series.at("points")) {
@@ -166,11 +148,7 @@ Plot trend_plot(const Json& series, const TrendAxis& axis) {
     last = std::max(last, *at);
     middles.x.push_back(*at);
     middles.y.push_back(*value);
-    const Json& ci = point.at("ci95");
-    if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number()) continue;
-    spans.x.push_back(*at);
-    spans.y.push_back(ci[0].get<double>());
-    spans.upper.push_back(ci[1].get<double>());
+    add_interval(spans, *at, point.at("ci95"));
   }
   const double origin = by_day ? first : 273.15;
   Plot plot;
@@ -377,6 +355,7 @@ Json comparison_view(const Json& comparison) {
   view["metrics"] = metric_rows(comparison);
   view["has_metrics"] = !view["metrics"].empty();
   view["conditions"] = score_rows_of(comparison.at("conditions"));
+  view["has_conditions"] = !view["conditions"].empty();
   view["trends"] = trend_views(comparison.at("leak_trends"));
   view["has_trends"] = !view["trends"].empty();
   view["records"] = Json::array();

@@ -90,23 +90,14 @@ Plot share_plot(const Json& diagnosis) {
   plot.y_label = "share of the servo flow [%]";
   plot.height = 240.0;
   plot.whole_x = true;
-  Trace spans;
-  spans.kind = Trace::Kind::intervals;
-  spans.style = "model";
-  Trace middles;
-  middles.kind = Trace::Kind::points;
-  middles.style = "model";
-  middles.name = "found";
-  Trace known;
-  known.kind = Trace::Kind::points;
-  known.style = "residual";
-  known.name = "known";
+  Trace spans = empty_trace(Trace::Kind::intervals, "model");
+  Trace middles = empty_trace(Trace::Kind::points, "model", "found");
+  Trace known = empty_trace(Trace::Kind::points, "residual", "known");
   double number = 0.0;
   for (const Json& record : diagnosis.at("records")) {
     if (!is_average(record)) continue;
     number += 1.0;
     const auto share = number_of(record, "leak_share_percent");
-    const Json& ci = record.at("leak_share_ci95_percent");
     if (const auto truth = number_of(record, "true_share_percent")) {
       known.x.push_back(number);
       known.y.push_back(*truth);
@@ -114,10 +105,7 @@ Plot share_plot(const Json& diagnosis) {
     if (!share) continue;
     middles.x.push_back(number);
     middles.y.push_back(*share);
-    if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number()) continue;
-    spans.x.push_back(number);
-    spans.y.push_back(ci[0].get<double>());
-    spans.upper.push_back(ci[1].get<double>());
+    add_interval(spans, number, record.at("leak_share_ci95_percent"));
   }
   double most = 0.0;
   for (const double upper : spans.upper) most = std::max(most, upper);

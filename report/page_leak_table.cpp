@@ -100,14 +100,6 @@ std::vector<double> targets_of(const Json& entries) {
   return targets;
 }
 
-Trace named_trace(const char* name, const char* style, Trace::Kind kind) {
-  Trace trace;
-  trace.name = name;
-  trace.style = style;
-  trace.kind = kind;
-  return trace;
-}
-
 /// Computed over published coefficients; what is met lies on the line.
 Plot agreement_plot(const Json& entries) {
   Plot plot;
@@ -119,8 +111,8 @@ Plot agreement_plot(const Json& entries) {
   plot.height = 320.0;
   double low = HUGE_VAL;
   double high = 0.0;
-  Trace met = named_trace("within 16 %", "model", Trace::Kind::points);
-  Trace outliers = named_trace("outlier", "residual", Trace::Kind::points);
+  Trace met = empty_trace(Trace::Kind::points, "model", "within 16 %");
+  Trace outliers = empty_trace(Trace::Kind::points, "residual", "outlier");
   for (const Json& entry : entries) {
     const auto published = number_of(entry, "published_coefficient");
     if (!published || *published <= 0.0) continue;
@@ -140,7 +132,7 @@ Plot agreement_plot(const Json& entries) {
     high = std::max({high, *published, nearest});
   }
   if (high > 0.0) {
-    Trace equal = named_trace("equal", "reference", Trace::Kind::line);
+    Trace equal = empty_trace(Trace::Kind::line, "reference", "equal");
     equal.x = equal.y = {low, high};
     plot.traces.push_back(std::move(equal));
   }

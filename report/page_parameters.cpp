@@ -19,6 +19,16 @@ Json interval(const Json& pair, const RowUnit& unit) {
           {"high", shown_in(pair[1], unit.si, 5)}};
 }
 
+/// The 95 % interval of one of the errors alone, as if it were known exactly.
+Json interval_by(const Json& parameter, const char* error_key, const RowUnit& unit) {
+  constexpr double kNormalQuantile = 1.96;
+  const auto value = number_of(parameter, "value");
+  const auto error = number_of(parameter, error_key);
+  if (!value || !error) return interval(nullptr, unit);
+  return interval(
+      Json::array({*value - kNormalQuantile * *error, *value + kNormalQuantile * *error}), unit);
+}
+
 /// "± 2.1 %" of the value; empty where that says nothing.
 std::string half_width_text(const Json& parameter) {
   const Json& ci = parameter.at("ci95");
@@ -60,8 +70,10 @@ Json fitted_row(const Json& p) {
   row["unit"] = unit.name;
   row["interval"] = interval(p.at("ci95"), unit);
   row["half_width"] = half_width_text(p);
-  row["standard_error"] = shown_in(p.at("standard_error"), unit.si, 3);
-  row["robust_standard_error"] = shown_in(p.at("robust_standard_error"), unit.si, 3);
+  for (const char* key : {"standard_error", "robust_standard_error"}) {
+    row[key] = shown_in(p.at(key), unit.si, 3);
+    row[key]["interval"] = interval_by(p, key, unit);
+  }
   row["start"] = shown_in(p.at("start"), unit.si, 5);
   row["lower"] = shown_in(p.at("lower"), unit.si, 4);
   row["upper"] = shown_in(p.at("upper"), unit.si, 4);
@@ -215,26 +227,11 @@ Json identifiability_view(const Json& result) {
         "worst.",
         all, values.back() > 0.0 ? values.front() / values.back() : 0.0);
   }
-  Plot plot;
-  plot.title = "Singular values of the scaled Jacobian";
+  Plot plot = ranked_points("Singular values of the scaled Jacobian", "singular value", values);
   plot.x_label = "direction";
-  plot.whole_x = true;
-  plot.y_label = "singular value";
-  plot.log_y = true;
-  plot.height = 170.0;
-  Trace trace;
-  trace.kind = Trace::Kind::points;
-  trace.style = "model";
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    trace.x.push_back(static_cast<double>(i + 1));
-    trace.y.push_back(values[i]);
-  }
-  plot.traces = {trace};
   view["plot_html"] = svg(plot);
   view["values"] = Json::array();
-  for (std::size_t i = 0; i < values.size(); ++i)
-    view["values"].push_back(
-        {{"number", fmt::format("{}", i + 1)}, {"value", shown(values[i], "1", 4)}});
+  for (const double value : values) view["values"].push_back({{"value", shown(value, "1", 4)}});
   return view;
 }
 

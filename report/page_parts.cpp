@@ -104,6 +104,30 @@ std::string parameter_label(const Json& parameter) {
   return fmt::format("{} ({} {})", key, leak ? "leak level" : "condition", level);
 }
 
+Plot ranked_points(const std::string& title, const std::string& y_label,
+                   const std::vector<double>& values) {
+  Plot plot;
+  plot.title = title;
+  plot.y_label = y_label;
+  plot.whole_x = true;
+  plot.log_y = true;
+  plot.height = 170.0;
+  Trace trace = empty_trace(Trace::Kind::points, "model");
+  for (const double value : values) {
+    trace.x.push_back(static_cast<double>(trace.x.size() + 1));
+    trace.y.push_back(value);
+  }
+  plot.traces = {std::move(trace)};
+  return plot;
+}
+
+void add_interval(Trace& intervals, double x, const Json& pair, double si_per_unit) {
+  if (!pair.is_array() || !pair[0].is_number() || !pair[1].is_number()) return;
+  intervals.x.push_back(x);
+  intervals.y.push_back(pair[0].get<double>() / si_per_unit);
+  intervals.upper.push_back(pair[1].get<double>() / si_per_unit);
+}
+
 std::string_view channel_unit(std::string_view channel) {
   const auto known = datasets::channel_from_key(channel);
   return known ? datasets::info(*known).unit : std::string_view("1");

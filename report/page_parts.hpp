@@ -55,6 +55,14 @@ struct Judgement {
 };
 Judgement judge_channel(const Json& acceptance, const Json& condition, const std::string& channel);
 
+/// Values in their order as points over their numbers from 1, on a logarithmic scale.
+Plot ranked_points(const std::string& title, const std::string& y_label,
+                   const std::vector<double>& values);
+
+/// Adds [low, high] of an estimate to intervals that are drawn in a unit of so much SI; nothing
+/// where an end is unknown.
+void add_interval(Trace& intervals, double x, const Json& pair, double si_per_unit = 1.0);
+
 /// A headline without reasons yet: `word` large, `css` its class (good, warn, bad, none).
 Json make_headline(const std::string& word, const std::string& mark, const std::string& css,
                    const std::string& sentence);
@@ -86,6 +94,9 @@ Json formulas_view();
 /// @param points  of one interactive series, about
 Json condition_view(const Json& result, const Json& condition, const Table& series,
                     const Json& curves, std::size_t points);
+
+/// What the residuals of its channels tell, with the curves behind it.
+Json tests_view(const Json& condition, const Json& curves);
 
 /// The pictures of a condition, for the page and for files of their own.
 struct Figure {

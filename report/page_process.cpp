@@ -1,82 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "metrics/metric_table.hpp"
 #include "report/page_parts.hpp"
 
 namespace rigcal::report {
-namespace {
-
-struct Formula {
-  const char* name;
-  const char* formula;
-};
-
-/// What the page shows beside the metrics of metrics/metric_table.hpp.
-constexpr std::array kFormulas{
-    Formula{"noise floor",
-            "what a model equal to the true signal would score: rho2 = 1 - sigma^2 / "
-            "var(y), sigma the standard deviation of the mean of the repeats"},
-    Formula{"gain ratio, phase, delay",
-            "simulated over measured amplitude, and phase, of the least-"
-            "squares sine at the fundamental; delay = -phase / (360 f)"},
-    Formula{"cost",
-            "half the sum over all samples and channels of ((s - y) / sigma)^2, priors "
-            "included"},
-    Formula{"reduced chi-square", "2 cost / (residuals - rank); 1 where the noise explains all"},
-    Formula{"standard error",
-            "root of the diagonal of max(1, chi-square) (J'J)^-1, J the Jacobian of "
-            "the weighted residuals"},
-    Formula{"robust standard error",
-            "sandwich (J'J)^-1 S (J'J)^-1, S from the scatter of the "
-            "residuals, correlated in time as they are"},
-    Formula{"95 % interval",
-            "value ± t times the standard error, with the robust one where that is "
-            "clearly larger, cut at the limits of the parameter"},
-    Formula{"identified, weak, not identifiable",
-            "half width of the interval up to 20 %, up to "
-            "100 %, above 100 % of the value"},
-    Formula{"singular values",
-            "of J with columns of length 1; a direction whose value is nil is not "
-            "determined"},
-    Formula{"autocorrelation",
-            "rho(k) = sum e(t) e(t-k) / sum e^2; band ± 1.96 / sqrt(n); test of "
-            "Ljung and Box over 25 lags"},
-    Formula{"effective samples", "n / (1 + 2 sum of rho) up to the first rho that is not positive"},
-    Formula{"cross-correlation",
-            "sum e(t) u(t-lag) / (n std(e) std(u)), u the reference or command; "
-            "band by the effective samples, Bonferroni for the peak"},
-    Formula{"periodogram",
-            "power of each line of the Fourier transform, averaged over 30 bins a "
-            "decade; test of the cumulative periodogram (Bartlett)"},
-    Formula{"quantiles",
-            "of (e - mean) / std over those of the normal distribution; test of Jarque "
-            "and Bera with the effective samples"},
-    Formula{"drift",
-            "mean and least-squares slope of e, each against its standard error by the "
-            "effective samples"},
-    Formula{"share of the servo flow",
-            "mean |Q_leak| / mean |Q_servo| of the model, over whole periods; a leak table looks "
-            "for all coefficients at which it is the target"},
-    Formula{"class of a leak",
-            "by the share's place between the limits; probabilities by the share's interval, "
-            "given that it is not negative (docs/diagnosis.md)"},
-    Formula{"smallest leak",
-            "told from none with the stated false alarms, and found in the stated share of cases "
-            "(Currie's detection limit)"},
-    Formula{"difference, p",
-            "two-sided, of (b - a) / root of the sum of the squared errors, each the larger of "
-            "standard and robust; for all parameters together by Holm's steps"},
-    Formula{"trend",
-            "weighted least squares; its error is widened by the root of reduced chi-square where "
-            "that exceeds 1, t with n - 2 degrees of freedom"},
-    Formula{"sign test", "exact binomial, two-sided, over the conditions that both results have"},
-};
-
-}  // namespace
 
 Json starts_view(const Json& result) {
   Json view;
@@ -114,22 +43,9 @@ Json starts_view(const Json& result) {
   }
   view["waterfall"] = costs.size() > 1;
   if (costs.size() > 1) {
-    Plot plot;
-    plot.title = "Cost of every start, sorted";
+    Plot plot = ranked_points("Cost of every start, sorted", "final cost", costs);
     plot.x_label = "start, best first; dashed: 1 % above the lowest";
-    plot.whole_x = true;
     plot.levels = {1.01 * least};
-    plot.y_label = "final cost";
-    plot.log_y = true;
-    plot.height = 170.0;
-    Trace trace;
-    trace.kind = Trace::Kind::points;
-    trace.style = "model";
-    for (std::size_t i = 0; i < costs.size(); ++i) {
-      trace.x.push_back(static_cast<double>(i + 1));
-      trace.y.push_back(costs[i]);
-    }
-    plot.traces = {trace};
     view["plot_html"] = svg(plot);
   }
   return view;
@@ -191,15 +107,6 @@ Json provenance_view(const Json& result, const std::string& name, const std::str
         {{"path", text_of(input, "path")}, {"sha256", text_of(input, "sha256")}});
   view["input_count"] = fmt::format("{}", view["inputs"].size());
   return view;
-}
-
-Json formulas_view() {
-  Json rows = Json::array();
-  for (const metrics::MetricSpec& metric : metrics::kMetrics)
-    rows.push_back({{"name", metric.name}, {"formula", metric.formula}});
-  for (const Formula& each : kFormulas)
-    rows.push_back({{"name", each.name}, {"formula", each.formula}});
-  return rows;
 }
 
 }  // namespace rigcal::report

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "report/figure_font.hpp"
 #include "report/plot_scene.hpp"
 
 namespace rigcal::report {
@@ -41,27 +42,6 @@ const Ink& ink_of(const std::string& style) {
   return found == kInks.end() ? kOther : *found;
 }
 
-/// UTF-8 as the library's fonts take it.
-std::string latin1(std::string_view text) {
-  std::string result;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    if (byte < 0x80) {
-      result += text[i];
-      continue;
-    }
-    const bool short_one = (byte == 0xc2 || byte == 0xc3) && i + 1 < text.size();
-    if (short_one) {
-      const auto next = static_cast<unsigned char>(text[++i]);
-      result += static_cast<char>(byte == 0xc2 ? next : next + 0x40);
-      continue;
-    }
-    result += '?';
-    while (i + 1 < text.size() && (static_cast<unsigned char>(text[i + 1]) & 0xc0U) == 0x80U) ++i;
-  }
-  return result;
-}
-
 /// A document of one page, and the first error that the library tells of.
 class PdfPage {
  public:
@@ -71,8 +51,12 @@ class PdfPage {
     page_ = HPDF_AddPage(document_.get());
     HPDF_Page_SetWidth(page_, real(width));
     HPDF_Page_SetHeight(page_, real(height));
-    font_ = HPDF_GetFont(document_.get(), "Helvetica", "WinAnsiEncoding");
-    HPDF_Page_SetFontAndSize(page_, font_, real(kFontSize));
+    HPDF_UseUTFEncodings(document_.get());
+    const char* name =
+        HPDF_LoadTTFontFromFile(document_.get(), figure_font_file().c_str(), HPDF_TRUE);
+    if (name == nullptr)
+      throw std::runtime_error(fmt::format("PDF: error {:#x} of libharu", error_));
+    HPDF_Page_SetFontAndSize(page_, HPDF_GetFont(document_.get(), name, "UTF-8"), real(kFontSize));
   }
 
   void line(const Shape& shape, const Ink& ink) {
@@ -123,14 +107,13 @@ class PdfPage {
 
   void text(const Shape& shape, const Ink& ink) {
     set_ink(ink);
-    const std::string bytes = latin1(shape.text);
-    const float width = HPDF_Page_TextWidth(page_, bytes.c_str());
+    const float width = HPDF_Page_TextWidth(page_, shape.text.c_str());
     const float shift = shape.anchor == Shape::Anchor::middle ? 0.5F * width
                         : shape.anchor == Shape::Anchor::end  ? width
                                                               : 0.0F;
     HPDF_Page_BeginText(page_);
     HPDF_Page_TextOut(page_, real(shape.points.front().x) - shift, up(shape.points.front().y),
-                      bytes.c_str());
+                      shape.text.c_str());
     HPDF_Page_EndText(page_);
   }
 
@@ -171,7 +154,6 @@ class PdfPage {
   HPDF_STATUS error_ = 0;
   std::unique_ptr<std::remove_pointer_t<HPDF_Doc>, Free> document_{HPDF_New(&note, &error_)};
   HPDF_Page page_ = nullptr;
-  HPDF_Font font_ = nullptr;
 };
 
 }  // namespace

@@ -7,10 +7,10 @@
 namespace rigcal::report {
 
 /// A picture as a PDF of one page, as large as the picture: a pixel is 0.75 points. Lines stay
-/// lines; text is Helvetica, which every viewer has, and what Latin-1 does not hold is a question
-/// mark. The same plot gives the same bytes.
+/// lines; text is DejaVu Sans, of which the letters in use are embedded. The same plot gives the
+/// same bytes.
 ///
-/// @throws std::runtime_error  memory ran out in the PDF library
+/// @throws std::runtime_error  memory ran out, or the PDF library met an error
 std::string pdf(const Plot& plot);
 
 }  // namespace rigcal::report

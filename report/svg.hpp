@@ -17,6 +17,15 @@ struct Trace {
   std::vector<double> upper;  ///< of a band or of intervals; `y` is the lower edge
 };
 
+/// A trace that has no points yet.
+inline Trace empty_trace(Trace::Kind kind, std::string style, std::string name = {}) {
+  Trace trace;
+  trace.kind = kind;
+  trace.style = std::move(style);
+  trace.name = std::move(name);
+  return trace;
+}
+
 struct Plot {
   std::string title;  ///< what a screen reader says first
   std::string x_label;

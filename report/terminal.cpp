@@ -51,17 +51,17 @@ std::string fraction(double value) {
 
 std::string percent(double value) { return fmt::format("{:.3f}", value); }
 
-TextTable condition_table(const Result& result, Channel channel) {
+TextTable condition_table(const Result& result, Channel channel, const Style& style) {
   TextTable table({{"condition"},
-                   {"use"},
-                   {"waveform"},
-                   {"frequency", Align::right},
-                   {"leak level"},
+                   {"use", Align::left, 1},
+                   {"waveform", Align::left, 6},
+                   {"frequency", Align::right, 5},
+                   {"leak level", Align::left, 4},
                    {"rho2 %", Align::right},
-                   {"R %", Align::right},
+                   {"R %", Align::right, 3},
                    {"CCC %", Align::right},
                    {"error %", Align::right},
-                   {"floor %", Align::right},
+                   {"floor %", Align::right, 2},
                    {"verdict"}});
   for (const calib::ConditionScore& score : result.fit.conditions) {
     const datasets::Condition* condition = result.campaign.find(score.id);
@@ -81,8 +81,8 @@ TextTable condition_table(const Result& result, Channel channel) {
     row.push_back(scored ? percent(found->agreement->absolute_error_percent) : "-");
     row.push_back(scored && found->noise_floor ? percent(found->noise_floor->absolute_error_percent)
                                                : "-");
-    row.push_back(!score.failure.empty() ? "not simulated"
-                  : score.verdict        ? std::string(to_string(*score.verdict))
+    row.push_back(!score.failure.empty() ? coloured("not simulated", "31", style)
+                  : score.verdict        ? coloured(*score.verdict, style)
                                          : "-");
     table.add(std::move(row));
   }
@@ -92,13 +92,13 @@ TextTable condition_table(const Result& result, Channel channel) {
 TextTable group_table(const Result& result, Channel channel) {
   TextTable table({{"by"},
                    {"group"},
-                   {"conditions", Align::right},
+                   {"conditions", Align::right, 2},
                    {"rho2 %", Align::right},
-                   {"R %", Align::right},
-                   {"CCC %", Align::right},
+                   {"R %", Align::right, 5},
+                   {"CCC %", Align::right, 4},
                    {"error %", Align::right},
-                   {"worst rho2 %", Align::right},
-                   {"worst error %", Align::right}});
+                   {"worst rho2 %", Align::right, 1},
+                   {"worst error %", Align::right, 3}});
   for (const Group& group : groups(result.campaign, result.fit)) {
     const auto found = group.channels.find(channel);
     if (found == group.channels.end()) continue;
@@ -110,6 +110,26 @@ TextTable group_table(const Result& result, Channel channel) {
                percent(score.worst.absolute_error_percent)});
   }
   return table;
+}
+
+/// What a narrow terminal does not show.
+std::string narrow_note(const TextTable& table, const Style& style) {
+  const std::vector<std::string> left_out = table.left_out(style.columns);
+  if (left_out.empty()) return {};
+  return fmt::format("  for want of room without {}: they are in scorecard.csv\n",
+                     fmt::join(left_out, ", "));
+}
+
+std::string identifiability_text(const calib::FittedParameter& p, const Style& style) {
+  using calib::Identifiability;
+  std::string text = p.identifiability == Identifiability::not_identifiable
+                         ? "not identifiable"
+                         : std::string(to_string(p.identifiability));
+  if (p.at_bound) text += ", at a bound";
+  const char* code = p.identifiability == Identifiability::not_identifiable     ? "31"
+                     : p.at_bound || p.identifiability == Identifiability::weak ? "33"
+                                                                                : "32";
+  return coloured(text, code, style);
 }
 
 /// Numbers of one parameter, all in the unit of its value.
@@ -147,11 +167,13 @@ std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& r
 std::string scorecard_text(const Result& result, const Style& style) {
   const std::optional<Channel> channel = shown_channel(result.fit);
   if (!channel) return "No channel was compared.\n";
+  const TextTable conditions = condition_table(result, *channel, style);
   std::string text = coloured(fmt::format("Agreement of {}", info(*channel).key), "1", style) +
-                     "\n" + condition_table(result, *channel).text();
+                     "\n" + conditions.text(style.columns) + narrow_note(conditions, style);
   const TextTable gathered = group_table(result, *channel);
   if (!gathered.empty()) {
-    text += "\n" + coloured("Gathered (means, and the worst)", "1", style) + "\n" + gathered.text();
+    text += "\n" + coloured("Gathered (means, and the worst)", "1", style) + "\n" +
+            gathered.text(style.columns);
   }
   return text;
 }
@@ -162,10 +184,9 @@ std::string parameters_text(const Result& result, const Style& style) {
                   {"for"},
                   {"value", Align::right},
                   {"unit"},
-                  {"std. error", Align::right},
+                  {"std. error", Align::right, 1},
                   {"95 % interval", Align::right},
-                  {"bounds", Align::right},
-                  {"at bound"},
+                  {"bounds", Align::right, 2},
                   {"identifiability"}});
   std::vector<std::pair<std::string, std::string>> reasons;  // whose, why
   for (const calib::FittedParameter& p : result.fit.parameters) {
@@ -177,15 +198,15 @@ std::string parameters_text(const Result& result, const Style& style) {
               in_unit(p.value, unit, 6), std::string(unit.name),
               p.standard_error ? in_unit(*p.standard_error, unit, 3) : "-",
               p.ci95 ? limits(p.ci95->first, p.ci95->second, unit, 5) : "-",
-              limits(p.lower, p.upper, unit, 4), p.at_bound ? "yes" : "no",
-              std::string(to_string(p.identifiability))});
+              limits(p.lower, p.upper, unit, 4), identifiability_text(p, style)});
     if (!p.reason.empty()) reasons.emplace_back(fmt::format("{} ({})", spec.key, whose), p.reason);
   }
   if (text.empty()) {
     return result.kind == ResultKind::validation ? "All parameters as given.\n"
                                                  : "No parameter was estimated.\n";
   }
-  return coloured("Parameters", "1", style) + "\n" + text.text() + foot_notes(reasons, text.rows());
+  return coloured("Parameters", "1", style) + "\n" + text.text(style.columns) +
+         foot_notes(reasons, text.rows());
 }
 
 std::string verdict_text(const Result& result, const Style& style) {

@@ -11,6 +11,7 @@ namespace rigcal::report {
 /// How text is shown.
 struct Style {
   bool colour = false;
+  std::size_t columns = 0;  ///< of the terminal; 0: tables as wide as they are
 };
 
 /// Agreement per condition, then gathered by use, frequency, waveform and leak level. The channel

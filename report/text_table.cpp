@@ -3,37 +3,79 @@
 #include <algorithm>
 
 namespace rigcal::report {
+namespace {
+
+constexpr std::size_t kGap = 2;  ///< blanks between columns
+
+}  // namespace
 
 std::size_t text_width(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  }));
+  std::size_t width = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\x1b') {
+      i = std::min(text.find('m', i), text.size() - 1);
+      continue;
+    }
+    if ((static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U) ++width;
+  }
+  return width;
 }
 
-std::string TextTable::text() const {
-  std::vector<std::string> titles;
+std::vector<std::size_t> TextTable::widths() const {
   std::vector<std::size_t> width;
-  for (const Column& column : columns_) {
-    titles.push_back(column.title);
-    width.push_back(text_width(column.title));
-  }
+  for (const Column& column : columns_) width.push_back(text_width(column.title));
   for (const auto& row : rows_) {
     for (std::size_t i = 0; i < width.size(); ++i)
       width[i] = std::max(width[i], text_width(row[i]));
   }
+  return width;
+}
+
+std::vector<bool> TextTable::shown(std::size_t columns) const {
+  const std::vector<std::size_t> width = widths();
+  std::vector<bool> is_shown(width.size(), true);
+  std::size_t all = 0;
+  for (const std::size_t each : width) all += each + kGap;
+  while (columns > 0 && all > columns + kGap) {
+    std::size_t next = width.size();
+    for (std::size_t i = 0; i < width.size(); ++i) {
+      if (!is_shown[i] || columns_[i].spare == 0) continue;
+      if (next == width.size() || columns_[i].spare > columns_[next].spare) next = i;
+    }
+    if (next == width.size()) break;
+    is_shown[next] = false;
+    all -= width[next] + kGap;
+  }
+  return is_shown;
+}
+
+std::vector<std::string> TextTable::left_out(std::size_t columns) const {
+  const std::vector<bool> is_shown = shown(columns);
+  std::vector<std::string> titles;
+  for (std::size_t i = 0; i < is_shown.size(); ++i)
+    if (!is_shown[i]) titles.push_back(columns_[i].title);
+  return titles;
+}
+
+std::string TextTable::text(std::size_t columns) const {
+  const std::vector<std::size_t> width = widths();
+  const std::vector<bool> is_shown = shown(columns);
   std::string result;
-  const auto add_line = [&](const std::vector<std::string>& row) {
+  const auto add_line = [&](const auto& cell) {
     std::string line;
     for (std::size_t i = 0; i < width.size(); ++i) {
-      const std::string blanks(width[i] - text_width(row[i]), ' ');
-      if (i > 0) line += "  ";
-      line += columns_[i].align == Align::left ? row[i] + blanks : blanks + row[i];
+      if (!is_shown[i]) continue;
+      const std::string& text = cell(i);
+      const std::string blanks(width[i] - text_width(text), ' ');
+      if (i > 0) line += std::string(kGap, ' ');
+      line += columns_[i].align == Align::left ? text + blanks : blanks + text;
     }
     line.erase(line.find_last_not_of(' ') + 1);
     result += line + "\n";
   };
-  add_line(titles);
-  for (const auto& row : rows_) add_line(row);
+  add_line([&](std::size_t i) -> const std::string& { return columns_[i].title; });
+  for (const auto& row : rows_)
+    add_line([&](std::size_t i) -> const std::string& { return row[i]; });
   return result;
 }
 

@@ -6,7 +6,7 @@
 
 namespace rigcal::report {
 
-/// Number of characters of a UTF-8 text.
+/// Number of characters that a terminal shows of a UTF-8 text: sequences that colour it take none.
 std::size_t text_width(std::string_view text);
 
 /// Rows of texts as aligned columns: texts to the left, columns that hold numbers to the right.
@@ -16,6 +16,7 @@ class TextTable {
   struct Column {
     std::string title;
     Align align = Align::left;
+    int spare = 0;  ///< the highest is left out first where there is no room; 0: never
   };
 
   explicit TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
@@ -24,9 +25,17 @@ class TextTable {
   bool empty() const { return rows_.empty(); }
   std::size_t rows() const { return rows_.size(); }
   /// Title line and rows, two blanks between columns, without blanks at line ends.
-  std::string text() const;
+  ///
+  /// @param columns  of the terminal: what can be spared is left out until the lines fit; 0: all
+  std::string text(std::size_t columns = 0) const;
+  /// Titles of what text() leaves out.
+  std::vector<std::string> left_out(std::size_t columns) const;
 
  private:
+  std::vector<std::size_t> widths() const;
+  /// Whether each column is shown.
+  std::vector<bool> shown(std::size_t columns) const;
+
   std::vector<Column> columns_;
   std::vector<std::vector<std::string>> rows_;
 };

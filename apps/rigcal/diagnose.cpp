@@ -1,14 +1,13 @@
 #include "diagnosis/diagnose.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdlib>
-#include <cstring>
+#include <functional>
 #include <memory>
 
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/parallel.hpp"
@@ -28,12 +27,6 @@ struct DiagnoseRequest {
   CampaignOptions common;
   std::filesystem::path fit;
 };
-
-report::Style diagnosis_style() {
-  const char* no_colour = std::getenv("NO_COLOR");
-  const bool wanted = no_colour == nullptr || std::strlen(no_colour) == 0;
-  return {wanted && ::isatty(STDOUT_FILENO) == 1};
-}
 
 /// Where each record leaves what the fit covers, which is asked with the leak that was found.
 void warn_of_validity(const Campaign& campaign, const report::Validity& covered,
@@ -71,7 +64,7 @@ ExitCode write_diagnosis(const DiagnoseRequest& options, const report::Diagnosis
   add_page(options.common.out, options.common.threads, files);
   report::write_results(options.common.out, files, result.provenance.inputs);
   const std::string text =
-      report::diagnosis_text(result, diagnosis_style()) +
+      report::diagnosis_text(result, terminal_style()) +
       fmt::format("files: {} {} {}\n", (options.common.out / "diagnosis.json").string(),
                   (options.common.out / "diagnosis.csv").string(),
                   (options.common.out / "report.html").string());
@@ -110,8 +103,12 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
   std::vector<datasets::Record> averages;
   for (const datasets::RepeatRecords& each : records) averages.push_back(each.average);
   provenance.inputs = report::hash_inputs(campaign, averages, more_inputs);
-  found = diagnosis::diagnose(campaign, records,
-                              {earlier.values, earlier.indices, earlier.covariance}, settings);
+  {
+    CountProgress progress(options.common.print.quiet, "records");
+    settings.progress = std::ref(progress);
+    found = diagnosis::diagnose(campaign, records,
+                                {earlier.values, earlier.indices, earlier.covariance}, settings);
+  }
   found.warnings.insert(found.warnings.end(), diagnosable.left_out.begin(),
                         diagnosable.left_out.end());
   stop_if(invocation.cancel);

@@ -60,7 +60,8 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
 
   calib::Fit fit;
   {
-    Progress progress(options.common.print.quiet, fmt::format("start {{}} of {}", settings.starts));
+    FitProgress progress(options.common.print.quiet,
+                         fmt::format("start {{}} of {}", settings.starts), settings);
     settings.progress = std::ref(progress);
     fit = calib::fit(campaign, records, settings);
   }

@@ -11,6 +11,7 @@
 #include "apps/rigcal/verb.hpp"
 #include "report/fit_tables.hpp"
 #include "report/folder.hpp"
+#include "report/parameters_csv.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -39,7 +40,9 @@ ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invoca
     files.push_back(
         {"fitted.toml", fitted_leak_table_text(input.campaign, fit.settings, options.out)});
   }
-  files.push_back({"fit.json", report::json_text(report::tables_fit_json(result))});
+  const report::Json json = report::tables_fit_json(result);
+  files.push_back({"parameters.csv", report::parameters_csv(json)});
+  files.push_back({"fit.json", report::json_text(json)});
   add_page(options.out, options.threads, files);
   report::write_results(options.out, files, provenance.inputs);
   if (fit.status != FitStatus::converged) {
@@ -48,7 +51,7 @@ ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invoca
     report::remove_stale(options.out / "leak_table.json");
   }
   print(options.print, text + fmt::format("files: {}\n", (options.out / "fit.json").string()),
-        report::tables_fit_json(result));
+        json);
   if (fit.status == FitStatus::failed) return ExitCode::no_result;
   return fit.status == FitStatus::stopped ? ExitCode::stopped : ExitCode::done;
 }

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/rigcal/interrupt.hpp"
@@ -61,13 +63,21 @@ std::string one_line(std::string text) {
   return text;
 }
 
+/// An argument as a shell takes it back, whatever is in it.
+std::string quoted(const std::string& argument) {
+  const bool plain = !argument.empty() && std::all_of(argument.begin(), argument.end(), [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+           std::string_view("-_=+,./:@%").find(c) != std::string_view::npos;
+  });
+  if (plain) return argument;
+  std::string text = "'";
+  for (const char c : argument) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
 std::string command_line(int argc, char** argv) {
   std::string text = "rigcal";
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    const bool plain = !argument.empty() && argument.find_first_of(" \t\"'$*?\\") == argument.npos;
-    text += plain ? " " + argument : " '" + argument + "'";
-  }
+  for (int i = 1; i < argc; ++i) text += " " + quoted(argv[i]);
   return text;
 }
 

@@ -1,6 +1,7 @@
 #include "apps/rigcal/options.hpp"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -60,10 +61,16 @@ std::vector<std::pair<std::string, std::string>> recorded(const CampaignOptions&
           {"free", fmt::format("{}", fmt::join(options.free, ","))}};
 }
 
+std::size_t terminal_columns(int stream) {
+  winsize size{};
+  if (::isatty(stream) != 1 || ::ioctl(stream, TIOCGWINSZ, &size) != 0) return 0;
+  return size.ws_col;
+}
+
 report::Style terminal_style() {
   const char* no_colour = std::getenv("NO_COLOR");
   const bool wanted = no_colour == nullptr || std::strlen(no_colour) == 0;
-  return {wanted && ::isatty(STDOUT_FILENO) == 1};
+  return {wanted && ::isatty(STDOUT_FILENO) == 1, terminal_columns(STDOUT_FILENO)};
 }
 
 void print(const PrintOptions& options, const std::string& text, const report::Json& json) {

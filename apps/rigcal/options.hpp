@@ -43,7 +43,10 @@ datasets::Campaign load(const CampaignOptions& options);
 /// The options that change numbers, for the provenance.
 std::vector<std::pair<std::string, std::string>> recorded(const CampaignOptions& options);
 
-/// Colour on a terminal, unless NO_COLOR is set.
+/// Columns of the terminal that a stream goes to; 0 where it goes elsewhere.
+std::size_t terminal_columns(int stream);
+
+/// Colour on a terminal, unless NO_COLOR is set; tables as wide as it is.
 report::Style terminal_style();
 
 /// Prints a result on stdout, as text or as JSON.

@@ -5,6 +5,7 @@
 #include "apps/rigcal/result_page.hpp"
 #include "report/csv.hpp"
 #include "report/folder.hpp"
+#include "report/parameters_csv.hpp"
 #include "report/residual_tests_json.hpp"
 #include "report/terminal.hpp"
 
@@ -41,14 +42,15 @@ std::vector<report::ResultFile> files_of(const CampaignOptions& options,
     files.push_back({std::filesystem::path("residuals") / (condition.id + ".csv"),
                      report::residuals_csv(result, score)});
   }
+  const report::Json json = result_json(result);
   files.push_back({"scorecard.csv", report::scorecard_csv(result)});
+  files.push_back({"parameters.csv", report::parameters_csv(json)});
   files.push_back({"residual_tests.json", report::residual_curves_text(result)});
   if (is_fit && report::status_of(result.fit) != FitStatus::failed) {
     files.push_back({"fitted.toml", fitted_toml(options, result)});
   }
   // Last, so that whoever finds it finds the others too.
-  files.push_back(
-      {is_fit ? "fit.json" : "validation.json", report::json_text(result_json(result))});
+  files.push_back({is_fit ? "fit.json" : "validation.json", report::json_text(json)});
   add_page(options.out, options.threads, files);
   return files;
 }

@@ -3,39 +3,81 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <utility>
 
+#include "apps/rigcal/options.hpp"
+
 namespace rigcal::app {
+namespace {
 
-Progress::Progress(bool quiet, std::string work)
-    : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1), work_(std::move(work)) {}
-
-Progress::~Progress() {
-  if (line_is_open_) std::fputs("\n", stderr);
+std::string left_text(const std::optional<double>& seconds) {
+  return seconds ? fmt::format(", about {} left", report::duration_text(*seconds)) : std::string();
 }
 
-void Progress::operator()(int start, int iteration, double cost, double relative_change,
-                          double seconds) {
+}  // namespace
+
+StatusLine::StatusLine(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+StatusLine::~StatusLine() {
+  if (is_open_) std::fputs("\n", stderr);
+}
+
+void StatusLine::show(const std::function<std::string(double)>& text) {
   if (quiet_) return;
-  const std::lock_guard lock(mutex_);
   const auto now = Clock::now();
-  const auto pause = std::chrono::milliseconds(line_is_open_ ? 100 : 1000);
+  const auto pause = std::chrono::milliseconds(is_open_ ? 100 : 1000);
   if (now - last_shown_ < pause) return;
   last_shown_ = now;
-  const std::string change =
-      std::isfinite(relative_change) ? fmt::format("{:.1e}", relative_change) : "-";
-  const std::string line =
-      fmt::format("{}, iteration {}: cost {:.6g}, change {}, {:.1f} s",
-                  fmt::format(fmt::runtime(work_), start), iteration, cost, change, seconds);
+  std::string line = text(std::chrono::duration<double>(now - begin_).count());
   if (terminal_) {
+    // A line that is wrapped could not be rewritten.
+    const std::size_t columns = terminal_columns(STDERR_FILENO);
+    if (columns > 0 && line.size() >= columns) line.resize(columns - 1);
     std::fputs(fmt::format("\r\x1b[K{}", line).c_str(), stderr);
-    line_is_open_ = true;
+    is_open_ = true;
   } else {
     std::fputs((line + "\n").c_str(), stderr);
   }
   std::fflush(stderr);
+}
+
+FitProgress::FitProgress(bool quiet, std::string work, const calib::FitOptions& settings)
+    : line_(quiet),
+      work_(std::move(work)),
+      left_(settings.starts, settings.function_tolerance),
+      max_seconds_(settings.max_seconds) {}
+
+void FitProgress::operator()(int start, int iteration, double cost, double relative_change,
+                             double /*seconds*/) {
+  const std::lock_guard lock(mutex_);
+  left_.note(start, relative_change);
+  line_.show([&](double elapsed_s) {
+    std::optional<double> left_s = left_.seconds(elapsed_s);
+    if (max_seconds_) {
+      const double limit_s = std::max(0.0, *max_seconds_ - elapsed_s);
+      left_s = std::min(left_s.value_or(limit_s), limit_s);
+    }
+    return fmt::format(
+        "{}, iteration {}: cost {:.6g}, change {}, {}{}", fmt::format(fmt::runtime(work_), start),
+        iteration, cost,
+        std::isfinite(relative_change) ? fmt::format("{:.1e}", relative_change) : std::string("-"),
+        report::duration_text(elapsed_s), left_text(left_s));
+  });
+}
+
+CountProgress::CountProgress(bool quiet, std::string pieces)
+    : line_(quiet), pieces_(std::move(pieces)) {}
+
+void CountProgress::operator()(int done, int all) {
+  const std::lock_guard lock(mutex_);
+  line_.show([&](double elapsed_s) {
+    const double left_s = done > 0 ? elapsed_s * (all - done) / done : elapsed_s;
+    return fmt::format("{} of {} {}, {}{}", done, all, pieces_, report::duration_text(elapsed_s),
+                       left_text(left_s));
+  });
 }
 
 }  // namespace rigcal::app

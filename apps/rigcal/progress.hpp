@@ -1,33 +1,71 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
+
+#include "calib/fit.hpp"
+#include "report/time_left.hpp"
 
 namespace rigcal::app {
 
-/// Tells on stderr how far a long fit is: one line that is rewritten on a terminal, a plain line
-/// about every second elsewhere. Silent for the first second.
-class Progress {
+/// A line on stderr that tells how far long work is: rewritten on a terminal, a plain line about
+/// every second elsewhere. Silent for the first second. Not for several threads at once.
+class StatusLine {
  public:
-  /// @param work  what is told of: "start {} of 3"; braces stand for the number of the start
-  Progress(bool quiet, std::string work);
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  ~Progress();
+  explicit StatusLine(bool quiet);
+  StatusLine(const StatusLine&) = delete;
+  StatusLine& operator=(const StatusLine&) = delete;
+  ~StatusLine();
 
-  /// May be called from any thread.
-  void operator()(int start, int iteration, double cost, double relative_change, double seconds);
+  /// Shows a text if it is time for one.
+  ///
+  /// @param text  made then, of the seconds since the beginning
+  void show(const std::function<std::string(double)>& text);
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::mutex mutex_;
   bool quiet_;
   bool terminal_;
+  bool is_open_ = false;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point last_shown_ = begin_;
+};
+
+/// Tells how far a fit is.
+class FitProgress {
+ public:
+  /// @param work      what is told of: "start {} of 3"; braces stand for the number of the start
+  /// @param settings  of the fit: its starts, tolerance and limit of time
+  FitProgress(bool quiet, std::string work, const calib::FitOptions& settings);
+
+  /// May be called from any thread. `seconds` is that of one call of the solver, and not shown.
+  void operator()(int start, int iteration, double cost, double relative_change, double seconds);
+
+ private:
+  std::mutex mutex_;
+  StatusLine line_;
   std::string work_;
-  bool line_is_open_ = false;
-  Clock::time_point last_shown_ = Clock::now();
+  report::TimeLeft left_;
+  std::optional<double> max_seconds_;
+};
+
+/// Tells how many of several equal pieces of work are done.
+class CountProgress {
+ public:
+  /// @param pieces  their name: "records"
+  CountProgress(bool quiet, std::string pieces);
+
+  /// May be called from any thread.
+  void operator()(int done, int all);
+
+ private:
+  std::mutex mutex_;
+  StatusLine line_;
+  std::string pieces_;
 };
 
 }  // namespace rigcal::app

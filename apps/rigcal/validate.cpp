@@ -73,7 +73,7 @@ ExitCode run_validate(const ValidateRequest& options, const Invocation& invocati
 
   calib::Fit fit;
   {
-    Progress progress(options.common.print.quiet, "nuisance parameters");
+    FitProgress progress(options.common.print.quiet, "nuisance parameters", settings);
     settings.progress = std::ref(progress);
     fit = calib::validate(campaign, records, earlier ? &earlier->values : nullptr, settings);
   }

@@ -89,7 +89,8 @@
 
     reset() { this.zoom(this.whole[0], this.whole[1]); }
 
-    key(event) {
+    /** Zooms or moves by the name of a key; false for any other. */
+    move(key) {
       const [from, to] = this.range ?? this.whole;
       const span = to - from;
       const middle = (from + to) / 2;
@@ -100,9 +101,13 @@
         "ArrowRight": [Math.min(this.whole[1], to + span / 5) - span, Math.min(this.whole[1], to + span / 5)],
         "0": this.whole,
       };
-      if (!moves[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;
-      event.preventDefault();
-      this.zoom(...moves[event.key]);
+      if (!moves[key]) return false;
+      this.zoom(...moves[key]);
+      return true;
+    }
+
+    key(event) {
+      if (!event.ctrlKey && !event.metaKey && !event.altKey && this.move(event.key)) event.preventDefault();
     }
 
     draw(figure) {
@@ -138,6 +143,8 @@
         hooks: {setScale: [(u, key) => { if (key === "x" && u.status === 1) this.zoom(u.scales.x.min, u.scales.x.max, u); }]},
       }, values, figure);
       if (this.range) chart.setScale("x", {min: this.range[0], max: this.range[1]});
+      // The label of the figure says what is in it; a canvas and its legend tell a screen reader nothing.
+      chart.root.setAttribute("aria-hidden", "true");
       chart.over.addEventListener("dblclick", () => this.reset());
       this.charts.set(figure, chart);
       figure.classList.add("live");
@@ -155,6 +162,11 @@
         button.addEventListener("click", action);
         tools.append(button);
       };
+      // A finger has neither keys nor a drag of its own: it scrolls the page.
+      add("+", "Zoom in", () => this.move("+"));
+      add("−", "Zoom out", () => this.move("-"));
+      add("←", "Earlier", () => this.move("ArrowLeft"));
+      add("→", "Later", () => this.move("ArrowRight"));
       add("Show all", "Show the whole record", () => this.reset());
       add("PNG", "Save the plot as it is shown, as PNG", () => saveImage(figure, this.charts.get(figure)));
       add("SVG", "Save the picture of the whole record as SVG", () => savePicture(figure));

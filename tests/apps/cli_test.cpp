@@ -233,13 +233,10 @@ const std::vector<BadFit> kBadFits{
      {"parameters[0].value", "60", "a number"}},
 };
 
-const std::set<std::string> kFitFiles{"out/fit.json",
-                                      "out/fitted.toml",
-                                      "out/report.html",
-                                      "out/residual_tests.json",
-                                      "out/scorecard.csv",
-                                      "out/residuals/sine.csv",
-                                      "out/residuals/square.csv"};
+const std::set<std::string> kFitFiles{"out/fit.json",           "out/fitted.toml",
+                                      "out/report.html",        "out/residual_tests.json",
+                                      "out/scorecard.csv",      "out/parameters.csv",
+                                      "out/residuals/sine.csv", "out/residuals/square.csv"};
 
 std::set<std::string> files_in(const CommandFolder& folder, const std::string& prefix) {
   std::set<std::string> found;
@@ -555,16 +552,19 @@ TEST_CASE("fit: stopped by a signal it keeps the best so far", "[apps]") {
       const CommandFolder folder;
       REQUIRE(write_twin(folder).exit_code == 0);
       const Outcome outcome = folder.run_and_signal(
-          {"fit", "twin/campaign.toml", "--out", "out", "--starts", "5000"}, "iteration", signal);
+          {"fit", "twin/campaign.toml", "--out", "out", "--starts", "5000", "--max-time", "600"},
+          "iteration", signal);
       CAPTURE(outcome.err);
       CHECK(outcome.exit_code == 4);
+      CHECK_THAT(outcome.err, Contains(", change ") && Contains(" left\n"));
       auto files = files_in(folder, "out/");
       files.erase("out/checkpoint.json");  // there once a start is finished
       CHECK(files == kFitFiles);
       CHECK(json::parse(folder.read("out/fit.json"))["status"] == "stopped");
       check_complete(folder.read("out/fit.json"));
       CHECK_THAT(folder.read("out/fit.json"), StartsWith("{\n  \"status\": \"stopped\""));
-      for (const char* file : {"out/scorecard.csv", "out/residuals/sine.csv", "out/fitted.toml"}) {
+      for (const char* file : {"out/scorecard.csv", "out/parameters.csv", "out/residuals/sine.csv",
+                               "out/fitted.toml"}) {
         CHECK_THAT(folder.read(file), StartsWith("# status: stopped"));
       }
     }
@@ -600,6 +600,7 @@ TEST_CASE("fit: what cannot be simulated gives no parameters", "[apps]") {
   CHECK(files_in(folder, "out/") == expected);
   CHECK_THAT(folder.read("out/fit.json"), StartsWith("{\n  \"status\": \"failed\""));
   CHECK_THAT(folder.read("out/scorecard.csv"), StartsWith("# status: failed: "));
+  CHECK_THAT(folder.read("out/parameters.csv"), StartsWith("# status: failed: "));
   CHECK_THAT(folder.read("out/residuals/sine.csv"), StartsWith("# status: failed: "));
   CHECK_THAT(folder.read("out/report.html"), Contains("<title>FAILED"));
   check_complete(folder.read("out/fit.json"));

@@ -205,6 +205,15 @@ TEST_CASE("fit-tables: finds the values behind tables that leak-table made", "[a
           0);
   CHECK(json::parse(folder.read("again/leak_table.json"))["entries"] ==
         json::parse(folder.read("out/leak_table.json"))["entries"]);
+  // Another fit to the same numbers can be put beside it.
+  REQUIRE(folder.run({"fit-tables", "campaign.toml", "--free", "kp", "--out", "one", "--quiet"})
+              .exit_code == 0);
+  REQUIRE(folder.run({"compare", "out", "one", "--out", "both"}).exit_code == 0);
+  const json compared = json::parse(folder.read("both/comparison.json"));
+  CHECK(violations(compared, "comparison") == "");
+  CHECK(compared["parameters"][0]["differences"][1]["significant"].is_null());
+  CHECK_THAT(folder.read("both/report.html"),
+             Contains("share published numbers") && !Contains("id=\"scores\""));
 }
 
 TEST_CASE("fit-tables: bad input is refused", "[apps]") {

@@ -76,7 +76,7 @@ TEST_CASE("comparison: fits to the same records are not independent", "[report]"
   const Json json = comparison_json({compared_fit("one", 85.0, 0.3), other}, {});
   const Json& difference = json["parameters"][0]["differences"][1];
   CHECK(difference["significant"].is_null());
-  CHECK_THAT(difference["reason"].get<std::string>(), Contains("same records"));
+  CHECK_THAT(difference["reason"].get<std::string>(), Contains("same data"));
   CHECK(json["records"].size() == 1);
   CHECK(json["records"][0]["in"] == Json::array({true, true}));
   CHECK(json["warnings"].dump().find("share records") != std::string::npos);
@@ -124,6 +124,26 @@ TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
   CHECK(rho2["mean"] == 0.9);
   CHECK(rho2["p_value"] == 1.0);
   CHECK(json["conditions"][1]["scores"][0].is_null());
+}
+
+TEST_CASE("comparison: fits to published tables, which have no records", "[report]") {
+  const auto tables_fit = [](const std::string& name, double mass_kg, const std::string& number) {
+    Compared fit = compared_fit(name, mass_kg, 0.3);
+    fit.result["of"] = "published tables";
+    fit.result["conditions"] = Json::array();
+    fit.result["provenance"]["inputs"] = Json::array();
+    fit.result["residuals"] = {{{"of", number}, {"weight", 1.0}, {"log_ratio", 0.0}}};
+    fit.result.erase("synthetic");
+    return fit;
+  };
+  Json json = comparison_json({tables_fit("a", 85.0, "C"), tables_fit("b", 90.0, "C")}, {});
+  CHECK(json["results"][0]["conditions"] == 0);
+  CHECK(json["results"][0]["synthetic"] == false);
+  CHECK_THAT(json["parameters"][0]["differences"][1]["reason"].get<std::string>(),
+             Contains("same data"));
+  CHECK_THAT(json["warnings"].dump(), Contains("share published numbers"));
+  json = comparison_json({tables_fit("a", 85.0, "C"), tables_fit("b", 90.0, "other")}, {});
+  CHECK(json["parameters"][0]["differences"][1]["significant"] == true);
 }
 
 TEST_CASE("comparison: names the file that is no result of this version", "[report]") {

@@ -11,6 +11,7 @@ using rigcal::report::Quantised;
 using rigcal::report::quantised;
 using rigcal::report::thinned;
 using rigcal::report::thinned_times;
+using rigcal::report::thinned_where;
 
 TEST_CASE("decimate: a single peak among many samples stays", "[report]") {
   std::vector<double> values(30'000, 0.0);
@@ -22,6 +23,15 @@ TEST_CASE("decimate: a single peak among many samples stays", "[report]") {
   CHECK(drawn.size() <= 1002);
   CHECK(*std::max_element(drawn.begin(), drawn.end()) == 5.0);
   CHECK(*std::min_element(drawn.begin(), drawn.end()) == -3.0);
+}
+
+TEST_CASE("thinned_where: a band stays about its mean", "[report]") {
+  const std::vector<double> mean{0, 9, 1, 2, 5, 3};
+  const std::vector<double> sd{1, 2, 3, 4, 5, 6};
+  const auto thin = buckets(mean.size(), 4);
+  REQUIRE(thin.size == 3);
+  CHECK(thinned(mean, thin) == std::vector<double>{0, 9, 2, 5});
+  CHECK(thinned_where(sd, mean, thin) == std::vector<double>{1, 2, 4, 5});
 }
 
 TEST_CASE("decimate: few samples stay as they are", "[report]") {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-using Catch::EndsWith;
+using Catch::Contains;
 using Catch::StartsWith;
 using rigcal::report::pdf;
 using rigcal::report::Plot;
@@ -12,7 +12,7 @@ using rigcal::report::Trace;
 
 TEST_CASE("pdf: a plot of every kind is a document, the same bytes each time", "[report]") {
   Plot plot;
-  plot.x_label = "Zeit \xc3\xbc \xe2\x86\x92";  // what Latin-1 does not hold does no harm
+  plot.x_label = "Zeit \xc3\xbc \xe2\x86\x92";
   plot.y_label = "y";
   plot.levels = {0.5};
   const std::vector<double> x{0, 1, 2, 3};
@@ -25,5 +25,7 @@ TEST_CASE("pdf: a plot of every kind is a document, the same bytes each time", "
   CHECK(text.rfind("%%EOF") > text.size() - 10);
   CHECK(text.size() > 1000);
   CHECK(pdf(plot) == text);
+  CHECK_THAT(text, Contains("/FontFile2"));  // embedded
+  CHECK_THAT(text, !Contains("Helvetica"));
   CHECK_THAT(pdf(Plot{}), StartsWith("%PDF-1."));
 }

@@ -15,7 +15,20 @@ TEST_CASE("TextTable: columns are aligned, lines end without blanks", "[report]"
         "longer  12345.5  x\n");
 }
 
+TEST_CASE("TextTable: a narrow terminal gets what cannot be spared", "[report]") {
+  TextTable table(
+      {{"name"}, {"note", TextTable::Align::left, 1}, {"more", TextTable::Align::left, 2}});
+  table.add({"a", "123456", "x"});
+  CHECK(table.text(18) == table.text());
+  CHECK(table.text(17) == "name  note\na     123456\n");
+  CHECK(table.left_out(17) == std::vector<std::string>{"more"});
+  CHECK(table.text(1) == "name\na\n");
+  CHECK(table.left_out(0).empty());
+}
+
 TEST_CASE("text_width: characters, not bytes", "[report]") {
+  CHECK(text_width("\x1b[32mPASS\x1b[0m") == 4);
+  CHECK(text_width("\x1b[") == 0);
   CHECK(text_width("33 %") == 4);
   CHECK(text_width("\xc3\xa4\xe2\x82\xac") == 2);
 }
