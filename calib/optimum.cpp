@@ -18,7 +18,7 @@ BoundSide bound_side(double z) {
 }
 
 double rank_threshold(double simulation_tolerance) {
-  return std::clamp(simulation_tolerance, 1e-9, 1e-5);
+  return std::clamp(50.0 * simulation_tolerance, 1e-8, 1e-4);
 }
 
 bool OptimumCheck::stationary() const { return relative_offset <= kStationary; }

@@ -14,7 +14,7 @@ inline constexpr double kAtBound = 1e-6;
 BoundSide bound_side(double z);
 
 /// Relative size below which a singular value of the column-scaled Jacobian is that of a direction
-/// which the data do not determine: the derivatives themselves are no better.
+/// which the data do not determine: the derivatives themselves are no better (ErrorNorm).
 double rank_threshold(double simulation_tolerance);
 
 /// Whether a point is a minimum in the box, judged by our own measure and not by the optimiser's.

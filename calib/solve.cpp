@@ -17,7 +17,7 @@ namespace {
 constexpr int kMaxCalls = 4;
 /// Ceres' own 1e4 is all but a full Gauss-Newton step: far from the optimum it ends in a corner of
 /// the box, where it may stay.
-constexpr double kFirstTrustRadius = 100.0;
+constexpr double kFirstTrustRadius = 10.0;
 /// Near it the full step is the right one.
 constexpr double kNearTrustRadius = 1e8;
 /// Standard errors that may be left of a step with coarse simulations: their own errors leave more.
@@ -27,6 +27,14 @@ constexpr double kFullStepOffset = 30.0;
 constexpr int kFullSteps = 4;
 /// Relative change of the cost below which coarse simulations tell no more.
 constexpr double kCoarseChange = 1e-4;
+
+/// Whether a parameter that was held at a bound is drawn inwards now.
+bool lets_go(const std::vector<bool>& held, const std::vector<bool>& now) {
+  for (std::size_t j = 0; j < held.size(); ++j) {
+    if (held[j] && !now[j]) return true;
+  }
+  return false;
+}
 
 bool near_enough(const Evaluator& evaluator, const OptimumCheck& check) {
   return evaluator.coarse() ? check.relative_offset <= kCoarseOffset : check.stationary();
@@ -54,9 +62,9 @@ class Watcher final : public ceres::IterationCallback {
                           summary.cumulative_time_in_seconds);
       }
       const OptimumCheck check = check_optimum(problem_, evaluator_.best());
-      stationary_ =
-          evaluator_.coarse() ? check.relative_offset <= kCoarseOffset : check.stationary();
+      stationary_ = near_enough(evaluator_, check);
       other_bounds_ = check.held == held_ ? 0 : other_bounds_ + 1;
+      if (lets_go(held_, check.held)) other_bounds_ = kPatience;
     } catch (...) {
       error_ = std::current_exception();
     }
@@ -71,7 +79,7 @@ class Watcher final : public ceres::IterationCallback {
   }
 
  private:
-  /// Iterations for which a parameter may touch a bound on its way.
+  /// Iterations for which a parameter may touch a bound on its way; off it, it is let go at once.
   static constexpr int kPatience = 3;
 
   const Problem& problem_;
@@ -238,7 +246,8 @@ SolveResult descend(const Problem& problem, Evaluator& evaluator, std::vector<do
     z = evaluator.best().z;
     result.check = check_optimum(problem, evaluator.best());
     const bool agreed = summary.termination_type == ceres::CONVERGENCE;
-    const bool nearly = evaluator.coarse() || result.check.nearly_stationary();
+    const bool nearly =
+        evaluator.coarse() ? !lets_go(held, result.check.held) : result.check.nearly_stationary();
     if (near_enough(evaluator, result.check) || (agreed && nearly)) {
       result.status = FitStatus::converged;
       result.message = converged_after(result.iterations);

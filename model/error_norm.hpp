@@ -21,7 +21,7 @@ class ErrorNorm {
   ErrorNorm(const std::array<double, static_cast<std::size_t>(N)>& floor,
             const std::array<double, static_cast<std::size_t>(P)>& parameter_scale,
             double tolerance)
-      : tolerance_(tolerance) {
+      : tolerance_(tolerance), sensitivity_tolerance_(kSensitivityLooseness * tolerance) {
     for (std::size_t i = 0; i < N; ++i) peak_[i] = Active<P>(floor[i]);
     if constexpr (P > 0) {
       for (std::size_t j = 0; j < P; ++j)
@@ -33,35 +33,40 @@ class ErrorNorm {
     for (std::size_t i = 0; i < N; ++i) peak_[i] = peak_of(i, x[i]);
   }
 
-  /// Root mean square over the states, largest over state and sensitivities; not finite if the
-  /// error is not.
-  double operator()(const X& error, const X& x_new) const {
-    Active<P> sum(0.0);
+  /// Root mean square over the states; not finite if the error is not.
+  double of_states(const X& error, const X& x_new) const {
+    double sum = 0.0;
     for (std::size_t i = 0; i < N; ++i) {
-      const Active<P> peak = peak_of(i, x_new[i]);
-      const double e = value_of(error[i]) / (tolerance_ * value_of(peak));
-      if constexpr (P == 0) {
-        sum += e * e;
-      } else {
-        const auto scale = max(peak.derivative, sensitivity_floor_ * peak.value);
-        const auto e_j = error[i].derivative / (scale * (tolerance_ * kSensitivityLooseness));
-        sum.value += e * e;
-        sum.derivative = sum.derivative + e_j * e_j;
-      }
+      const double peak = std::max(value_of(peak_[i]), std::abs(value_of(x_new[i])));
+      const double e = value_of(error[i]) / (tolerance_ * peak);
+      sum += e * e;
     }
-    double worst = value_of(sum);
+    return std::sqrt(sum / N);
+  }
+
+  /// Root mean square over the states of one sensitivity, the largest of them; not finite if an
+  /// error is not.
+  double of_sensitivities(const X& error, const X& x_new) const {
+    double worst = 0.0;
     if constexpr (P > 0) {
+      Pack<double, P> sum{};
+      for (std::size_t i = 0; i < N; ++i) {
+        const Active<P> peak = peak_of(i, x_new[i]);
+        const auto scale = max(peak.derivative, sensitivity_floor_ * peak.value);
+        const auto e = error[i].derivative / scale;
+        sum = sum + e * e;
+      }
       for (std::size_t j = 0; j < P && std::isfinite(worst); ++j) {
-        const double column = sum.derivative[j];
+        const double column = sum[j];
         if (!(column <= worst)) worst = column;  // nor is what is not a number
       }
     }
-    return std::sqrt(worst / N);
+    return std::sqrt(worst / N) / sensitivity_tolerance_;
   }
 
  private:
   static constexpr double kSensitivityFloor = 1e-2;
-  static constexpr double kSensitivityLooseness = 20.0;
+  static constexpr double kSensitivityLooseness = 50.0;
 
   Active<P> peak_of(std::size_t i, const Active<P>& x) const {
     if constexpr (P == 0) {
@@ -76,6 +81,7 @@ class ErrorNorm {
   X peak_;
   Pack<double, P> sensitivity_floor_{};
   double tolerance_;
+  double sensitivity_tolerance_;
 };
 
 }  // namespace rigcal::model

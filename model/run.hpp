@@ -41,6 +41,11 @@ class Run {
         observed_(outputs.size()),
         observed_states_(Sys::observed_states(outputs)),
         implicit_(options.method != Method::dopri5) {
+    for (const Output output : outputs) {
+      const auto state = Plant::state_of(output);
+      states_alone_ = states_alone_ && state.has_value();
+      state_of_output_.push_back(static_cast<std::size_t>(state.value_or(0)));
+    }
     period_s_ = system_.layout().sampled() ? value_of(system_.parameters().sample_time_s)
                                            : std::numeric_limits<double>::infinity();
     h_max_ = std::numeric_limits<double>::infinity();
@@ -114,7 +119,7 @@ class Run {
   double first_step(double span) const {
     X small{};
     add_scaled(small, 1e-6, system_.derivative(x_, t_));
-    const double error = norm_(small, x_);
+    const double error = norm_.of_states(small, x_);
     const double h = error > 0.0 && std::isfinite(error) ? 1e-6 * std::pow(error, -0.25) : 1e-6;
     return std::clamp(h, 1e-9, std::max(1e-9, 1e-2 * span));
   }
@@ -139,12 +144,7 @@ class Run {
       const double t_new = cut_short ? stop : t_ + step;
       X x_new;
       X x_err;
-      if (implicit_) {
-        rosenbrock_.do_step(system_, lin_, x_, t_, x_new, step, x_err);
-      } else {
-        dormand_prince_.do_step(system_, slope_, x_, t_, x_new, step, x_err);
-      }
-      const double error = norm_(x_err, x_new) * (implicit_ ? 1.0 : kCare);
+      const double error = try_step(step, x_new, x_err);
       const double factor = step_factor(error);
       if (error <= 1.0) {
         ++result_->steps;
@@ -157,6 +157,8 @@ class Run {
         t_ = t_new;
         if (!implicit_) slope_ = dormand_prince_.f_new();
         slope_known_ = !implicit_;
+        lin_known_ = implicit_ && P > 0;
+        if (lin_known_) lin_ = lin_end_;
         norm_.see(x_);
         return true;
       }
@@ -174,16 +176,37 @@ class Run {
     }
   }
 
+  /// One step by the method chosen.
+  /// @return  its error in units of the tolerance
+  double try_step(double step, X& x_new, X& x_err) {
+    if (!implicit_) {
+      dormand_prince_.do_step(system_, slope_, x_, t_, x_new, step, x_err);
+      return kCare * std::max(norm_.of_states(x_err, x_new), norm_.of_sensitivities(x_err, x_new));
+    }
+    rosenbrock_.do_step(system_, lin_, x_, t_, x_new, step, x_err);
+    double error = norm_.of_states(x_err, x_new);
+    if constexpr (P > 0) {
+      if (!(error <= 1.0)) return error;
+      lin_end_ = rosenbrock_.sensitivities(system_, lin_, x_, t_, x_new, step, x_err);
+      const double others = norm_.of_sensitivities(x_err, x_new);
+      if (!(others <= error)) error = others;
+    }
+    return error;
+  }
+
   /// Prepares the next step by the method that is the cheaper one here.
   void choose_method() {
     const bool measure = options_.method == Method::automatic && --steps_to_measure_ <= 0;
-    if (implicit_ || measure) lin_ = system_.linearise(x_, t_);
+    if ((implicit_ || measure) && !lin_known_) {
+      lin_ = system_.linearise(values_of(x_), t_);
+      lin_known_ = true;
+    }
     if (measure) {
       steps_to_measure_ = kStepsBetween;
       const double stiffness = std::min(h_, h_max_) * spectral_radius(lin_.jacobian);
       implicit_ = stiffness > (implicit_ ? kStaysStiff : kStiff);
     }
-    if (!implicit_ && !slope_known_) slope_ = measure ? lin_.f : system_.derivative(x_, t_);
+    if (!implicit_ && !slope_known_) slope_ = system_.derivative(x_, t_);
   }
 
   double step_factor(double error) const {
@@ -213,15 +236,22 @@ class Run {
     while (inside()) {
       const double time = sample_time(next_sample_);
       const double s = (time - t_) * rate;
-      for (const std::size_t i : observed_states_) between[i] = interpolant(i, s);
-      emit(between, time);
+      if (states_alone_) {
+        for (std::size_t k = 0; k < outputs_.size(); ++k)
+          store(next_sample_, k, interpolant(state_of_output_[k], s));
+        ++next_sample_;
+      } else {
+        for (const std::size_t i : observed_states_) between[i] = interpolant(i, s);
+        emit(between, time);
+      }
     }
     // The sample at t_new itself waits: an event there may change what it reads.
   }
 
   void emit(const X& x, double time) {
     system_.observe(x, time, outputs_, observed_);
-    store(next_sample_++);
+    for (std::size_t k = 0; k < outputs_.size(); ++k) store(next_sample_, k, observed_[k]);
+    ++next_sample_;
   }
 
   /// Inputs that end a segment now go to their next one, then the controller ticks. Where the time
@@ -250,6 +280,7 @@ class Run {
     }
     if (jumped) {
       slope_known_ = false;
+      lin_known_ = false;
       // What the last jump needed, this one will too: saves a rejection at each recorded sample.
       h_ = std::min(h_, h_after_jump_);
       after_jump_ = true;
@@ -293,16 +324,14 @@ class Run {
     result_->reason = std::move(reason);
   }
 
-  void store(std::size_t sample) {
+  void store(std::size_t sample, std::size_t output, const C& value) {
     const auto row = static_cast<Eigen::Index>(sample);
-    for (std::size_t k = 0; k < outputs_.size(); ++k) {
-      if (first_column_ == 0)
-        result_->outputs(row, static_cast<Eigen::Index>(k)) = value_of(observed_[k]);
-      if constexpr (P > 0) {
-        for (int j = 0; j < columns_; ++j) {
-          result_->sensitivities[k](row, first_column_ + j) =
-              observed_[k].derivative[static_cast<std::size_t>(j)];
-        }
+    if (first_column_ == 0)
+      result_->outputs(row, static_cast<Eigen::Index>(output)) = value_of(value);
+    if constexpr (P > 0) {
+      Eigen::MatrixXd& sensitivities = result_->sensitivities[output];
+      for (int j = 0; j < columns_; ++j) {
+        sensitivities(row, first_column_ + j) = value.derivative[static_cast<std::size_t>(j)];
       }
     }
   }
@@ -330,11 +359,15 @@ class Run {
   std::chrono::steady_clock::time_point started_;
   std::vector<C> observed_;
   std::vector<std::size_t> observed_states_;  ///< what the outputs are made of
+  bool states_alone_ = true;                  ///< every output is a state
+  std::vector<std::size_t> state_of_output_;  ///< then this one
   Rosenbrock<N, P> rosenbrock_;
   DormandPrince<N, P> dormand_prince_;
   bool implicit_;
-  Linearisation<N, P> lin_;  ///< at the present point, if implicit
-  X slope_{};                ///< derivative at the present point, if explicit and known
+  Linearisation<N, P> lin_;      ///< at the present point, if known
+  Linearisation<N, P> lin_end_;  ///< at the end of the step just tried
+  bool lin_known_ = false;
+  X slope_{};  ///< derivative at the present point, if explicit and known
   bool slope_known_ = false;
   int steps_to_measure_ = 0;
   Simulation* result_ = nullptr;  ///< of the caller, for the time of one run

@@ -140,31 +140,29 @@ double Signal::segment_end(std::size_t segment) const {
 SignalSample Signal::sample(std::size_t segment, double t) const {
   switch (kind_) {
     case Kind::constant:
-      return {offset_, 0.0, 0.0};
+      return {offset_, 0.0};
     case Kind::sine: {
       const double omega = kTwoPi * frequency_hz_;
       const double s = amplitude_ * std::sin(omega * t + phase_rad_);
       const double c = amplitude_ * std::cos(omega * t + phase_rad_);
-      return {offset_ + s, omega * c, -omega * omega * s};
+      return {offset_ + s, omega * c};
     }
     case Kind::square:
-      return {segment % 2 == 0 ? amplitude_ : -amplitude_, 0.0, 0.0};
+      return {segment % 2 == 0 ? amplitude_ : -amplitude_, 0.0};
     case Kind::chirp: {
       const double f0 = frequency_hz_;
       const double f1 = end_frequency_hz_;
       double cycles = 0.0;
       double f = 0.0;
-      double f_rate = 0.0;
       if (segment == 0) {
         if (logarithmic_) {
           const double rate = std::log(f1 / f0) / sweep_s_;
           f = f0 * std::exp(rate * t);
-          f_rate = rate * f;
           cycles = (f - f0) / rate;
         } else {
-          f_rate = (f1 - f0) / sweep_s_;
-          f = f0 + f_rate * t;
-          cycles = (f0 + 0.5 * f_rate * t) * t;
+          const double rate = (f1 - f0) / sweep_s_;
+          f = f0 + rate * t;
+          cycles = (f0 + 0.5 * rate * t) * t;
         }
       } else {
         const double swept =
@@ -174,19 +172,18 @@ SignalSample Signal::sample(std::size_t segment, double t) const {
       }
       const double s = amplitude_ * std::sin(kTwoPi * cycles);
       const double c = amplitude_ * std::cos(kTwoPi * cycles);
-      const double omega = kTwoPi * f;
-      return {s, omega * c, kTwoPi * f_rate * c - omega * omega * s};
+      return {s, kTwoPi * f * c};
     }
     case Kind::held:
-      return {(*value_)[segment == 0 ? 0 : segment - 1], 0.0, 0.0};
+      return {(*value_)[segment == 0 ? 0 : segment - 1], 0.0};
     case Kind::linear: {
       const auto& times = *time_s_;
       const auto& values = *value_;
-      if (segment == 0) return {values.front(), 0.0, 0.0};
-      if (segment >= times.size()) return {values.back(), 0.0, 0.0};
+      if (segment == 0) return {values.front(), 0.0};
+      if (segment >= times.size()) return {values.back(), 0.0};
       const double slope =
           (values[segment] - values[segment - 1]) / (times[segment] - times[segment - 1]);
-      return {values[segment - 1] + slope * (t - times[segment - 1]), slope, 0.0};
+      return {values[segment - 1] + slope * (t - times[segment - 1]), slope};
     }
   }
   return {};

@@ -6,11 +6,10 @@
 
 namespace rigcal::model {
 
-/// Value of a signal at one instant and its time derivatives within the present segment.
+/// Value of a signal at one instant and its time derivative within the present segment.
 struct SignalSample {
   double value = 0.0;
   double slope = 0.0;
-  double curvature = 0.0;
 };
 
 /// A scalar function of time that is smooth between breakpoints. A simulation ends a step at every

@@ -121,14 +121,15 @@ TEST_CASE("hopsan: both chambers of every case follow with the true parameters",
       x(i) = std::stod(row.at("x_m"));
       P_L(i) = std::stod(row.at("p1_pa")) - std::stod(row.at("p2_pa"));
     }
+    e.options.tolerance = 1e-7;
     const Simulation run = e();
     REQUIRE(run.ok());
     const double position = unexplained(run.outputs.col(0), x);
     const double pressure = unexplained(run.outputs.col(1), P_L);
     CHECK(position < 1e-6);
     CHECK(pressure < 1e-5);
-    // e6: what an independent integration of the same equations attains; the rest is the default
-    // tolerance of this run, (3e-6)^2 of x and (4e-4)^2 of P_L.
+    // e6: what an independent integration of the same equations attains; the rest is the tolerance
+    // of this run, (3e-6)^2 of x and (4e-4)^2 of P_L.
     CHECK(position < 2.0 * std::stod(c.at("e6_x")) + 1e-11);
     CHECK(pressure < 2.0 * std::stod(c.at("e6_pl")) + 2e-7);
   }

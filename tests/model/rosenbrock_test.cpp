@@ -22,6 +22,7 @@ struct Equation {
   double start_s = 0.0;
 
   State<1, 0> derivative(const State<1, 0>& x, double t) const { return {f(x[0], t)}; }
+  Values<1> derivative_of_values(const Values<1>& x, double t) const { return {f(x[0], t)}; }
   Linearisation<1, 0> linearise(double x, double t) const {
     Linearisation<1, 0> lin;
     lin.f[0] = f(x, t);
@@ -180,48 +181,75 @@ struct Pair {
     const D drive = dual(std::sin(p * t), t * std::cos(p * t), 0.0);
     return {s[1] + drive, -(dual(q, 0.0, 1.0) * s[0] * s[1]) - s[0] * 3.0};
   }
-  Linearisation<2, 2> linearise(const X& s, double t) const {
+  Values<2> derivative_of_values(const Values<2>& s, double t) const {
+    return {s[1] + std::sin(p * t), -q * s[0] * s[1] - 3.0 * s[0]};
+  }
+  Linearisation<2, 2> linearise(const Values<2>& s, double t) const {
     Linearisation<2, 2> lin;
-    const D zero(0.0);
-    const D q_dual = dual(q, 0.0, 1.0);
-    lin.f = derivative(s, t);
-    lin.f_t = {dual(p * std::cos(p * t), std::cos(p * t) - p * t * std::sin(p * t), 0.0), zero};
-    lin.jacobian = {X{zero, D(1.0)}, X{-(q_dual * s[1]) - 3.0, -(q_dual * s[0])}};
+    lin.f = derivative_of_values(s, t);
+    lin.f_t = {p * std::cos(p * t), 0.0};
+    lin.jacobian = {Values<2>{0.0, 1.0}, Values<2>{-q * s[1] - 3.0, -q * s[0]}};
+    lin.f_p = {dual(0.0, t * std::cos(p * t), 0.0).derivative,
+               dual(0.0, 0.0, -s[0] * s[1]).derivative};
     return lin;
   }
 };
 
-Pair::X one_step(double p, double q) {
-  const Pair system{p, q};
-  const Pair::X x{Pair::D(0.9), Pair::D(-0.4)};
+/// From t = 0 to 1.
+Pair::X after_a_second(const Pair& system, int steps) {
   Rosenbrock<2, 2> stepper;
-  Pair::X x_new;
-  Pair::X error;
-  stepper.do_step(system, system.linearise(x, 0.6), x, 0.6, x_new, 0.5, error);
-  return x_new;
+  Pair::X x{Pair::D(0.9), Pair::D(-0.4)};
+  const double dt = 1.0 / steps;
+  Linearisation<2, 2> lin = system.linearise(values_of(x), 0.0);
+  for (int i = 0; i < steps; ++i) {
+    const double t = i * dt;
+    Pair::X x_new;
+    Pair::X error;
+    stepper.do_step(system, lin, x, t, x_new, dt, error);
+    lin = stepper.sensitivities(system, lin, x, t, x_new, dt, error);
+    x = x_new;
+  }
+  return x;
 }
 
 }  // namespace
 
-TEST_CASE("rosenbrock: sensitivities of a step are the derivatives of that step", "[model]") {
-  constexpr double kStep = 1e-5;
+TEST_CASE("rosenbrock: sensitivities are the derivatives of the solution", "[model]") {
+  constexpr double kStep = 1e-4;
+  constexpr int kSteps = 256;
   const Pair nominal;
-  const Pair::X step = one_step(nominal.p, nominal.q);
-  const auto difference = [](const Pair::X& right, const Pair::X& left, std::size_t i) {
-    return (right[i].value - left[i].value) / (2.0 * kStep);
+  const Pair::X end = after_a_second(nominal, kSteps);
+  const auto difference = [](const Pair& right, const Pair& left, std::size_t i) {
+    return (after_a_second(right, kSteps)[i].value - after_a_second(left, kSteps)[i].value) /
+           (2.0 * kStep);
   };
-  const Pair::X p_right = one_step(nominal.p + kStep, nominal.q);
-  const Pair::X p_left = one_step(nominal.p - kStep, nominal.q);
-  const Pair::X q_right = one_step(nominal.p, nominal.q + kStep);
-  const Pair::X q_left = one_step(nominal.p, nominal.q - kStep);
   for (std::size_t i = 0; i < 2; ++i) {
     CAPTURE(i);
-    // Central difference: kStep^2 of a third derivative near 1, rounding 1e-11.
-    CHECK_THAT(step[i].derivative[0], WithinAbs(difference(p_right, p_left, i), 1e-9));
-    CHECK_THAT(step[i].derivative[1], WithinAbs(difference(q_right, q_left, i), 1e-9));
-    CHECK(std::abs(step[i].derivative[0]) > 1e-3);
-    CHECK(std::abs(step[i].derivative[1]) > 1e-3);
+    // Central difference: kStep^2 of a third derivative near 1.
+    CHECK_THAT(end[i].derivative[0],
+               WithinAbs(difference({1.3 + kStep, 0.8}, {1.3 - kStep, 0.8}, i), 2e-8));
+    CHECK_THAT(end[i].derivative[1],
+               WithinAbs(difference({1.3, 0.8 + kStep}, {1.3, 0.8 - kStep}, i), 2e-8));
+    CHECK(std::abs(end[i].derivative[0]) > 1e-2);
+    CHECK(std::abs(end[i].derivative[1]) > 1e-2);
   }
+}
+
+TEST_CASE("rosenbrock: order of the sensitivities", "[model]") {
+  const Pair nominal;
+  const Pair::X exact = after_a_second(nominal, 1024);
+  const auto error = [&](int steps) {
+    const Pair::X x = after_a_second(nominal, steps);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t j = 0; j < 2; ++j)
+        worst = std::max(worst, std::abs(x[i].derivative[j] - exact[i].derivative[j]));
+    }
+    return worst;
+  };
+  const double order = std::log2(error(16) / error(32));
+  CAPTURE(error(16), error(32), order);
+  CHECK(order > 2.8);
 }
 
 TEST_CASE("dormand_prince: order 5, and 4 between the steps", "[model]") {

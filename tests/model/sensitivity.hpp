@@ -14,12 +14,12 @@
 
 namespace rigcal::model {
 
-using Values = std::vector<std::pair<const char*, double>>;
+using NamedValues = std::vector<std::pair<const char*, double>>;
 
 struct Scenario {
   const char* name;
   Signal drive;
-  Values values;
+  NamedValues values;
   ControllerKind controller = ControllerKind::pid;
   InitialState initial = InitialState::rest;
   bool recorded_loads = false;

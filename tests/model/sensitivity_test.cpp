@@ -14,16 +14,16 @@ Signal recorded(bool straight) {
 
 /// Every waveform, every combination of terms that changes the layout, every parameter once.
 const std::vector<Scenario>& scenarios() {
-  const Values offsets{{"position_offset", 1e-3},    {"load_pressure_offset", 1e5},
-                       {"pressure_a_offset", 1e5},   {"pressure_b_offset", -1e5},
-                       {"force_offset", 20.0},       {"position_gain", 1.05},
-                       {"load_pressure_gain", 0.97}, {"pressure_a_gain", 1.02},
-                       {"pressure_b_gain", 0.95},    {"force_gain", 1.1}};
-  const Values lags{{"position_lag", 4e-3},
-                    {"load_pressure_lag", 3e-3},
-                    {"pressure_a_lag", 2e-3},
-                    {"pressure_b_lag", 5e-3},
-                    {"force_lag", 6e-3}};
+  const NamedValues offsets{{"position_offset", 1e-3},    {"load_pressure_offset", 1e5},
+                            {"pressure_a_offset", 1e5},   {"pressure_b_offset", -1e5},
+                            {"force_offset", 20.0},       {"position_gain", 1.05},
+                            {"load_pressure_gain", 0.97}, {"pressure_a_gain", 1.02},
+                            {"pressure_b_gain", 0.95},    {"force_gain", 1.1}};
+  const NamedValues lags{{"position_lag", 4e-3},
+                         {"load_pressure_lag", 3e-3},
+                         {"pressure_a_lag", 2e-3},
+                         {"pressure_b_lag", 5e-3},
+                         {"force_lag", 6e-3}};
   static const std::vector<Scenario> rows{
       {"square, plain", Signal::square(0.004, 8.0), {{"stiffness", 5e4}}},
       {"square, delayed", Signal::square(0.004, 8.0), {{"transport_delay", 0.0083}}},
