@@ -102,7 +102,7 @@ double choose_interval(const Problem& problem, const Uncertainty& found, std::si
                            "interval rests, is {:.2g} times the plain one",
                            robust / plain));
   }
-  return student_t(freedom) * robust;
+  return found.robust_quantile[unknown] * robust;
 }
 
 void describe_bound(const Problem& problem, const OptimumCheck& check, std::size_t unknown,

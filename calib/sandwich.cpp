@@ -1,6 +1,7 @@
 #include "calib/sandwich.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -91,20 +92,32 @@ MatrixXd expected(const ChannelRows& rows, const Autoregression& noise) {
   return noise.variance * filtered.transpose() * filtered;
 }
 
-/// u = L^-1 r, each enlarged by what the fit is expected to have taken from it: the diagonal of
-/// L^-1 (I - H) Sigma (I - H) L^-T over the variance.
-VectorXd innovations(const ChannelRows& rows, const Autoregression& noise, const RowMajor& filtered,
-                     const MatrixXd& total) {
+/// u = L^-1 r of one channel, each enlarged by what the fit is expected to have taken from it: the
+/// diagonal of L^-1 (I - H) Sigma (I - H) L^-T over the variance.
+struct Innovations {
+  VectorXd u;
+  RowMajor own;  ///< covariance with the error of each combination, over its standard error
+};
+Innovations innovations(const ChannelRows& rows, const Autoregression& noise,
+                        const RowMajor& filtered, const MatrixXd& total,
+                        const MatrixXd& combinations) {
   constexpr double kLeastLeft = 0.1;  // a sample that tells a parameter alone says nothing of noise
   const RowMajor residual = rows.residual;
-  VectorXd u = whitened(noise, residual).col(0);
   const RowMajor p = whitened(noise, rows.jacobian);
-  for (Index t = 0; t < u.size() && noise.variance > 0.0; ++t) {
+  const MatrixXd c = combinations.transpose();
+  const VectorXd variance = (c.transpose() * total * c).diagonal();
+  Innovations result{whitened(noise, residual).col(0),
+                     noise.variance * filtered * c - p * (total * c)};
+  for (Index j = 0; j < c.cols(); ++j)
+    result.own.col(j) *= variance(j) > 0.0 ? 1.0 / std::sqrt(variance(j)) : 0.0;
+  for (Index t = 0; t < residual.rows() && noise.variance > 0.0; ++t) {
     const double left = 1.0 - 2.0 * p.row(t).dot(filtered.row(t)) +
                         (p.row(t) * total).dot(p.row(t)) / noise.variance;
-    u(t) /= std::sqrt(std::clamp(left, kLeastLeft, 1.0));
+    const double scale = 1.0 / std::sqrt(std::clamp(left, kLeastLeft, 1.0));
+    result.u(t) *= scale;
+    result.own.row(t) *= scale;
   }
-  return u;
+  return result;
 }
 
 /// Autoregressions of all channels, corrected for what the fit has removed.
@@ -191,12 +204,16 @@ ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise
   const Index samples = rows.residual.size() / rows.channels;
   RowMajor scores = RowMajor::Zero(samples, rows.jacobian.cols());
   MatrixXd weights = MatrixXd::Zero(samples, combinations.rows());  // variance of c . score
+  RowMajor own = RowMajor::Zero(samples, combinations.rows());
   for (Index k = 0; k < rows.channels; ++k) {
     const Autoregression& model = noise[static_cast<std::size_t>(k)];
     const ChannelRows channel = channel_rows(rows, k);
     const RowMajor filtered = backwards(model, channel.jacobian);
-    scores += innovations(channel, model, filtered, total).asDiagonal() * filtered;
-    weights += model.variance * (filtered * combinations.transpose()).cwiseAbs2();
+    const Innovations each = innovations(channel, model, filtered, total, combinations);
+    scores += each.u.asDiagonal() * filtered;
+    const RowMajor combined = filtered * combinations.transpose();
+    own += each.own.cwiseProduct(combined);
+    weights += model.variance * combined.cwiseAbs2();
     result.effective_samples += model.effective_samples(static_cast<double>(samples));
   }
   const double width = bandwidth(scores);
@@ -204,9 +221,13 @@ ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise
   const bool whitening =
       std::any_of(noise.begin(), noise.end(), [](const auto& each) { return !each.phi.empty(); });
   result.freedom = VectorXd::Zero(combinations.rows());
+  result.own = VectorXd::Zero(combinations.rows());
   for (Index j = 0; j < combinations.rows(); ++j) {
     const double squares = weights.col(j).squaredNorm();
     if (!(squares > 0.0)) continue;
+    const VectorXd c = combinations.row(j).transpose();
+    if (const double all = c.dot(total * c); all > 0.0)
+      result.own(j) = kernel_covariance(own.col(j), width)(0, 0) / all;
     const double terms = weights.col(j).sum() * weights.col(j).sum() / squares;
     result.freedom(j) = 1.0 / (std::max(1.0, kParzenSquare * width) / terms +
                                (whitening ? 2.0 / result.effective_samples : 0.0));
@@ -242,10 +263,26 @@ RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const M
     const double freedom = each.freedom(combination);
     result.variance += variance;
     if (freedom > 0.0) squares += variance * variance / freedom;
+    if (each.own.size() > combination) result.own += each.own(combination);
   }
   result.freedom = squares > 0.0 ? result.variance * result.variance / squares
                                  : std::numeric_limits<double>::infinity();
   return result;
+}
+
+double RobustVariance::quantile() const {
+  constexpr double kMostOwn = 0.9;
+  constexpr double kMostFreedom = 1e9;
+  const double share = std::clamp(own, 0.0, kMostOwn);
+  const double rest = 1.0 - share;
+  const double scatter = std::max(1.0 / freedom - share * share, 1.0 / kMostFreedom);
+  const double t = student_t(rest * rest / scatter);
+  return t / std::sqrt(rest + share * t * t);
+}
+
+double student_t(double freedom) {
+  const boost::math::students_t distribution(std::max(freedom, 1.0));
+  return boost::math::quantile(distribution, 0.975);
 }
 
 }  // namespace rigcal::calib

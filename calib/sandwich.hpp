@@ -19,6 +19,9 @@ struct ScoreRows {
 struct ScoreScatter {
   Eigen::MatrixXd covariance;  ///< shape (directions)^2, positive semidefinite
   Eigen::VectorXd freedom;     ///< with which its variance of each combination is known
+  /// What the error of each combination itself adds to that variance where it is one standard error
+  /// large, over the expected variance of all conditions; empty: nothing.
+  Eigen::VectorXd own;
   std::vector<metrics::Autoregression> noise;  ///< of the weighted residuals, per channel
   double effective_samples = 0.0;              ///< of all channels
 };
@@ -43,6 +46,10 @@ struct ScoreScatter {
 /// Degrees of freedom: Satterthwaite's, from the scatter of a sum of squares with the weights of
 /// each combination, and 4 / effective samples of a whitened long-run variance.
 ///
+/// Under correlated noise least squares is not the best estimate, and the residuals still hold a
+/// part of its error: what is far from its truth also looks uncertain. `own` is how much, by the
+/// covariance of u with the error, (I - H) Sigma J c whitened, through the same kernel.
+///
 /// @param rows          all conditions of the fit
 /// @param priors        J^T J of the priors, whose errors have the variance that they state
 /// @param combinations  of the directions, one per row
@@ -54,7 +61,18 @@ std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
 struct RobustVariance {
   double variance = 0.0;
   double freedom = 0.0;  ///< Satterthwaite's over the conditions; infinite if the priors tell all
+  double own = 0.0;  ///< share b of the variance that the error of the combination itself makes up
+
+  /// Half width of the 95 % interval over the root of the variance. With the error z sigma and the
+  /// variance sigma^2 ((1 - b) chi^2_f / f + b z^2), z standard normal, |error| > q root(variance)
+  /// just where |z| root(f) / chi_f > t, q^2 = t^2 / (1 - b + b t^2): Student's t for b = 0, and
+  /// less where the error widens its own interval. f is `freedom` without the scatter of z^2.
+  double quantile() const;
 };
+
+/// 97.5 % quantile of Student's t; freedom below 1 counts as 1.
+double student_t(double freedom);
+
 RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter,
                                const Eigen::MatrixXd& priors, const Eigen::MatrixXd& combinations,
                                Eigen::Index combination);

@@ -5,7 +5,6 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 
 #include "calib/optimum.hpp"
@@ -63,11 +62,6 @@ std::string null_reason(const Problem& problem, const std::vector<std::size_t>& 
 
 }  // namespace
 
-double student_t(double freedom) {
-  const boost::math::students_t distribution(std::max(freedom, 1.0));
-  return boost::math::quantile(distribution, 0.975);
-}
-
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int threads) {
   const Linearisation system = linearise(problem, optimum);
   const auto n = static_cast<Eigen::Index>(optimum.z.size());
@@ -119,6 +113,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
   result.standard_error.resize(optimum.z.size());
   result.robust_standard_error.resize(optimum.z.size());
   result.robust_freedom.resize(optimum.z.size(), 0.0);
+  result.robust_quantile.resize(optimum.z.size(), 0.0);
   result.reason.resize(optimum.z.size());
   result.correlation = Eigen::MatrixXd::Identity(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -144,6 +139,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
       result.robust_standard_error[u] =
           slope * std::hypot(std::sqrt(std::max(0.0, robust.variance)), carried);
       result.robust_freedom[u] = robust.freedom;
+      result.robust_quantile[u] = robust.quantile();
     }
     for (Eigen::Index k = 0; k < n; ++k) {
       const double scale = std::sqrt(inverse(j, j) * inverse(k, k));

@@ -15,9 +15,10 @@ namespace rigcal::calib {
 struct Uncertainty {
   /// SI; absent for an unknown that takes part in a combination which the data do not determine.
   std::vector<std::optional<double>> standard_error;
-  /// The same from the scatter of the residuals themselves (see below), and its freedom.
+  /// The same from the scatter of the residuals themselves (see below), with which freedom it is
+  /// known, and the half width of its 95 % interval in units of it.
   std::vector<std::optional<double>> robust_standard_error;
-  std::vector<double> robust_freedom;
+  std::vector<double> robust_freedom, robust_quantile;
   std::vector<std::string> reason;  ///< in words, where there is no standard error
   Eigen::MatrixXd correlation;      ///< shape (unknowns)^2; meaningful where there are errors
   int rank = 0;
@@ -45,8 +46,5 @@ struct Uncertainty {
 ///
 /// @param optimum  an evaluation that is ok
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int threads);
-
-/// 97.5 % quantile of Student's t; freedom below 1 counts as 1.
-double student_t(double freedom);
 
 }  // namespace rigcal::calib

@@ -109,4 +109,41 @@ TEST_CASE("known values: their uncertainty is carried into the errors", "[calib]
   CHECK_THAT(carried.interval_advice, Contains("supply_pressure_pa"));
 }
 
+TEST_CASE("known values: a sensor's gain or offset widens as it would if it were free", "[calib]") {
+  struct Sensor {
+    const char* key;
+    double value, lower, upper;
+    const char* moved;  ///< an unknown that follows it
+  };
+  const auto sensor = GENERATE(Sensor{"position_gain", 1.0, 0.5, 2.0, "valve_gain"},
+                               Sensor{"load_pressure_gain", 1.0, 0.5, 2.0, "mass"},
+                               Sensor{"position_offset", 0.0, -1e-3, 1e-3, "valve_gain"});
+  Twin twin = one_square();
+  twin.add_channel(datasets::Channel::load_pressure);
+  const auto records = twin.records(500, 500.0, 3);
+  CAPTURE(sensor.key);
+  const auto variance = [&](const Fit& found, const char* key) {
+    REQUIRE(found.status == FitStatus::converged);
+    return std::pow(parameter(found, key).standard_error.value(), 2.0);
+  };
+  const double exact = variance(fit(twin.campaign, records, {}), sensor.moved);
+  Twin open = twin;
+  open.free(sensor.key, sensor.value, sensor.lower, sensor.upper);
+  const double of_gain = variance(fit(open.campaign, records, {}), sensor.key);
+
+  const double prior_sd = 0.7 * std::sqrt(of_gain);
+  twin.setting(sensor.key).value = sensor.value;
+  twin.setting(sensor.key).prior = datasets::Prior{sensor.value, prior_sd};
+  open.setting(sensor.key).prior = datasets::Prior{sensor.value, prior_sd};
+  const Fit known = fit(twin.campaign, records, {});
+  const double carried = variance(known, sensor.moved) - exact;
+  const double joint = variance(fit(open.campaign, records, {}), sensor.moved) - exact;
+  CHECK(carried > 0.0);
+  // As free it is b^2 / (1 / prior_sd^2 + 1 / of_gain), b the change of the unknown with it; as
+  // known, where the records do not improve on the prior, b^2 prior_sd^2. 10 %: differences of
+  // variances whose scale, the reduced chi-square, moves by a few 1e-3.
+  CHECK_THAT(carried / joint, WithinRel(1.0 + prior_sd * prior_sd / of_gain, 0.1));
+  CHECK_THAT(known.interval_advice, Contains(sensor.key));
+}
+
 }  // namespace rigcal::calib

@@ -1,11 +1,12 @@
 #include "calib/sandwich.hpp"
 
 #include <Eigen/Cholesky>
-#include <boost/math/distributions/students_t.hpp>
 #include <boost/random/mersenne_twister.hpp>
 #include <boost/random/normal_distribution.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 namespace rigcal::calib {
 namespace {
@@ -46,11 +47,18 @@ class Noise {
   boost::random::normal_distribution<double> normal_;
 };
 
-/// Share of draws in which the 95 % intervals of all directions hold the truth, 0.
-double coverage(const MatrixXd& model, double rho, int draws, double jump_at = 2.0) {
+/// Share of draws in which the 95 % interval of a direction holds the truth, 0; by Student's t of
+/// the degrees of freedom alone, too.
+struct Coverage {
+  double found = 0.0;
+  double by_freedom = 0.0;
+};
+
+std::vector<Coverage> coverage_of_each(const MatrixXd& model, double rho, int draws,
+                                       double jump_at = 2.0) {
   const MatrixXd none = MatrixXd::Zero(model.cols(), model.cols());
   Noise noise(11);
-  int covered = 0;
+  std::vector<Coverage> covered(static_cast<std::size_t>(model.cols()));
   for (int draw = 0; draw < draws; ++draw) {
     const VectorXd measured = noise.draw(model.rows(), rho, jump_at);
     const VectorXd found = model.transpose() * measured;
@@ -58,12 +66,32 @@ double coverage(const MatrixXd& model, double rho, int draws, double jump_at = 2
     const auto scatter = score_scatter({{model, measured - model * found, 1}}, none, each);
     for (Index j = 0; j < model.cols(); ++j) {
       const auto robust = robust_variance(scatter, none, each, j);
-      const boost::math::students_t law(robust.freedom);
-      const double half = boost::math::quantile(law, 0.975) * std::sqrt(robust.variance);
-      covered += std::abs(found(j)) <= half ? 1 : 0;
+      const double error = std::abs(found(j)) / std::sqrt(robust.variance);
+      Coverage& direction = covered[static_cast<std::size_t>(j)];
+      direction.found += error <= robust.quantile() ? 1.0 / draws : 0.0;
+      direction.by_freedom += error <= student_t(robust.freedom) ? 1.0 / draws : 0.0;
     }
   }
-  return covered / static_cast<double>(draws * model.cols());
+  return covered;
+}
+
+/// Of all directions together.
+double coverage(const MatrixXd& model, double rho, int draws, double jump_at = 2.0) {
+  double sum = 0.0;
+  for (const Coverage& each : coverage_of_each(model, rho, draws, jump_at)) sum += each.found;
+  return sum / static_cast<double>(model.cols());
+}
+
+/// The first of two columns is told by an oscillation that dies out within a few samples.
+MatrixXd brief_model(Index samples) {
+  MatrixXd columns = MatrixXd::Zero(samples, 2);
+  for (Index t = 0; t < samples; ++t) {
+    const auto time = static_cast<double>(t);
+    columns(t, 1) = std::sin(12.0 * time / static_cast<double>(samples));
+    if (t < 100) columns(200 + t, 0) = std::exp(-time / 15.0) * std::sin(6.283 * time / 6.0 + 0.7);
+  }
+  const MatrixXd factor = MatrixXd((columns.transpose() * columns).llt().matrixL());
+  return factor.triangularView<Eigen::Lower>().solve(columns.transpose()).transpose();
 }
 
 }  // namespace
@@ -89,6 +117,35 @@ TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", 
   // 38 effective samples tell their own correlation to a fifth; t is then not quite its law.
   CHECK_THAT(coverage(model, 0.95, 200), WithinAbs(0.95, 0.035));
   CHECK_THAT(coverage(model, 0.0, 200, 0.8), WithinAbs(0.95, 0.031));
+}
+
+TEST_CASE("sandwich: what a few correlated samples tell is covered no more than it should be",
+          "[calib]") {
+  const auto covered = coverage_of_each(brief_model(1500), 0.95, 1000);
+  // Binomial: 1000 at 95 % scatter by 0.7 %; 3.5 times. Residuals that few samples tell hold their
+  // own error, so Student's t alone covers more.
+  CHECK_THAT(covered[0].found, WithinAbs(0.95, 0.025));
+  CHECK(covered[0].by_freedom > 0.98);
+  CHECK_THAT(covered[1].found, WithinAbs(0.95, 0.035));
+  // Where least squares is the best estimate its residuals are independent of its error.
+  const MatrixXd model = brief_model(1500);
+  const VectorXd noise = Noise(4).draw(1500, 0.0);
+  const VectorXd residual = noise - model * (model.transpose() * noise);
+  const MatrixXd none = MatrixXd::Zero(2, 2);
+  const MatrixXd each = MatrixXd::Identity(2, 2);
+  const auto scatter = score_scatter({{model, residual, 1}}, none, each);
+  CHECK(scatter[0].own.cwiseAbs().maxCoeff() < 1e-6);
+}
+
+TEST_CASE("sandwich: half width of the interval", "[calib]") {
+  RobustVariance robust{1.0, 10.0, 0.0};
+  CHECK_THAT(robust.quantile(), WithinRel(student_t(10.0), 1e-12));
+  // Three squares that hold the error: |sum| / root(sum of squares) is root 3 times the cosine to a
+  // fixed direction in space, which is uniform for normal numbers.
+  robust = {1.0, 3.0, 1.0 / 3.0};
+  CHECK_THAT(robust.quantile(), WithinRel(0.95 * std::sqrt(3.0), 1e-9));
+  robust = {1.0, std::numeric_limits<double>::infinity(), 0.0};
+  CHECK_THAT(robust.quantile(), WithinRel(1.959964, 1e-6));
 }
 
 TEST_CASE("sandwich: two channels with the same noise count once", "[calib]") {
