@@ -99,7 +99,8 @@ Json provenance_view(const Json& result, const std::string& name, const std::str
   add_number("Residuals", "residual_count", 12, "");
   add_number("Evaluations", "evaluations", 12, "");
   add_number("Time", "wall_seconds", 3, " s");
-  add_number("Cost", "cost", 8, "");
+  // Where nothing was estimated there is no cost, and a nil would look like a perfect fit.
+  if (number_of(result, "evaluations").value_or(0.0) > 0.0) add_number("Cost", "cost", 8, "");
   add_number("Reduced chi-square", "reduced_chi_square", 5, "");
   view["inputs"] = Json::array();
   for (const Json& input : provenance.at("inputs"))
