@@ -57,7 +57,7 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   const auto given = [&values](std::string_view key) {
     return parameter_index(values.plant, key) >= 0 && values.is_given(key);
   };
-  if (given("hose_yield")) {
+  if (given("hose_yield") || given("hose_yield_ratio")) {
     layout.hoses = next;
     next += 2;
   }

@@ -94,11 +94,32 @@ X stop_force(const X& depth_m, const X& approach_m_per_s, const C& stiffness_n_p
          positive_part(X(approach_m_per_s * damping_s_per_m + 1.0));
 }
 
+constexpr double kAtmosphere_pa = 101325.0;
+
+/// Absolute pressure [Pa] of one that counts from the atmosphere; at 1 kPa its fall ends.
+template <typename X>
+X absolute_pressure(const X& pressure_pa) {
+  constexpr double kLeast_pa = 1e3;
+  return at_least(X(pressure_pa + kAtmosphere_pa), kLeast_pa);
+}
+
+/// Change of pressure after a turn over which a hose begins to yield [Pa]. The threads of a braid
+/// hold each other by dry friction, which grows with the pressure that presses them together.
+///
+/// @param constant_pa  what does not grow
+/// @param ratio        of what grows to the absolute pressure
+/// @source   B. Tondu and P. Lopez, Modeling and control of McKibben artificial muscle robot
+///           actuators, IEEE Control Systems Magazine 20 (2000) 2, 15-38: the thread's friction
+template <typename X, typename C>
+X hose_yield(const X& pressure_pa, const C& constant_pa, const C& ratio) {
+  return absolute_pressure(pressure_pa) * ratio + constant_pa;
+}
+
 /// Share of a braided hose that yields to a change of pressure: none where the pressure turns, all
 /// of it once it has gone on in one direction.
 ///
 /// @param memory  z, from -1 (has yielded to falling pressure) to 1 (to rising): it follows as
-///                z' = (1 - share) p' / p_h
+///                z' = (1 - share) p' / hose_yield()
 /// @param rises   the direction in which the pressure goes now
 /// @source   an operator of the kind of Bouc and Wen: Y.-K. Wen, Method for random vibration of
 ///           hysteretic systems, J. Engineering Mechanics Division 102 (1976) 249-263; the
@@ -125,9 +146,7 @@ X aerated_bulk_modulus(const X& pressure_pa, const C& oil_pa, const C& air_fract
                        const C& exponent) {
   using std::exp;
   using std::log;
-  constexpr double kAtmosphere_pa = 101325.0;
-  constexpr double kLeast_pa = 1e3;
-  const X p = at_least(X(pressure_pa + kAtmosphere_pa), kLeast_pa);
+  const X p = absolute_pressure(pressure_pa);
   const X air = exp(log(kAtmosphere_pa / p) / exponent) * air_fraction;
   const C oil = 1.0 - air_fraction;
   return (air + oil) / (air / (p * exponent) + oil / oil_pa);

@@ -200,8 +200,10 @@ struct TwoChamberPlant {
   static std::array<X, 2> hose_rates(const std::array<X, M>& x, const std::array<X, kStates>& dx,
                                      const Coefficients<C>& p, const PresentTerms& terms) {
     const auto yields = hose_shares(x, dx[pressure_a], dx[pressure_b], terms);
-    return {(1.0 - yields[0]) * dx[pressure_a] / p.hose_yield_pa,
-            (1.0 - yields[1]) * dx[pressure_b] / p.hose_yield_pa};
+    const X yield_a = hose_yield(x[pressure_a], p.hose_yield_pa, p.hose_yield_ratio);
+    const X yield_b = hose_yield(x[pressure_b], p.hose_yield_pa, p.hose_yield_ratio);
+    return {(1.0 - yields[0]) * dx[pressure_a] / yield_a,
+            (1.0 - yields[1]) * dx[pressure_b] / yield_b};
   }
 
   /// Memory of hoses that came to their pressure in one go, from the tank's or from the supply's.

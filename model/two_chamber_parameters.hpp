@@ -34,6 +34,7 @@ struct TwoChamberParameters : CommonParameters<T> {
   T hose_capacity_a_m3_per_pa{};
   T hose_capacity_b_m3_per_pa{};
   T hose_yield_pa{};
+  T hose_yield_ratio{};
   T supply_resistance_pa_s_per_m3{};
   T supply_capacity_m3_per_pa{};
   T initial_pressure_a_pa{};
@@ -79,6 +80,7 @@ constexpr auto two_chamber_fields() {
       F{&P::hose_capacity_a_m3_per_pa, {"hose_capacity_a", "hose_capacity_a_m3_per_pa", "C_hA", "m3/Pa", "what the hose of chamber A takes up per pressure once it yields", "docs/model.md", K::term, 0, 1e-6, 0.0}},
       F{&P::hose_capacity_b_m3_per_pa, {"hose_capacity_b", "hose_capacity_b_m3_per_pa", "C_hB", "m3/Pa", "what the hose of chamber B takes up per pressure once it yields", "docs/model.md", K::term, 0, 1e-6, 0.0}},
       F{&P::hose_yield_pa, {"hose_yield", "hose_yield_pa", "p_h", "Pa", "pressure after a turn over which hoses begin to yield", "docs/model.md", K::term, 1e3, 1e9, 0.0}},
+      F{&P::hose_yield_ratio, {"hose_yield_ratio", "hose_yield_ratio", "kappa_h", "1", "what hose_yield grows by with the absolute pressure, of the pressure", "docs/model.md", K::term, 1e-3, 100, 0.0}},
       F{&P::supply_resistance_pa_s_per_m3, {"supply_resistance", "supply_resistance_pa_s_per_m3", "R_s", "Pa s/m3", "resistance between the source and the valve", "docs/model.md", K::term, 1e-3, 1e15, 0.0}},
       F{&P::supply_capacity_m3_per_pa, {"supply_capacity", "supply_capacity_m3_per_pa", "C_s", "m3/Pa", "oil that hose and accumulator at the valve take up per pressure", "docs/model.md", K::term, 1e-18, 1e-3, 0.0}},
       // clang-format on

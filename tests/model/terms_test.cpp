@@ -138,6 +138,13 @@ TEST_CASE("terms: a hose is stiff where its pressure turns and yields as it goes
   CHECK(walk(0.1 * yield_pa) < 0.03);
 }
 
+TEST_CASE("terms: a braid yields later the higher the pressure", "[model]") {
+  CHECK_THAT(hose_yield(0.0, 2e5, 0.4), WithinRel(2e5 + 0.4 * 101325.0, 1e-12));
+  CHECK_THAT(hose_yield(4e6, 0.0, 0.4) / hose_yield(2e6, 0.0, 0.4),
+             WithinRel(4101325.0 / 2101325.0, 1e-12));
+  CHECK(hose_yield(-1e6, 0.0, 0.4) > 0.0);
+}
+
 TEST_CASE("terms: two orifices in series pass the flow of one", "[model]") {
   // y sqrt(P - p) = l sqrt(p) = o sqrt(P) for the pressure p between them.
   const double head_pa = 3e6;

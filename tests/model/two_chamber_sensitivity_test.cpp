@@ -40,8 +40,10 @@ std::vector<std::pair<Scenario, Experiment>> scenarios() {
                           {"valve_time_constant", 3e-3},
                           {"air_fraction", 0.01},
                           {"air_exponent", 1.3}};
-  const NamedValues hoses{
-      {"hose_capacity_a", 3e-13}, {"hose_capacity_b", 2e-13}, {"hose_yield", 6e5}};
+  const NamedValues hoses{{"hose_capacity_a", 3e-13},
+                          {"hose_capacity_b", 2e-13},
+                          {"hose_yield", 2e5},
+                          {"hose_yield_ratio", 0.2}};
   const NamedValues loop{{"kp", 900.0},
                          {"ki", 3000.0},
                          {"kd", 2.0},
