@@ -135,7 +135,7 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
                                        std::move(whole)};
     }
   }
-  judge(problem.campaign->acceptance, score);
+  judge(problem.campaign->limits(*condition.condition), score);
   return score;
 }
 

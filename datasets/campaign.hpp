@@ -74,6 +74,14 @@ struct RepeatPattern {
   std::map<Channel, std::string> columns;  ///< over the columns of the channels; {n} replaced
 };
 
+/// Limit of one metric: FAIL beyond `limit`, WARN between it and `warn`.
+struct AcceptanceLimit {
+  Channel channel = Channel::position;
+  std::string metric;  ///< name as in the results
+  std::optional<double> limit;
+  std::optional<double> warn;
+};
+
 struct Condition {
   std::string id;
   Waveform waveform = Waveform::recorded;
@@ -90,6 +98,7 @@ struct Condition {
   int repeats_averaged = 1;
   std::vector<TimeWindow> windows;  ///< empty: the whole record counts
   bool moving_windows = false;      ///< `windows = "moving"`: found from the record
+  std::optional<std::vector<AcceptanceLimit>> acceptance;  ///< in place of the campaign's
   std::optional<double> duration_s;
   std::optional<double> sample_rate_hz;
   std::optional<double> temperature_k;
@@ -103,14 +112,6 @@ struct Condition {
 enum class InitialMode { rest, record, fit };
 enum class Alignment { correlate, none };
 enum class SpikeTreatment { report, exclude };
-
-/// Limit of one metric: FAIL beyond `limit`, WARN between it and `warn`.
-struct AcceptanceLimit {
-  Channel channel = Channel::position;
-  std::string metric;  ///< name as in the results
-  std::optional<double> limit;
-  std::optional<double> warn;
-};
 
 enum class Loss { squared, huber, cauchy, soft_l1 };
 
@@ -176,6 +177,8 @@ struct Campaign {
 
   const Condition* find(std::string_view id) const;
   const ParameterSetting* setting(int index) const;
+  /// What a condition is judged by: its own limits, or the campaign's.
+  const std::vector<AcceptanceLimit>& limits(const Condition& condition) const;
 };
 
 /// Reads and checks a campaign file.

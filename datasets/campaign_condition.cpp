@@ -264,7 +264,7 @@ Condition read_condition(const TomlNode& unnamed, const Campaign& campaign) {
                    "window",      "windows",
                    "duration",    "sample_rate",
                    "temperature", "date",
-                   "specimen"});
+                   "specimen",    "acceptance"});
   condition.where = node.where();
   read_waveform(node, campaign, condition);
   if (const auto level = node.find("leak_level")) {
@@ -285,6 +285,9 @@ Condition read_condition(const TomlNode& unnamed, const Campaign& campaign) {
   }
   read_records(node, campaign, condition);
   read_time(node, condition);
+  if (const auto limits = node.find("acceptance")) {
+    condition.acceptance = read_acceptance(*limits, campaign);
+  }
   if (const auto temperature = node.find("temperature")) {
     condition.temperature_k = temperature->non_negative_quantity("K");
   }

@@ -13,7 +13,7 @@ namespace rigcal::datasets {
 /// [recording] into the campaign, whose controller is known already.
 void read_recording(const TomlNode& node, Campaign& campaign);
 
-/// [acceptance]; needs the channels.
+/// [acceptance] of a campaign or of a condition; needs the channels.
 std::vector<AcceptanceLimit> read_acceptance(const TomlNode& node, const Campaign& campaign);
 
 /// [fit]; needs the channels.

@@ -106,6 +106,10 @@ const Condition* Campaign::find(std::string_view id) const {
   return found == conditions.end() ? nullptr : &*found;
 }
 
+const std::vector<AcceptanceLimit>& Campaign::limits(const Condition& condition) const {
+  return condition.acceptance ? *condition.acceptance : acceptance;
+}
+
 const ParameterSetting* Campaign::setting(int index) const {
   const auto found =
       std::find_if(parameters.begin(), parameters.end(),

@@ -125,6 +125,19 @@ Json windows_json(const datasets::Record& record) {
   return list;
 }
 
+Json acceptance_json(const std::vector<datasets::AcceptanceLimit>& limits) {
+  Json list = Json::array();
+  for (const datasets::AcceptanceLimit& limit : limits) {
+    Json json;
+    json["channel"] = std::string(info(limit.channel).key);
+    json["metric"] = limit.metric;
+    json["limit"] = number(limit.limit);
+    json["warn"] = number(limit.warn);
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 Json condition_json(const Result& result, const calib::ConditionScore& score) {
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
   const datasets::Condition* condition = result.campaign.find(score.id);
@@ -148,6 +161,9 @@ Json condition_json(const Result& result, const calib::ConditionScore& score) {
   if (record != result.records.end()) {
     json["windows_s"] = windows_json(*record);
     json["notes"] = record->notes;
+  }
+  if (condition != nullptr && condition->acceptance) {
+    json["acceptance"] = acceptance_json(*condition->acceptance);
   }
   json["failure"] = score.failure.empty() ? Json(nullptr) : Json(score.failure);
   json["metrics"] = Json::object();
@@ -199,19 +215,6 @@ Json starts_json(const calib::Fit& fit) {
     json["initial_cost"] = simulated ? number(start.initial_cost) : Json(nullptr);
     json["final_cost"] = simulated ? number(start.final_cost) : Json(nullptr);
     json["iterations"] = start.iterations;
-    list.push_back(std::move(json));
-  }
-  return list;
-}
-
-Json acceptance_json(const datasets::Campaign& campaign) {
-  Json list = Json::array();
-  for (const datasets::AcceptanceLimit& limit : campaign.acceptance) {
-    Json json;
-    json["channel"] = std::string(info(limit.channel).key);
-    json["metric"] = limit.metric;
-    json["limit"] = number(limit.limit);
-    json["warn"] = number(limit.warn);
     list.push_back(std::move(json));
   }
   return list;
@@ -298,7 +301,7 @@ Json result_json(const Result& result) {
   json["reduced_chi_square"] = fit.rank > 0 ? number(fit.reduced_chi_square) : Json(nullptr);
   add_trust(fit, json);
   json["validity"] = validity_json(result);
-  json["acceptance"] = acceptance_json(result.campaign);
+  json["acceptance"] = acceptance_json(result.campaign.acceptance);
   json["conditions"] = Json::array();
   for (const calib::ConditionScore& score : fit.conditions) {
     json["conditions"].push_back(condition_json(result, score));

@@ -11,7 +11,7 @@ Json score_rows(const Json& result, const Json& condition) {
   Json rows = Json::array();
   for (const auto& [channel, scores] : condition.at("metrics").items()) {
     const std::string_view unit = channel_unit(channel);
-    const Judgement judgement = judge_channel(result.at("acceptance"), condition, channel);
+    const Judgement judgement = judge_channel(limits_of(result, condition), condition, channel);
     Json verdict = nullptr;
     if (judgement.verdict) verdict = *judgement.verdict;
     const auto floors = condition.at("noise_floor").find(channel);

@@ -133,7 +133,12 @@ std::string_view channel_unit(std::string_view channel) {
   return known ? datasets::info(*known).unit : std::string_view("1");
 }
 
-Judgement judge_channel(const Json& acceptance, const Json& condition, const std::string& channel) {
+const Json& limits_of(const Json& result, const Json& condition) {
+  const auto own = condition.find("acceptance");
+  return own != condition.end() ? *own : result.at("acceptance");
+}
+
+Judgement judge_channel(const Json& limits, const Json& condition, const std::string& channel) {
   Judgement result;
   const auto worse = [&](const char* verdict) {
     constexpr std::array<std::string_view, 3> kOrder{"PASS", "WARN", "FAIL"};
@@ -142,7 +147,7 @@ Judgement judge_channel(const Json& acceptance, const Json& condition, const std
     };
     if (!result.verdict || rank(verdict) > rank(*result.verdict)) result.verdict = verdict;
   };
-  for (const Json& limit : acceptance) {
+  for (const Json& limit : limits) {
     if (text_of(limit, "channel") != channel) continue;
     worse("PASS");
     if (!text_of(condition, "failure").empty()) {

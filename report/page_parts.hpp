@@ -47,13 +47,16 @@ std::string parameter_label(const Json& parameter);
 /// SI unit of a channel, by the key that it has in the results.
 std::string_view channel_unit(std::string_view channel);
 
-/// PASS, WARN or FAIL of one channel of one condition by the limits of the campaign; null where
-/// none applies. `excess`: distance from the ideal over that of the nearest limit, above 1 beyond.
+/// What a condition is judged by: limits of its own, or the campaign's.
+const Json& limits_of(const Json& result, const Json& condition);
+
+/// PASS, WARN or FAIL of one channel of one condition by its limits; null where none applies.
+/// `excess`: distance from the ideal over that of the nearest limit, above 1 beyond.
 struct Judgement {
   std::optional<std::string> verdict;
   double excess = 0.0;
 };
-Judgement judge_channel(const Json& acceptance, const Json& condition, const std::string& channel);
+Judgement judge_channel(const Json& limits, const Json& condition, const std::string& channel);
 
 /// Values in their order as points over their numbers from 1, on a logarithmic scale.
 Plot ranked_points(const std::string& title, const std::string& y_label,

@@ -69,7 +69,8 @@ void add_conditions(const Json& result, std::vector<Reason>& reasons) {
     if (condition.at("reasons").empty()) continue;
     double excess = 0.0;
     for (const auto& [channel, metrics] : condition.at("metrics").items())
-      excess = std::max(excess, judge_channel(result.at("acceptance"), condition, channel).excess);
+      excess =
+          std::max(excess, judge_channel(limits_of(result, condition), condition, channel).excess);
     const bool fail = text_of(condition, "verdict") == "FAIL";
     reasons.push_back({(fail ? kFailed : kWarned) * (1.0 + excess),
                        fmt::format("{}: {}", id, joined(condition.at("reasons"))), anchor(id)});
@@ -98,7 +99,7 @@ std::vector<Reason> praise(const Json& result) {
   std::string where;
   for (const Json& condition : result.at("conditions")) {
     for (const auto& [channel, metrics] : condition.at("metrics").items()) {
-      const double excess = judge_channel(result.at("acceptance"), condition, channel).excess;
+      const double excess = judge_channel(limits_of(result, condition), condition, channel).excess;
       if (excess >= nearest) {
         nearest = excess;
         where = text_of(condition, "id");
@@ -249,12 +250,25 @@ std::pair<double, std::string> signal_of(const Json& condition) {
   return {*frequency, fmt::format("{:.6g} Hz {}", *frequency, waveform)};
 }
 
+/// The limits of one channel, to be shown.
+Json limits_view(const Json& limits, const std::string& channel) {
+  Json view = Json::array();
+  for (const Json& limit : limits) {
+    if (text_of(limit, "channel") != channel) continue;
+    view.push_back({{"metric", text_of(limit, "metric")},
+                    {"limit", shown_in(limit.at("limit"), 1.0, 6)},
+                    {"has_warn", limit.at("warn").is_number()},
+                    {"warn", shown_in(limit.at("warn"), 1.0, 6)}});
+  }
+  return view;
+}
+
 Json matrix_entry(const Json& result, const Json& condition, const std::string& channel) {
   const Json& metrics = condition.at("metrics");
   const auto scores = metrics.find(channel);
   const bool failed = !text_of(condition, "failure").empty();
   if (scores == metrics.end() && !failed) return nullptr;
-  const Judgement judgement = judge_channel(result.at("acceptance"), condition, channel);
+  const Judgement judgement = judge_channel(limits_of(result, condition), condition, channel);
   Json verdict = nullptr;
   if (judgement.verdict) verdict = *judgement.verdict;
   if (failed) verdict = "FAIL";
@@ -323,15 +337,15 @@ Json matrix_view(const Json& result) {
   for (const std::string& channel : channels) {
     Json table;
     table["channel"] = channel;
-    table["limits"] = Json::array();
-    for (const Json& limit : result.at("acceptance")) {
-      if (text_of(limit, "channel") != channel) continue;
-      table["limits"].push_back({{"metric", text_of(limit, "metric")},
-                                 {"limit", shown_in(limit.at("limit"), 1.0, 6)},
-                                 {"has_warn", limit.at("warn").is_number()},
-                                 {"warn", shown_in(limit.at("warn"), 1.0, 6)}});
-    }
+    table["limits"] = limits_view(result.at("acceptance"), channel);
     table["has_limits"] = !table["limits"].empty();
+    table["own"] = Json::array();
+    for (const Json& condition : result.at("conditions")) {
+      if (!condition.contains("acceptance")) continue;
+      Json own = limits_view(condition.at("acceptance"), channel);
+      table["own"].push_back(
+          {{"condition", text_of(condition, "id")}, {"judged", !own.empty()}, {"limits", own}});
+    }
     table["levels"] = Json::array();
     for (const std::string& level : levels) {
       table["levels"].push_back(level.empty() ? std::string("no leak level")

@@ -118,6 +118,18 @@ TEST_CASE("validate: a parameter that the fit lacks is an error", "[calib]") {
                     Contains("no value for valve_gain"));
 }
 
+TEST_CASE("scorecard: a condition is judged by limits of its own if it has any", "[calib]") {
+  Twin twin = two_days();
+  twin.campaign.acceptance = {limit("rho2", 2.0, 2.0)};
+  twin.campaign.conditions[1].acceptance = {{limit("rho2", 0.5, 0.5)}};
+  twin.campaign.conditions[2].acceptance.emplace();
+  const auto values = truth();
+  const Fit found = validate(twin.campaign, twin.records(400, 500.0, 5), &values, {});
+  CHECK(found.conditions.at(0).verdict == Verdict::fail);
+  CHECK(found.conditions.at(1).verdict == Verdict::pass);
+  CHECK_FALSE(found.conditions.at(2).verdict.has_value());
+}
+
 TEST_CASE("scorecard: a constant record has a problem in words, no number", "[calib]") {
   Twin twin;
   twin.noise_sd_m = 0.0;

@@ -150,6 +150,28 @@ TEST_CASE("load_campaign: acceptance limits", "[datasets]") {
   CHECK_FALSE(limit(Channel::position, "rho2").warn.has_value());
 }
 
+TEST_CASE("load_campaign: a condition's own limits stand in place of the campaign's",
+          "[datasets]") {
+  const auto with = [](const std::string& acceptance) {
+    return load_text(replaced(kExample, "parameters = { }", "acceptance = " + acceptance));
+  };
+  const Campaign campaign = with("{ pressure_a = { rho2 = 0.97, warn_rho2 = 0.98 } }");
+  REQUIRE(campaign.acceptance.size() > 1);
+  const auto own = std::find_if(campaign.conditions.begin(), campaign.conditions.end(),
+                                [](const Condition& c) { return c.acceptance.has_value(); });
+  REQUIRE(own != campaign.conditions.end());
+  REQUIRE(campaign.limits(*own).size() == 1);
+  CHECK(campaign.limits(*own)[0].channel == Channel::pressure_a);
+  CHECK(campaign.limits(*own)[0].limit == 0.97);
+  CHECK(campaign.limits(*own)[0].warn == 0.98);
+  Condition other = *own;
+  other.acceptance.reset();
+  CHECK(campaign.limits(other).size() == campaign.acceptance.size());
+  const Campaign unjudged = with("{ }");
+  CHECK(std::any_of(unjudged.conditions.begin(), unjudged.conditions.end(),
+                    [&](const auto& c) { return c.acceptance && unjudged.limits(c).empty(); }));
+}
+
 TEST_CASE("load_campaign: without position the limits hold for every output", "[datasets]") {
   std::string text =
       replaced(kExample, "position = { column = \"x_mm\", unit = \"mm\", sd",

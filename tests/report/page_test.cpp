@@ -113,6 +113,18 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     CHECK_THAT(word_of(html), Contains("POOR"));
     CHECK_THAT(html, Contains("<body class=\"bad\">"));
   }
+  SECTION("limits of its own in place of the campaign's") {
+    json["conditions"][0]["metrics"]["position"]["rho2"] = 0.5;
+    json["conditions"][0]["acceptance"] = {
+        {{"channel", "position"}, {"metric", "rho2"}, {"limit", 0.4}, {"warn", nullptr}}};
+    const std::string html = page(json);
+    CHECK_THAT(html, !Contains("class=\"cell bad\""));
+    CHECK_THAT(html, Contains("sine: limits of its own: <span class=\"limit\">rho2 0.4"));
+  }
+  SECTION("a condition that is not judged") {
+    json["conditions"][0]["acceptance"] = Json::array();
+    CHECK_THAT(page(json), Contains("sine: not judged"));
+  }
   SECTION("a condition that could not be simulated") {
     json["verdict"] = json["conditions"][0]["verdict"] = "FAIL";
     json["conditions"][0]["failure"] = "too many steps";
