@@ -50,10 +50,11 @@ def taken_up(t, x, p, back, end):
 
 
 def main(folder):
-    for volts in (1, 2, 4):
-        r = residuals(f"{folder}/residuals/steps_{volts}V.csv")
+    for name in ("steps_1V", "steps_2V", "steps_4V"):
+        r = residuals(f"{folder}/residuals/{name}.csv")
         t = r["time_s"]
         u = r["drive_v"] if "drive_v" in r else r["command_v"]
+        volts = round(u.max())  # another voltage's file may stand under this name
         first = np.flatnonzero(u > 0.9 * volts)
         second = np.flatnonzero(u < -0.9 * volts)
         out, stop, back = t[first[0]], t[first[-1]], t[second[0]]

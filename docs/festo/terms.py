@@ -13,18 +13,15 @@ CAMPAIGN = "datasets/festo_tp511/campaign.toml"
 TERMS = {
     "none": [],
     "lines": ["valve_line_opening=10000 V"],
-    "hose": ["hose_capacity_b=0 m3/Pa"],
-    "air": ["air_fraction=0"],
+    "hose_a": ["hose_capacity_a=0 m3/Pa"],
+    "hose_b": ["hose_capacity_b=0 m3/Pa"],
     "edges": ["gain_supply_to_b=1", "gain_a_to_tank=1", "gain_b_to_tank=1"],
-    "external_leaks": ["external_leakage_a=0 m3/(s Pa)", "external_leakage_b=0 m3/(s Pa)"],
-    "valve_leak": ["valve_null_leakage=0 m3/(s Pa)"],
-    "piston_leak": ["laminar_leakage=0 m3/(s Pa)"],
+    "leaks": ["valve_null_leakage=0 m3/(s Pa)", "external_leakage_a=0 m3/(s Pa)", "external_leakage_b=0 m3/(s Pa)"],
     "dead_band": ["valve_dead_band=0 V"],
     "offset_force": ["external_force=0 N"],
 }
-FREE = ("coulomb_friction external_force stroke dead_volume_a hose_capacity_b air_fraction "
-        "supply_pressure tank_pressure valve_gain valve_dead_band gain_supply_to_b gain_a_to_tank gain_b_to_tank "
-        "laminar_leakage valve_null_leakage external_leakage_a external_leakage_b").split()
+FREE = ("coulomb_friction external_force stroke hose_capacity_a hose_capacity_b supply_pressure tank_pressure valve_gain "
+        "valve_dead_band gain_supply_to_b gain_a_to_tank gain_b_to_tank").split()
 
 
 def fit(rigcal, data, out, term):
