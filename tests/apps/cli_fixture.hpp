@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/support/command.hpp"
+#include "tests/support/small_rig.hpp"
 
 namespace rigcal::test {
 
@@ -34,15 +35,7 @@ mass = "60 kg"
 damping = { start = "2000 N s/m", lower = "10 N s/m", upper = "1e5 N s/m", fit = true }
 valve_gain = { start = "2e-5 m/V", lower = "1e-6 m/V", upper = "1e-3 m/V", fit = true }
 leakage_coefficient = 0.3
-stiffness = "0 N/m"
-piston_area = "633 mm2"
-total_volume = "468 cm3"
-density = "850 kg/m3"
-bulk_modulus = "689 MPa"
-discharge_coefficient = 0.6
-area_gradient = "20 mm"
-leakage_area = "1 mm2"
-[rig.controller]
+)" + kSmallRig + R"([rig.controller]
 type = "pid"
 kp = "1000 V/m"
 [leak_level."none"]

@@ -13,6 +13,7 @@
 #include "datasets/campaign.hpp"
 #include "datasets/model_output.hpp"
 #include "datasets/record.hpp"
+#include "tests/support/paper_rig.hpp"
 
 namespace rigcal::calib {
 
@@ -30,27 +31,14 @@ struct Twin {
     campaign.file = "twin.toml";
     campaign.rig = {model::PlantKind::load_pressure, model::ControllerKind::pid,
                     model::InitialState::rest};
-    for (const auto& [key, value] : std::initializer_list<std::pair<std::string_view, double>>{
-             {"mass", 85.0},
-             {"damping", 1000.0},
-             {"stiffness", 2e4},
-             {"piston_area", 1.62e-3},
-             {"total_volume", 2.46888e-4},
-             {"supply_pressure", 6.2e6},
-             {"density", 847.0},
-             {"bulk_modulus", 689e6},
-             {"discharge_coefficient", 0.6},
-             {"area_gradient", 0.02075},
-             {"valve_gain", 0.0406e-3},
-             {"leakage_coefficient", 0.35},
-             {"leakage_area", 4.456e-6},
-             {"kp", 400.0},
-         }) {
+    for (const auto& [key, value] : test::kPaperRig) {
       datasets::ParameterSetting setting;
       setting.index = index(key);
       setting.value = value;
       campaign.parameters.push_back(setting);
     }
+    setting("stiffness").value = 2e4;
+    setting("kp").value = 400.0;
     add_channel(datasets::Channel::position);
     truth = campaign;
   }

@@ -5,16 +5,13 @@
 
 #include "diagnosis/diagnose.hpp"
 #include "tests/datasets/campaign_fixture.hpp"
+#include "tests/support/small_rig.hpp"
 
 using namespace rigcal;
 using Catch::Contains;
+using rigcal::test::load_text;
 
 namespace {
-
-datasets::Campaign campaign_of(const std::string& text) {
-  const test::TemporaryFolder folder;
-  return datasets::load_campaign(folder.write("campaign.toml", text));
-}
 
 const std::string kHead = R"(schema = "rigcal.campaign/1"
 [rig]
@@ -25,15 +22,7 @@ mass = "60 kg"
 damping = "1000 N s/m"
 valve_gain = "2e-5 m/V"
 leakage_coefficient = 0.3
-stiffness = "0 N/m"
-piston_area = "633 mm2"
-total_volume = "468 cm3"
-density = "850 kg/m3"
-bulk_modulus = "689 MPa"
-discharge_coefficient = 0.6
-area_gradient = "20 mm"
-leakage_area = "1 mm2"
-)";
+)" + test::kSmallRig;
 
 const std::string kChannels = R"([recording.channels]
 time = { column = "t", unit = "s" }
@@ -55,13 +44,13 @@ std::string all(const std::vector<std::string>& reasons) {
 }  // namespace
 
 TEST_CASE("obstacles: none for records that can be compared", "[diagnosis]") {
-  const datasets::Campaign campaign = campaign_of(kHead + kChannels + condition("a", ""));
+  const datasets::Campaign campaign = load_text(kHead + kChannels + condition("a", ""));
   CHECK(diagnosis::obstacles(campaign, true).empty());
   CHECK_THAT(all(diagnosis::obstacles(campaign, false)), Contains("--fit"));
 }
 
 TEST_CASE("obstacles: everything that is missing is named at once", "[diagnosis]") {
-  const datasets::Campaign campaign = campaign_of(R"(schema = "rigcal.campaign/1"
+  const datasets::Campaign campaign = load_text(R"(schema = "rigcal.campaign/1"
 [rig]
 model = "load_pressure"
 [rig.parameters]
@@ -80,9 +69,9 @@ position = { column = "x", unit = "counts" }
 
 TEST_CASE("obstacles: a condition that can be diagnosed is enough", "[diagnosis]") {
   const datasets::Campaign campaign =
-      campaign_of(kHead + kChannels + condition("a", "") +
-                  "[[condition]]\nid = \"b\"\nwaveform = \"recorded\"\n"
-                  "use = \"diagnose\"\n");
+      load_text(kHead + kChannels + condition("a", "") +
+                "[[condition]]\nid = \"b\"\nwaveform = \"recorded\"\n"
+                "use = \"diagnose\"\n");
   CHECK(diagnosis::obstacles(campaign, true).empty());
   const auto found = diagnosis::diagnosable(campaign);
   REQUIRE(found.conditions.size() == 1);
@@ -93,7 +82,7 @@ TEST_CASE("obstacles: a condition that can be diagnosed is enough", "[diagnosis]
 TEST_CASE("confounded: level with specimen and date, but not where both appear", "[diagnosis]") {
   const std::string levels = "[diagnosis]\nlevel_class = { none = \"normal\" }\n";
   const auto with = [&](const std::string& second_date) {
-    const datasets::Campaign campaign = campaign_of(
+    const datasets::Campaign campaign = load_text(
         kHead + kChannels + levels +
         condition("a", "leak_level = \"none\"\nspecimen = \"one\"\ndate = 2019-09-11\n") +
         condition("b", "leak_level = \"seal\"\nspecimen = \"two\"\ndate = " + second_date + "\n"));

@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <initializer_list>
 #include <limits>
 #include <numbers>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "model/simulate.hpp"
+#include "tests/support/paper_rig.hpp"
 
 namespace rigcal::model {
 
@@ -21,25 +20,8 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// The rig that reproduces the paper's tables, its internal leak at a medium opening.
 inline ParameterValues paper_rig() {
   auto values = ParameterValues::defaults(PlantKind::load_pressure);
-  for (const auto& [key, value] : std::initializer_list<std::pair<std::string_view, double>>{
-           {"mass", 85.0},
-           {"damping", 1000.0},
-           {"stiffness", 0.0},
-           {"piston_area", 1.62e-3},
-           {"total_volume", 2.46888e-4},
-           {"supply_pressure", 6.2e6},
-           {"density", 847.0},
-           {"bulk_modulus", 689e6},
-           {"discharge_coefficient", 0.6},
-           {"area_gradient", 0.02075},
-           {"valve_gain", 0.0406e-3},
-           {"leakage_coefficient", 0.35},
-           {"leakage_area", 4.456e-6},
-           {"kp", 78.74},
-           {"output_limit", 10.0},
-       }) {
-    values.set(key, value);
-  }
+  for (const auto& [key, value] : test::kPaperRig) values.set(key, value);
+  values.set("output_limit", 10.0);
   return values;
 }
 
