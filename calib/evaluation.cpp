@@ -6,19 +6,18 @@
 #include "calib/triangle.hpp"
 
 namespace rigcal::calib {
-namespace {
 
-/// [J r] of one channel: chain rule to the unit box, weight, loss.
 Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t channel,
-                              const model::Simulation& run, const Eigen::VectorXd& slopes,
-                              const datasets::FitSettings& settings, double& square_sum) {
+                              const RowRange& range, const model::Simulation& run,
+                              const Eigen::VectorXd& slopes, const datasets::FitSettings& settings,
+                              double& square_sum) {
   const ProblemChannel& data = condition.channels[channel];
   const auto column = static_cast<Eigen::Index>(channel);
   const Eigen::Index unknowns = slopes.size();
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(condition.rows.size()), unknowns + 1);
-  for (std::size_t i = 0; i < condition.rows.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
-    const auto sample = static_cast<Eigen::Index>(condition.rows[i]);
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(range.end - range.begin), unknowns + 1);
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const auto row = static_cast<Eigen::Index>(i - range.begin);
+    const auto sample = static_cast<Eigen::Index>(condition.rows[i] - range.first_sample);
     const double error = run.outputs(sample, column) - data.measured[i];
     square_sum += error * error;
     const LossValue loss = apply_loss(settings.loss, settings.loss_scale, error / data.sd);
@@ -30,19 +29,35 @@ Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t cha
   return rows;
 }
 
-}  // namespace
+Eigen::VectorXd acting_slopes(const Problem& problem, std::size_t condition,
+                              std::span<const double> z) {
+  const std::vector<int>& acting = problem.map.acting(condition);
+  Eigen::VectorXd slopes(static_cast<Eigen::Index>(acting.size()));
+  for (std::size_t j = 0; j < acting.size(); ++j) {
+    slopes(static_cast<Eigen::Index>(j)) =
+        problem.map.slope(acting[j], z[static_cast<std::size_t>(acting[j])]);
+  }
+  return slopes;
+}
+
+model::SimulationOptions simulation_options(const Problem& problem, std::size_t condition,
+                                            double tolerance, const std::atomic<bool>* cancel) {
+  model::SimulationOptions options;
+  options.method = problem.campaign->simulation.method;
+  options.tolerance = tolerance;
+  options.max_steps = problem.conditions[condition].max_steps;
+  options.max_seconds = problem.campaign->simulation.max_seconds;
+  options.cancel = cancel;
+  return options;
+}
 
 ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
                                        std::span<const double> z, const std::atomic<bool>* cancel,
                                        ConditionRows* rows, std::optional<double> tolerance) {
   const ProblemCondition& data = problem.conditions[condition];
   const datasets::Campaign& campaign = *problem.campaign;
-  model::SimulationOptions options;
-  options.method = campaign.simulation.method;
-  options.tolerance = tolerance.value_or(problem.tolerance);
-  options.max_steps = data.max_steps;
-  options.max_seconds = campaign.simulation.max_seconds;
-  options.cancel = cancel;
+  const auto options =
+      simulation_options(problem, condition, tolerance.value_or(problem.tolerance), cancel);
   const model::Simulation run =
       model::simulate(data.rig, problem.values_at(condition, z), data.free, data.inputs,
                       data.fit_times(), data.outputs, options);
@@ -54,13 +69,8 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
   result.reason = run.reason;
   if (!run.ok()) return result;
 
-  const std::vector<int>& acting = problem.map.acting(condition);
-  const auto unknowns = static_cast<Eigen::Index>(acting.size());
-  Eigen::VectorXd slopes(unknowns);
-  for (std::size_t j = 0; j < acting.size(); ++j) {
-    slopes(static_cast<Eigen::Index>(j)) =
-        problem.map.slope(acting[j], z[static_cast<std::size_t>(acting[j])]);
-  }
+  const Eigen::VectorXd slopes = acting_slopes(problem, condition, z);
+  const Eigen::Index unknowns = slopes.size();
   const auto samples = static_cast<Eigen::Index>(data.rows.size());
   if (rows != nullptr) {
     const Eigen::Index total = samples * static_cast<Eigen::Index>(data.channels.size());
@@ -70,7 +80,8 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
   Triangle triangle(unknowns + 1);
   for (std::size_t k = 0; k < data.channels.size(); ++k) {
     double square_sum = 0.0;
-    const Eigen::MatrixXd weighted = weighted_rows(data, k, run, slopes, campaign.fit, square_sum);
+    const Eigen::MatrixXd weighted =
+        weighted_rows(data, k, {0, data.rows.size(), 0}, run, slopes, campaign.fit, square_sum);
     triangle.add(weighted);
     result.rms.push_back(std::sqrt(square_sum / static_cast<double>(samples)));
     if (rows == nullptr) continue;

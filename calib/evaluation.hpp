@@ -32,6 +32,31 @@ struct ConditionRows {
   Eigen::VectorXd residual;
 };
 
+/// Samples of a condition that count, [begin, end) of its `rows`, and where the times of a
+/// simulation begin in the record.
+struct RowRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::size_t first_sample = 0;
+};
+
+/// [J r] of one channel over a range: chain rule to the coordinates of the unknowns, weight, loss.
+///
+/// @param slopes      shape (columns of the run's sensitivities): d value / d coordinate
+/// @param square_sum  the squares of simulated minus measured are added to it, SI
+Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t channel,
+                              const RowRange& range, const model::Simulation& run,
+                              const Eigen::VectorXd& slopes, const datasets::FitSettings& settings,
+                              double& square_sum);
+
+/// d value / d z of the unknowns that act in a condition, in their order.
+Eigen::VectorXd acting_slopes(const Problem& problem, std::size_t condition,
+                              std::span<const double> z);
+
+/// How a condition is simulated: the campaign's method and limits at some tolerance.
+model::SimulationOptions simulation_options(const Problem& problem, std::size_t condition,
+                                            double tolerance, const std::atomic<bool>* cancel);
+
 /// Simulates one condition with sensitivities. Residual: (simulated - measured) / sd, then the
 /// loss. Never throws for a point that cannot be simulated.
 ///

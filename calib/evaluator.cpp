@@ -64,14 +64,15 @@ const Evaluation& Evaluator::evaluate(std::span<const double> z) {
       each.status = model::SimulationStatus::cancelled;
     return last_;
   }
-  const double tolerance =
-      coarse_ ? std::max(kCoarseTolerance, problem_.tolerance) : problem_.tolerance;
-  Evaluation evaluation = evaluate_at(problem_, z, options_.threads, options_.cancel, tolerance);
-  ++ledger_.evaluations;
-  if (!evaluation.ok) record_failures(evaluation);
+  Evaluation evaluation = evaluate_at(problem_, z, options_.threads, options_.cancel, tolerance());
+  record(evaluation);
   last_ = std::move(evaluation);
   keep_best();
   return last_;
+}
+
+double Evaluator::tolerance() const {
+  return coarse_ ? std::max(kCoarseTolerance, problem_.tolerance) : problem_.tolerance;
 }
 
 void Evaluator::keep_best() {
@@ -114,7 +115,8 @@ void Evaluator::rethrow() const {
   if (error_) std::rethrow_exception(error_);
 }
 
-void Evaluator::record_failures(const Evaluation& evaluation) {
+void Evaluator::record(const Evaluation& evaluation) {
+  ++ledger_.evaluations;
   for (std::size_t i = 0; i < evaluation.conditions.size(); ++i) {
     const ConditionEvaluation& each = evaluation.conditions[i];
     if (each.ok() || each.status == model::SimulationStatus::cancelled) continue;

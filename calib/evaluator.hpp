@@ -58,6 +58,8 @@ class Evaluator final : public ceres::EvaluationCallback {
   /// is kept of earlier points.
   void be_coarse(bool coarse);
   bool coarse() const { return coarse_; }
+  /// Of the simulations, now.
+  double tolerance() const;
 
   /// Begins a start of a multi-start: best() is then the best of this start.
   void begin_start(int number);
@@ -82,16 +84,18 @@ class Evaluator final : public ceres::EvaluationCallback {
   }
   bool cancelled() const;
   bool aborted() const { return cancelled() || out_of_time() || out_of_evaluations(); }
+  /// Counts an evaluation that was made elsewhere, and records its failures.
+  void record(const Evaluation& evaluation);
   /// Throws what an evaluation threw inside Ceres.
   void rethrow() const;
 
+  const Options& options() const { return options_; }
   const EvaluationLedger& ledger() const { return ledger_; }
   /// Goes on counting from there, as after a resumed fit.
   void set_ledger(EvaluationLedger ledger) { ledger_ = std::move(ledger); }
 
  private:
   void keep_best();
-  void record_failures(const Evaluation& evaluation);
 
   const Problem& problem_;
   Options options_;

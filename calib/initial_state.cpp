@@ -51,6 +51,31 @@ double initial_mean(const Record& record, const std::vector<double>& signal, dou
   return sum / count;
 }
 
+/// Value and slope of a line through the finite samples within `half_width_s` of an instant;
+/// nothing where there are none.
+std::optional<std::pair<double, double>> line_at(const Record& record,
+                                                 const std::vector<double>& signal, double time_s,
+                                                 double half_width_s) {
+  double count = 0.0;
+  double t = 0.0;
+  double y = 0.0;
+  double tt = 0.0;
+  double ty = 0.0;
+  for (std::size_t i = 0; i < signal.size(); ++i) {
+    const double from = record.time_s[i] - time_s;
+    if (std::abs(from) > half_width_s || !std::isfinite(signal[i])) continue;
+    count += 1.0;
+    t += from;
+    y += signal[i];
+    tt += from * from;
+    ty += from * signal[i];
+  }
+  if (count == 0.0) return std::nullopt;
+  const double spread = tt - t * t / count;
+  const double slope = spread > 0.0 ? (ty - t * y / count) / spread : 0.0;
+  return std::pair{(y - slope * t) / count, slope};
+}
+
 double peak_to_peak(const std::vector<double>& signal) {
   const auto [low, high] = std::minmax_element(signal.begin(), signal.end());
   return *high - *low;
@@ -122,6 +147,29 @@ InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condit
     }
   }
   return plan;
+}
+
+datasets::Overrides recorded_state(const Campaign& campaign, const Record& record,
+                                   const model::ParameterValues& values, double time_s,
+                                   double half_width_s) {
+  datasets::Overrides state;
+  const auto add = [&](std::string_view key, double value) {
+    const int index = model::parameter_index(campaign.rig.plant, key);
+    if (index >= 0) state.emplace_back(index, value);
+  };
+  const auto line = [&](const std::vector<double>& signal) {
+    return line_at(record, signal, time_s, half_width_s);
+  };
+  if (const auto position = line(recorded(record, Channel::position))) {
+    add("initial_position", position->first);
+    add("initial_velocity", position->second / values["position_gain"]);
+  }
+  if (const auto p = line(load_pressure(record, values))) add("initial_load_pressure", p->first);
+  if (const auto p = line(recorded(record, Channel::pressure_a)))
+    add("initial_pressure_a", p->first);
+  if (const auto p = line(recorded(record, Channel::pressure_b)))
+    add("initial_pressure_b", p->first);
+  return state;
 }
 
 }  // namespace rigcal::calib

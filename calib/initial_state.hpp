@@ -33,4 +33,14 @@ InitialPlan plan_initial_state(const datasets::Campaign& campaign,
                                const datasets::Condition& condition, const datasets::Record& record,
                                const model::ParameterValues& values);
 
+/// What the initial_* parameters would be for a run that begins in the middle of a record: position
+/// and velocity from a straight line through the samples within `half_width_s` of that instant,
+/// recorded pressures their means there. Of unrecorded position nothing is told.
+///
+/// @param values  of the condition, for the sensors of both pressures
+datasets::Overrides recorded_state(const datasets::Campaign& campaign,
+                                   const datasets::Record& record,
+                                   const model::ParameterValues& values, double time_s,
+                                   double half_width_s);
+
 }  // namespace rigcal::calib

@@ -9,6 +9,7 @@
 #include <Eigen/SVD>
 #include <algorithm>
 
+#include "calib/multiple_shooting.hpp"
 #include "calib/residual.hpp"
 
 namespace rigcal::calib {
@@ -292,24 +293,46 @@ SolveResult refine(const Problem& problem, Evaluator& evaluator, std::vector<dou
   return result;
 }
 
+namespace {
+
+/// Replaces a start by where multiple shooting leads, if a simulation of whole records from there
+/// is the better one; half of the iterations at most.
+///
+/// @return  iterations that it took
+int shoot(const Problem& problem, Evaluator& evaluator, std::vector<double>& z, double interval_s,
+          int iterations, int start, const FitOptions& options) {
+  const Evaluation first = evaluator.evaluate(z);
+  const ShootingResult found =
+      multiple_shooting(problem, evaluator, z, interval_s, iterations / 2, start, options);
+  const Evaluation& there = evaluator.evaluate(found.z);
+  if (there.ok && (!first.ok || there.cost < first.cost)) z = found.z;
+  return found.iterations;
+}
+
+}  // namespace
+
 SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
                   int iterations, int start, const FitOptions& options) {
   evaluator.be_coarse(true);
-  const Evaluation first = evaluator.evaluate(z);
-  if (!first.ok) return no_start(problem, evaluator, first);
-  const SolveResult coarse =
-      descend(problem, evaluator, z, kFirstTrustRadius, iterations, start, options);
-  const int used = coarse.iterations;
-  if (evaluator.aborted()) return coarse;
-
-  z = evaluator.best().z;
-  evaluator.be_coarse(false);
-  FitOptions counting = options;  // one count of iterations through both
+  int used = 0;
+  FitOptions counting = options;  // one count of iterations through all
   if (options.progress) {
     counting.progress = [&](int number, int iteration, double cost, double change, double seconds) {
       options.progress(number, used + iteration, cost, change, seconds);
     };
   }
+  if (const auto interval_s = problem.campaign->fit.shooting_interval_s)
+    used = shoot(problem, evaluator, z, *interval_s, iterations, start, options);
+  const Evaluation first = evaluator.evaluate(z);
+  if (!first.ok) return no_start(problem, evaluator, first);
+  SolveResult coarse =
+      descend(problem, evaluator, z, kFirstTrustRadius, iterations - used, start, counting);
+  used += coarse.iterations;
+  coarse.iterations = used;
+  if (evaluator.aborted()) return coarse;
+
+  z = evaluator.best().z;
+  evaluator.be_coarse(false);
   SolveResult result = refine(problem, evaluator, z, iterations - used, start, counting);
   result.iterations += used;
   if (result.status == FitStatus::converged) result.message = converged_after(result.iterations);

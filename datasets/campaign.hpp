@@ -123,6 +123,8 @@ struct FitSettings {
   int starts = 1;
   std::optional<double> max_seconds;  ///< of the whole fit
   std::vector<Channel> outputs;       ///< compared with the model; empty: every output channel
+  /// A start goes through multiple shooting with pieces of this length; none: it does not.
+  std::optional<double> shooting_interval_s;
 };
 
 /// [synthetic]: a known rig and what disturbs its records.

@@ -159,7 +159,8 @@ std::vector<AcceptanceLimit> read_acceptance(const TomlNode& node, const Campaig
 }
 
 FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
-  node.allow_only({"loss", "loss_scale", "max_iterations", "starts", "max_time", "outputs"});
+  node.allow_only({"loss", "loss_scale", "max_iterations", "starts", "max_time", "outputs",
+                   "shooting_interval"});
   FitSettings fit;
   if (const auto loss = node.find("loss")) {
     fit.loss = loss->choice<Loss>({{"squared", Loss::squared},
@@ -176,6 +177,9 @@ FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
   }
   if (const auto count = node.find("starts")) fit.starts = count->integer(1, 100'000);
   if (const auto time = node.find("max_time")) fit.max_seconds = time->positive_quantity("s");
+  if (const auto interval = node.find("shooting_interval")) {
+    fit.shooting_interval_s = interval->positive_quantity("s");
+  }
   const auto outputs = node.find("outputs");
   if (!outputs) return fit;
   std::vector<std::string> known;
