@@ -29,11 +29,16 @@ const std::vector<std::pair<Channel, Words>> kChannelWords{
      {"x", "y", "pos", "position", "stroke", "disp", "displacement", "piston", "ist", "xp",
       "lvdt"}},
     {Channel::load_pressure, {"pl", "dp", "loadpressure", "pload", "deltap"}},
-    {Channel::pressure_a, {"pa", "p1", "pressurea", "pressure1", "p_cap"}},
-    {Channel::pressure_b, {"pb", "p2", "pressureb", "pressure2", "p_rod"}},
+    {Channel::pressure_a,
+     {"pa", "p1", "pressurea", "pressure1", "chambera", "chamber1", "pcap", "phead", "pbore"}},
+    {Channel::pressure_b,
+     {"pb", "p2", "pressureb", "pressure2", "chamberb", "chamber2", "prod", "pannulus"}},
     {Channel::supply_pressure, {"ps", "psupply", "supply", "supplypressure", "pp"}},
     {Channel::force, {"f", "force", "load", "loadcell", "fl"}},
     {Channel::temperature, {"temp", "temperature", "toil", "oiltemperature"}}};
+
+/// Words behind which a lone A is a chamber, not amperes.
+const Words kChamberWords{"p", "pressure", "chamber", "druck", "kammer"};
 
 /// Parts between underscores, blanks and brackets.
 std::vector<std::string> parts_of(std::string_view name) {
@@ -59,6 +64,14 @@ bool contains(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+/// The unit that a part behind others is, if any: a last "pa" behind a word is no chamber.
+std::string unit_of(const std::string& part, bool last, const std::string& before) {
+  if (last && part == "pa") return "Pa";
+  if (part == "A" && contains(kChamberWords, before)) return {};
+  if (std::find(kUnits.begin(), kUnits.end(), part) == kUnits.end()) return {};
+  return part == "C" ? "degC" : part;
+}
+
 void assign(ColumnGuess& guess, const std::string& word) {
   if (guess.is_time || guess.channel) return;
   guess.is_time = contains(kTimeWords, word);
@@ -75,12 +88,13 @@ ColumnGuess guess_column(const std::string& name) {
   ColumnGuess guess;
   std::vector<std::string> words;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const bool is_unit = i > 0 && guess.unit.empty() &&
-                         std::find(kUnits.begin(), kUnits.end(), parts[i]) != kUnits.end();
-    if (is_unit)
-      guess.unit = parts[i] == "C" ? "degC" : parts[i];
-    else
+    std::string unit;
+    if (i > 0 && guess.unit.empty())
+      unit = unit_of(parts[i], i + 1 == parts.size(), lower(parts[i - 1]));
+    if (unit.empty())
       words.push_back(lower(parts[i]));
+    else
+      guess.unit = unit;
   }
   if (words.size() > 1) assign(guess, words[0] + words[1]);
   for (const std::string& word : words) assign(guess, word);

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -62,6 +63,7 @@ struct FileColumns {
   std::string time_unit;
   std::vector<ChannelColumns> channels;
   std::vector<std::string> unknown;
+  std::string lacks;  ///< why the file is no recording, in words; empty if it is one
 };
 
 FileColumns columns_of(const fs::path& file) {
@@ -94,15 +96,15 @@ FileColumns columns_of(const fs::path& file) {
       found.unknown.push_back(name);
     }
   }
-  if (found.time.empty())
-    throw InputError({file.string()},
-                     fmt::format("no column looks like a time (t, time, ...); the columns are {}",
-                                 fmt::join(names, ", ")));
-  if (found.channels.empty())
-    throw InputError({file.string()},
-                     fmt::format("no column looks like a channel (reference, command, position, "
-                                 "pressure_a, ...); the columns are {}",
-                                 fmt::join(names, ", ")));
+  if (found.time.empty()) {
+    found.lacks = fmt::format("no column looks like a time (t, time, ...); the columns are {}",
+                              fmt::join(names, ", "));
+  } else if (found.channels.empty()) {
+    found.lacks = fmt::format(
+        "no column looks like a channel (reference, command, position, "
+        "pressure_a, ...); the columns are {}",
+        fmt::join(names, ", "));
+  }
   return found;
 }
 
@@ -168,14 +170,38 @@ std::string channels_text(const FileColumns& columns) {
   return text;
 }
 
-std::string rig_text(bool closed_loop) {
+/// Optional terms that a cylinder with both chambers mostly has.
+constexpr std::array<std::string_view, 9> kTwoChamberTerms{
+    "retracted_position", "valve_dead_band", "valve_time_constant",
+    "valve_null_leakage", "laminar_leakage", "gravity",
+    "coulomb_friction",   "air_fraction",    "stop_stiffness"};
+
+/// Terms that may join, as comments.
+std::string terms_text(model::PlantKind plant) {
+  std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
+  for (const std::string_view key : kTwoChamberTerms) {
+    const int row = model::parameter_index(plant, key);
+    const model::ParameterSpec& spec = model::parameter_table(plant)[static_cast<std::size_t>(row)];
+    text += fmt::format("# {} = {}{}\n", key,
+                        spec.unit == "1" ? "..." : fmt::format("\"... {}\"", spec.unit),
+                        comment(fmt::format("{}: {}", spec.symbol, spec.meaning)));
+  }
+  return text;
+}
+
+std::string rig_text(model::PlantKind plant, bool closed_loop) {
+  const bool two_chambers = plant == model::PlantKind::two_chamber;
   std::string text =
-      "[rig]\n"
-      "model = \"load_pressure\"  # a symmetric cylinder on one servo-valve\n"
+      two_chambers
+          ? "[rig]\n"
+            "model = \"two_chamber\"  # single-rod or double-rod, with both chamber pressures\n"
+          : "[rig]\n"
+            "model = \"load_pressure\"  # a symmetric cylinder on one servo-valve\n";
+  text +=
       "# What a data sheet does not tell is fitted: { start = ..., lower = ..., upper = ..., fit = "
       "true }\n"
       "[rig.parameters]\n";
-  for (const model::ParameterSpec& spec : model::parameter_table(model::PlantKind::load_pressure)) {
+  for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
     if (spec.kind != model::ParameterKind::plant || spec.default_value) continue;
     const std::string blank = spec.unit == "1"
                                   ? toml_quoted(kBlank)
@@ -184,6 +210,7 @@ std::string rig_text(bool closed_loop) {
                         comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
                                             spec.unit == "1" ? " (a plain number)" : "")));
   }
+  if (two_chambers) text += terms_text(plant);
   return text + (closed_loop
                      ? "[rig.controller]\ntype = \"pid\"\n" +
                            fmt::format("kp = \"{} V/m\"{}\n", kBlank,
@@ -301,6 +328,25 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
                      known ? "" : comment("half of peak to peak, after the gain, with unit"));
 }
 
+/// Files without a time or a channel, as a summary beside the recordings, are named in `left_out`.
+/// @throws InputError  no file is a recording
+std::vector<fs::path> recordings_among(const std::vector<fs::path>& files, std::string& left_out) {
+  std::vector<fs::path> recordings;
+  std::string first;
+  for (const fs::path& file : files) {
+    const std::string lacks = columns_of(file).lacks;
+    if (lacks.empty()) {
+      recordings.push_back(file);
+      continue;
+    }
+    if (first.empty()) first = lacks;
+    left_out += fmt::format("# left out: {} ({})\n", file.filename().string(), lacks);
+  }
+  if (recordings.empty()) throw InputError({files.at(0).string()}, first);
+  if (!left_out.empty()) left_out += "\n";
+  return recordings;
+}
+
 /// Files of one condition: their names differ in the last number only.
 struct FileGroup {
   std::string id;
@@ -332,15 +378,22 @@ std::vector<FileGroup> groups_of(const std::vector<fs::path>& files) {
 }  // namespace
 
 std::string draft_campaign(const std::vector<fs::path>& files, const fs::path& folder) {
-  const auto groups = groups_of(files);
-  const FileColumns columns = columns_of(files.at(0));
+  std::string left_out;
+  const auto groups = groups_of(recordings_among(files, left_out));
+  const FileColumns columns = columns_of(groups.at(0).files.at(0));
   const bool closed_loop = find(columns, Channel::reference) != nullptr;
+  const bool chambers = std::any_of(groups.begin(), groups.end(), [](const FileGroup& group) {
+    const FileColumns own = columns_of(group.files.front());
+    return find(own, Channel::pressure_a) != nullptr || find(own, Channel::pressure_b) != nullptr;
+  });
   std::string text = fmt::format(
       "# Draft by rigcal init. Replace every \"{}\", delete what does not apply, then run\n"
       "# rigcal check on this file. docs/campaign-file.md explains every key.\n"
       "schema = \"rigcal.campaign/1\"\nname = \"New rig\"\n\n",
       kBlank);
-  text += rig_text(closed_loop);
+  text += left_out;
+  text += rig_text(chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure,
+                   closed_loop);
   text +=
       "\n[recording]\n"
       "initial = \"record\"  # start as the record does; \"rest\": from zero; \"fit\": estimate "

@@ -14,10 +14,14 @@ inline constexpr const char* kBlank = "FILL IN";
 /// signals. Everything that the files do not tell is a blank; with the blanks filled the draft is a
 /// campaign that loads.
 ///
+/// The plant is that of both chambers where either chamber's pressure is among the columns.
+///
 /// @param files   CSV or MAT files; those whose names differ in their last number only are repeats
 /// @param folder  record paths are written relative to it
 /// @return        the text of a campaign file, with comments
-/// @throws InputError  a file is wrong, or holds no column that looks like a time or like a channel
+/// @throws InputError  a file is wrong, or no file holds a column that looks like a time and one
+/// like
+///                     a channel
 std::string draft_campaign(const std::vector<std::filesystem::path>& files,
                            const std::filesystem::path& folder);
 

@@ -35,12 +35,12 @@ std::string sine_csv(double phase) {
 }
 
 /// What a user would do: a value for every blank.
-std::string filled(std::string text) {
+std::string filled(std::string text, model::PlantKind plant = model::PlantKind::load_pressure) {
   const auto fill = [&](const std::string& from, const std::string& to) {
     for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from))
       text.replace(at, from.size(), to);
   };
-  for (const model::ParameterSpec& spec : model::parameter_table(model::PlantKind::load_pressure)) {
+  for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
     if (spec.kind != model::ParameterKind::plant || spec.default_value) continue;
     const double value = spec.lower > 0.0 ? std::sqrt(spec.lower * spec.upper) : spec.lower;
     const std::string unit = spec.unit == "1" ? "" : " " + std::string(spec.unit);
@@ -97,7 +97,12 @@ TEST_CASE("draft_campaign: one column per repeat, two sets, no loop", "[datasets
                              "\"x_mm_A{n}\", pressure_a = \"pA_bar_{n}\" } }"));
   CHECK_THAT(draft, Contains("position = \"x_mm_B{n}\", pressure_b = \"pB_bar_{n}\""));
   CHECK_THAT(draft, Contains("waveform = \"recorded\"") && Contains("type = \"none\""));
-  const Campaign campaign = load_campaign(folder.write("campaign.toml", filled(draft)));
+  // Pressures of chambers: the plant with both.
+  CHECK_THAT(draft, Contains("model = \"two_chamber\"") && Contains("area_b = \"FILL IN m2\"") &&
+                        Contains("# retracted_position = \"... m\"  # x_R: "));
+  CHECK_THAT(draft, !Contains("piston_area"));
+  const Campaign campaign =
+      load_campaign(folder.write("campaign.toml", filled(draft, model::PlantKind::two_chamber)));
   const Record record = load_record(campaign, campaign.conditions.at(0));
   CHECK(record.repeats == 4);
   CHECK(record.channels.at(Channel::pressure_b).repeats == 2);
@@ -120,6 +125,16 @@ TEST_CASE("draft_campaign: a MAT file, and a column in volts", "[datasets]") {
   CHECK_THAT(draft, Contains("position = { column = \"log.position_V\", unit = \"FILL IN\" }") &&
                         Contains("the column is in V"));
   CHECK_THAT(draft, Contains("not generated: it has an offset or a phase"));
+}
+
+TEST_CASE("draft_campaign: a summary beside the recordings is left out", "[datasets]") {
+  const TemporaryFolder folder;
+  const fs::path summary = folder.write("summary.csv", "run,speed_mm_s\n1,2\n");
+  const fs::path run = folder.write("sine_1.csv", sine_csv(0.1));
+  const std::string draft = draft_campaign({summary, run}, folder.path());
+  CHECK_THAT(draft, Contains("# left out: summary.csv (no column looks like a time"));
+  CHECK_THAT(draft, !Contains("id = \"summary\"") && Contains("\"sine_1.csv\""));
+  CHECK_THAT(draft, Contains("model = \"load_pressure\""));
 }
 
 TEST_CASE("draft_campaign: files that tell nothing", "[datasets]") {
