@@ -14,6 +14,7 @@
 
 #include "bench/baseline.hpp"
 #include "bench/problems.hpp"
+#include "bench/two_chamber_record.hpp"
 #include "calib/evaluator.hpp"
 #include "calib/fit.hpp"
 #include "calib/multi_start.hpp"
@@ -360,5 +361,6 @@ int main(int argc, char** argv) {
   six_signals(rounds);
   stiff(rounds);
   long_record(rounds);
+  two_chamber_record(rounds);
   growth(rounds);
 }
