@@ -10,15 +10,63 @@
 
 namespace rigcal::calib {
 
-Candidate candidate_of(const std::string& name, const Fit& fit) {
-  Candidate candidate;
-  candidate.name = name;
-  candidate.cost = fit.cost;
-  candidate.residuals = static_cast<double>(fit.residual_count);
-  candidate.effective_samples =
-      fit.effective_samples > 0.0 ? fit.effective_samples : candidate.residuals;
-  candidate.parameters = fit.rank;
-  return candidate;
+namespace {
+
+/// Variance of what a model leaves, in units of its weights, per effective sample.
+struct Noise {
+  double variance = 0.0;
+  double effective_samples = 1.0;
+
+  explicit Noise(const Candidate& model)
+      : effective_samples(std::clamp(model.effective_samples, 1.0, model.residuals)) {
+    const double left = model.residuals - model.parameters;
+    const double share = effective_samples / model.residuals;
+    variance = left > 0.0 ? 2.0 * model.cost / left / share : 0.0;
+  }
+
+  /// A difference of deviances in independent residuals of this noise.
+  double weighed(double difference) const {
+    constexpr double kMost = std::numeric_limits<double>::max();
+    if (variance > 0.0) return std::clamp(difference / variance, -kMost, kMost);
+    return difference == 0.0 ? 0.0 : std::copysign(kMost, difference);
+  }
+};
+
+/// A difference of a criterion below this is none to speak of (Burnham and Anderson, Model
+/// Selection and Multimodel Inference, 2002, 2.6).
+constexpr double kNoDifference = 2.0;
+
+}  // namespace
+
+InformationDifference compare_information(const Candidate& first, const Candidate& other) {
+  if (first.residuals != other.residuals) {
+    throw std::invalid_argument(
+        fmt::format("compare_information: {} has {} residuals, {} has {}; expected the same",
+                    first.name, first.residuals, other.name, other.residuals));
+  }
+  const Noise noise(other.deviance() < first.deviance() ? other : first);
+  const double gain = noise.weighed(other.deviance() - first.deviance());
+  const double more = other.parameters - first.parameters;
+  InformationDifference result;
+  result.aic = 2.0 * more + gain;
+  result.bic = more * std::log(noise.effective_samples) + gain;
+  const auto choice = [&](double difference) {
+    if (std::abs(difference) < kNoDifference) return 0;
+    return difference < 0.0 ? 1 : -1;
+  };
+  const int by_aic = choice(result.aic);
+  const int by_bic = choice(result.bic);
+  const std::string numbers =
+      fmt::format("AIC {:+.3g}, BIC {:+.3g} against {}", result.aic, result.bic, first.name);
+  if (by_aic == 0 && by_bic == 0) {
+    result.message = fmt::format("no difference to speak of ({})", numbers);
+  } else if (by_aic * by_bic < 0) {
+    result.message = fmt::format("the criteria contradict each other ({})", numbers);
+  } else {
+    result.message =
+        fmt::format("{} is preferred ({})", by_aic + by_bic > 0 ? other.name : first.name, numbers);
+  }
+  return result;
 }
 
 ModelChoice choose(const Candidate& smaller, const Candidate& larger) {
@@ -31,18 +79,12 @@ ModelChoice choose(const Candidate& smaller, const Candidate& larger) {
   }
   ModelChoice result;
   result.freedom = larger.parameters - smaller.parameters;
-  const double left = larger.residuals - larger.parameters;
-  const double variance = left > 0.0 ? 2.0 * larger.cost / left : 0.0;
-  const double gain = 2.0 * std::max(0.0, smaller.cost - larger.cost);
-  const double share = std::min(1.0, larger.effective_samples / larger.residuals);
-  result.likelihood_ratio = variance > 0.0 ? gain / variance * share
-                            : gain > 0.0   ? std::numeric_limits<double>::max()
-                                           : 0.0;
+  const Noise noise(larger);
+  result.likelihood_ratio = noise.weighed(std::max(0.0, smaller.deviance() - larger.deviance()));
   const boost::math::chi_squared distribution(result.freedom);
   result.p = boost::math::cdf(boost::math::complement(distribution, result.likelihood_ratio));
   result.delta_aic = 2.0 * result.freedom - result.likelihood_ratio;
-  result.delta_bic =
-      result.freedom * std::log(std::max(1.0, larger.effective_samples)) - result.likelihood_ratio;
+  result.delta_bic = result.freedom * std::log(noise.effective_samples) - result.likelihood_ratio;
   constexpr double kLevel = 0.05;
   result.larger = result.p < kLevel;
   const bool bic_agrees = (result.delta_bic < 0.0) == result.larger;

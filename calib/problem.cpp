@@ -9,6 +9,7 @@
 #include <map>
 
 #include "calib/initial_state.hpp"
+#include "calib/known_sd.hpp"
 #include "calib/known_values.hpp"
 #include "datasets/model_output.hpp"
 
@@ -40,13 +41,6 @@ const Record& record_of(const Condition& condition, const std::vector<Record>& r
                                                   condition.id));
   }
   return *found;
-}
-
-/// Standard deviation of the mean that record or campaign tell; NaN if neither does.
-double known_sd(const Campaign& campaign, Channel channel, const datasets::Series& series) {
-  if (std::isfinite(series.sd_of_mean) && series.sd_of_mean > 0.0) return series.sd_of_mean;
-  const auto sd = campaign.channels.at(channel).sd;
-  return sd && *sd > 0.0 ? *sd : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Counts would be taken for metres, pascals and seconds.

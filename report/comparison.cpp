@@ -12,6 +12,7 @@
 
 #include "common/error.hpp"
 #include "metrics/significance.hpp"
+#include "report/comparison_models.hpp"
 #include "report/page_parts.hpp"
 #include "report/stored.hpp"
 
@@ -107,8 +108,9 @@ Json compared_result_json(const Compared& compared) {
   Json json;
   json["name"] = compared.name;
   json["file"] = compared.file.string();
-  for (const char* key : {"schema", "status", "verdict", "message", "campaign", "synthetic", "cost",
-                          "residual_count", "reduced_chi_square"}) {
+  for (const char* key :
+       {"schema", "status", "verdict", "message", "campaign", "synthetic", "model", "cost",
+        "residual_count", "reduced_chi_square", "effective_samples"}) {
     const auto found = result.find(key);
     json[key] = found == result.end() ? Json(nullptr) : *found;
   }
@@ -535,6 +537,7 @@ Json comparison_json(const std::vector<Compared>& results, const Provenance& pro
     try {
       compared_result_json(compared);
       parameters_json_of({compared});
+      models_json({compared, compared});
       conditions_json_of({compared});
     } catch (const Json::exception& error) {
       throw InputError(
@@ -553,6 +556,7 @@ Json comparison_json(const std::vector<Compared>& results, const Provenance& pro
   json["parameters"] = parameters_json_of(results);
   json["conditions"] = conditions_json_of(results);
   json["metrics"] = metrics_json_of(json["conditions"], results.size());
+  json["models"] = models_json(results);
   json["records"] = records_json_of(results);
   json["leak_trends"] = leak_trends_json(results);
   json["warnings"] = comparison_warnings(results);

@@ -19,6 +19,7 @@ std::string titled(const std::string& title, const std::string& body, const Styl
 
 std::string results_table(const Json& comparison) {
   TextTable table({{"result"},
+                   {"model"},
                    {"status"},
                    {"verdict"},
                    {"conditions", Align::right},
@@ -37,7 +38,9 @@ std::string results_table(const Json& comparison) {
       when = dates[0].get<std::string>();
       if (dates[1] != dates[0]) when += " .. " + dates[1].get<std::string>();
     }
-    table.add({text_of(result, "name"), text_of(result, "status"), verdict.empty() ? "-" : verdict,
+    const std::string model = text_of(result, "model");
+    table.add({text_of(result, "name"), model.empty() ? "-" : model, text_of(result, "status"),
+               verdict.empty() ? "-" : verdict,
                fmt::format("{}", result.at("conditions").get<int>()), when, number_text("cost"),
                number_text("reduced_chi_square")});
   }
@@ -144,6 +147,20 @@ std::string metrics_table(const Json& comparison) {
   return table.empty() ? std::string() : table.text();
 }
 
+std::string models_text(const Json& comparison) {
+  std::string text;
+  const Json& models = comparison.at("models");
+  for (std::size_t i = 1; i < models.size(); ++i) {
+    const std::string verdict = text_of(models[i], "verdict");
+    const std::string reason = text_of(models[i], "reason");
+    text += fmt::format("  {}: {}\n", text_of(comparison.at("results")[i], "name"),
+                        verdict.empty()  ? "not compared: " + reason
+                        : reason.empty() ? verdict
+                                         : verdict + "; no likelihood ratio: " + reason);
+  }
+  return text;
+}
+
 std::string trends_text(const Json& comparison) {
   std::string text;
   for (const Json& trend : comparison.at("leak_trends")) {
@@ -173,6 +190,7 @@ std::string comparison_text(const Json& comparison, const Style& style) {
       estimates_table(comparison), style);
   text += titled("Scores over the conditions that both have; * significant at 5 %",
                  metrics_table(comparison), style);
+  text += titled("Models, against the first", models_text(comparison), style);
   text +=
       titled("Trend of the leakage coefficient, 95 % intervals", trends_text(comparison), style);
   int shared = 0;

@@ -10,6 +10,7 @@
 #include "report/groups.hpp"
 #include "report/residual_tests_json.hpp"
 #include "report/trust_json.hpp"
+#include "report/weights_json.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -288,6 +289,7 @@ Json result_json(const Result& result) {
   json["message"] = fit.message;
   json["campaign"] = result.campaign.name;
   json["synthetic"] = result.campaign.synthetic;
+  json["model"] = std::string(to_string(result.campaign.rig.plant));
   // A cost of zero would look like a perfect fit.
   json["cost"] = status_of(fit) == calib::FitStatus::failed ? Json(nullptr) : number(fit.cost);
   json["residual_count"] = fit.residual_count;
@@ -300,6 +302,7 @@ Json result_json(const Result& result) {
   json["singular_values"] = numbers(fit.singular_values);
   json["reduced_chi_square"] = fit.rank > 0 ? number(fit.reduced_chi_square) : Json(nullptr);
   add_trust(fit, json);
+  if (result.kind == ResultKind::fit) json["weights"] = weights_json(result);
   json["validity"] = validity_json(result);
   json["acceptance"] = acceptance_json(result.campaign.acceptance);
   json["conditions"] = Json::array();

@@ -275,6 +275,7 @@ Json result_rows(const Json& results) {
                     {"name", text_of(result, "name")},
                     {"badge", std::move(mark)},
                     {"campaign", text_of(result, "campaign")},
+                    {"model", text_of(result, "model")},
                     {"conditions", fmt::format("{}", result.at("conditions").get<int>())},
                     {"dates", when},
                     {"temperature", warm},
@@ -282,6 +283,26 @@ Json result_rows(const Json& results) {
                     {"residuals", fmt::format("{}", result.at("residual_count").get<long>())},
                     {"chi", shown_in(result.at("reduced_chi_square"), 1.0, 4)},
                     {"command", text_of(result, "command")}});
+  }
+  return rows;
+}
+
+Json model_rows(const Json& comparison) {
+  Json rows = Json::array();
+  const Json& models = comparison.at("models");
+  for (std::size_t i = 1; i < models.size(); ++i) {
+    const Json& model = models[i];
+    const auto p = number_of(model, "p_value");
+    const std::string verdict = text_of(model, "verdict");
+    rows.push_back({{"name", text_of(comparison.at("results")[i], "name")},
+                    {"aic", shown_in(model.at("delta_aic"), 1.0, 4)},
+                    {"bic", shown_in(model.at("delta_bic"), 1.0, 4)},
+                    {"ratio", shown_in(model.at("likelihood_ratio"), 1.0, 4)},
+                    {"freedom", p ? fmt::format("{}", model.at("freedom").get<int>()) : "–"},
+                    {"p", p ? p_value_text(*p) : std::string("–")},
+                    {"verdict", verdict.empty() ? std::string("not compared") : verdict},
+                    {"reason", text_of(model, "reason")},
+                    {"has_reason", !text_of(model, "reason").empty()}});
   }
   return rows;
 }
@@ -353,6 +374,7 @@ Json comparison_view(const Json& comparison) {
   for (const Figure& figure : parameter_figures(comparison.at("parameters")))
     view["plots"].push_back({{"svg_html", svg(figure.plot)}});
   view["metrics"] = metric_rows(comparison);
+  view["models"] = model_rows(comparison);
   view["has_metrics"] = !view["metrics"].empty();
   view["conditions"] = score_rows_of(comparison.at("conditions"));
   view["has_conditions"] = !view["conditions"].empty();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -33,6 +34,15 @@ struct FitRequest {
   std::optional<long> max_evaluations;
 };
 
+/// A fit that begins anew must not look as if it went on.
+void say_nothing_to_resume(const FitRequest& options, int starts) {
+  std::fputs(
+      fmt::format("no checkpoint in {}{}: the fit begins anew\n", options.common.out.string(),
+                  starts > 1 ? "" : " (a fit of one start keeps none)")
+          .c_str(),
+      stderr);
+}
+
 ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
   const auto records =
@@ -55,6 +65,8 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   CheckpointFile checkpoint(options.common.out, provenance);
   const auto earlier = options.resume ? checkpoint.read() : std::nullopt;
   if (earlier) settings.resume = &*earlier;
+  if (options.resume && !earlier && !options.common.print.quiet)
+    say_nothing_to_resume(options, settings.starts);
   if (settings.starts > 1)
     settings.checkpoint = [&](const calib::Checkpoint& reached) { checkpoint.keep(reached); };
 

@@ -42,6 +42,37 @@ TEST_CASE("compare: fits of two days, one with another valve", "[apps]") {
   CHECK(folder.read("both/report.html") == page);
 }
 
+TEST_CASE("compare: the same records with a term on and off", "[apps]") {
+  const CommandFolder folder;
+  // The truth has a friction; one of the fits does not know it.
+  folder.write(
+      "truth.toml",
+      kCampaign + edited(kSynthetic, {{"damping = ", "coulomb_friction = \"60 N\", damping = "}}));
+  REQUIRE(folder.run({"synthesize", "truth.toml", "--seed", "3", "--out", "twin"}).exit_code == 0);
+  const std::string twin = folder.read("twin/campaign.toml");
+  REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "without", "--quiet"}).exit_code == 0);
+  const std::string given = "[rig.parameters]\n";
+  folder.write(
+      "twin/friction.toml",
+      edited(twin, {{given, given + "coulomb_friction = { start = \"20 N\", lower = \"0 N\", "
+                                    "upper = \"500 N\", fit = true }\n"}}));
+  REQUIRE(folder.run({"fit", "twin/friction.toml", "--out", "with", "--quiet"}).exit_code == 0);
+
+  const Outcome outcome = folder.run({"compare", "without", "with", "--out", "both"});
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("with is preferred") && Contains("load_pressure"));
+  const json result = json::parse(folder.read("both/comparison.json"));
+  CHECK(violations(result, "comparison") == "");
+  CHECK(result["results"][1]["model"] == "load_pressure");
+  const json& choice = result["models"][1];
+  CHECK(choice["smaller"] == "without");
+  CHECK(choice["freedom"] == 1);
+  CHECK(choice["p_value"].get<double>() < 1e-3);
+  CHECK(choice["delta_aic"].get<double>() < 0.0);
+  CHECK_THAT(folder.read("both/report.html"), Contains("id=\"models\""));
+}
+
 TEST_CASE("compare: what it refuses", "[apps]") {
   const CommandFolder folder;
   folder.write("empty/note.txt", "");

@@ -82,4 +82,18 @@ TEST_CASE("resume: a stopped fit keeps what it needs, and only the same fit take
   }
 }
 
+TEST_CASE("resume: a fit with nothing to go on from says so", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_quick_twin(folder).exit_code == 0);
+  CommandFolder::Arguments fit{"fit", "twin/campaign.toml", "--out", "one", "--resume"};
+  const Outcome single = folder.run(fit);
+  REQUIRE(single.exit_code == 0);
+  CHECK_THAT(single.err, Contains("no checkpoint in one") && Contains("one start keeps none") &&
+                             Contains("begins anew"));
+  fit.insert(fit.end(), {"--starts", "2"});
+  const Outcome several = folder.run(fit);
+  REQUIRE(several.exit_code == 0);
+  CHECK_THAT(several.err, Contains("no checkpoint in one:"));
+}
+
 }  // namespace rigcal::test

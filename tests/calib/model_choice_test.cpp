@@ -1,6 +1,7 @@
 #include "calib/model_choice.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 namespace rigcal::calib {
 namespace {
@@ -40,6 +41,27 @@ TEST_CASE("model choice: fits without noise and fits of other records", "[calib]
   CHECK_FALSE(same.larger);
   CHECK_THROWS_AS(choose(candidate("a", 1.0, 4, 10.0), candidate("b", 1.0, 4, 10.0)),
                   std::invalid_argument);
+}
+
+TEST_CASE("model choice: neither contains the other", "[calib]") {
+  const Candidate first = candidate("stribeck", 520.0, 5, 1000.0);
+  const auto better = compare_information(first, candidate("friction", 498.0, 4, 1000.0));
+  // 2 (498 - 520) / (996 / 996), one parameter fewer
+  CHECK_THAT(better.aic, WithinAbs(-44.0 - 2.0, 1e-9));
+  CHECK_THAT(better.bic, WithinAbs(-44.0 - std::log(1000.0), 1e-9));
+  CHECK_THAT(better.message, Contains("friction is preferred"));
+  const auto turned = compare_information(candidate("friction", 498.0, 4, 1000.0), first);
+  CHECK_THAT(turned.aic, WithinAbs(-better.aic, 1e-9));
+  CHECK_THAT(turned.message, Contains("friction is preferred"));
+  const auto even = compare_information(first, candidate("other", 519.9, 5, 1000.0));
+  CHECK_THAT(even.message, Contains("no difference to speak of"));
+  // More parameters that gain 3 each: AIC takes them, BIC asks for ln(1000) each.
+  const auto unclear =
+      compare_information(candidate("few", 503.0, 4, 1000.0), candidate("many", 497.0, 8, 1000.0));
+  CHECK(unclear.aic < -2.0);
+  CHECK(unclear.bic > 2.0);
+  CHECK_THAT(unclear.message, Contains("contradict"));
+  CHECK_THROWS_AS(compare_information(first, {"short", 1.0, 4, 10.0, 10.0}), std::invalid_argument);
 }
 
 }  // namespace rigcal::calib

@@ -265,7 +265,8 @@ def check_comparison(binary, work):
     compared = json.loads((work / "both" / "comparison.json").read_text())
     with Browser() as page:
         page.open(path)
-        check_sections(page, ["verdict", "results", "estimates", "scores", "records", "provenance", "formulas"])
+        check_sections(page, ["verdict", "results", "estimates", "models", "scores", "records", "provenance",
+                              "formulas"])
         shown = {float(v) for v in values(page, ".estimates data.value")}
         for parameter in compared["parameters"]:
             for estimate in parameter["estimates"]:
