@@ -18,7 +18,7 @@ namespace {
 using model::Output;
 using model::PlantKind;
 
-double cpu_ms() {
+double spent_ms() {
   timespec now;
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
   return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
@@ -84,9 +84,9 @@ void two_chamber_record(int rounds) {
     inputs.drive = commands[i];
     std::vector<double> round_ms;
     for (int r = 0; r < std::max(3, rounds / 5); ++r) {
-      const double begin = cpu_ms();
+      const double begin = spent_ms();
       const auto result = model::simulate(rig, values, free, inputs, times, outputs);
-      round_ms.push_back(cpu_ms() - begin);
+      round_ms.push_back(spent_ms() - begin);
       steps[i] = result.steps + result.rejected_steps;
       if (result.ok()) continue;
       fmt::print(stderr, "two chambers: {}\n", result.reason);

@@ -65,7 +65,7 @@ class System {
   }
 
   /// f and its partial derivatives: by states and time, then by the parameters, each in one go.
-  [[gnu::flatten]] Linearisation<N, P> linearise(const Values<N>& x, double t) const {
+  Linearisation<N, P> linearise(const Values<N>& x, double t) const {
     Numbers<ByStates> lifted;
     for (int i = 0; i < N; ++i) {
       const auto row = static_cast<std::size_t>(i);
