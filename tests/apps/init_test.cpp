@@ -1,9 +1,10 @@
 #include <catch2/catch.hpp>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "tests/apps/cli_fixture.hpp"
+#include "tests/apps/two_chamber_fixture.hpp"
 
 using namespace rigcal::test;
 using Catch::Contains;
@@ -19,6 +20,27 @@ const Edits kValues{
     {"\"FILL IN\"  # C_d", "0.6  # C_d"},   {"\"FILL IN m\"", "\"20 mm\""},
     {"\"FILL IN m/V\"", "\"2e-5 m/V\""},    {"\"FILL IN\"  # C_leak", "0.3  # C_leak"},
     {"\"FILL IN m2\"", "\"1 mm2\""},        {"\"FILL IN V/m\"", "\"1000 V/m\""}};
+
+/// Values for the blanks of a draft of the plant with both chambers.
+const Edits kTwoChamberValues{{"\"FILL IN kg\"", "\"5 kg\""},
+                              {"\"FILL IN N s/m\"", "\"300 N s/m\""},
+                              {"\"FILL IN N/m\"", "\"0 N/m\""},
+                              {"area_a = \"FILL IN m2\"", "area_a = \"2 cm2\""},
+                              {"area_b = \"FILL IN m2\"", "area_b = \"1.2 cm2\""},
+                              {"stroke = \"FILL IN m\"", "stroke = \"200 mm\""},
+                              {"dead_volume_a = \"FILL IN m3\"", "dead_volume_a = \"20 cm3\""},
+                              {"dead_volume_b = \"FILL IN m3\"", "dead_volume_b = \"30 cm3\""},
+                              {"tank_pressure = \"FILL IN Pa\"", "tank_pressure = \"1 bar\""},
+                              {"supply_pressure = \"FILL IN Pa\"", "supply_pressure = \"44 bar\""},
+                              {"\"FILL IN kg/m3\"", "\"850 kg/m3\""},
+                              {"bulk_modulus = \"FILL IN Pa\"", "bulk_modulus = \"500 MPa\""},
+                              {"\"FILL IN\"  # C_d", "0.6  # C_d"},
+                              {"area_gradient = \"FILL IN m\"", "area_gradient = \"20 mm\""},
+                              {"valve_gain = \"FILL IN m/V\"",
+                               "valve_gain = { start = \"5e-6 m/V\", lower = \"1e-6 m/V\", upper = "
+                               "\"2e-5 m/V\", fit = true }"},
+                              {"\"FILL IN\"  # C_leak", "0  # C_leak"},
+                              {"leakage_area = \"FILL IN m2\"", "leakage_area = \"1 mm2\""}};
 
 }  // namespace
 
@@ -54,6 +76,53 @@ TEST_CASE("init: a folder stands for the recordings in it", "[apps]") {
                     "records/square_2.csv", "--out", "other"})
               .exit_code == 0);
   CHECK(folder.read("new/campaign.toml") == folder.read("other/campaign.toml"));
+}
+
+TEST_CASE("init: from recordings of both chambers to a fit", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_two_chamber_twin(folder).exit_code == 0);
+  REQUIRE(folder.run({"init", "twin/records", "--out", "new", "--quiet"}).exit_code == 0);
+  const std::string draft = folder.read("new/campaign.toml");
+  CHECK_THAT(draft, Contains("model = \"two_chamber\"") && Contains("type = \"none\"") &&
+                        Contains("pressure_a = { column = \"pA_bar\", unit = \"bar\" }") &&
+                        Contains("pressure_b = { column = \"pB_bar\", unit = \"bar\" }"));
+  const Outcome empty = folder.run({"check", "new/campaign.toml"});
+  CHECK(empty.exit_code == 2);
+  CHECK_THAT(empty.err, Contains("FILL IN"));
+  folder.write("new/campaign.toml", edited(draft, kTwoChamberValues));
+  const Outcome checked = folder.run({"check", "new/campaign.toml"});
+  CHECK(checked.err.empty());
+  CHECK(checked.exit_code == 0);
+  const Outcome fitted = folder.run({"fit", "new/campaign.toml", "--out", "results", "--quiet"});
+  CHECK(fitted.err.empty());
+  CHECK(fitted.exit_code == 0);
+  CHECK(folder.has("results/report.html"));
+}
+
+TEST_CASE("init: the Festo records", "[apps]") {
+  const std::filesystem::path records =
+      std::filesystem::path(RIGCAL_RECORDINGS_DIR) / "festo_tp511_servo_cylinder";
+  if (!std::filesystem::exists(records)) {
+    WARN("no recordings here");
+    return;
+  }
+  const CommandFolder folder;
+  REQUIRE(folder
+              .run({"init", (records / "steps_1V_1kHz.csv").string(),
+                    (records / "steps_2V_1kHz.csv").string(),
+                    (records / "steps_4V_1kHz.csv").string(), "--out", "new", "--quiet"})
+              .exit_code == 0);
+  const std::string draft = folder.read("new/campaign.toml");
+  CHECK_THAT(draft, Contains("model = \"two_chamber\"") && Contains("type = \"none\"") &&
+                        Contains("command = { column = \"u_V\", unit = \"V\" }") &&
+                        Contains("pressure_b = { unit = \"bar\" }") &&
+                        Contains("position = \"x_mm_B{n}\", pressure_b = \"pB_bar_{n}\"") &&
+                        Contains("id = \"steps_4V_1kHz\""));
+  folder.write("new/campaign.toml", edited(draft, kTwoChamberValues));
+  const Outcome checked = folder.run({"check", "new/campaign.toml"});
+  CHECK(checked.err.empty());
+  CHECK(checked.exit_code == 0);
+  CHECK_THAT(checked.out, Contains("steps_1V_1kHz: fit") && Contains("20 repeats"));
 }
 
 TEST_CASE("init: what it refuses", "[apps]") {
