@@ -46,7 +46,8 @@ class SeriesData {
   /// Adds a column and returns its number.
   std::size_t add(const std::vector<double>& values, double si);
   /// The same at the points that are kept of another column.
-  std::size_t add(const std::vector<double>& values, const std::vector<double>& extremes, double si);
+  std::size_t add(const std::vector<double>& values, const std::vector<double>& extremes,
+                  double si);
 
   /// JSON that no HTML parser can take for markup.
   std::string text() const;
