@@ -153,10 +153,11 @@ std::string models_text(const Json& comparison) {
   for (std::size_t i = 1; i < models.size(); ++i) {
     const std::string verdict = text_of(models[i], "verdict");
     const std::string reason = text_of(models[i], "reason");
-    text += fmt::format("  {}: {}\n", text_of(comparison.at("results")[i], "name"),
-                        verdict.empty()  ? "not compared: " + reason
-                        : reason.empty() ? verdict
-                                         : verdict + "; no likelihood ratio: " + reason);
+    text +=
+        fmt::format("  {}: {}\n", text_of(comparison.at("results")[i], "name"),
+                    verdict.empty()  ? "not compared: " + reason
+                    : reason.empty() ? verdict
+                                     : fmt::format("{}; no likelihood ratio: {}", verdict, reason));
   }
   return text;
 }

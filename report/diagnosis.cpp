@@ -139,7 +139,7 @@ std::string class_name(const std::optional<LeakClass>& leak_class, const char* o
   return leak_class ? std::string(to_string(*leak_class)) : otherwise;
 }
 
-std::string csv_row(const RecordDiagnosis& record) {
+std::string record_row(const RecordDiagnosis& record) {
   const bool ok = record.fit.ok();
   const diagnosis::LeakEstimate& e = record.estimate;
   std::vector<std::string> fields{record.condition,
@@ -307,7 +307,7 @@ std::string diagnosis_csv(const DiagnosisResult& result) {
   text +=
       ",feature_mean_m,feature_rms_m,feature_std_m,class_by_features,true_class,"
       "true_share_percent,warnings\n";
-  for (const RecordDiagnosis& record : result.diagnosis.records) text += csv_row(record);
+  for (const RecordDiagnosis& record : result.diagnosis.records) text += record_row(record);
   return text;
 }
 
