@@ -118,6 +118,12 @@ std::pair<Eigen::MatrixXd, int> cluster_sandwich(const Linear& linear,
   return {factor * bread * (scores.transpose() * scores) * bread, freedom};
 }
 
+/// Standard error of one unknown if the weighted residuals were white noise of variance 1.
+double white_error(const Eigen::MatrixXd& jacobian, Eigen::Index column) {
+  const Eigen::VectorXd unit = Eigen::VectorXd::Unit(jacobian.cols(), column);
+  return std::sqrt((jacobian.transpose() * jacobian).ldlt().solve(unit)(column));
+}
+
 /// Share over the steady part and its derivatives by every free parameter.
 struct ShareAt {
   double share = 0.0;
@@ -228,10 +234,12 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, bo
   fit.scatter_se = std::sqrt(covariance(leak, leak));
   fit.scatter_freedom = freedom;
   // Whether the optimiser is content does not matter: the last step is taken here, by linear
-  // continuation, which a long one would overstretch.
-  if (values[kLeak] > 0.0 && std::abs(step(leak)) > fit.scatter_se + 1e-3 * values[kLeak]) {
+  // continuation, which a long one would overstretch. The scatter may be nothing where the record
+  // is its own reference, so the error that white noise alone gives is granted too.
+  const double error = std::max(fit.scatter_se, white_error(linear.jacobian, leak));
+  if (values[kLeak] > 0.0 && std::abs(step(leak)) > error + 1e-3 * values[kLeak]) {
     fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
-                              std::abs(step(leak)) / fit.scatter_se);
+                              std::abs(step(leak)) / error);
     return;
   }
 
