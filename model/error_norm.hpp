@@ -49,7 +49,7 @@ class ErrorNorm {
   double of_sensitivities(const X& error, const X& x_new) const {
     double worst = 0.0;
     if constexpr (P > 0) {
-      Pack<double, P> sum{};
+      Pack<P> sum{};
       for (std::size_t i = 0; i < N; ++i) {
         const Active<P> peak = peak_of(i, x_new[i]);
         const auto scale = max(peak.derivative, sensitivity_floor_ * peak.value);
@@ -79,7 +79,7 @@ class ErrorNorm {
   }
 
   X peak_;
-  Pack<double, P> sensitivity_floor_{};
+  Pack<P> sensitivity_floor_{};
   double tolerance_;
   double sensitivity_tolerance_;
 };

@@ -136,7 +136,7 @@ class Rosenbrock {
 
  private:
   static void set_value(double& x, double value) { x = value; }
-  static void set_value(Dual<double, P>& x, double value) { x.value = value; }
+  static void set_value(Dual<P>& x, double value) { x.value = value; }
 
   template <int kStage, typename System>
   void stage(const System& system, const Linearisation<N, P>& lin, double t, double dt) {

@@ -11,7 +11,7 @@ namespace rigcal::model {
 
 /// A number with the derivatives by P parameters; a plain double for none.
 template <int P>
-using Active = std::conditional_t<P == 0, double, Dual<double, P>>;
+using Active = std::conditional_t<P == 0, double, Dual<P>>;
 
 /// N state variables, each with its sensitivities to P parameters.
 template <int N, int P>
@@ -22,10 +22,10 @@ template <int N>
 using Values = std::array<double, static_cast<std::size_t>(N)>;
 /// The sensitivities of N states to P parameters.
 template <int N, int P>
-using Tangents = std::array<Pack<double, P>, static_cast<std::size_t>(N)>;
+using Tangents = std::array<Pack<P>, static_cast<std::size_t>(N)>;
 
 template <int P, std::size_t N>
-std::array<double, N> values_of(const std::array<Dual<double, P>, N>& x) {
+std::array<double, N> values_of(const std::array<Dual<P>, N>& x) {
   std::array<double, N> values;
   for (std::size_t i = 0; i < N; ++i) values[i] = x[i].value;
   return values;

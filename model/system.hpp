@@ -181,7 +181,7 @@ class System {
     using Number = C;
   };
   struct ByStates {
-    using Number = Dual<double, N + 1>;  ///< directions: the states, then time
+    using Number = Dual<N + 1>;  ///< directions: the states, then time
   };
   template <typename K>
   using Number = typename K::Number;

@@ -168,7 +168,7 @@ struct Pair {
   double p = 1.3;
   double q = 0.8;
   using X = State<2, 2>;
-  using D = Dual<double, 2>;
+  using D = Dual<2>;
 
   static D dual(double value, double by_p, double by_q) {
     D d(value);

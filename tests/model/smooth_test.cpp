@@ -7,7 +7,7 @@ using namespace rigcal::model;
 using Catch::WithinRel;
 
 namespace {
-using D = Dual<double, 1>;
+using D = Dual<1>;
 constexpr double kRootEps = 100.0;
 
 }  // namespace

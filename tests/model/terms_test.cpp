@@ -8,7 +8,7 @@ using Catch::WithinRel;
 
 namespace {
 
-using D = Dual<double, 1>;
+using D = Dual<1>;
 constexpr double kSupply = 6.2e6;
 constexpr double kCd = 0.6;
 constexpr double kWidth = 0.02075;
