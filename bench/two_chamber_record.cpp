@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "bench/clock.hpp"
 #include "model/simulate.hpp"
 
 namespace rigcal::bench {
@@ -17,12 +17,6 @@ namespace {
 
 using model::Output;
 using model::PlantKind;
-
-double spent_ms() {
-  timespec now;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
-}
 
 /// A cylinder 16/10 x 200 mm at 44 bar with hoses, as on a training stand.
 model::ParameterValues single_rod() {
@@ -84,16 +78,15 @@ void two_chamber_record(int rounds) {
     inputs.drive = commands[i];
     std::vector<double> round_ms;
     for (int r = 0; r < std::max(3, rounds / 5); ++r) {
-      const double begin = spent_ms();
+      const double begin = cpu_ms();
       const auto result = model::simulate(rig, values, free, inputs, times, outputs);
-      round_ms.push_back(spent_ms() - begin);
+      round_ms.push_back(cpu_ms() - begin);
       steps[i] = result.steps + result.rejected_steps;
       if (result.ok()) continue;
       fmt::print(stderr, "two chambers: {}\n", result.reason);
       std::exit(1);
     }
-    std::sort(round_ms.begin(), round_ms.end());
-    found_ms.push_back(round_ms[round_ms.size() / 2]);
+    found_ms.push_back(median(round_ms));
   }
   fmt::print(
       "### The same of a cylinder with two chambers, a valve of first order, dry friction\n\n");

@@ -2,12 +2,12 @@
 
 #include <cmath>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tests/support/command.hpp"
+#include "tests/support/replaced.hpp"
 #include "tests/support/small_rig.hpp"
 
 namespace rigcal::test {
@@ -16,11 +16,7 @@ namespace rigcal::test {
 using Edits = std::vector<std::pair<std::string, std::string>>;
 
 inline std::string edited(std::string text, const Edits& edits) {
-  for (const auto& [from, to] : edits) {
-    const std::size_t at = text.find(from);
-    if (at == std::string::npos) throw std::logic_error("the fixture has no '" + from + "'");
-    text.replace(at, from.size(), to);
-  }
+  for (const auto& [from, to] : edits) text = replaced(text, from, to);
   return text;
 }
 
@@ -92,9 +88,14 @@ inline void write_campaign(const CommandFolder& folder, const Edits& edits = {})
 }
 
 /// Records of a known rig, made by the command itself, in `twin/`.
-inline Outcome write_twin(const CommandFolder& folder, const Edits& edits = {}) {
-  folder.write("truth.toml", edited(kCampaign, edits) + kSynthetic);
+/// @param campaign  with its section [synthetic]
+inline Outcome synthesize_twin(const CommandFolder& folder, const std::string& campaign) {
+  folder.write("truth.toml", campaign);
   return folder.run({"synthesize", "truth.toml", "--seed", "3", "--out", "twin", "--quiet"});
+}
+
+inline Outcome write_twin(const CommandFolder& folder, const Edits& edits = {}) {
+  return synthesize_twin(folder, edited(kCampaign, edits) + kSynthetic);
 }
 
 }  // namespace rigcal::test

@@ -42,7 +42,7 @@ void as_mat(const CommandFolder& folder, const std::string& csv, const std::stri
   write_mat(folder.work() / mat, format, variables);
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
+std::string replaced_all(std::string text, const std::string& from, const std::string& to) {
   for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at))
     text.replace(at, from.size(), to);
   return text;
@@ -71,9 +71,9 @@ TEST_CASE("fit: the same campaign as CSV and as MAT gives the same bits", "[apps
     CAPTURE(name);
     for (const std::string& file : folder.files()) {
       if (file.starts_with("twin/records/"))
-        as_mat(folder, file, name + "/" + replaced(file.substr(5), ".csv", ".mat"), format);
+        as_mat(folder, file, name + "/" + replaced_all(file.substr(5), ".csv", ".mat"), format);
     }
-    folder.write(name + "/campaign.toml", replaced(campaign, ".csv", ".mat"));
+    folder.write(name + "/campaign.toml", replaced_all(campaign, ".csv", ".mat"));
     const Outcome fitted =
         folder.run({"fit", name + "/campaign.toml", "--out", name + "-out", "--quiet"});
     CHECK(fitted.err.empty());

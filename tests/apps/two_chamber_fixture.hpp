@@ -57,8 +57,7 @@ noise = { position = "0.02 mm", pressure_a = "0.1 bar", pressure_b = "0.1 bar" }
 
 /// Records of it, made by the command itself, in `twin/`.
 inline Outcome write_two_chamber_twin(const CommandFolder& folder, const Edits& edits = {}) {
-  folder.write("truth.toml", edited(kTwoChamber, edits) + kTwoChamberTruth);
-  return folder.run({"synthesize", "truth.toml", "--seed", "4", "--out", "twin", "--quiet"});
+  return synthesize_twin(folder, edited(kTwoChamber, edits) + kTwoChamberTruth);
 }
 
 }  // namespace rigcal::test

@@ -49,10 +49,7 @@ struct OpenLoop {
              {"leakage_area", 1e-6},
              {"laminar_leakage", 2e-13},
          }) {
-      datasets::ParameterSetting setting;
-      setting.index = index(key);
-      setting.value = value;
-      campaign.parameters.push_back(setting);
+      campaign.parameters.push_back(known(index(key), value));
       truth.set(key, value);
     }
   }
@@ -261,13 +258,8 @@ TEST_CASE("multiple shooting: what comes to nothing never looks converged", "[ca
     CHECK_THROWS_WITH(shoot(problem, 2e-3), Contains("run0") && Contains("fewer than 4 samples"));
     datasets::Campaign sampled = rig.campaign;
     sampled.rig.controller = model::ControllerKind::pid;
-    for (const auto& [key, value] : std::initializer_list<std::pair<std::string_view, double>>{
-             {"kp", 10.0}, {"sample_time", 1e-3}}) {
-      datasets::ParameterSetting setting;
-      setting.index = OpenLoop::index(key);
-      setting.value = value;
-      sampled.parameters.push_back(setting);
-    }
+    sampled.parameters.push_back(known(OpenLoop::index("kp"), 10.0));
+    sampled.parameters.push_back(known(OpenLoop::index("sample_time"), 1e-3));
     datasets::ChannelSetting reference;
     reference.channel = Channel::reference;
     reference.role = datasets::ChannelRole::input;

@@ -17,6 +17,14 @@
 
 namespace rigcal::calib {
 
+/// A known value of a campaign.
+inline datasets::ParameterSetting known(int index, double value) {
+  datasets::ParameterSetting setting;
+  setting.index = index;
+  setting.value = value;
+  return setting;
+}
+
 /// A rig whose parameters are known: the paper's, with a servo valve that answers within a second.
 /// Its campaign starts away from the truth, its records are simulated at the truth plus noise.
 struct Twin {
@@ -31,12 +39,8 @@ struct Twin {
     campaign.file = "twin.toml";
     campaign.rig = {model::PlantKind::load_pressure, model::ControllerKind::pid,
                     model::InitialState::rest};
-    for (const auto& [key, value] : test::kPaperRig) {
-      datasets::ParameterSetting setting;
-      setting.index = index(key);
-      setting.value = value;
-      campaign.parameters.push_back(setting);
-    }
+    for (const auto& [key, value] : test::kPaperRig)
+      campaign.parameters.push_back(known(index(key), value));
     setting("stiffness").value = 2e4;
     setting("kp").value = 400.0;
     add_channel(datasets::Channel::position);

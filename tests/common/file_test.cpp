@@ -11,6 +11,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
@@ -18,58 +19,36 @@ using rigcal::InputError;
 using rigcal::sha256_of_file;
 using rigcal::write_file_atomically;
 using rigcal::WriteError;
+using rigcal::test::TemporaryFolder;
+using rigcal::test::text_of;
 
 namespace {
 
-/// A folder of its own for each test, removed at the end.
-class Folder {
- public:
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "rigcal_file_XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    path_ = name;
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  fs::path operator/(const std::string& name) const { return path_ / name; }
-  std::ptrdiff_t entries() const {
-    return std::distance(fs::directory_iterator(path_), fs::directory_iterator());
-  }
-
- private:
-  fs::path path_;
-};
-
-std::string content_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+std::ptrdiff_t entries(const TemporaryFolder& folder) {
+  return std::distance(fs::directory_iterator(folder.path()), fs::directory_iterator());
 }
 
 }  // namespace
 
 TEST_CASE("write_file_atomically: writes, replaces, leaves nothing beside", "[common]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string binary("a\0b\n\xFF", 5);
   write_file_atomically(folder / "out.json", "first, and longer");
   write_file_atomically(folder / "out.json", binary);
-  CHECK(content_of(folder / "out.json") == binary);
-  CHECK(folder.entries() == 1);
+  CHECK(text_of(folder / "out.json") == binary);
+  CHECK(entries(folder) == 1);
   write_file_atomically(folder / "empty", "");
   CHECK(fs::file_size(folder / "empty") == 0);
 }
 
 TEST_CASE("write_file_atomically: makes missing folders", "[common]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_file_atomically(folder / "a/b/c.csv", "x");
-  CHECK(content_of(folder / "a/b/c.csv") == "x");
+  CHECK(text_of(folder / "a/b/c.csv") == "x");
 }
 
 TEST_CASE("write_file_atomically: others may read the file as the umask says", "[common]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_file_atomically(folder / "made", "x");
   std::ofstream(folder / "reference") << "x";
   CHECK(fs::status(folder / "made").permissions() ==
@@ -77,16 +56,16 @@ TEST_CASE("write_file_atomically: others may read the file as the umask says", "
 }
 
 TEST_CASE("write_file_atomically: a folder in the way", "[common]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   fs::create_directory(folder / "taken");
   CHECK_THROWS_WITH(write_file_atomically(folder / "taken", "x"),
                     Contains("taken") && Contains("cannot be written: "));
-  CHECK(folder.entries() == 1);
+  CHECK(entries(folder) == 1);
   CHECK_THROWS_AS(write_file_atomically(folder / "taken/", "x"), WriteError);
 }
 
 TEST_CASE("write_file_atomically: a file where a folder should be", "[common]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   std::ofstream(folder / "file") << "x";
   CHECK_THROWS_WITH(write_file_atomically(folder / "file/out.csv", "x"),
                     Contains("out.csv: cannot be written: "));
@@ -94,7 +73,7 @@ TEST_CASE("write_file_atomically: a file where a folder should be", "[common]") 
 }
 
 TEST_CASE("write_file_atomically: a full disk leaves the old file as it was", "[common]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   write_file_atomically(folder / "out.csv", "old");
   rlimit before{};
   REQUIRE(::getrlimit(RLIMIT_FSIZE, &before) == 0);
@@ -111,13 +90,13 @@ TEST_CASE("write_file_atomically: a full disk leaves the old file as it was", "[
   REQUIRE(::setrlimit(RLIMIT_FSIZE, &before) == 0);
   std::signal(SIGXFSZ, handler);
   CHECK_THAT(message, Contains("out.csv: cannot be written: "));
-  CHECK(content_of(folder / "out.csv") == "old");
-  CHECK(folder.entries() == 1);
+  CHECK(text_of(folder / "out.csv") == "old");
+  CHECK(entries(folder) == 1);
 }
 
 TEST_CASE("sha256_of_file: published test vectors", "[common]") {
   // FIPS 180-2, appendix B: "abc", the 56-byte message, and a million times "a".
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto sum = [&folder](const std::string& text) {
     write_file_atomically(folder / "text", text);
     return sha256_of_file(folder / "text");
@@ -131,7 +110,7 @@ TEST_CASE("sha256_of_file: published test vectors", "[common]") {
 }
 
 TEST_CASE("sha256_of_file: what cannot be read is an error", "[common]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   CHECK_THROWS_WITH(sha256_of_file(folder / "missing"),
                     Contains("missing: cannot be read: No such file"));
   CHECK_THROWS_AS(sha256_of_file(folder / ""), InputError);

@@ -1,54 +1,18 @@
 #pragma once
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <random>
 #include <stdexcept>
 #include <string>
 
 #include "datasets/campaign.hpp"
+#include "tests/support/replaced.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace rigcal::test {
-
-/// A folder of its own that goes with the test.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::random_device seed;
-    path_ = std::filesystem::temp_directory_path() /
-            ("rigcal-campaign-" + std::to_string(seed()) + "-" + std::to_string(seed()));
-    std::filesystem::create_directories(path_);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  ~TemporaryFolder() {
-    std::error_code ignored;  // a leftover in the temporary folder harms no test
-    std::filesystem::remove_all(path_, ignored);
-  }
-
-  const std::filesystem::path& path() const { return path_; }
-  std::filesystem::path write(const std::string& name, const std::string& content) const {
-    const std::filesystem::path file = path_ / name;
-    std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file, std::ios::binary) << content;
-    return file;
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 inline datasets::Campaign load_text(const std::string& text) {
   const TemporaryFolder folder;
   return datasets::load_campaign(folder.write("campaign.toml", text));
-}
-
-/// `text` with its first `from` replaced.
-inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  if (at == std::string::npos) throw std::logic_error("the fixture has no '" + from + "'");
-  return text.replace(at, from.size(), to);
 }
 
 /// Line of the first `part` in `text`, from 1.

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
@@ -33,23 +34,12 @@ namespace {
 /// A file of its own for each test, removed at the end.
 class File {
  public:
-  explicit File(const std::string& content) {
-    std::string name = (fs::temp_directory_path() / "rigcal_csv_XXXXXX").string();
-    REQUIRE(::mkdtemp(name.data()) != nullptr);
-    folder_ = name;
-    std::ofstream(path(), std::ios::binary) << content;
-  }
-  File(const File&) = delete;
-  File& operator=(const File&) = delete;
-  ~File() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
+  explicit File(const std::string& content) { folder_.write("a.csv", content); }
   fs::path path() const { return folder_ / "a.csv"; }
-  fs::path folder() const { return folder_; }
+  fs::path folder() const { return folder_.path(); }
 
  private:
-  fs::path folder_;
+  rigcal::test::TemporaryFolder folder_;
 };
 
 CsvRequest request(std::vector<std::string> columns, const std::string& time = "") {

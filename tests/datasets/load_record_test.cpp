@@ -7,36 +7,19 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "common/file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace rigcal::datasets;
 using Catch::Contains;
 using Catch::WithinAbs;
 using Catch::WithinRel;
+using rigcal::test::TemporaryFolder;
 namespace fs = std::filesystem;
 
 namespace {
 
-/// Record files of one test case, gone at its end.
-class Files {
- public:
-  explicit Files(const std::string& name) : path_(fs::temp_directory_path() / name) {
-    fs::remove_all(path_);
-  }
-  ~Files() { fs::remove_all(path_); }
-  Files(const Files&) = delete;
-  Files& operator=(const Files&) = delete;
-  void write(const std::string& name, const std::string& text) const {
-    rigcal::write_file_atomically(path_ / name, text);
-  }
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
 /// A campaign as the loader would make it: position in mm, pressure in bar, time in ms.
-Campaign campaign_in(const Files& files) {
+Campaign campaign_in(const TemporaryFolder& files) {
   Campaign campaign;
   campaign.file = files.path() / "campaign.toml";
   campaign.data_dir = files.path();
@@ -66,7 +49,7 @@ Condition condition_of(const std::string& id, const std::string& pattern) {
 }  // namespace
 
 TEST_CASE("load_record: a second column is taken off the first before units", "[datasets]") {
-  const Files files("rigcal_load_record_minus");
+  const TemporaryFolder files;
   files.write("a.csv", "t,x,a,b,c\n0,1,5,2,9\n10,2,6,2.5,8\n20,4,7,1,7\n");
   Campaign campaign = campaign_in(files);
   ChannelSetting load;
@@ -87,7 +70,7 @@ TEST_CASE("load_record: a second column is taken off the first before units", "[
 }
 
 TEST_CASE("load_record: columns become SI channels, repeats a mean", "[datasets]") {
-  const Files files("rigcal_load_record_si");
+  const TemporaryFolder files;
   files.write("a_1.csv", "t,x,other\n0,1,a\n10,2,b\n20,4,c\n");
   files.write("a_2.csv", "t,x,other\n0,3,a\n10,2,b\n20,8,c\n");
   const Record record = load_record(campaign_in(files), condition_of("a", "a_*.csv"));
@@ -107,7 +90,7 @@ TEST_CASE("load_record: columns become SI channels, repeats a mean", "[datasets]
 }
 
 TEST_CASE("load_record: columns of one file as repeats with different channels", "[datasets]") {
-  const Files files("rigcal_load_record_columns");
+  const TemporaryFolder files;
   files.write("all.csv", "t,x1,x2,p1\n0,1,3,5\n10,2,2,6\n20,4,8,7\n");
   Condition condition;
   condition.id = "steps";
@@ -122,7 +105,7 @@ TEST_CASE("load_record: columns of one file as repeats with different channels",
 }
 
 TEST_CASE("load_record: an averaged file keeps the sd of its samples", "[datasets]") {
-  const Files files("rigcal_load_record_averaged");
+  const TemporaryFolder files;
   files.write("mean.csv", "t,x\n0,1\n10,2\n");
   Campaign campaign = campaign_in(files);
   campaign.channels[Channel::position].sd = 2e-5;
@@ -137,7 +120,7 @@ TEST_CASE("load_record: an averaged file keeps the sd of its samples", "[dataset
 }
 
 TEST_CASE("load_record: repeats that do not belong together name their condition", "[datasets]") {
-  const Files files("rigcal_load_record_errors");
+  const TemporaryFolder files;
   files.write("a_1.csv", "t,x\n0,1\n10,2\n20,4\n");
   files.write("a_2.csv", "t,x\n0,1\n25,2\n50,4\n");
   try {
@@ -159,7 +142,7 @@ TEST_CASE("load_record: repeats that do not belong together name their condition
 }
 
 TEST_CASE("load_records: the campaign's order, the uses asked for, any threads", "[datasets]") {
-  const Files files("rigcal_load_records");
+  const TemporaryFolder files;
   Campaign campaign = campaign_in(files);
   for (const std::string id : {"d", "c", "b", "a"}) {
     files.write(id + ".csv", "t,x\n0,1\n10,2\n");
@@ -179,7 +162,7 @@ TEST_CASE("load_records: the campaign's order, the uses asked for, any threads",
 
 TEST_CASE("load_record: repeats that carry different channels, each with its own count",
           "[datasets]") {
-  const Files files("rigcal_load_record_channels");
+  const TemporaryFolder files;
   files.write("a.csv", "t,x1,p1,x2,p2,x3\n0,1,10,3,20,5\n10,2,12,4,22,6\n20,3,14,5,24,7\n");
   Condition condition = condition_of("a", "a.csv");
   condition.repeats = {
@@ -200,7 +183,7 @@ TEST_CASE("load_record: repeats that carry different channels, each with its own
 }
 
 TEST_CASE("load_record: moving windows of a recorded command", "[datasets]") {
-  const Files files("rigcal_load_record_moving");
+  const TemporaryFolder files;
   std::string text = "t,u,x,still\n";
   for (int i = 0; i < 2000; ++i) {  // steps at 100 ms and 1000 ms, 0.2 mm per ms
     const double x = i < 100    ? 0.0
@@ -245,7 +228,7 @@ TEST_CASE("load_record: the moving windows of a real step test", "[datasets]") {
     WARN("skipped: no recordings in " << folder.string());
     return;
   }
-  Campaign campaign = campaign_in(Files("rigcal_load_record_festo"));
+  Campaign campaign = campaign_in(TemporaryFolder());
   campaign.data_dir = folder;
   campaign.time_column = "t_s";
   campaign.time_to_s = {1.0, 0.0};

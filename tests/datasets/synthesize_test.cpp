@@ -3,16 +3,14 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
 #include "common/error.hpp"
-#include "common/file.hpp"
 #include "datasets/load_record.hpp"
 #include "datasets/synthetic_repeat.hpp"
 #include "position_of.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace rigcal::datasets;
 using Catch::Contains;
@@ -20,32 +18,11 @@ using Catch::StartsWith;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 using rigcal::test::position_of;
+using rigcal::test::TemporaryFolder;
+using rigcal::test::text_of;
 namespace fs = std::filesystem;
 
 namespace {
-
-/// A folder of its own for one test case, gone at its end.
-class Folder {
- public:
-  explicit Folder(const std::string& name) : path_(fs::temp_directory_path() / name) {
-    fs::remove_all(path_);
-    fs::create_directories(path_);
-  }
-  ~Folder() { fs::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
-
-std::string text_of(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  return text.str();
-}
 
 /// The paper's rig, 10 Hz so that a short record holds several periods.
 std::string campaign_text(const std::string& synthetic) {
@@ -97,9 +74,8 @@ sample_rate = "1 kHz"
 )" + synthetic;
 }
 
-Campaign campaign_in(const Folder& folder, const std::string& synthetic) {
-  rigcal::write_file_atomically(folder.path() / "in.toml", campaign_text(synthetic));
-  return load_campaign(folder.path() / "in.toml");
+Campaign campaign_in(const TemporaryFolder& folder, const std::string& synthetic) {
+  return load_campaign(folder.write("in.toml", campaign_text(synthetic)));
 }
 
 constexpr const char* kQuiet = "repeats = 1\n";
@@ -108,7 +84,7 @@ constexpr const char* kQuiet = "repeats = 1\n";
 
 TEST_CASE("synthesize: the same seed gives the same bytes for any number of threads",
           "[datasets]") {
-  const Folder folder("rigcal_synthesize_bytes");
+  const TemporaryFolder folder;
   const Campaign campaign = campaign_in(folder, R"(repeats = 2
 noise = { position = "0.01 mm" }
 ar1_noise = { load_pressure = "0.1 bar" }
@@ -134,7 +110,7 @@ variation = { mass = 0.05 }
 }
 
 TEST_CASE("synthesize: every file is labelled and the campaign loads", "[datasets]") {
-  const Folder folder("rigcal_synthesize_label");
+  const TemporaryFolder folder;
   const auto report =
       synthesize(campaign_in(folder, "repeats = 3\n"), 42, folder.path() / "out", 1);
   CHECK_THAT(text_of(folder.path() / "out/records/sine_66_r3.csv"),
@@ -150,7 +126,7 @@ TEST_CASE("synthesize: every file is labelled and the campaign loads", "[dataset
 }
 
 TEST_CASE("synthesize: a record read back is the simulation in SI", "[datasets]") {
-  const Folder folder("rigcal_synthesize_units");
+  const TemporaryFolder folder;
   const Campaign campaign = campaign_in(folder, kQuiet);
   const auto report = synthesize(campaign, 1, folder.path() / "out", 1);
   const Campaign made = load_campaign(report.campaign_file);
@@ -182,7 +158,7 @@ TEST_CASE("synthesize: a record read back is the simulation in SI", "[datasets]"
 }
 
 TEST_CASE("synthesize: noise has the standard deviation asked for", "[datasets]") {
-  const Folder folder("rigcal_synthesize_noise");
+  const TemporaryFolder folder;
   const auto report = synthesize(campaign_in(folder, R"(repeats = 8
 noise = { position = "0.02 mm" }
 ar1_noise = { load_pressure = "0.5 bar" }
@@ -198,7 +174,7 @@ ar1_coefficient = 0.5
 }
 
 TEST_CASE("synthesize: channels and repeats have streams of their own", "[datasets]") {
-  const Folder folder("rigcal_synthesize_streams");
+  const TemporaryFolder folder;
   const auto make = [&](const std::string& settings, const std::string& out) {
     return load_campaign(
         synthesize(campaign_in(folder, settings), 3, folder.path() / out, 1).campaign_file);
@@ -217,7 +193,7 @@ TEST_CASE("synthesize: channels and repeats have streams of their own", "[datase
 }
 
 TEST_CASE("synthesize: quantised samples lie on the converter's steps", "[datasets]") {
-  const Folder folder("rigcal_synthesize_steps");
+  const TemporaryFolder folder;
   const auto report =
       synthesize(campaign_in(folder, "repeats = 1\nquantisation = { position = \"0.05 mm\" }\n"), 3,
                  folder.path() / "out", 1);
@@ -230,7 +206,7 @@ TEST_CASE("synthesize: quantised samples lie on the converter's steps", "[datase
 }
 
 TEST_CASE("synthesize: drift grows to its size at the end", "[datasets]") {
-  const Folder folder("rigcal_synthesize_drift");
+  const TemporaryFolder folder;
   const auto make = [&](const std::string& settings, const std::string& out) {
     const Campaign made = load_campaign(
         synthesize(campaign_in(folder, settings), 5, folder.path() / out, 1).campaign_file);
@@ -248,7 +224,7 @@ TEST_CASE("synthesize: drift grows to its size at the end", "[datasets]") {
 
 TEST_CASE("synthesize: a late trigger is told by truth.json and found by the average",
           "[datasets]") {
-  const Folder folder("rigcal_synthesize_jitter");
+  const TemporaryFolder folder;
   const auto report = synthesize(
       campaign_in(folder,
                   "repeats = 5\ntrigger_jitter = \"3 ms\"\nnoise = { position = \"1 um\" }\n"),
@@ -272,7 +248,7 @@ TEST_CASE("synthesize: a late trigger is told by truth.json and found by the ave
 }
 
 TEST_CASE("synthesize: supply ripple and variation make repeats differ", "[datasets]") {
-  const Folder folder("rigcal_synthesize_variation");
+  const TemporaryFolder folder;
   for (const char* settings : {"repeats = 2\nsupply_ripple = \"0.5 MPa\"\n",
                                "repeats = 2\nvariation = { valve_gain = 0.1 }\n"}) {
     CAPTURE(settings);
@@ -290,7 +266,7 @@ TEST_CASE("synthesize: supply ripple and variation make repeats differ", "[datas
 }
 
 TEST_CASE("synthesize: truth.json holds the true values by scope", "[datasets]") {
-  const Folder folder("rigcal_synthesize_truth");
+  const TemporaryFolder folder;
   const Campaign campaign = campaign_in(folder, R"(repeats = 1
 parameters = { mass = "20 kg" }
 [synthetic.leak_level."33 %"]
@@ -323,7 +299,7 @@ parameters = { leakage_coefficient = 0.9 }
 }
 
 TEST_CASE("synthesize: true values move the rig, the campaign keeps its starts", "[datasets]") {
-  const Folder folder("rigcal_synthesize_starts");
+  const TemporaryFolder folder;
   const auto make = [&](const std::string& settings, const std::string& out) {
     return load_campaign(
         synthesize(campaign_in(folder, settings), 5, folder.path() / out, 1).campaign_file);
@@ -337,7 +313,7 @@ TEST_CASE("synthesize: true values move the rig, the campaign keeps its starts",
 }
 
 TEST_CASE("synthesize: what is missing is named", "[datasets]") {
-  const Folder folder("rigcal_synthesize_errors");
+  const TemporaryFolder folder;
   Campaign campaign = campaign_in(folder, kQuiet);
   campaign.conditions[0].duration_s = 0.5;
   campaign.synthetic_settings->duration_s = 0.0;
@@ -355,7 +331,7 @@ TEST_CASE("synthesize: what is missing is named", "[datasets]") {
 }
 
 TEST_CASE("synthesize: a rig that cannot be simulated is no record", "[datasets]") {
-  const Folder folder("rigcal_synthesize_failure");
+  const TemporaryFolder folder;
   Campaign campaign = campaign_in(folder, kQuiet);
   campaign.simulation.max_seconds = 1e-9;
   CHECK_THROWS_AS(synthesize(campaign, 1, folder.path() / "out", 1), rigcal::NoResultError);
@@ -363,7 +339,7 @@ TEST_CASE("synthesize: a rig that cannot be simulated is no record", "[datasets]
 }
 
 TEST_CASE("synthesize: a recorded drive is driven again", "[datasets]") {
-  const Folder folder("rigcal_synthesize_again");
+  const TemporaryFolder folder;
   const auto first = synthesize(campaign_in(folder, kQuiet), 1, folder.path() / "first", 1);
   Campaign again = load_campaign(first.campaign_file);
   again.synthetic_settings = SyntheticSettings{};

@@ -8,14 +8,13 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <random>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
+
+#include "tests/support/temporary_folder.hpp"
 
 namespace rigcal::test {
 
@@ -31,26 +30,13 @@ class CommandFolder {
  public:
   using Arguments = std::vector<std::string>;
 
-  CommandFolder() {
-    std::random_device seed;
-    root_ = std::filesystem::temp_directory_path() /
-            ("rigcal-cli-" + std::to_string(seed()) + "-" + std::to_string(seed()));
-    std::filesystem::create_directories(work());
-  }
-  CommandFolder(const CommandFolder&) = delete;
-  CommandFolder& operator=(const CommandFolder&) = delete;
-  ~CommandFolder() {
-    std::error_code ignored;  // a leftover in the temporary folder harms no test
-    std::filesystem::remove_all(root_, ignored);
-  }
+  CommandFolder() { std::filesystem::create_directories(work()); }
 
   /// The working folder of the command.
   std::filesystem::path work() const { return root_ / "work"; }
 
   void write(const std::string& name, const std::string& content) const {
-    const std::filesystem::path file = work() / name;
-    std::filesystem::create_directories(file.parent_path());
-    std::ofstream(file, std::ios::binary) << content;
+    root_.write("work/" + name, content);
   }
   std::string read(const std::string& name) const { return text_of(work() / name); }
   bool has(const std::string& name) const { return std::filesystem::exists(work() / name); }
@@ -97,10 +83,6 @@ class CommandFolder {
   }
 
  private:
-  static std::string text_of(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   std::filesystem::path out_file() const { return root_ / "stdout"; }
   std::filesystem::path err_file() const { return root_ / "stderr"; }
 
@@ -132,7 +114,7 @@ class CommandFolder {
     return {code, text_of(out_file()), text_of(err_file())};
   }
 
-  std::filesystem::path root_;
+  TemporaryFolder root_;
 };
 
 }  // namespace rigcal::test
