@@ -24,7 +24,7 @@ bool same_point(const std::vector<double>& a, const std::vector<double>& b,
 }  // namespace
 
 std::vector<Basin> basins(const std::vector<StartReport>& starts,
-                          const std::vector<FittedParameter>& parameters) {
+                          const std::vector<FittedParameter>& parameters, double variance) {
   std::vector<const StartReport*> converged;
   for (const StartReport& start : starts) {
     if (start.status == FitStatus::converged) converged.push_back(&start);
@@ -34,7 +34,7 @@ std::vector<Basin> basins(const std::vector<StartReport>& starts,
   std::vector<Basin> result;
   for (const StartReport* start : converged) {
     const auto home = std::find_if(result.begin(), result.end(), [&](const Basin& basin) {
-      return start->final_cost - basin.cost <= kSameCost * std::max(1.0, basin.cost * 1e-6) &&
+      return start->final_cost - basin.cost <= kSameCost * std::max(variance, basin.cost * 1e-6) &&
              same_point(start->end_values, basin.values, parameters);
     });
     if (home != result.end()) {
@@ -47,7 +47,7 @@ std::vector<Basin> basins(const std::vector<StartReport>& starts,
 }
 
 std::string agreement_of(const std::vector<StartReport>& starts, const std::vector<Basin>& basins,
-                         double cost_scale) {
+                         double variance) {
   if (starts.size() < 2) return {};
   if (basins.empty()) return fmt::format("none of {} starts converged", starts.size());
   const auto unfinished = std::count_if(starts.begin(), starts.end(), [](const StartReport& start) {
@@ -56,7 +56,7 @@ std::string agreement_of(const std::vector<StartReport>& starts, const std::vect
   std::string text = fmt::format("{} of {} starts ended at the best point",
                                  basins.front().starts.size(), starts.size());
   if (basins.size() > 1) {
-    const double rise = (basins[1].cost - basins.front().cost) / std::max(cost_scale, 1e-300);
+    const double rise = (basins[1].cost - basins.front().cost) / std::max(variance, 1e-300);
     text += fmt::format(
         "; {} other {}, the next with a cost higher by {:.3g} (2 would be one "
         "parameter's 95 % interval)",

@@ -9,14 +9,16 @@ namespace rigcal::calib {
 
 /// Gathers converged starts that ended at one point: no parameter farther than a tenth of its
 /// interval from that of the basin's best, parameters without an interval left out, and the cost
-/// higher by no more than 0.02 (0.2 standard errors). Ordered by cost, then by start.
+/// higher by no more than 0.02 variances of the residuals (0.2 standard errors). Ordered by cost,
+/// then by start.
 ///
 /// @param parameters  of the fit, in the order of the starts' values
+/// @param variance    of the weighted residuals: 1, or more where the model leaves more than noise
 std::vector<Basin> basins(const std::vector<StartReport>& starts,
-                          const std::vector<FittedParameter>& parameters);
+                          const std::vector<FittedParameter>& parameters, double variance);
 
 /// "41 of 64 starts ended at the best point; ...": how far the starts agree, in words.
 std::string agreement_of(const std::vector<StartReport>& starts, const std::vector<Basin>& basins,
-                         double cost_scale);
+                         double variance);
 
 }  // namespace rigcal::calib

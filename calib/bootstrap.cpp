@@ -124,7 +124,9 @@ double quantile(const std::vector<double>& ordered, double share) {
   return ordered[below] + (at - static_cast<double>(below)) * (ordered[above] - ordered[below]);
 }
 
-BootstrapSpread replicate_spread(std::vector<double> values, double estimate, double freedom) {
+/// @param spec  beyond its limits values make no sense
+BootstrapSpread replicate_spread(std::vector<double> values, double estimate, double freedom,
+                                 const model::ParameterSpec& spec) {
   const auto count = static_cast<double>(values.size());
   double sum = 0.0;
   for (const double value : values) sum += value;
@@ -135,7 +137,8 @@ BootstrapSpread replicate_spread(std::vector<double> values, double estimate, do
   const double widened =
       student_t(freedom) / boost::math::quantile(boost::math::normal_distribution<>(), 0.975);
   const auto end = [&](double share) {
-    return estimate + widened * (quantile(values, share) - estimate);
+    return std::clamp(estimate + widened * (quantile(values, share) - estimate), spec.lower,
+                      spec.upper);
   };
   return {std::sqrt(squares / (count - 1.0)), mean - estimate, freedom, {end(0.025), end(0.975)}};
 }
@@ -176,9 +179,9 @@ std::string drawn_from(const std::vector<Source>& sources) {
   }
   if (longest > 0) {
     text += fmt::format(
-        "; {} drawn from their residuals in blocks of up to {} samples: what the "
+        "; {} of {} conditions drawn from their residuals in blocks of up to {} samples: what the "
         "model lacks counts as noise",
-        sources.size() - with_repeats, longest);
+        sources.size() - with_repeats, sources.size(), longest);
   }
   return text;
 }
@@ -253,7 +256,7 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
     for (const auto& each : values) column.push_back(each[j]);
     fit.parameters[j].bootstrap =
         replicate_spread(std::move(column), fit.parameters[j].value,
-                         freedom_of(found, sources, static_cast<Eigen::Index>(j)));
+                         freedom_of(found, sources, static_cast<Eigen::Index>(j)), problem.spec(j));
   }
 }
 

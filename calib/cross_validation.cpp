@@ -108,6 +108,27 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
   return result;
 }
 
+std::string cross_validation_summary(const std::vector<HeldOut>& held_out) {
+  int predicted = 0;
+  double worst = 0.0;
+  std::string where;
+  for (const HeldOut& held : held_out) {
+    if (held.problem.empty()) ++predicted;
+    for (const auto& [channel, rms] : held.rms) {
+      for (const auto& [fitted_channel, fitted] : held.fitted_rms) {
+        if (fitted_channel != channel || !(fitted > 0.0) || rms / fitted <= worst) continue;
+        worst = rms / fitted;
+        where = fmt::format("{} of \"{}\"", datasets::info(channel).key, held.condition);
+      }
+    }
+  }
+  if (where.empty()) return "cross-validation: no condition could be predicted from the others";
+  return fmt::format(
+      "cross-validation: {} of {} conditions predicted from the others, the error at most {:.3g} "
+      "times that of the fit ({})",
+      predicted, held_out.size(), worst, where);
+}
+
 std::vector<std::string> cross_validation_words(const std::vector<HeldOut>& held_out) {
   std::vector<std::string> words;
   for (const HeldOut& held : held_out) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calib/fit.hpp"
@@ -14,6 +15,9 @@ namespace rigcal::calib {
 std::vector<HeldOut> cross_validate(const datasets::Campaign& campaign,
                                     const std::vector<datasets::Record>& records, const Fit& whole,
                                     const FitOptions& options);
+
+/// How many conditions were predicted, and how well at worst, in one sentence.
+std::string cross_validation_summary(const std::vector<HeldOut>& held_out);
 
 /// The most telling of it, in words: the condition that is predicted worst against its fit, and
 /// the parameter that moves most.

@@ -16,6 +16,7 @@
 #include "calib/evaluator.hpp"
 #include "calib/identifiability.hpp"
 #include "calib/information.hpp"
+#include "calib/initial_state.hpp"
 #include "calib/interval_advice.hpp"
 #include "calib/known_values.hpp"
 #include "calib/lack_of_fit.hpp"
@@ -174,14 +175,16 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
 /// What is fixed where single parameters are not, and what would tell them.
 void judge_identifiability(const Problem& problem, const Evaluation& optimum,
                            const Uncertainty& spread, int threads, Fit& fit) {
-  fit.combinations = name_combinations(problem, optimum.z, spread, fit.parameters);
   const double sigma = std::sqrt(std::max(1.0, spread.reduced_chi_square));
   const auto symmetry =
       scaling_symmetry(problem, optimum.z, linearise(problem, optimum).jacobian, sigma, threads);
-  if (symmetry) {
-    grade_symmetric(*symmetry, fit.parameters);
-    const std::string words = describe(problem, *symmetry);
-    if (!words.empty()) fit.combinations.insert(fit.combinations.begin(), words);
+  const std::string symmetric = symmetry ? describe(problem, *symmetry) : "";
+  if (symmetry) grade_symmetric(*symmetry, fit.parameters);
+  fit.combinations = name_combinations(problem, optimum.z, spread, fit.parameters);
+  if (!symmetric.empty()) {
+    // The other combinations are among the reasons of their parameters already.
+    fit.combinations.insert(fit.combinations.begin(), symmetric);
+    fit.warnings.push_back(symmetric);
   }
   const bool open = symmetry && symmetry->holds();
   add_remedies(problem, optimum, open ? symmetry->unknowns : std::vector<std::size_t>(),
@@ -229,14 +232,14 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   fit.singular_values = spread.singular_values;
   fit.reduced_chi_square = spread.reduced_chi_square;
   fit.parameters = describe_unknowns(problem, found.optimum, found.result.check, spread);
-  fit.basins = basins(fit.starts, fit.parameters);
-  fit.agreement = agreement_of(fit.starts, fit.basins, std::max(1.0, fit.reduced_chi_square));
+  const double variance = std::max(1.0, fit.reduced_chi_square);
+  fit.basins = basins(fit.starts, fit.parameters, variance);
+  fit.agreement = agreement_of(fit.starts, fit.basins, variance);
   judge_identifiability(problem, found.optimum, spread, options.threads, fit);
   judge_residuals(problem, spread, fit);
   add_correlation(problem, spread, fit);
   warn_of_noise(problem, spread, fit);
   warn_of_parameters(problem, fit.parameters, fit);
-  fit.warnings.insert(fit.warnings.end(), fit.combinations.begin(), fit.combinations.end());
   return {std::move(found.optimum), std::move(spread)};
 }
 
@@ -251,6 +254,7 @@ void look_again(const Problem& problem, const Campaign& campaign,
   if (!compared.empty()) fit.interval_advice += "; " + compared;
   if (options.cross_validate) {
     fit.cross_validation = cross_validate(campaign, records, fit, options);
+    fit.interval_advice += "; " + cross_validation_summary(fit.cross_validation);
     const auto words = cross_validation_words(fit.cross_validation);
     fit.warnings.insert(fit.warnings.end(), words.begin(), words.end());
   }
@@ -279,12 +283,19 @@ void finish(const Campaign& campaign, Clock::time_point began, Fit& fit) {
   fit.wall_seconds = std::chrono::duration<double>(Clock::now() - began).count();
 }
 
+void warn_of_start(const Campaign& campaign, const std::vector<const Condition*>& conditions,
+                   const std::vector<Record>& records, Fit& fit) {
+  const std::string text = moving_start(campaign, conditions, records);
+  if (!text.empty()) fit.warnings.push_back(text);
+}
+
 /// Scores conditions at known values, nuisance parameters estimated anew.
 Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
              const std::vector<const Condition*>& conditions,
              const std::vector<FittedValue>* values, const FitOptions& options,
              Clock::time_point began) {
   Fit fit;
+  warn_of_start(campaign, conditions, records, fit);
   Problem problem = make_problem(campaign, records, conditions, true, values);
   Evaluator evaluator(problem, evaluator_options(campaign, options, began));
   FitOptions once = options;
@@ -423,6 +434,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
   for (const Condition* condition : validated) values_with(campaign, *condition, starts);
 
   Fit result;
+  warn_of_start(campaign, fitted, records, result);
   Evaluator evaluator(problem, evaluator_options(campaign, options, began));
   const Solved solved = solve_problem(problem, evaluator, options, result);
   if (solved.optimum.ok) {

@@ -105,6 +105,7 @@ double choose_interval(const Problem& problem, const Uncertainty& found, std::si
   return found.robust_quantile[unknown] * robust;
 }
 
+/// Of what the records hardly tell they ask for nothing.
 void describe_bound(const Problem& problem, const OptimumCheck& check, std::size_t unknown,
                     FittedParameter& parameter) {
   const BoundSide side = check.side[unknown];
@@ -115,8 +116,10 @@ void describe_bound(const Problem& problem, const OptimumCheck& check, std::size
   const std::string text =
       fmt::format("at its {} bound {}: {}", lower ? "lower" : "upper",
                   number(spec_of(problem, u.index), lower ? u.lower : u.upper),
-                  check.held[unknown] ? "the records ask for a value beyond it"
-                                      : "the records ask for no value beyond it");
+                  parameter.identifiability == Identifiability::not_identifiable
+                      ? "not because the records ask for it"
+                  : check.held[unknown] ? "the records ask for a value beyond it"
+                                        : "the records ask for no value beyond it");
   parameter.reason = parameter.reason.empty() ? text : text + "; " + parameter.reason;
 }
 

@@ -1,9 +1,12 @@
 #include "calib/initial_state.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "datasets/start_motion.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -147,6 +150,34 @@ InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condit
     }
   }
   return plan;
+}
+
+std::string moving_start(const Campaign& campaign, const std::vector<const Condition*>& conditions,
+                         const std::vector<Record>& records) {
+  if (campaign.initial != InitialMode::record) return {};
+  std::vector<std::string> moving;
+  double farthest = 0.0;
+  for (const Condition* condition : conditions) {
+    const auto record = std::find_if(records.begin(), records.end(), [&](const Record& each) {
+      return each.condition == condition->id;
+    });
+    if (record == records.end()) continue;
+    const auto moved = datasets::motion_at_start(
+        record->time_s, recorded(*record, Channel::position), campaign.initial_window_s);
+    if (!moved) continue;
+    moving.push_back(condition->id);
+    farthest = std::max(farthest, *moved);
+  }
+  if (moving.empty()) return {};
+  const std::size_t shown = std::min<std::size_t>(moving.size(), 3);
+  const std::string more = moving.size() > shown ? fmt::format(", ... ({})", moving.size()) : "";
+  moving.resize(shown);
+  return fmt::format(
+      "the position moves by up to {:.3g} m within the initial_window of {:g} s ({}{}), and its "
+      "mean "
+      "there is not where the run starts: expected rest within the window, a shorter one, or "
+      "initial = \"fit\"",
+      farthest, campaign.initial_window_s, fmt::join(moving, ", "), more);
 }
 
 datasets::Overrides recorded_state(const Campaign& campaign, const Record& record,

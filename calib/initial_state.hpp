@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calib/parameter_map.hpp"
@@ -32,6 +33,12 @@ struct InitialPlan {
 InitialPlan plan_initial_state(const datasets::Campaign& campaign,
                                const datasets::Condition& condition, const datasets::Record& record,
                                const model::ParameterValues& values);
+
+/// What is wrong with `initial = "record"` where the piston moves within the window, in words;
+/// empty if nothing is.
+std::string moving_start(const datasets::Campaign& campaign,
+                         const std::vector<const datasets::Condition*>& conditions,
+                         const std::vector<datasets::Record>& records);
 
 /// What the initial_* parameters would be for a run that begins in the middle of a record: position
 /// and velocity from a straight line through the samples within `half_width_s` of that instant,

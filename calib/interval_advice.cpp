@@ -26,6 +26,40 @@ double skewness(double value, const std::pair<double, double>& interval) {
   return std::max(below / above, above / below);
 }
 
+/// Both ends with as many digits as tell them apart.
+std::string ends_text(const std::pair<double, double>& interval) {
+  const double size = std::max(std::abs(interval.first), std::abs(interval.second));
+  const double share = width(interval) > 0.0 ? size / width(interval) : 1.0;
+  const int digits = std::clamp(3 + static_cast<int>(std::ceil(std::log10(share))), 4, 12);
+  return fmt::format("{:.{}g} to {:.{}g}", interval.first, digits, interval.second, digits);
+}
+
+/// Where profile or bootstrap of a parameter say otherwise than `ci95`, and what to believe.
+std::string other_interval(const FittedParameter& parameter) {
+  if (parameter.profile && parameter.profile->low.value && parameter.profile->high.value) {
+    const std::pair ends{*parameter.profile->low.value, *parameter.profile->high.value};
+    if (skewness(parameter.value, ends) > kAgrees) {
+      return fmt::format("believe the profile, {}; the cost is not quadratic there",
+                         ends_text(ends));
+    }
+  }
+  if (!parameter.bootstrap) return {};
+  const std::pair<double, double>& drawn = parameter.bootstrap->ci95;
+  const double ratio = width(drawn) / width(*parameter.ci95);
+  if (ratio > kAgrees) {
+    return fmt::format("believe the bootstrap, {}, {:.2g} times as wide", ends_text(drawn), ratio);
+  }
+  if (skewness(parameter.value, drawn) > 2.0 * kAgrees)
+    return fmt::format("believe the bootstrap, {}, which is skewed", ends_text(drawn));
+  if (ratio * kAgrees < 1.0) {
+    return fmt::format(
+        "the bootstrap is {:.2g} times as wide; believe `ci95`, which counts what the model lacks "
+        "too",
+        ratio);
+  }
+  return {};
+}
+
 }  // namespace
 
 std::string interval_advice(const Problem& problem, const Uncertainty& found,
@@ -69,35 +103,28 @@ std::string interval_advice(const Problem& problem, const Uncertainty& found,
 std::string compare_intervals(const Problem& problem,
                               const std::vector<FittedParameter>& parameters) {
   std::vector<std::string> words;
-  bool asked = false;
+  std::vector<std::string> open;
+  bool compared = false;
   for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
     const FittedParameter& each = parameters[j];
-    if (each.nuisance || !each.ci95 || !(width(*each.ci95) > 0.0)) continue;
-    asked = asked || each.bootstrap || each.profile;
-    if (each.profile && each.profile->low.value && each.profile->high.value) {
-      const std::pair ends{*each.profile->low.value, *each.profile->high.value};
-      if (skewness(each.value, ends) > kAgrees) {
-        words.push_back(fmt::format(
-            "{}: believe the profile, {:.4g} to {:.4g}; the cost is not quadratic there",
-            problem.name(j), ends.first, ends.second));
-        continue;
-      }
+    if (each.nuisance || (!each.bootstrap && !each.profile)) continue;
+    if (each.identifiability == Identifiability::not_identifiable) {
+      open.push_back(problem.name(j));
+      continue;
     }
-    if (!each.bootstrap) continue;
-    const double ratio = width(each.bootstrap->ci95) / width(*each.ci95);
-    if (ratio > kAgrees || skewness(each.value, each.bootstrap->ci95) > 2.0 * kAgrees) {
-      words.push_back(fmt::format(
-          "{}: believe the bootstrap, {:.4g} to {:.4g}, {:.2g} times as wide", problem.name(j),
-          each.bootstrap->ci95.first, each.bootstrap->ci95.second, ratio));
-    } else if (ratio * kAgrees < 1.0) {
-      words.push_back(fmt::format(
-          "{}: the bootstrap is {:.2g} times as wide; believe `ci95`, which counts what the model "
-          "lacks too",
-          problem.name(j), ratio));
-    }
+    if (!each.ci95 || !(width(*each.ci95) > 0.0)) continue;
+    compared = true;
+    const std::string advice = other_interval(each);
+    if (!advice.empty()) words.push_back(problem.name(j) + ": " + advice);
   }
-  if (!words.empty()) return fmt::format("{}", fmt::join(words, "; "));
-  return asked ? "bootstrap and profiles agree with `ci95`" : "";
+  if (words.empty() && compared)
+    words.push_back(open.empty() ? "bootstrap and profiles agree with `ci95`"
+                                 : "elsewhere bootstrap and profiles agree with `ci95`");
+  if (!open.empty()) {
+    words.insert(words.begin(), fmt::format("believe no interval of what is not identifiable: {}",
+                                            fmt::join(open, ", ")));
+  }
+  return fmt::format("{}", fmt::join(words, "; "));
 }
 
 }  // namespace rigcal::calib

@@ -14,8 +14,8 @@ namespace rigcal::calib {
 std::string interval_advice(const Problem& problem, const Uncertainty& found,
                             const std::vector<LackOfFit>& tests);
 
-/// Where bootstrap or profile say otherwise than `ci95`, and which of them is right; empty where
-/// neither was asked for.
+/// Where bootstrap or profile say otherwise than `ci95`, and which of them is right; what is not
+/// identifiable has no interval to believe. Empty where neither was asked for.
 ///
 /// @param parameters  of the problem's unknowns
 std::string compare_intervals(const Problem& problem,

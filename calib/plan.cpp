@@ -189,6 +189,12 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
     record.alone = cramer_rao(problem, z, jacobian_of(problem, at, alone));
     record.without = cramer_rao(problem, z, jacobian_of(problem, at, without));
   }
+  if (values == nullptr) {
+    result.messages.push_back(
+        "these are figures at the campaign's start values; with --fit at those of a fit, which "
+        "tell "
+        "more where the starts are far off");
+  }
   const auto symmetry = at.ok ? scaling_symmetry(problem, z, all, 1.0, threads) : std::nullopt;
   const std::string symmetric = symmetry ? describe(problem, *symmetry) : "";
   if (!symmetric.empty()) result.messages.push_back(symmetric);

@@ -19,8 +19,9 @@ constexpr double kLeastStep = 1e-6;
 constexpr int kMostDoublings = 12;
 constexpr int kMostRefinements = 8;
 constexpr double kCrossing = 0.02;
-/// A rise below minus this share of the threshold: the fit was not at its minimum.
-constexpr double kLower = 0.01;
+/// A rise below minus this share of the threshold, about one standard error: the fit was not at its
+/// minimum. Less may be the error of simulations, which differs from point to point.
+constexpr double kLower = 0.25;
 
 datasets::Campaign campaign_with(const Problem& problem, const Unknown& unknown, double value) {
   datasets::Campaign campaign = *problem.campaign;

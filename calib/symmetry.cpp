@@ -186,6 +186,8 @@ void grade_symmetric(const ScalingSymmetry& symmetry, std::vector<FittedParamete
     FittedParameter& each = parameters[j];
     if (each.nuisance) continue;
     each.identifiability = Identifiability::not_identifiable;
+    // What was said of an interval goes with it.
+    const std::string known = each.standard_error || each.reason.empty() ? "" : "; " + each.reason;
     each.standard_error.reset();
     each.robust_standard_error.reset();
     each.ci95.reset();
@@ -193,7 +195,7 @@ void grade_symmetric(const ScalingSymmetry& symmetry, std::vector<FittedParamete
     each.reason =
         "left open by the scaling symmetry: a prior on mass or supply pressure, or a recorded "
         "pressure or force, would tell it" +
-        (each.reason.empty() ? std::string() : "; " + each.reason);
+        known;
   }
 }
 

@@ -8,12 +8,14 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <span>
 
 #include "common/error.hpp"
 #include "common/quantity.hpp"
 #include "datasets/column_guess.hpp"
 #include "datasets/load_csv.hpp"
 #include "datasets/load_mat.hpp"
+#include "datasets/start_motion.hpp"
 #include "datasets/toml_reader.hpp"
 #include "datasets/waveform_guess.hpp"
 #include "model/parameter.hpp"
@@ -176,10 +178,18 @@ constexpr std::array<std::string_view, 9> kTwoChamberTerms{
     "valve_null_leakage", "laminar_leakage", "gravity",
     "coulomb_friction",   "air_fraction",    "stop_stiffness"};
 
+/// And those that a servo-valve and a symmetric cylinder have.
+constexpr std::array<std::string_view, 6> kLoadPressureTerms{
+    "valve_offset",       "valve_dead_band", "valve_time_constant",
+    "valve_null_leakage", "laminar_leakage", "coulomb_friction"};
+
 /// Terms that may join, as comments.
 std::string terms_text(model::PlantKind plant) {
+  const bool two_chambers = plant == model::PlantKind::two_chamber;
+  const std::span<const std::string_view> terms =
+      two_chambers ? std::span<const std::string_view>(kTwoChamberTerms) : kLoadPressureTerms;
   std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
-  for (const std::string_view key : kTwoChamberTerms) {
+  for (const std::string_view key : terms) {
     const int row = model::parameter_index(plant, key);
     const model::ParameterSpec& spec = model::parameter_table(plant)[static_cast<std::size_t>(row)];
     text += fmt::format("# {} = {}{}\n", key,
@@ -210,13 +220,14 @@ std::string rig_text(model::PlantKind plant, bool closed_loop) {
                         comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
                                             spec.unit == "1" ? " (a plain number)" : "")));
   }
-  if (two_chambers) text += terms_text(plant);
-  return text + (closed_loop
-                     ? "[rig.controller]\ntype = \"pid\"\n" +
-                           fmt::format("kp = \"{} V/m\"{}\n", kBlank,
-                                       comment("proportional gain; ki, kd if there are any"))
-                     : "[rig.controller]\ntype = \"none\"  # the recorded command drives the "
-                       "valve\n");
+  text += terms_text(plant);
+  return text +
+         (closed_loop
+              ? "[rig.controller]\ntype = \"pid\"\n" +
+                    fmt::format("kp = \"{} V/m\"{}\n", kBlank,
+                                comment("proportional gain; ki, kd, output_limit if there are any"))
+              : "[rig.controller]\ntype = \"none\"  # the recorded command drives the "
+                "valve\n");
 }
 
 std::string relative_text(const fs::path& file, const fs::path& folder) {
@@ -257,6 +268,12 @@ std::string repeats_text(const std::vector<fs::path>& files, const FileColumns& 
   return fmt::format("repeats = [ {} ]\n", fmt::join(entries, ",\n            "));
 }
 
+/// Files of one condition: their names differ in the last number only.
+struct FileGroup {
+  std::string id;
+  std::vector<fs::path> files;
+};
+
 // ---- Conditions ----------------------------------------------------------------------------
 
 std::string id_of(const std::string& stem) {
@@ -282,6 +299,44 @@ const ChannelColumns* drive_of(const FileColumns& columns) {
   return reference != nullptr ? reference : find(columns, Channel::command);
 }
 
+/// Time and a channel of a file, the first of several columns.
+/// @return  empty if its time has no unit of time
+std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
+    const fs::path& file, const FileColumns& columns, const ChannelColumns& channel) {
+  const std::string column =
+      channel.numbers.empty() ? channel.stem : channel.stem + channel.numbers.front();
+  auto data = read(file, columns.time, column);
+  try {
+    const double to_s =
+        unit_conversion(columns.time_unit.empty() ? "s" : columns.time_unit, "s").scale;
+    for (double& t : data[0]) t *= to_s;
+  } catch (const QuantityError&) {
+    return std::nullopt;
+  }
+  return std::pair{std::move(data[0]), std::move(data[1])};
+}
+
+/// How runs start: as the record does, unless one of them begins in motion.
+std::string initial_text(const std::vector<FileGroup>& groups) {
+  const double window_s = Campaign().initial_window_s;
+  for (const FileGroup& group : groups) {
+    const FileColumns columns = columns_of(group.files.front());
+    const ChannelColumns* position = find(columns, Channel::position);
+    if (position == nullptr) continue;
+    const auto signal = signal_of(group.files.front(), columns, *position);
+    if (!signal || !motion_at_start(signal->first, signal->second, window_s)) continue;
+    return fmt::format(
+        "initial = \"fit\"  # estimated: {} moves within its first {:g} s; \"record\": their mean, "
+        "\"rest\": from zero\n",
+        group.id, window_s);
+  }
+  return fmt::format(
+      "initial = \"record\"  # the mean of the first {:g} s; \"rest\": from zero; \"fit\": "
+      "estimate "
+      "it\n",
+      window_s);
+}
+
 std::string waveform_text(const fs::path& file, const FileColumns& columns) {
   const ChannelColumns* drive = drive_of(columns);
   if (drive == nullptr)
@@ -289,21 +344,14 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
         "waveform = \"{}\"{}\n", kBlank,
         comment("sine or square, with frequency and amplitude: neither reference nor "
                 "command was recorded"));
-  const std::string column =
-      drive->numbers.empty() ? drive->stem : drive->stem + drive->numbers.front();
-  const auto data = read(file, columns.time, column);
-  double to_s = 1.0;
-  try {
-    to_s = unit_conversion(columns.time_unit.empty() ? "s" : columns.time_unit, "s").scale;
-  } catch (const QuantityError&) {
+  const auto signal = signal_of(file, columns, *drive);
+  if (!signal)
     return fmt::format("waveform = \"recorded\"{}\n", comment("its time has no unit of time"));
-  }
-  std::vector<double> time_s = data[0];
-  for (double& t : time_s) t *= to_s;
+  const auto& [time_s, values] = *signal;
   const double rate_hz =
       time_s.size() < 2 ? 0.0
                         : static_cast<double>(time_s.size() - 1) / (time_s.back() - time_s.front());
-  const WaveformGuess guess = guess_waveform(time_s, data[1]);
+  const WaveformGuess guess = guess_waveform(time_s, values);
   const bool periodic = guess.waveform == Waveform::sine || guess.waveform == Waveform::square;
   std::string text =
       fmt::format("# {}: {}; {} samples at {:.6g} Hz, {:.6g} s\n", info(drive->channel).key,
@@ -347,12 +395,6 @@ std::vector<fs::path> recordings_among(const std::vector<fs::path>& files, std::
   return recordings;
 }
 
-/// Files of one condition: their names differ in the last number only.
-struct FileGroup {
-  std::string id;
-  std::vector<fs::path> files;
-};
-
 std::vector<FileGroup> groups_of(const std::vector<fs::path>& files) {
   std::vector<std::pair<std::pair<fs::path, std::string>, FileGroup>> groups;
   for (const fs::path& file : files) {
@@ -394,11 +436,8 @@ std::string draft_campaign(const std::vector<fs::path>& files, const fs::path& f
   text += left_out;
   text += rig_text(chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure,
                    closed_loop);
-  text +=
-      "\n[recording]\n"
-      "initial = \"record\"  # start as the record does; \"rest\": from zero; \"fit\": estimate "
-      "it\n"
-      "# decimate_to = \"1 kHz\"  # if the records are denser than the model needs\n";
+  text += "\n[recording]\n" + initial_text(groups);
+  text += "# decimate_to = \"1 kHz\"  # if the records are denser than the model needs\n";
   text += channels_text(columns);
   text +=
       "\n[averaging]\n"

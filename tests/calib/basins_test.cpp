@@ -23,7 +23,7 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
   const std::vector<StartReport> starts{
       start(1, 50.0, 3.0, FitStatus::converged), start(2, 10.001, 1.001, FitStatus::converged),
       start(3, 10.0, 1.0, FitStatus::converged), start(4, 9.0, 1.0, FitStatus::failed)};
-  const auto found = basins(starts, {parameter});
+  const auto found = basins(starts, {parameter}, 1.0);
   REQUIRE(found.size() == 2);
   CHECK(found[0].starts == std::vector<int>{3, 2});
   CHECK(found[1].starts == std::vector<int>{1});
@@ -31,6 +31,11 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
   CHECK_THAT(words, Contains("2 of 4 starts") && Contains("1 other minimum") &&
                         Contains("1 did not converge"));
   CHECK(agreement_of({starts[0]}, found, 1.0).empty());
+  // Where the residuals are far beyond the noise so are differences of cost that mean nothing.
+  const std::vector<StartReport> rough{start(1, 4e6, 1.0, FitStatus::converged),
+                                       start(2, 4e6 + 9.0, 1.0, FitStatus::converged)};
+  CHECK(basins(rough, {parameter}, 1.0).size() == 2);
+  CHECK(basins(rough, {parameter}, 8000.0).size() == 1);
   CHECK_THAT(agreement_of({starts[3], starts[3]}, {}, 1.0), Contains("none of 2"));
 }
 

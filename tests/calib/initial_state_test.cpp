@@ -1,7 +1,9 @@
 #include "calib/initial_state.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "calib/fit.hpp"
 #include "tests/calib/twin.hpp"
 
 namespace rigcal::calib {
@@ -30,6 +32,23 @@ TEST_CASE("initial state: chamber pressures are read without their sensors' offs
   const double start_pa = values["initial_load_pressure"] - values["load_pressure_offset"];
   CHECK(start_pa == Approx(3.4e6 - 3.1e6));
   CHECK(values["initial_position"] == Approx(1e-3));
+}
+
+TEST_CASE("initial state: a record that begins in motion is no record of its start", "[calib]") {
+  Twin twin;
+  twin.free("valve_gain", 0.03e-3, 0.01e-3, 0.2e-3);
+  twin.add("square", datasets::Waveform::square, 2.0, 0.01);
+  const auto records = twin.records(250, 500.0, 3);
+  twin.campaign.initial = datasets::InitialMode::record;
+  const auto warned = [&] {
+    const Fit found = fit(twin.campaign, records, {});
+    return std::any_of(found.warnings.begin(), found.warnings.end(), [](const std::string& text) {
+      return text.find("initial_window of 0.1 s (square)") != std::string::npos;
+    });
+  };
+  CHECK(warned());
+  twin.campaign.initial = datasets::InitialMode::fit;
+  CHECK_FALSE(warned());
 }
 
 }  // namespace rigcal::calib

@@ -5,6 +5,7 @@
 
 #include "calib/bootstrap.hpp"
 #include "calib/cross_validation.hpp"
+#include "calib/interval_advice.hpp"
 #include "tests/calib/twin.hpp"
 
 namespace rigcal::calib {
@@ -58,6 +59,53 @@ TEST_CASE("profile: an open one makes a parameter not identifiable", "[calib]") 
   CHECK_THAT(bulk.reason, Contains("profile is open"));
 }
 
+TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
+  // Along what the records do not tell at all the cost is as flat as simulations can be.
+  Twin twin = small_twin();
+  twin.free("discharge_coefficient", 0.6, 0.1, 1.0);
+  FitOptions options;
+  options.profiles = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  const FittedParameter& p = parameter(found, "discharge_coefficient");
+  CAPTURE(p.reason);
+  REQUIRE(p.profile.has_value());
+  CHECK_FALSE(p.profile->lower_cost_found);
+  CHECK_THAT(p.reason, Contains("profile is open above"));
+  CHECK_THAT(found.interval_advice, Contains("believe no interval of what is not identifiable: ") &&
+                                        Contains("discharge_coefficient") && !Contains("mass_kg"));
+}
+
+TEST_CASE("intervals: which of them to believe", "[calib]") {
+  const Twin twin = small_twin();
+  const auto records = twin.records(250, 500.0, 3);
+  const Problem problem =
+      make_problem(twin.campaign, records, {&twin.campaign.conditions[0]}, false, nullptr);
+  std::vector<FittedParameter> parameters(2);
+  for (FittedParameter& each : parameters) {
+    each.value = 85.0;
+    each.ci95 = {84.9999, 85.0001};
+  }
+  CHECK(compare_intervals(problem, parameters).empty());
+  BootstrapSpread drawn{3e-5, 0.0, 9.0, {84.9999, 85.0001}};
+  parameters[0].bootstrap = drawn;
+  CHECK(compare_intervals(problem, parameters) == "bootstrap and profiles agree with `ci95`");
+  drawn.ci95 = {84.99995, 85.00015};
+  parameters[0].bootstrap = drawn;
+  CHECK_THAT(compare_intervals(problem, parameters),
+             Contains("84.99995 to 85.00015, which is skewed"));
+  drawn.ci95 = {84.9998, 85.0002};
+  parameters[0].bootstrap = drawn;
+  CHECK_THAT(compare_intervals(problem, parameters), Contains("2 times as wide"));
+  parameters[0].profile = Profile{};
+  parameters[0].profile->low.value = 84.99999;
+  parameters[0].profile->high.value = 85.0001;
+  CHECK_THAT(compare_intervals(problem, parameters),
+             Contains("believe the profile, 84.99999 to 85.0001;"));
+  parameters[0].identifiability = Identifiability::not_identifiable;
+  CHECK(compare_intervals(problem, parameters) ==
+        "believe no interval of what is not identifiable: " + problem.name(0));
+}
+
 TEST_CASE("bootstrap: its spread is that of the noise, the same for any number of threads",
           "[calib]") {
   const Twin twin = small_twin();
@@ -109,6 +157,7 @@ TEST_CASE("cross-validation: each condition is predicted from the others", "[cal
     CHECK(std::abs(held.largest_shift) < 5.0);
   }
   CHECK_THAT(found.cross_validation[2].problem, Contains("leak"));
+  CHECK_THAT(found.interval_advice, Contains("2 of 3 conditions predicted from the others"));
 }
 
 }  // namespace rigcal::calib

@@ -70,6 +70,7 @@ TEST_CASE("draft_campaign: repeats, waveform and columns; loads once it is fille
   CHECK_THAT(draft, Contains("frequency = \"2 Hz\"") && Contains("amplitude = \"5 mm\""));
   CHECK_THAT(draft, Contains("400 samples at 200 Hz"));
   CHECK_THAT(draft, Contains("\"../records/sine_1.csv\"") && Contains("type = \"pid\""));
+  CHECK_THAT(draft, Contains("initial = \"fit\"  # estimated: sine moves within its first 0.1 s"));
 
   const fs::path file = folder.write("draft/campaign.toml", draft);
   CHECK_THROWS_WITH(load_campaign(file), Contains("FILL IN"));
