@@ -19,6 +19,7 @@
 #include "calib/fit.hpp"
 #include "calib/multi_start.hpp"
 #include "calib/solve.hpp"
+#include "common/memory.hpp"
 
 namespace rigcal::bench {
 namespace {
@@ -346,6 +347,7 @@ void growth(int rounds) {
 
 int main(int argc, char** argv) {
   using namespace rigcal::bench;
+  rigcal::keep_freed_memory();
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 15;
   six_signals(rounds);
   stiff(rounds);

@@ -1,5 +1,6 @@
 #include "calib/evaluation.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "calib/loss.hpp"
@@ -14,17 +15,28 @@ Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t cha
   const ProblemChannel& data = condition.channels[channel];
   const auto column = static_cast<Eigen::Index>(channel);
   const Eigen::Index unknowns = slopes.size();
-  Eigen::MatrixXd rows(static_cast<Eigen::Index>(range.end - range.begin), unknowns + 1);
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    const auto row = static_cast<Eigen::Index>(i - range.begin);
-    const auto sample = static_cast<Eigen::Index>(condition.rows[i] - range.first_sample);
-    const double error = run.outputs(sample, column) - data.measured[i];
+  const auto count = static_cast<Eigen::Index>(range.end - range.begin);
+  const auto sample_of = [&](Eigen::Index row) {
+    return static_cast<Eigen::Index>(condition.rows[range.begin + static_cast<std::size_t>(row)] -
+                                     range.first_sample);
+  };
+  const bool squared = settings.loss == datasets::Loss::squared;
+  Eigen::MatrixXd rows(count, unknowns + 1);
+  Eigen::VectorXd weight(count);
+  for (Eigen::Index row = 0; row < count; ++row) {
+    const double error = run.outputs(sample_of(row), column) -
+                         data.measured[range.begin + static_cast<std::size_t>(row)];
     square_sum += error * error;
-    const LossValue loss = apply_loss(settings.loss, settings.loss_scale, error / data.sd);
-    const double weight = loss.slope / data.sd;
-    for (Eigen::Index j = 0; j < unknowns; ++j)
-      rows(row, j) = run.sensitivities[channel](sample, j) * slopes(j) * weight;
+    const double residual = error / data.sd;
+    const LossValue loss = squared ? LossValue{residual, 1.0}
+                                   : apply_loss(settings.loss, settings.loss_scale, residual);
+    weight(row) = loss.slope / data.sd;
     rows(row, unknowns) = loss.residual;
+  }
+  const Eigen::MatrixXd& sensitivity = run.sensitivities[channel];
+  for (Eigen::Index j = 0; j < unknowns; ++j) {
+    for (Eigen::Index row = 0; row < count; ++row)
+      rows(row, j) = sensitivity(sample_of(row), j) * slopes(j) * weight(row);
   }
   return rows;
 }
@@ -80,14 +92,18 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
   Triangle triangle(unknowns + 1);
   for (std::size_t k = 0; k < data.channels.size(); ++k) {
     double square_sum = 0.0;
-    const Eigen::MatrixXd weighted =
-        weighted_rows(data, k, {0, data.rows.size(), 0}, run, slopes, campaign.fit, square_sum);
-    triangle.add(weighted);
+    for (std::size_t begin = 0; begin < data.rows.size(); begin += Triangle::kBlock) {
+      const std::size_t end = std::min(begin + Triangle::kBlock, data.rows.size());
+      const Eigen::MatrixXd weighted =
+          weighted_rows(data, k, {begin, end, 0}, run, slopes, campaign.fit, square_sum);
+      triangle.add(weighted);
+      if (rows == nullptr) continue;
+      const Eigen::Index first =
+          static_cast<Eigen::Index>(k) * samples + static_cast<Eigen::Index>(begin);
+      rows->jacobian.middleRows(first, weighted.rows()) = weighted.leftCols(unknowns);
+      rows->residual.segment(first, weighted.rows()) = weighted.col(unknowns);
+    }
     result.rms.push_back(std::sqrt(square_sum / static_cast<double>(samples)));
-    if (rows == nullptr) continue;
-    const Eigen::Index first = static_cast<Eigen::Index>(k) * samples;
-    rows->jacobian.middleRows(first, samples) = weighted.leftCols(unknowns);
-    rows->residual.segment(first, samples) = weighted.col(unknowns);
   }
   result.triangle = triangle.get();
   if (!result.triangle.allFinite()) {

@@ -6,7 +6,6 @@
 namespace rigcal::calib {
 
 void Triangle::add(const Eigen::Ref<const Eigen::MatrixXd>& rows) {
-  constexpr Eigen::Index kBlock = 512;  // stays in the cache
   const Eigen::Index columns = triangle_.cols();
   for (Eigen::Index first = 0; first < rows.rows(); first += kBlock) {
     const Eigen::Index count = std::min(kBlock, rows.rows() - first);

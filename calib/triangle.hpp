@@ -16,6 +16,8 @@ class Triangle {
 
   const Eigen::MatrixXd& get() const { return triangle_; }
 
+  static constexpr Eigen::Index kBlock = 512;  ///< rows taken together: they stay in the cache
+
  private:
   Eigen::MatrixXd triangle_;
 };

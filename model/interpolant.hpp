@@ -10,8 +10,9 @@ template <int N, int P>
 struct Interpolant {
   std::array<std::array<Active<P>, 5>, static_cast<std::size_t>(N)> coefficient;
 
-  Active<P> operator()(std::size_t i, double s) const {
-    const auto& c = coefficient[i];
+  Active<P> operator()(std::size_t i, double s) const { return at(coefficient[i], s); }
+
+  static Active<P> at(const std::array<Active<P>, 5>& c, double s) {
     return c[0] + (c[1] + (c[2] + (c[3] + c[4] * s) * s) * s) * s;
   }
 };

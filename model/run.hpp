@@ -46,7 +46,7 @@ class Run {
       states_alone_ = states_alone_ && state.has_value();
       state_of_output_.push_back(static_cast<std::size_t>(state.value_or(0)));
     }
-    period_s_ = system_.layout().sampled() ? value_of(system_.parameters().sample_time_s)
+    period_s_ = system_.layout().sampled() ? system_.parameters().sample_time_s
                                            : std::numeric_limits<double>::infinity();
     h_max_ = std::numeric_limits<double>::infinity();
     for_each_track([this](InputTrack& track) { h_max_ = std::min(h_max_, track.max_step()); });
@@ -221,31 +221,37 @@ class Run {
     while (next_sample_ < times_s_.size() && at(sample_time(next_sample_), t_)) emit(x_, t_);
   }
 
-  /// Samples strictly between the present and the end of the step just done.
+  /// Samples strictly between the present and the end of the step just done. The sample at t_new
+  /// itself waits: an event there may change what it reads.
   void emit_until(double t_new, const X& x_new) {
-    const auto inside = [&] {
-      return next_sample_ < times_s_.size() && sample_time(next_sample_) < t_new &&
-             !at(sample_time(next_sample_), t_new);
-    };
-    if (!inside()) return;
+    const double last = t_new - same_instant_s_;
+    std::size_t end = next_sample_;
+    while (end < times_s_.size() && sample_time(end) < last) ++end;
+    if (end == next_sample_) return;
     const Interpolant<N, P> interpolant = implicit_
                                               ? rosenbrock_.dense_output(x_, x_new)
                                               : dormand_prince_.dense_output(x_, x_new, t_new - t_);
     const double rate = 1.0 / (t_new - t_);
-    X between = x_new;
-    while (inside()) {
-      const double time = sample_time(next_sample_);
-      const double s = (time - t_) * rate;
-      if (states_alone_) {
-        for (std::size_t k = 0; k < outputs_.size(); ++k)
-          store(next_sample_, k, interpolant(state_of_output_[k], s));
-        ++next_sample_;
-      } else {
-        for (const std::size_t i : observed_states_) between[i] = interpolant(i, s);
-        emit(between, time);
-      }
+    if (states_alone_) {
+      for (std::size_t k = 0; k < outputs_.size(); ++k)
+        store_polynomial(next_sample_, end, k, interpolant.coefficient[state_of_output_[k]], rate);
+      next_sample_ = end;
+      return;
     }
-    // The sample at t_new itself waits: an event there may change what it reads.
+    X between = x_new;
+    while (next_sample_ < end) {
+      const double time = sample_time(next_sample_);
+      for (const std::size_t i : observed_states_) between[i] = interpolant(i, (time - t_) * rate);
+      emit(between, time);
+    }
+  }
+
+  /// Samples [begin, end) of an output that is a state: a polynomial of the share of the step.
+  void store_polynomial(std::size_t begin, std::size_t end, std::size_t output,
+                        const std::array<C, 5> polynomial, double rate) {
+    const double origin = times_s_.front() + t_;
+    for (std::size_t i = begin; i < end; ++i)
+      store(i, output, Interpolant<N, P>::at(polynomial, (times_s_[i] - origin) * rate));
   }
 
   void emit(const X& x, double time) {

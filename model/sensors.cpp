@@ -48,6 +48,15 @@ void follow(const Eigen::VectorXd& x, std::span<const double> times_s, double la
   }
 }
 
+Eigen::MatrixXd at_samples(const SensorTimes& at, const Eigen::MatrixXd& all) {
+  const auto samples = static_cast<Eigen::Index>(at.sample.size());
+  Eigen::MatrixXd kept(samples, all.cols());
+  if (all.cols() == 0) return kept;  // no row of a matrix without columns
+  for (Eigen::Index i = 0; i < samples; ++i)
+    kept.row(i) = all.row(static_cast<Eigen::Index>(at.sample[static_cast<std::size_t>(i)]));
+  return kept;
+}
+
 }  // namespace
 
 Sensor sensor_of(Output output, const ParameterValues& values) {
@@ -60,16 +69,18 @@ Sensor sensor_of(Output output, const ParameterValues& values) {
   return sensor;
 }
 
-SensorTimes sensor_times(std::span<const Output> outputs, const ParameterValues& values,
-                         std::span<const double> samples_s) {
+std::optional<SensorTimes> sensor_times(std::span<const Output> outputs,
+                                        const ParameterValues& values,
+                                        std::span<const double> samples_s) {
   double shortest_s = 0.0;
   for (const Output output : outputs) {
     const double lag_s = sensor_of(output, values).lag_s;
     if (lag_s > 0.0 && (shortest_s == 0.0 || lag_s < shortest_s)) shortest_s = lag_s;
   }
+  if (shortest_s == 0.0) return std::nullopt;
   SensorTimes result;
   for (std::size_t i = 0; i < samples_s.size(); ++i) {
-    if (i > 0 && shortest_s > 0.0) {
+    if (i > 0) {
       const double h = samples_s[i] - samples_s[i - 1];
       const double wanted = std::ceil(kTimesPerLag * h / shortest_s);
       const int pieces = static_cast<int>(std::clamp(wanted, 1.0, kMostBetweenSamples));
@@ -83,54 +94,45 @@ SensorTimes sensor_times(std::span<const Output> outputs, const ParameterValues&
   return result;
 }
 
-void read_sensors(const SensorTimes& at, std::span<const Output> outputs,
+void read_sensors(const std::optional<SensorTimes>& at, std::span<const Output> outputs,
                   const ParameterValues& values, std::span<const int> free, Simulation& run) {
-  const auto samples = static_cast<Eigen::Index>(at.sample.size());
-  const bool thinned = at.times_s.size() != at.sample.size();
-  const auto thin = [&](const Eigen::MatrixXd& all) {
-    Eigen::MatrixXd kept(samples, all.cols());
-    if (all.cols() == 0) return kept;  // no row of a matrix without columns
-    for (Eigen::Index i = 0; i < samples; ++i) {
-      kept.row(i) = all.row(static_cast<Eigen::Index>(at.sample[static_cast<std::size_t>(i)]));
-    }
-    return kept;
-  };
   for (std::size_t k = 0; k < outputs.size(); ++k) {
     const Sensor sensor = sensor_of(outputs[k], values);
     if (sensor.gain < 0) continue;
     auto column = run.outputs.col(static_cast<Eigen::Index>(k));
     Eigen::MatrixXd& by = run.sensitivities[k];
-    Eigen::VectorXd by_lag = Eigen::VectorXd::Zero(column.size());
+    Eigen::VectorXd by_lag;
     if (sensor.lag_s > 0.0) {
       Eigen::VectorXd y;
       Eigen::VectorXd unused;
       for (Eigen::Index j = 0; j < by.cols(); ++j) {
-        follow(by.col(j), at.times_s, sensor.lag_s, y, unused);
+        follow(by.col(j), at->times_s, sensor.lag_s, y, unused);
         by.col(j) = y;
       }
-      follow(column, at.times_s, sensor.lag_s, y, by_lag);
+      follow(column, at->times_s, sensor.lag_s, y, by_lag);
       column = y;
     }
     const double gain = values.value[static_cast<std::size_t>(sensor.gain)];
     const double offset = values.value[static_cast<std::size_t>(sensor.offset)];
-    by *= gain;
+    if (gain != 1.0) by *= gain;
     for (std::size_t j = 0; j < free.size(); ++j) {
       auto direction = by.col(static_cast<Eigen::Index>(j));
       if (free[j] == sensor.gain) direction += column;
       if (free[j] == sensor.offset) direction.array() += 1.0;
-      if (free[j] == sensor.lag) direction += gain * by_lag;
+      if (free[j] == sensor.lag && sensor.lag_s > 0.0) direction += gain * by_lag;
     }
-    column = (gain * column.array() + offset).matrix();
+    if (gain != 1.0 || offset != 0.0) column = (gain * column.array() + offset).matrix();
     const double maximum = values.value[static_cast<std::size_t>(sensor.maximum)];
+    if (!std::isfinite(maximum)) continue;
     for (Eigen::Index i = 0; i < column.size(); ++i) {
       if (!(column(i) > maximum)) continue;
       column(i) = maximum;
       if (by.cols() > 0) by.row(i).setZero();
     }
   }
-  if (!thinned) return;
-  run.outputs = thin(run.outputs);
-  for (Eigen::MatrixXd& by : run.sensitivities) by = thin(by);
+  if (!at || at->times_s.size() == at->sample.size()) return;
+  run.outputs = at_samples(*at, run.outputs);
+  for (Eigen::MatrixXd& by : run.sensitivities) by = at_samples(*at, by);
 }
 
 }  // namespace rigcal::model

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -28,15 +29,18 @@ struct SensorTimes {
   std::vector<double> times_s;
   std::vector<std::size_t> sample;  ///< position of each sample time in times_s
 };
-SensorTimes sensor_times(std::span<const Output> outputs, const ParameterValues& values,
-                         std::span<const double> samples_s);
+/// None where no sensor lags: then the sample times are all that is needed.
+std::optional<SensorTimes> sensor_times(std::span<const Output> outputs,
+                                        const ParameterValues& values,
+                                        std::span<const double> samples_s);
 
 /// Turns quantities at the times of `at` into readings at its samples, with the sensitivities to
 /// the sensors' own parameters among `free`. Between two times a quantity is taken to be straight.
 /// A reading at its maximum depends on nothing: a record that stands there too is not fitted.
 ///
-/// @param run  an ok one, its matrices of times_s.size() rows; afterwards of sample.size() rows
-void read_sensors(const SensorTimes& at, std::span<const Output> outputs,
+/// @param at   sensor_times() of the samples
+/// @param run  an ok one, its matrices with a row for each time; afterwards for each sample
+void read_sensors(const std::optional<SensorTimes>& at, std::span<const Output> outputs,
                   const ParameterValues& values, std::span<const int> free, Simulation& run);
 
 }  // namespace rigcal::model

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
 
@@ -144,6 +145,9 @@ void SimulationOptions::validate() const {
 
 namespace {
 
+/// As Eigen's allFinite(), which looks at one number after the other.
+bool all_finite(const Eigen::MatrixXd& values) { return (values.array() * 0.0).sum() == 0.0; }
+
 /// @param state  to go on from; null: the rig's initial one
 Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
                            const ParameterValues& parameters, std::span<const int> free,
@@ -179,8 +183,9 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
     result.failed_at_s = times_s.front();
     return result;
   }
-  const SensorTimes at = sensor_times(outputs, parameters, times_s);
-  const auto samples = static_cast<Eigen::Index>(at.times_s.size());
+  const std::optional<SensorTimes> at = sensor_times(outputs, parameters, times_s);
+  const std::span<const double> at_s = at ? std::span<const double>(at->times_s) : times_s;
+  const auto samples = static_cast<Eigen::Index>(at_s.size());
   // Not set to zero: a simulation that ends well writes all of them.
   result.outputs.resize(samples, static_cast<Eigen::Index>(outputs.size()));
   result.sensitivities.resize(outputs.size());
@@ -191,14 +196,13 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   result.end_state.resize(layout.states);
   result.state_floor.resize(layout.states);
   result.end_sensitivities.resize(layout.states, columns);
-  dispatch(
-      {layout, rig.initial, state, parameters, free, inputs, at.times_s, outputs, options, started},
-      result);
+  dispatch({layout, rig.initial, state, parameters, free, inputs, at_s, outputs, options, started},
+           result);
   if (result.ok()) read_sensors(at, outputs, parameters, free, result);
-  const bool finite = result.outputs.allFinite() && result.end_state.allFinite() &&
-                      result.end_sensitivities.allFinite() &&
-                      std::all_of(result.sensitivities.begin(), result.sensitivities.end(),
-                                  [](const Eigen::MatrixXd& s) { return s.allFinite(); });
+  const bool finite =
+      all_finite(result.outputs) && all_finite(result.end_state) &&
+      all_finite(result.end_sensitivities) &&
+      std::all_of(result.sensitivities.begin(), result.sensitivities.end(), all_finite);
   if (result.ok() && !finite) {
     result.status = SimulationStatus::not_finite;
     result.failed_at_s = times_s.back();

@@ -13,6 +13,7 @@
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
+#include "common/memory.hpp"
 #include "common/suggest.hpp"
 #include "report/provenance.hpp"
 
@@ -136,6 +137,7 @@ ExitCode complain(ExitCode code, const std::string& message) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  rigcal::keep_freed_memory();
   const ExitCode code = [&] {
     try {
       return run(argc, argv);

@@ -18,7 +18,7 @@ Eigen::VectorXd lagged(const std::vector<double>& samples_s, F x) {
   auto values = paper_rig();
   values.set("position_lag", kLag_s);
   const std::vector outputs{Output::position};
-  const SensorTimes at = sensor_times(outputs, values, samples_s);
+  const SensorTimes at = *sensor_times(outputs, values, samples_s);
   Simulation run;
   run.outputs.resize(static_cast<Eigen::Index>(at.times_s.size()), 1);
   for (std::size_t i = 0; i < at.times_s.size(); ++i) {
@@ -73,12 +73,16 @@ TEST_CASE("sensors: gain and offset make the reading, and the start is read back
   CHECK_THAT(read.outputs(0, 0), WithinRel(0.021 * 1.1 - 0.001, 1e-12));
 }
 
-TEST_CASE("sensors: without a lag the times are the samples", "[model]") {
+TEST_CASE("sensors: more times than the samples are needed with a lag only", "[model]") {
   const auto times = grid(0.0, 1.0, 11);
   const std::vector outputs{Output::position, Output::velocity};
-  const SensorTimes at = sensor_times(outputs, paper_rig(), times);
-  CHECK(at.times_s == times);
-  CHECK(at.sample.back() == 10);
+  CHECK_FALSE(sensor_times(outputs, paper_rig(), times));
+  auto values = paper_rig();
+  values.set("position_lag", 1e6);
+  const auto at = sensor_times(outputs, values, times);
+  REQUIRE(at);
+  CHECK(at->times_s == times);
+  CHECK(at->sample.back() == 10);
 }
 
 TEST_CASE("sensors: at its limit a reading depends on nothing", "[model]") {
