@@ -67,32 +67,42 @@ void two_chamber_record(int rounds) {
     times.push_back(k / 1e4);
     every.push_back(1.5 * std::sin(9.0 * times.back()) + 0.5 * std::sin(61.0 * times.back()));
   }
-  const std::vector<model::Signal> commands{
-      model::Signal::held(times, every),
-      model::Signal::held({0.0, 4.0, 8.0, 12.0, 16.0}, {1.0, -1.0, 2.0, -2.0, 0.0})};
+  struct Row {
+    const char* command;
+    model::Method method;
+    const char* name;
+    const char* required;
+  };
+  const auto changing = model::Signal::held(times, every);
+  const auto five = model::Signal::held({0.0, 4.0, 8.0, 12.0, 16.0}, {1.0, -1.0, 2.0, -2.0, 0.0});
   const std::vector<Output> outputs{Output::position, Output::pressure_a, Output::pressure_b};
-  std::vector<double> found_ms;
-  long steps[2] = {0, 0};
-  for (std::size_t i = 0; i < commands.size(); ++i) {
+  fmt::print(
+      "### The same of a cylinder with two chambers, a valve of first order, dry friction\n\n");
+  fmt::print("| command | method | CPU ms | required | steps |\n| --- | --- | --- | --- | --- |\n");
+  for (const Row& row :
+       {Row{"changes at every sample", model::Method::rosenbrock, "rosenbrock (default)", "1000"},
+        Row{"changes at every sample", model::Method::automatic, "automatic", "1000"},
+        Row{"five steps", model::Method::rosenbrock, "rosenbrock (default)", "200"},
+        Row{"five steps", model::Method::automatic, "automatic", "200"}}) {
     model::SimulationInputs inputs;
-    inputs.drive = commands[i];
+    inputs.drive = std::string_view(row.command) == "five steps" ? five : changing;
+    model::SimulationOptions options;
+    options.method = row.method;
     std::vector<double> round_ms;
+    long steps = 0;
     for (int r = 0; r < std::max(3, rounds / 5); ++r) {
       const double begin = cpu_ms();
-      const auto result = model::simulate(rig, values, free, inputs, times, outputs);
+      const auto result = model::simulate(rig, values, free, inputs, times, outputs, options);
       round_ms.push_back(cpu_ms() - begin);
-      steps[i] = result.steps + result.rejected_steps;
+      steps = result.steps + result.rejected_steps;
       if (result.ok()) continue;
       fmt::print(stderr, "two chambers: {}\n", result.reason);
       std::exit(1);
     }
-    found_ms.push_back(median(round_ms));
+    fmt::print("| {} | {} | {:.0f} | {} | {} |\n", row.command, row.name, median(round_ms),
+               row.required, steps);
   }
-  fmt::print(
-      "### The same of a cylinder with two chambers, a valve of first order, dry friction\n\n");
-  fmt::print("| command | CPU ms | required | steps |\n| --- | --- | --- | --- |\n");
-  fmt::print("| changes at every sample | {:.0f} | 1000 | {} |\n", found_ms[0], steps[0]);
-  fmt::print("| five steps | {:.0f} | 200 | {} |\n\n", found_ms[1], steps[1]);
+  fmt::print("\n");
 }
 
 }  // namespace rigcal::bench

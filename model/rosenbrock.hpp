@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/LU>
 #include <array>
 
 #include "model/interpolant.hpp"
+#include "model/inverse.hpp"
 #include "model/state.hpp"
 
 namespace rigcal::model {
@@ -204,7 +204,7 @@ class Rosenbrock {
       for (int k = 0; k < N; ++k) w(i, k) = -lin.jacobian[std::size_t(i)][std::size_t(k)];
       w(i, i) += 1.0 / (K::kGamma * dt);
     }
-    inverse_ = w.inverse();
+    inverse_ = inverse_of(w);
   }
 
   /// J S + f_p.

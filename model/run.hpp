@@ -369,7 +369,7 @@ class Run {
   std::vector<std::size_t> state_of_output_;  ///< then this one
   Rosenbrock<N, P> rosenbrock_;
   DormandPrince<N, P> dormand_prince_;
-  bool implicit_;
+  bool implicit_;                ///< the step under way
   Linearisation<N, P> lin_;      ///< at the present point, if known
   Linearisation<N, P> lin_end_;  ///< at the end of the step just tried
   bool lin_known_ = false;

@@ -6,12 +6,12 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
-#include <type_traits>
 
 #include "model/layout.hpp"
 #include "model/load_pressure.hpp"
 #include "model/sensors.hpp"
 #include "model/simulate_sized.hpp"
+#include "model/subnormals.hpp"
 #include "model/two_chamber.hpp"
 
 namespace rigcal::model {
@@ -65,7 +65,7 @@ int plant_states(PlantKind plant) {
 template <typename Plant, int N>
 void run_sized(const SizedRequest& request, Simulation& result) {
 #ifdef RIGCAL_AVX2
-  if constexpr (std::is_same_v<Plant, LoadPressurePlant> && N <= kMaxStatesAvx2) {
+  if constexpr (kHasAvx2<Plant, N>) {
     if (best_instruction_set() == InstructionSet::avx2)
       return simulate_sized<Plant, N, InstructionSet::avx2>(request, result);
   }
@@ -75,6 +75,7 @@ void run_sized(const SizedRequest& request, Simulation& result) {
 
 /// The sizes that were compiled (CMakeLists.txt).
 void dispatch(const SizedRequest& request, Simulation& result) {
+  const SubnormalsAreZero while_it_runs;
   const int states = request.layout.states;
   if (request.parameters.plant == PlantKind::two_chamber) {
     if (states <= 5) return run_sized<TwoChamberPlant, 5>(request, result);

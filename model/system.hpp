@@ -64,27 +64,13 @@ class System {
     return right_hand_side<Plain>(x, t);
   }
 
-  /// f and its partial derivatives: by states and time, then by the parameters, each in one go.
+  /// f and its partial derivatives by states, time and parameters.
   Linearisation<N, P> linearise(const Values<N>& x, double t) const {
-    Numbers<ByStates> lifted;
-    for (int i = 0; i < N; ++i) {
-      const auto row = static_cast<std::size_t>(i);
-      lifted[row] = Number<ByStates>::variable(x[row], i);
+    if constexpr (N == 3) {
+      return linearise_inlined(x, t);
+    } else {
+      return linearise_by_calls(x, t);
     }
-    const auto f = right_hand_side<ByStates>(lifted, t);
-    Linearisation<N, P> lin;
-    for (std::size_t i = 0; i < N; ++i) {
-      lin.f[i] = f[i].value;
-      lin.f_t[i] = f[i].derivative[N];
-      for (std::size_t k = 0; k < N; ++k) lin.jacobian[i][k] = f[i].derivative[k];
-    }
-    if constexpr (P > 0) {
-      X held;
-      for (std::size_t i = 0; i < N; ++i) held[i] = x[i];
-      const X with_parameters = right_hand_side<ByParameters>(held, t);
-      for (std::size_t i = 0; i < N; ++i) lin.f_p[i] = with_parameters[i].derivative;
-    }
-    return lin;
   }
 
   /// The sampled controller's tick at t.
@@ -232,6 +218,35 @@ class System {
       value.derivative.set(N, s.slope);
       return value;
     }
+  }
+
+  /// By states and time, then by the parameters, each in one go.
+  Linearisation<N, P> linearise_by_calls(const Values<N>& x, double t) const {
+    Numbers<ByStates> lifted;
+    for (int i = 0; i < N; ++i) {
+      const auto row = static_cast<std::size_t>(i);
+      lifted[row] = Number<ByStates>::variable(x[row], i);
+    }
+    const auto f = right_hand_side<ByStates>(lifted, t);
+    Linearisation<N, P> lin;
+    for (std::size_t i = 0; i < N; ++i) {
+      lin.f[i] = f[i].value;
+      lin.f_t[i] = f[i].derivative[N];
+      for (std::size_t k = 0; k < N; ++k) lin.jacobian[i][k] = f[i].derivative[k];
+    }
+    if constexpr (P > 0) {
+      X held;
+      for (std::size_t i = 0; i < N; ++i) held[i] = x[i];
+      const X with_parameters = right_hand_side<ByParameters>(held, t);
+      for (std::size_t i = 0; i < N; ++i) lin.f_p[i] = with_parameters[i].derivative;
+    }
+    return lin;
+  }
+
+  /// An eighth of a simulation with sensitivities is saved where all of it is inlined. With more
+  /// states that would take long to compile.
+  [[gnu::flatten]] Linearisation<N, P> linearise_inlined(const Values<N>& x, double t) const {
+    return linearise_by_calls(x, t);
   }
 
   /// What the valve is told: the held output, the controller's, or the recorded command.

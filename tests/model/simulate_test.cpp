@@ -478,6 +478,30 @@ TEST_CASE("simulate: follows a recording of thousands of samples", "[model]") {
   CHECK(held.steps < 60000);
 }
 
+TEST_CASE("simulate: a command that changes sooner than the step would end costs no accuracy",
+          "[model]") {
+  const auto changes = grid(0.0, 1.0, 5001);
+  std::vector<double> command;
+  for (const double t : changes)
+    command.push_back(0.5 * std::sin(9.0 * t) + 0.2 * std::sin(61.0 * t));
+  Experiment e;
+  e.rig.controller = ControllerKind::none;
+  e.inputs.drive = Signal::held(changes, command);
+  for (const char* key : {"mass", "bulk_modulus", "valve_gain", "leakage_coefficient"})
+    e.free.push_back(parameter_index(PlantKind::load_pressure, key));
+  for (const double leak : {0.0, 0.35, 10.0}) {  // with the last the leak is stiff
+    CAPTURE(leak);
+    e.set("leakage_coefficient", leak);
+    e.options.tolerance = 1e-6;
+    const Simulation run = ok(e);
+    e.options.tolerance = 1e-9;
+    const Simulation exact = ok(e);
+    CHECK(difference(exact.outputs, run.outputs) < 5e-6);
+    for (std::size_t k = 0; k < run.sensitivities.size(); ++k)
+      CHECK(difference(exact.sensitivities[k], run.sensitivities[k]) < 1e-3);
+  }
+}
+
 TEST_CASE("simulate: a sample's value does not depend on the samples beside it", "[model]") {
   for (const Signal& drive : {Signal::square(0.01, 2.0), Signal::sine(0.02, 2.0)}) {
     Experiment e = paper(drive);
@@ -490,6 +514,24 @@ TEST_CASE("simulate: a sample's value does not depend on the samples beside it",
     }
     CHECK(few.steps == many.steps);
   }
+}
+
+TEST_CASE("simulate: a sensitivity that only decays ends at zero, not below what is normal",
+          "[model]") {
+  Experiment e;
+  e.rig.initial = InitialState::given;
+  e.set("initial_position", 0.01);
+  e.inputs.drive = Signal::held({0.0}, {0.0});
+  e.times_s = grid(0.0, 200.0, 201);
+  e.free = {parameter_index(PlantKind::load_pressure, "position_offset"),
+            parameter_index(PlantKind::load_pressure, "mass")};
+  const Simulation run = ok(e);
+  for (const Eigen::MatrixXd& by : run.sensitivities) {
+    for (Eigen::Index i = 0; i < by.size(); ++i)
+      CHECK(std::fpclassify(by.data()[i]) != FP_SUBNORMAL);
+  }
+  volatile double small = 1e-300;
+  CHECK(small * 1e-10 > 0.0);  // and for others they are what they were
 }
 
 TEST_CASE("simulate: repeats to the bit", "[model]") {
