@@ -8,7 +8,7 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr std::size_t kLeastSamples = 8;
-constexpr double kLeastShare = 0.005;
+constexpr double kLeastShare = 0.01;
 constexpr double kErrors = 4.0;
 
 double mean_of(std::span<const double> values) {

@@ -28,8 +28,8 @@ std::optional<double> motion_of(F signal) {
 TEST_CASE("start_motion: rest before the first edge is no motion", "[datasets]") {
   CHECK_FALSE(motion_of([](double t) { return t < 0.2 ? 0.0 : 5.0; }).has_value());
   CHECK_FALSE(motion_of([](double) { return 0.0; }).has_value());
-  // 0.3 % of the range, well beyond the noise.
-  CHECK_FALSE(motion_of([](double t) { return 0.3 * t + (t < 0.5 ? 0.0 : 100.0); }).has_value());
+  // 0.7 % of the range, well beyond the noise.
+  CHECK_FALSE(motion_of([](double t) { return 10.0 * t + (t < 0.5 ? 0.0 : 100.0); }).has_value());
 }
 
 TEST_CASE("start_motion: a record that begins in the middle of its motion", "[datasets]") {
