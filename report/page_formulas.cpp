@@ -38,10 +38,13 @@ constexpr std::array kFormulas{
         "intervals under the errors",
         "value ± 1.96 times the error: what it alone says, the plain (naive) one and the robust "
         "one"},
-    Formula{"95 % interval",
-            "value ± t times the robust standard error, cut at the limits of the parameter; the "
-            "plain one where residuals are below half of the noise, or too few to tell their "
-            "correlation; half width: over the value"},
+    Formula{
+        "95 % interval",
+        "value ± q times the robust standard error, cut at the limits of the parameter; q = t / "
+        "root of (1 - b + b t^2), t Student's with the freedom of that error, b the share of it "
+        "that the error of the value itself makes up; where residuals are below half of the "
+        "noise, or too few to tell their correlation, value ± t times the plain error; half "
+        "width: over the value"},
     Formula{"identified, weak, not identifiable",
             "half width of the interval up to 20 %, up to 100 %, above 100 % of the value; of the "
             "width of the bounds where zero is arbitrary or the effect may be absent"},
