@@ -290,8 +290,9 @@ Json result_json(const Result& result) {
   json["campaign"] = result.campaign.name;
   json["synthetic"] = result.campaign.synthetic;
   json["model"] = std::string(to_string(result.campaign.rig.plant));
-  // A cost of zero would look like a perfect fit.
-  json["cost"] = status_of(fit) == calib::FitStatus::failed ? Json(nullptr) : number(fit.cost);
+  // Without a start nothing was estimated. A cost of zero would look like a perfect fit.
+  const bool has_cost = status_of(fit) != calib::FitStatus::failed && !fit.starts.empty();
+  json["cost"] = has_cost ? number(fit.cost) : Json(nullptr);
   json["residual_count"] = fit.residual_count;
   json["evaluations"] = fit.evaluations;
   json["wall_seconds"] = number(fit.wall_seconds);

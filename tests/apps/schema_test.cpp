@@ -44,7 +44,12 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
   CHECK(violations(fit, "result") == "");
   folder.run(
       {"validate", "twin/campaign.toml", "--fit", "fit/fit.json", "--out", "val", "--quiet"});
-  CHECK(violations(json::parse(folder.read("val/validation.json")), "result").empty());
+  json scored = json::parse(folder.read("val/validation.json"));
+  CHECK(violations(scored, "result").empty());
+  // Nothing was estimated; a cost of zero would look like a perfect fit.
+  CHECK(scored.at("cost").is_null());
+  scored["cost"] = 0.0;
+  CHECK_FALSE(violations(scored, "result").empty());
   folder.write("twin/hopeless.toml",
                folder.read("twin/campaign.toml") + "\n[simulation]\nmax_seconds = 1e-9\n");
   folder.run({"fit", "twin/hopeless.toml", "--out", "failed", "--quiet"});
