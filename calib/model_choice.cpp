@@ -36,6 +36,17 @@ struct Noise {
 /// Selection and Multimodel Inference, 2002, 2.6).
 constexpr double kNoDifference = 2.0;
 
+/// "+3.1", "-6936": three digits, or all before the point.
+std::string signed_text(double value) {
+  constexpr double kWhole = 100.0;
+  return std::abs(value) < kWhole || std::abs(value) > 1e9 ? fmt::format("{:+.3g}", value)
+                                                           : fmt::format("{:+.0f}", value);
+}
+
+std::string p_text(double p) {
+  return p < 1e-4 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p);
+}
+
 }  // namespace
 
 InformationDifference compare_information(const Candidate& first, const Candidate& other) {
@@ -57,7 +68,8 @@ InformationDifference compare_information(const Candidate& first, const Candidat
   const int by_aic = choice(result.aic);
   const int by_bic = choice(result.bic);
   const std::string numbers =
-      fmt::format("AIC {:+.3g}, BIC {:+.3g} against {}", result.aic, result.bic, first.name);
+      fmt::format("AIC {}, BIC {} of {} against {}", signed_text(result.aic),
+                  signed_text(result.bic), other.name, first.name);
   if (by_aic == 0 && by_bic == 0) {
     result.message = fmt::format("no difference to speak of ({})", numbers);
   } else if (by_aic * by_bic < 0) {
@@ -89,12 +101,13 @@ ModelChoice choose(const Candidate& smaller, const Candidate& larger) {
   result.larger = result.p < kLevel;
   const bool bic_agrees = (result.delta_bic < 0.0) == result.larger;
   result.message = fmt::format(
-      "{} is {} by {} (likelihood ratio {:.3g} for {} parameter{}, p = {:.2g}; AIC {:+.3g}, BIC "
-      "{:+.3g}){}",
+      "{} is {} by {} (likelihood ratio {} for {} parameter{}, {}; AIC {}, BIC {} of {} against "
+      "{}){}",
       result.larger ? larger.name : smaller.name, result.larger ? "preferred" : "good enough",
       larger.effective_samples < larger.residuals ? "the effective samples" : "all residuals",
-      result.likelihood_ratio, result.freedom, result.freedom == 1 ? "" : "s", result.p,
-      result.delta_aic, result.delta_bic,
+      signed_text(result.likelihood_ratio).substr(1), result.freedom,
+      result.freedom == 1 ? "" : "s", p_text(result.p), signed_text(result.delta_aic),
+      signed_text(result.delta_bic), larger.name, smaller.name,
       bic_agrees ? "" : "; BIC says otherwise: the case is not clear");
   return result;
 }

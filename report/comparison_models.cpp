@@ -4,30 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 #include <set>
 #include <string>
 #include <tuple>
 
 #include "calib/model_choice.hpp"
-#include "report/page_parts.hpp"
+#include "report/comparison_parts.hpp"
 
 namespace rigcal::report {
 namespace {
 
 using calib::Candidate;
-
-/// Hashes of the records that a result was made from.
-std::set<std::string> hashes_of(const Json& result) {
-  std::set<std::string> hashes;
-  for (const Json& input : result.at("provenance").at("inputs")) {
-    const std::filesystem::path path = text_of(input, "path");
-    if (path.extension() != ".toml" && path.extension() != ".json")
-      hashes.insert(text_of(input, "sha256"));
-  }
-  return hashes;
-}
 
 /// Whether what the residuals are divided by is the same wherever it is known.
 bool same_weights(const Json& a, const Json& b) {
@@ -85,6 +73,12 @@ std::string obstacle(const Compared& a, const Compared& b) {
     if (text_of(each->result, "status") != "converged")
       return fmt::format("{} did not converge", each->name);
   }
+  // The same content under another name is the same record.
+  const auto hashes_of = [](const Json& result) {
+    std::set<std::string> hashes;
+    for (const auto& [hash, file] : record_hashes(result)) hashes.insert(hash);
+    return hashes;
+  };
   const auto hashes = hashes_of(a.result);
   if (hashes.empty() || hashes != hashes_of(b.result)) return "not fitted to the same records";
   if (!same_weights(a.result.at("weights"), b.result.at("weights")) ||

@@ -1,9 +1,7 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
-#include <cmath>
-
-#include "report/comparison.hpp"
-#include "report/page_parts.hpp"
+#include "report/comparison_parts.hpp"
 #include "report/readable.hpp"
 #include "report/text_table.hpp"
 
@@ -14,17 +12,28 @@ using Align = TextTable::Align;
 
 std::string titled(const std::string& title, const std::string& body, const Style& style) {
   if (body.empty()) return {};
-  return (style.colour ? fmt::format("\x1b[1m{}\x1b[0m\n", title) : title + "\n") + body + "\n";
+  const std::string head = wrapped(title, style.columns, 2);
+  return (style.colour ? fmt::format("\x1b[1m{}\x1b[0m\n", head) : head + "\n") + body + "\n";
 }
 
-std::string results_table(const Json& comparison) {
+/// What a narrow terminal does not show.
+std::string narrow_note(const TextTable& table, std::size_t columns) {
+  const std::vector<std::string> left_out = table.left_out(columns);
+  if (left_out.empty()) return {};
+  return wrapped(fmt::format("  for want of room without {}: they are in comparison.json",
+                             fmt::join(left_out, ", ")),
+                 columns, 2) +
+         "\n";
+}
+
+std::string results_table(const Json& comparison, std::size_t columns) {
   TextTable table({{"result"},
-                   {"model"},
+                   {"model", Align::left, 2},
                    {"status"},
                    {"verdict"},
-                   {"conditions", Align::right},
+                   {"conditions", Align::right, 3},
                    {"dates"},
-                   {"cost", Align::right},
+                   {"cost", Align::right, 1},
                    {"chi2 reduced", Align::right}});
   for (const Json& result : comparison.at("results")) {
     const Json& dates = result.at("dates");
@@ -44,21 +53,21 @@ std::string results_table(const Json& comparison) {
                fmt::format("{}", result.at("conditions").get<int>()), when, number_text("cost"),
                number_text("reduced_chi_square")});
   }
-  return table.text();
+  return table.text(columns) + narrow_note(table, columns);
 }
 
-/// "85.011 ± 0.052", "6.2 (known)", "-" in the unit of the row.
+/// "85.011 [84.96, 85.06]", "6.2 (known)", "-" in the unit of the row.
 std::string estimate_text(const Json& estimate, const RowUnit& unit) {
-  if (!estimate.is_object()) return "-";
-  const auto value = number_of(estimate, "value");
-  if (!value) return "-";
-  const std::string text = fmt::format("{:.5g}", *value / unit.si);
+  if (!estimate.is_object() || !number_of(estimate, "value")) return "-";
+  const std::string text = text_of(shown_in(estimate.at("value"), unit.si, 6), "text");
   if (!estimate.at("fitted").get<bool>()) return text + " (known)";
-  const Json& ci = estimate.at("ci95");
-  if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number()) return text + " (no interval)";
-  return fmt::format("{} [{:.5g}, {:.5g}]", text, ci[0].get<double>() / unit.si,
-                     ci[1].get<double>() / unit.si);
+  const Json interval = shown_interval(estimate.at("ci95"), unit.si, 5);
+  if (!interval.at("known").get<bool>()) return text + " (no interval)";
+  return fmt::format("{} [{}, {}]", text, text_of(interval.at("low"), "text"),
+                     text_of(interval.at("high"), "text"));
 }
+
+std::string unit_text(const RowUnit& unit) { return unit.name.empty() ? "1" : unit.name; }
 
 std::string difference_text(const Json& difference) {
   if (!difference.is_object()) return "-";
@@ -72,23 +81,8 @@ std::string difference_text(const Json& difference) {
   return text;
 }
 
-bool anything_fitted(const Json& parameter) {
-  for (const Json& estimate : parameter.at("estimates"))
-    if (estimate.is_object() && estimate.at("fitted").get<bool>()) return true;
-  return false;
-}
-
-/// Known values that differ belong to what differs too.
-bool worth_a_row(const Json& parameter) {
-  if (anything_fitted(parameter)) return true;
-  for (const Json& difference : parameter.at("differences")) {
-    if (difference.is_object() && number_of(difference, "difference").value_or(0.0) != 0.0)
-      return true;
-  }
-  return false;
-}
-
-std::string estimates_table(const Json& comparison) {
+/// A column per result.
+TextTable wide_estimates(const Json& comparison) {
   const Json& results = comparison.at("results");
   std::vector<TextTable::Column> columns{{"parameter"}, {"unit"}};
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -99,29 +93,62 @@ std::string estimates_table(const Json& comparison) {
   for (const Json& parameter : comparison.at("parameters")) {
     if (!worth_a_row(parameter)) continue;
     const Json& estimates = parameter.at("estimates");
-    double size = 0.0;
-    for (const Json& estimate : estimates) {
-      if (estimate.is_object())
-        size = std::max(size, std::abs(number_of(estimate, "value").value_or(0.0)));
-    }
-    const RowUnit unit = row_unit(size, parameter);
-    std::vector<std::string> row{parameter_label(parameter),
-                                 unit.name.empty() ? std::string("1") : unit.name};
+    const RowUnit unit = unit_of_estimates(parameter);
+    std::vector<std::string> row{parameter_label(parameter), unit_text(unit)};
     for (std::size_t i = 0; i < estimates.size(); ++i) {
       row.push_back(estimate_text(estimates[i], unit));
       if (i > 0) row.push_back(difference_text(parameter.at("differences")[i]));
     }
     table.add(std::move(row));
   }
-  return table.empty() ? std::string() : table.text();
+  return table;
 }
 
-std::string metrics_table(const Json& comparison) {
+/// A line per result under each parameter, for terminals that the other one does not fit on.
+std::string stacked_estimates(const Json& comparison) {
+  const Json& results = comparison.at("results");
+  TextTable table({{"  result"}, {"value", Align::right}, {"change", Align::right}});
+  std::vector<std::string> titles;
+  for (const Json& parameter : comparison.at("parameters")) {
+    if (!worth_a_row(parameter)) continue;
+    const RowUnit unit = unit_of_estimates(parameter);
+    titles.push_back(fmt::format("{}, {}\n", parameter_label(parameter), unit_text(unit)));
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      table.add({"  " + text_of(results[i], "name"),
+                 estimate_text(parameter.at("estimates")[i], unit),
+                 i > 0 ? difference_text(parameter.at("differences")[i]) : std::string()});
+    }
+  }
+  // The title of a parameter goes above its lines; the line of the columns stays first.
+  std::string text;
+  std::size_t line = 0;
+  const std::string all = table.text();
+  for (std::size_t begin = 0; begin < all.size(); ++line) {
+    const std::size_t end = all.find('\n', begin) + 1;
+    if (line > 0 && (line - 1) % results.size() == 0) text += titles[(line - 1) / results.size()];
+    text += all.substr(begin, end - begin);
+    begin = end;
+  }
+  return text;
+}
+
+std::string estimates_table(const Json& comparison, std::size_t columns) {
+  const TextTable wide = wide_estimates(comparison);
+  if (wide.empty()) return {};
+  return columns == 0 || wide.width() <= columns ? wide.text() : stacked_estimates(comparison);
+}
+
+/// As the scorecard calls them.
+std::string metric_title(const std::string& metric) {
+  return metric == "absolute_error_percent" ? "error %" : metric;
+}
+
+std::string metrics_table(const Json& comparison, std::size_t columns) {
   TextTable table({{"channel"},
                    {"metric"},
                    {"result"},
-                   {"conditions", Align::right},
-                   {"mean of first", Align::right},
+                   {"conditions", Align::right, 2},
+                   {"first", Align::right, 1},
                    {"mean", Align::right},
                    {"better", Align::right},
                    {"worse", Align::right},
@@ -134,7 +161,7 @@ std::string metrics_table(const Json& comparison) {
         const auto value = number_of(against[i], key);
         return value ? fmt::format("{:.6g}", *value) : std::string("-");
       };
-      table.add({text_of(metric, "channel"), text_of(metric, "metric"),
+      table.add({text_of(metric, "channel"), metric_title(text_of(metric, "metric")),
                  text_of(comparison.at("results")[i], "name"),
                  fmt::format("{}", against[i].at("conditions").get<int>()),
                  mean_text("mean_of_first"), mean_text("mean"),
@@ -144,25 +171,27 @@ std::string metrics_table(const Json& comparison) {
                      (against[i].at("significant").get<bool>() ? " *" : "")});
     }
   }
-  return table.empty() ? std::string() : table.text();
+  return table.empty() ? std::string() : table.text(columns) + narrow_note(table, columns);
 }
 
-std::string models_text(const Json& comparison) {
+std::string models_text(const Json& comparison, std::size_t columns) {
   std::string text;
   const Json& models = comparison.at("models");
   for (std::size_t i = 1; i < models.size(); ++i) {
     const std::string verdict = text_of(models[i], "verdict");
     const std::string reason = text_of(models[i], "reason");
-    text +=
-        fmt::format("  {}: {}\n", text_of(comparison.at("results")[i], "name"),
-                    verdict.empty()  ? "not compared: " + reason
-                    : reason.empty() ? verdict
-                                     : fmt::format("{}; no likelihood ratio: {}", verdict, reason));
+    const std::string words = verdict.empty() ? "not compared: " + reason
+                              : reason.empty()
+                                  ? verdict
+                                  : fmt::format("{}; no likelihood ratio: {}", verdict, reason);
+    text += wrapped(fmt::format("  {}: {}", text_of(comparison.at("results")[i], "name"), words),
+                    columns, 4);
+    text += "\n";
   }
   return text;
 }
 
-std::string trends_text(const Json& comparison) {
+std::string trends_text(const Json& comparison, std::size_t columns) {
   std::string text;
   for (const Json& trend : comparison.at("leak_trends")) {
     for (const auto& [key, slope, unit] :
@@ -171,11 +200,15 @@ std::string trends_text(const Json& comparison) {
       const Json& along = trend.at(key);
       const auto value = number_of(along, slope);
       if (!value) continue;
-      text += fmt::format(
-          "  {}: {:+.3g} {} [{:.3g}, {:.3g}], {}{}, {} estimates\n", text_of(trend, "of"), *value,
-          unit, along.at("ci95")[0].get<double>(), along.at("ci95")[1].get<double>(),
-          p_value_text(along.at("p_value").get<double>()),
-          along.at("significant").get<bool>() ? " *" : "", along.at("points").get<int>());
+      const Json& ci = along.at("ci95");
+      text +=
+          wrapped(fmt::format("  {}: {:+.3g} {} [{:.3g}, {:.3g}], {}{}, {} estimates",
+                              text_of(trend, "of"), *value, unit, ci[0].get<double>(),
+                              ci[1].get<double>(), p_value_text(along.at("p_value").get<double>()),
+                              along.at("significant").get<bool>() ? " *" : "",
+                              along.at("points").get<int>()),
+                  columns, 4);
+      text += "\n";
     }
   }
   return text;
@@ -184,16 +217,19 @@ std::string trends_text(const Json& comparison) {
 }  // namespace
 
 std::string comparison_text(const Json& comparison, const Style& style) {
-  std::string text = titled("Results", results_table(comparison), style);
+  const std::size_t columns = style.columns;
+  std::string text = titled("Results", results_table(comparison, columns), style);
   text += titled(
       "Parameters with 95 % intervals; change from the first; * significant at 5 % for "
       "all parameters together (Holm)",
-      estimates_table(comparison), style);
-  text += titled("Scores over the conditions that both have; * significant at 5 %",
-                 metrics_table(comparison), style);
-  text += titled("Models, against the first", models_text(comparison), style);
-  text +=
-      titled("Trend of the leakage coefficient, 95 % intervals", trends_text(comparison), style);
+      estimates_table(comparison, columns), style);
+  text += titled(
+      "Scores, mean over the conditions that both have, of the first and of the other; "
+      "* significant at 5 %",
+      metrics_table(comparison, columns), style);
+  text += titled("Models, against the first", models_text(comparison, columns), style);
+  text += titled("Trend of the leakage coefficient, 95 % intervals",
+                 trends_text(comparison, columns), style);
   int shared = 0;
   for (const Json& record : comparison.at("records")) {
     bool everywhere = true;
@@ -203,7 +239,7 @@ std::string comparison_text(const Json& comparison, const Style& style) {
   text += fmt::format("records: {} in all results, {} in some\n", shared,
                       comparison.at("records").size() - static_cast<std::size_t>(shared));
   for (const Json& warning : comparison.at("warnings"))
-    text += fmt::format("warning: {}\n", warning.get<std::string>());
+    text += wrapped("warning: " + warning.get<std::string>(), columns, 2) + "\n";
   text += fmt::format("status: {}\n", text_of(comparison, "status"));
   return text;
 }

@@ -5,33 +5,22 @@
 #include <chrono>
 #include <cmath>
 
-#include "report/page_parts.hpp"
+#include "report/comparison_parts.hpp"
 #include "report/readable.hpp"
 
 namespace rigcal::report {
 namespace {
 
-/// The unit in which the largest value of a row is a number of few digits.
-RowUnit unit_of_estimates(const Json& parameter) {
-  double size = 0.0;
-  for (const Json& estimate : parameter.at("estimates")) {
-    if (estimate.is_object())
-      size = std::max(size, std::abs(number_of(estimate, "value").value_or(0.0)));
-  }
-  return row_unit(size, parameter);
-}
-
 Json estimate_cell(const Json& estimate, const RowUnit& unit) {
   if (!estimate.is_object()) return {{"there", false}};
-  const Json& ci = estimate.at("ci95");
-  const bool known_interval = ci.is_array() && ci[0].is_number() && ci[1].is_number();
+  const Json interval = shown_interval(estimate.at("ci95"), unit.si, 5);
   const std::string grade = text_of(estimate, "identifiability");
   return {{"there", true},
           {"value", shown_in(estimate.at("value"), unit.si, 6)},
           {"fitted", estimate.at("fitted")},
-          {"interval", known_interval},
-          {"low", shown_in(known_interval ? ci[0] : Json(), unit.si, 5)},
-          {"high", shown_in(known_interval ? ci[1] : Json(), unit.si, 5)},
+          {"interval", interval.at("known")},
+          {"low", interval.at("low")},
+          {"high", interval.at("high")},
           {"doubtful", grade == "weak" || grade == "not_identifiable"},
           {"grade", grade == "weak" ? "weak" : "not identifiable"}};
 }
@@ -53,21 +42,10 @@ Json change_cell(const Json& difference) {
           {"reason", text_of(difference, "reason")}};
 }
 
-/// Estimates that some result has; known values only where they differ.
-bool is_compared(const Json& parameter) {
-  for (const Json& estimate : parameter.at("estimates"))
-    if (estimate.is_object() && estimate.at("fitted").get<bool>()) return true;
-  for (const Json& difference : parameter.at("differences")) {
-    if (difference.is_object() && number_of(difference, "difference").value_or(0.0) != 0.0)
-      return true;
-  }
-  return false;
-}
-
 Json parameter_rows(const Json& parameters) {
   Json rows = Json::array();
   for (const Json& parameter : parameters) {
-    if (!is_compared(parameter)) continue;
+    if (!worth_a_row(parameter)) continue;
     const RowUnit unit = unit_of_estimates(parameter);
     Json cells = Json::array();
     const Json& estimates = parameter.at("estimates");

@@ -30,7 +30,23 @@ const metrics::MetricSpec* metric_named(const std::string& name) {
 Json shown_in(const Json& value, double si_per_unit, int digits) {
   if (!value.is_number()) return {{"exact", ""}, {"text", "–"}};
   return {{"exact", fmt::format("{}", value.get<double>())},
-          {"text", fmt::format("{:.{}g}", value.get<double>() / si_per_unit, digits)}};
+          {"text", significant(value.get<double>() / si_per_unit, digits)}};
+}
+
+Json shown_interval(const Json& pair, double si_per_unit, int digits) {
+  const bool known = pair.is_array() && pair[0].is_number() && pair[1].is_number();
+  if (known) {
+    const double low = pair[0].get<double>();
+    const double high = pair[1].get<double>();
+    const double size = std::max(std::abs(low), std::abs(high));
+    constexpr double kMostDigits = 12.0;  // beyond, the ends are one number
+    const double needed = std::log10(size / (high - low)) + 2.0;
+    if (high > low && needed < kMostDigits)
+      digits = std::max(digits, static_cast<int>(std::ceil(needed)));
+  }
+  return {{"known", known},
+          {"low", shown_in(known ? pair[0] : Json(), si_per_unit, digits)},
+          {"high", shown_in(known ? pair[1] : Json(), si_per_unit, digits)}};
 }
 
 Json shown(const Json& value, std::string_view si_unit, int digits) {

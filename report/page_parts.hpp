@@ -22,6 +22,9 @@ namespace rigcal::report {
 Json shown(const Json& value, std::string_view si_unit, int digits = 5);
 /// The same in a unit that others share.
 Json shown_in(const Json& value, double si_per_unit, int digits = 5);
+/// Both ends of an interval, with two digits of its width where these are more than `digits`;
+/// `known` false where an end is missing.
+Json shown_interval(const Json& pair, double si_per_unit, int digits);
 /// Agreement near 1 with the digits that tell: 0.9999958.
 Json shown_agreement(const Json& value);
 

@@ -42,10 +42,21 @@ ReadableUnit readable_unit(double value_si, std::string_view si_unit) {
   return found;
 }
 
+std::string significant(double value, int digits) {
+  constexpr double kExponentFrom = 1e6;
+  std::string text = fmt::format("{:.{}g}", value, digits);
+  const double size = std::abs(value);
+  if (text.find('e') == std::string::npos || !(size >= 1.0)) return text;
+  // An exponent here means more digits before the point than are asked for.
+  const double step = std::pow(10.0, std::floor(std::log10(size)) + 1.0 - digits);
+  const double rounded = std::round(value / step) * step;
+  return std::abs(rounded) < kExponentFrom ? fmt::format("{:.0f}", rounded) : text;
+}
+
 std::string readable(double value_si, std::string_view si_unit, int digits) {
   if (!std::isfinite(value_si)) return "-";
   const ReadableUnit unit = readable_unit(value_si, si_unit);
-  std::string text = fmt::format("{:.{}g}", value_si / unit.si, digits);
+  std::string text = significant(value_si / unit.si, digits);
   if (!unit.name.empty()) text.append(" ").append(unit.name);
   return text;
 }

@@ -15,6 +15,10 @@ struct ReadableUnit {
 /// 0.0508 m -> mm. Units that have no such relatives stay SI; "1" has an empty name.
 ReadableUnit readable_unit(double value_si, std::string_view si_unit);
 
+/// A value rounded to so many significant digits, without an exponent from 1 to below a million:
+/// "170", where two digits alone would be "1.7e+02".
+std::string significant(double value, int digits);
+
 /// "6.2 MPa", "0.35", "-": `digits` significant digits; "-" where the value is not finite.
 std::string readable(double value_si, std::string_view si_unit, int digits = 6);
 

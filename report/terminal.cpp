@@ -113,11 +113,13 @@ TextTable group_table(const Result& result, Channel channel) {
 }
 
 /// What a narrow terminal does not show.
-std::string narrow_note(const TextTable& table, const Style& style) {
+std::string narrow_note(const TextTable& table, const char* file, const Style& style) {
   const std::vector<std::string> left_out = table.left_out(style.columns);
   if (left_out.empty()) return {};
-  return fmt::format("  for want of room without {}: they are in scorecard.csv\n",
-                     fmt::join(left_out, ", "));
+  return wrapped(fmt::format("  for want of room without {}: they are in {}",
+                             fmt::join(left_out, ", "), file),
+                 style.columns, 2) +
+         "\n";
 }
 
 std::string identifiability_text(const calib::FittedParameter& p, const Style& style) {
@@ -135,7 +137,7 @@ std::string identifiability_text(const calib::FittedParameter& p, const Style& s
 /// Numbers of one parameter, all in the unit of its value.
 std::string in_unit(double value_si, const ReadableUnit& unit, int digits) {
   if (!std::isfinite(value_si)) return "-";
-  return fmt::format("{:.{}g}", value_si / unit.si, digits);
+  return significant(value_si / unit.si, digits);
 }
 
 std::string limits(double low, double high, const ReadableUnit& unit, int digits) {
@@ -145,7 +147,7 @@ std::string limits(double low, double high, const ReadableUnit& unit, int digits
 /// One line per reason, led by all that it holds for; "all" where that is more than one and every
 /// one.
 std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& reasons,
-                       std::size_t parameters) {
+                       std::size_t parameters, std::size_t columns) {
   std::string text;
   for (std::size_t i = 0; i < reasons.size(); ++i) {
     const auto same = [&](const auto& other) { return other.second == reasons[i].second; };
@@ -156,8 +158,10 @@ std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& r
       if (same(reason)) whose.push_back(reason.first);
     }
     const bool all = whose.size() > 1 && whose.size() == parameters;
-    text += fmt::format("  {}: {}\n", all ? "all" : fmt::format("{}", fmt::join(whose, ", ")),
-                        reasons[i].second);
+    text += wrapped(fmt::format("  {}: {}", all ? "all" : fmt::format("{}", fmt::join(whose, ", ")),
+                                reasons[i].second),
+                    columns, 4);
+    text += "\n";
   }
   return text;
 }
@@ -169,11 +173,14 @@ std::string scorecard_text(const Result& result, const Style& style) {
   if (!channel) return "No channel was compared.\n";
   const TextTable conditions = condition_table(result, *channel, style);
   std::string text = coloured(fmt::format("Agreement of {}", info(*channel).key), "1", style) +
-                     "\n" + conditions.text(style.columns) + narrow_note(conditions, style);
+                     "\n" + conditions.text(style.columns) +
+                     narrow_note(conditions, "scorecard.csv", style);
   const TextTable gathered = group_table(result, *channel);
   if (!gathered.empty()) {
     text += "\n" + coloured("Gathered (means, and the worst)", "1", style) + "\n" +
-            gathered.text(style.columns);
+            gathered.text(style.columns) +
+            narrow_note(gathered, result.kind == ResultKind::fit ? "fit.json" : "validation.json",
+                        style);
   }
   return text;
 }
@@ -206,7 +213,7 @@ std::string parameters_text(const Result& result, const Style& style) {
                                                  : "No parameter was estimated.\n";
   }
   return coloured("Parameters", "1", style) + "\n" + text.text(style.columns) +
-         foot_notes(reasons, text.rows());
+         foot_notes(reasons, text.rows(), style.columns);
 }
 
 std::string verdict_text(const Result& result, const Style& style) {
@@ -215,25 +222,27 @@ std::string verdict_text(const Result& result, const Style& style) {
   const char* code = status == FitStatus::converged ? "32"
                      : status == FitStatus::stopped ? "33"
                                                     : "31";
-  std::string text =
-      fmt::format("status: {}", coloured(std::string(to_string(status)), code, style));
-  if (!fit.message.empty()) text += ": " + fit.message;
-  text += "\n";
+  std::string text;
+  const auto say = [&](const std::string& line, std::size_t indent) {
+    text += wrapped(line, style.columns, indent) + "\n";
+  };
+  const std::string word = coloured(std::string(to_string(status)), code, style);
+  say(fit.message.empty() ? "status: " + word : fmt::format("status: {}: {}", word, fit.message),
+      2);
   for (const calib::ConditionScore& condition : fit.conditions) {
-    if (!condition.failure.empty()) {
-      text += fmt::format("  {}: not simulated: {}\n", condition.id, condition.failure);
-    }
-    for (const std::string& reason : condition.reasons) {
-      text += fmt::format("  {}: {}\n", condition.id, reason);
-    }
+    if (!condition.failure.empty())
+      say(fmt::format("  {}: not simulated: {}", condition.id, condition.failure), 4);
+    for (const std::string& reason : condition.reasons)
+      say(fmt::format("  {}: {}", condition.id, reason), 4);
   }
-  text += fit.verdict ? fmt::format("verdict: {}\n", coloured(*fit.verdict, style))
-                      : "verdict: none (the campaign has no [acceptance])\n";
-  if (!fit.agreement.empty()) text += fmt::format("starts: {}\n", fit.agreement);
-  if (!fit.bootstrap_message.empty()) text += fmt::format("bootstrap: {}\n", fit.bootstrap_message);
-  if (!fit.interval_advice.empty()) text += fmt::format("intervals: {}\n", fit.interval_advice);
-  for (const std::string& warning : fit.warnings) text += fmt::format("warning: {}\n", warning);
-  if (result.campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
+  say(fit.verdict ? "verdict: " + coloured(*fit.verdict, style)
+                  : std::string("verdict: none (the campaign has no [acceptance])"),
+      2);
+  if (!fit.agreement.empty()) say("starts: " + fit.agreement, 2);
+  if (!fit.bootstrap_message.empty()) say("bootstrap: " + fit.bootstrap_message, 2);
+  if (!fit.interval_advice.empty()) say("intervals: " + fit.interval_advice, 2);
+  for (const std::string& warning : fit.warnings) say("warning: " + warning, 2);
+  if (result.campaign.synthetic) say("note: the records of this campaign are synthetic", 2);
   return text;
 }
 

@@ -7,6 +7,21 @@ namespace {
 
 constexpr std::size_t kGap = 2;  ///< blanks between columns
 
+/// Control characters as blanks, but for sequences that colour: names of files may hold any.
+std::string on_one_line(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\x1b') {
+      const std::size_t end = text.find_first_not_of("[;0123456789", i + 1);
+      if (end != std::string::npos && text[end] == 'm') {
+        i = end;
+        continue;
+      }
+    }
+    if (static_cast<unsigned char>(text[i]) < 0x20U || text[i] == '\x7f') text[i] = ' ';
+  }
+  return text;
+}
+
 }  // namespace
 
 std::size_t text_width(std::string_view text) {
@@ -21,6 +36,32 @@ std::size_t text_width(std::string_view text) {
   return width;
 }
 
+std::string wrapped(std::string_view line, std::size_t columns, std::size_t indent) {
+  if (columns == 0 || text_width(line) <= columns) return std::string(line);
+  std::string result;
+  std::size_t width = 0;
+  for (std::size_t begin = 0; begin < line.size();) {
+    // A word with the blanks before it, so that an indented line stays indented.
+    const std::size_t letters = std::min(line.find_first_not_of(' ', begin), line.size());
+    const std::size_t end = std::min(line.find(' ', letters), line.size());
+    std::string_view word = line.substr(begin, end - begin);
+    if (width > 0 && width + text_width(word) > columns) {
+      word = line.substr(letters, end - letters);
+      result += "\n" + std::string(indent, ' ');
+      width = indent;
+    }
+    result += word;
+    width += text_width(word);
+    begin = end;
+  }
+  return result;
+}
+
+void TextTable::add(std::vector<std::string> row) {
+  for (std::string& text : row) text = on_one_line(text);
+  rows_.push_back(std::move(row));
+}
+
 std::vector<std::size_t> TextTable::widths() const {
   std::vector<std::size_t> width;
   for (const Column& column : columns_) width.push_back(text_width(column.title));
@@ -29,6 +70,12 @@ std::vector<std::size_t> TextTable::widths() const {
       width[i] = std::max(width[i], text_width(row[i]));
   }
   return width;
+}
+
+std::size_t TextTable::width() const {
+  std::size_t all = 0;
+  for (const std::size_t each : widths()) all += each + kGap;
+  return all > kGap ? all - kGap : 0;
 }
 
 std::vector<bool> TextTable::shown(std::size_t columns) const {

@@ -9,6 +9,10 @@ namespace rigcal::report {
 /// Number of characters that a terminal shows of a UTF-8 text: sequences that colour it take none.
 std::size_t text_width(std::string_view text);
 
+/// A line broken between words where it is wider than `columns`, every further line after `indent`
+/// blanks; a word that is wider alone stays whole. 0 columns: not broken.
+std::string wrapped(std::string_view line, std::size_t columns, std::size_t indent);
+
 /// Rows of texts as aligned columns: texts to the left, columns that hold numbers to the right.
 class TextTable {
  public:
@@ -20,14 +24,16 @@ class TextTable {
   };
 
   explicit TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
-  /// @param row  shape (columns)
-  void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+  /// @param row  shape (columns); line ends and other control characters become blanks
+  void add(std::vector<std::string> row);
   bool empty() const { return rows_.empty(); }
   std::size_t rows() const { return rows_.size(); }
   /// Title line and rows, two blanks between columns, without blanks at line ends.
   ///
   /// @param columns  of the terminal: what can be spared is left out until the lines fit; 0: all
   std::string text(std::size_t columns = 0) const;
+  /// Of the widest line.
+  std::size_t width() const;
   /// Titles of what text() leaves out.
   std::vector<std::string> left_out(std::size_t columns) const;
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <memory>
 
 #include "apps/rigcal/options.hpp"
@@ -22,6 +23,13 @@ struct CompareOptions {
 ExitCode run_compare(const CompareOptions& options, const Invocation& invocation) {
   if (options.folders.size() < 2)
     throw UsageError("compare: expected two result folders or more, the one to compare with first");
+  for (auto folder = options.folders.begin(); folder != options.folders.end(); ++folder) {
+    const auto same = [&](const auto& other) {
+      return std::filesystem::equivalent(*folder, other);
+    };
+    if (std::any_of(options.folders.begin(), folder, same))
+      throw UsageError(fmt::format("compare: {} is given twice", folder->string()));
+  }
   const std::vector<report::Compared> results = report::load_compared(options.folders);
   report::require_writable(options.out);
   report::Provenance provenance;

@@ -17,6 +17,16 @@ std::string left_text(const std::optional<double>& seconds) {
   return seconds ? fmt::format(", about {} left", report::duration_text(*seconds)) : std::string();
 }
 
+/// What an iteration came to: one whose trial is worse, or could not be simulated, is rejected.
+std::string step_text(int iteration, double cost, double relative_change) {
+  constexpr double kNoCost = 1e300;  // Ceres gives the largest double where there is none
+  if (!(cost < kNoCost)) return "trial could not be simulated";
+  const std::string text = fmt::format("cost {:.6g}", cost);
+  if (iteration == 0 || !std::isfinite(relative_change)) return text;
+  return relative_change < 0.0 ? text + ", step rejected"
+                               : fmt::format("{}, change {:.1e}", text, relative_change);
+}
+
 }  // namespace
 
 StatusLine::StatusLine(bool quiet) : quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
@@ -60,11 +70,9 @@ void FitProgress::operator()(int start, int iteration, double cost, double relat
       const double limit_s = std::max(0.0, *max_seconds_ - elapsed_s);
       left_s = std::min(left_s.value_or(limit_s), limit_s);
     }
-    return fmt::format(
-        "{}, iteration {}: cost {:.6g}, change {}, {}{}", fmt::format(fmt::runtime(work_), start),
-        iteration, cost,
-        std::isfinite(relative_change) ? fmt::format("{:.1e}", relative_change) : std::string("-"),
-        report::duration_text(elapsed_s), left_text(left_s));
+    return fmt::format("{}, iteration {}: {}, {}{}", fmt::format(fmt::runtime(work_), start),
+                       iteration, step_text(iteration, cost, relative_change),
+                       report::duration_text(elapsed_s), left_text(left_s));
   });
 }
 
@@ -74,7 +82,8 @@ CountProgress::CountProgress(bool quiet, std::string pieces)
 void CountProgress::operator()(int done, int all) {
   const std::lock_guard lock(mutex_);
   line_.show([&](double elapsed_s) {
-    const double left_s = done > 0 ? elapsed_s * (all - done) / done : elapsed_s;
+    std::optional<double> left_s;
+    if (done > 0) left_s = elapsed_s * (all - done) / done;
     return fmt::format("{} of {} {}, {}{}", done, all, pieces_, report::duration_text(elapsed_s),
                        left_text(left_s));
   });

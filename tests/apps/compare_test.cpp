@@ -79,7 +79,11 @@ TEST_CASE("compare: what it refuses", "[apps]") {
   Outcome outcome = folder.run({"compare", "empty"});
   CHECK(outcome.exit_code == 2);
   CHECK_THAT(outcome.err, Contains("two result folders"));
-  outcome = folder.run({"compare", "empty", "empty"});
+  outcome = folder.run({"compare", "empty", "./empty/"});
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("given twice"));
+  folder.write("bare/note.txt", "");
+  outcome = folder.run({"compare", "empty", "bare"});
   CHECK(outcome.exit_code == 2);
   CHECK_THAT(outcome.err, Contains("neither fit.json nor validation.json"));
   CHECK_FALSE(folder.has("rigcal-out"));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "report/text_table.hpp"
 #include "tests/report/stored_fixture.hpp"
 
 using Catch::Contains;
@@ -13,6 +14,7 @@ using rigcal::report::comparison_json;
 using rigcal::report::comparison_text;
 using rigcal::report::Json;
 using rigcal::report::Provenance;
+using rigcal::report::text_width;
 using rigcal::test::stored_result;
 
 namespace {
@@ -68,6 +70,23 @@ TEST_CASE("comparison: a clear change is significant, and said so", "[report]") 
   const std::string text = comparison_text(json, {});
   CHECK_THAT(text, Contains("+100 %") && Contains("*"));
   CHECK_THAT(text, Contains("before") && Contains("after"));
+}
+
+TEST_CASE("comparison: fits on a terminal of 80 columns", "[report]") {
+  const Json json = comparison_json({compared_fit("before the seal change", 85.0, 0.3),
+                                     compared_fit("after the seal change", 86.0, 0.4)},
+                                    {});
+  const std::string wide = comparison_text(json, {});
+  CHECK_THAT(wide, Contains("before the seal change  after the seal"));
+  const std::string text = comparison_text(json, {false, 80});
+  CAPTURE(text);
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin);
+    CHECK(text_width(std::string_view(text).substr(begin, end - begin)) <= 80);
+    begin = end + 1;
+  }
+  CHECK_THAT(text, Contains("mass, kg\n  before the seal change"));
+  CHECK_THAT(text, Contains("leakage_coefficient, 1\n"));
 }
 
 TEST_CASE("comparison: fits to the same records are not independent", "[report]") {

@@ -32,3 +32,16 @@ TEST_CASE("text_width: characters, not bytes", "[report]") {
   CHECK(text_width("33 %") == 4);
   CHECK(text_width("\xc3\xa4\xe2\x82\xac") == 2);
 }
+
+TEST_CASE("wrapped: broken between words, later lines indented", "[report]") {
+  CHECK(wrapped("  one two three", 9, 4) == "  one two\n    three");
+  CHECK(wrapped("one two three", 0, 4) == "one two three");
+  CHECK(wrapped("one two", 7, 2) == "one two");
+  CHECK(wrapped("a verylongword b", 6, 2) == "a\n  verylongword\n  b");
+}
+
+TEST_CASE("TextTable: a name of several lines takes one", "[report]") {
+  TextTable table({{"name"}, {"verdict"}});
+  table.add({"a\nb\x1b[2J", "\x1b[1;32mPASS\x1b[0m"});
+  CHECK(table.text() == "name     verdict\na b [2J  \x1b[1;32mPASS\x1b[0m\n");
+}
