@@ -80,7 +80,9 @@ Part calibration_part(const ReadFile& read, const std::string& where, int thread
   }
   part.synthetic = result.at("synthetic").get<bool>();
   part.headline = headline_view(result);
+  part.view["unfinished"] = text_of(result, "status") == "stopped";
   part.view["matrix"] = matrix_view(result);
+  part.view["has_matrix"] = !part.view["matrix"].empty();
   part.view["groups"] = groups_view(result);
   part.view["has_conditions"] = !result.at("conditions").empty();
   part.view["conditions"] = condition_views(stored, threads);
@@ -134,7 +136,7 @@ Part comparison_part(const ReadFile& read, const std::string& where) {
   part.headline = comparison_headline(comparison);
   part.view["comparison"] = comparison_view(comparison);
   part.provenance = provenance_view(comparison, part.name, "comparison.json");
-  part.nav = {{"results", "Results"}, {"estimates", "Parameters"}};
+  part.nav = {{"results", "Results"}, {"estimates", "Parameters"}, {"models", "Models"}};
   if (part.view["comparison"].at("has_trends").get<bool>()) part.nav.push_back({"trends", "Trend"});
   if (part.view["comparison"].at("has_conditions").get<bool>())
     part.nav.push_back({"scores", "Scores"});

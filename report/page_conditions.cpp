@@ -112,6 +112,8 @@ Json condition_view(const Json& result, const Json& condition, const Table& seri
         fmt::format("{}", data.json()["samples_per_point"].get<std::size_t>());
     view["data_html"] = data.text();
   }
+  // A condition that was scored has a series; without it the page would only look complete.
+  view["lost"] = view["has_scores"].get<bool>() && !view["has_plots"].get<bool>();
   view["tests"] = tests_view(condition, curves);
   view["has_tests"] = !view["tests"].empty();
   return view;

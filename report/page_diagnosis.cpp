@@ -42,13 +42,6 @@ Json leak_badge(const Json& record) {
   return {{"word", name}, {"mark", kLeakMarks[index].mark}, {"class", kLeakMarks[index].css}};
 }
 
-Json pair_view(const Json& pair, int digits) {
-  const bool known = pair.is_array();
-  return {{"known", known},
-          {"low", shown_in(known ? pair[0] : Json(), 1.0, digits)},
-          {"high", shown_in(known ? pair[1] : Json(), 1.0, digits)}};
-}
-
 Json probabilities_view(const Json& record) {
   Json cells = Json::array();
   for (const auto& [name, value] : record.at("class_probabilities").items()) {
@@ -69,9 +62,9 @@ Json record_row(const Json& record, std::size_t number) {
   row["badge"] = leak_badge(record);
   row["reference"] = record.at("is_reference").get<bool>();
   row["coefficient"] = shown_in(record.at("leakage_coefficient"), 1.0, 4);
-  row["ci"] = pair_view(record.at("ci95"), 3);
+  row["ci"] = shown_interval(record.at("ci95"), 1.0, 3);
   row["share"] = shown_in(record.at("leak_share_percent"), 1.0, 4);
-  row["share_ci"] = pair_view(record.at("leak_share_ci95_percent"), 3);
+  row["share_ci"] = shown_interval(record.at("leak_share_ci95_percent"), 1.0, 3);
   row["flow"] = shown_in(record.at("leak_flow_l_per_min"), 1.0, 3);
   row["probabilities"] = probabilities_view(record);
   row["by_features"] = text_of(record, "class_by_features");
@@ -228,6 +221,21 @@ std::vector<FoundLeak> leaks_of(const Json& diagnosis) {
   return leaks;
 }
 
+/// Conditions of which nobody can say whether they leak.
+std::vector<std::string> open_questions(const Json& diagnosis) {
+  std::vector<std::string> open;
+  for (const Json& record : diagnosis.at("records")) {
+    if (!is_average(record) || record.at("is_reference").get<bool>()) continue;
+    const Json mark = leak_badge(record);
+    const std::string word = mark.at("word").get<std::string>();
+    if (severity(word) < kLeakMarks.size()) continue;
+    const std::string failure = text_of(record, "failure");
+    open.push_back(fmt::format("{}: {}{}", text_of(record, "condition"), word,
+                               failure.empty() ? std::string() : ": " + failure));
+  }
+  return open;
+}
+
 std::string diagnosis_sentence(const Json& diagnosis) {
   const std::string status = text_of(diagnosis, "status");
   if (status == "declined") return "These records cannot be diagnosed: no leak below may be used.";
@@ -266,10 +274,13 @@ Json diagnosis_headline(const Json& diagnosis) {
     judged = judged || (is_average(record) && !record.at("is_reference").get<bool>() &&
                         severity(text_of(record, "class")) < kLeakMarks.size());
   }
-  Json view = !judged         ? make_headline("NOT JUDGED", "○", "none", sentence)
-              : leaks.empty() ? make_headline("NO LEAK", "✓", "good", sentence)
-                              : make_headline("LEAK", "!", "warn", sentence);
+  const std::vector<std::string> open = open_questions(diagnosis);
+  Json view = !judged          ? make_headline("NOT JUDGED", "○", "none", sentence)
+              : !leaks.empty() ? make_headline("LEAK", "!", "warn", sentence)
+              : open.empty()   ? make_headline("NO LEAK", "✓", "good", sentence)
+                               : make_headline("UNCLEAR", "?", "warn", sentence);
   for (const FoundLeak& leak : leaks) add_reason(view, leak.text, "diagnosis");
+  for (const std::string& text : open) add_reason(view, text, "diagnosis");
   return view;
 }
 

@@ -8,15 +8,10 @@
 namespace rigcal::report {
 namespace {
 
+constexpr int kDigits = 5;  ///< of the ends of an interval, at least
+
 RowUnit unit_of(const Json& parameter) {
   return row_unit(number_of(parameter, "value").value_or(0.0), parameter);
-}
-
-Json interval(const Json& pair, const RowUnit& unit) {
-  if (!pair.is_array()) return {{"known", false}};
-  return {{"known", true},
-          {"low", shown_in(pair[0], unit.si, 5)},
-          {"high", shown_in(pair[1], unit.si, 5)}};
 }
 
 /// The 95 % interval of one of the errors alone, as if it were known exactly.
@@ -24,9 +19,10 @@ Json interval_by(const Json& parameter, const char* error_key, const RowUnit& un
   constexpr double kNormalQuantile = 1.96;
   const auto value = number_of(parameter, "value");
   const auto error = number_of(parameter, error_key);
-  if (!value || !error) return interval(nullptr, unit);
-  return interval(
-      Json::array({*value - kNormalQuantile * *error, *value + kNormalQuantile * *error}), unit);
+  if (!value || !error) return shown_interval(nullptr, unit.si, kDigits);
+  return shown_interval(
+      Json::array({*value - kNormalQuantile * *error, *value + kNormalQuantile * *error}), unit.si,
+      kDigits);
 }
 
 /// "± 2.1 %" of the value; empty where that says nothing.
@@ -68,7 +64,7 @@ Json fitted_row(const Json& p) {
   row["nuisance"] = p.at("nuisance").get<bool>();
   row["value"] = shown_in(p.at("value"), unit.si, 6);
   row["unit"] = unit.name;
-  row["interval"] = interval(p.at("ci95"), unit);
+  row["interval"] = shown_interval(p.at("ci95"), unit.si, kDigits);
   row["half_width"] = half_width_text(p);
   for (const char* key : {"standard_error", "robust_standard_error"}) {
     row[key] = shown_in(p.at(key), unit.si, 3);
@@ -134,7 +130,8 @@ std::string correlation_reading(const Json& correlation) {
   }
   if (pair.empty()) return {};
   const char* meaning =
-      std::abs(strongest) > 0.99  ? "they can hardly be told apart by these records"
+      std::abs(strongest) > 0.99  ? "these records tell a combination of the two far better "
+                                    "than each alone"
       : std::abs(strongest) > 0.9 ? "an error of one is mostly made up by the other"
                                   : "all can be told apart";
   return fmt::format("Strongest: {:.3f} between {}; {}.", strongest, pair, meaning);

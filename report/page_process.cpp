@@ -16,7 +16,7 @@ Json starts_view(const Json& result) {
   std::vector<double> costs;
   double least = HUGE_VAL;
   for (const Json& start : starts) {
-    const auto cost = number_of(start, "final_cost");
+    const auto final_cost = number_of(start, "final_cost");
     const int number = start.at("number").get<int>();
     view["rows"].push_back({{"number", fmt::format("{}", number)},
                             {"best", number == best},
@@ -25,21 +25,31 @@ Json starts_view(const Json& result) {
                             {"final_cost", shown_in(start.at("final_cost"), 1.0, 6)},
                             {"iterations", fmt::format("{}", start.at("iterations").get<int>())},
                             {"message", text_of(start, "message")}});
-    if (!cost || text_of(start, "status") == "failed") continue;
-    costs.push_back(*cost);
-    least = std::min(least, *cost);
+    if (!final_cost || text_of(start, "status") == "failed") continue;
+    costs.push_back(*final_cost);
+    least = std::min(least, *final_cost);
   }
   std::sort(costs.begin(), costs.end());
   const auto near =
-      std::count_if(costs.begin(), costs.end(), [&](double cost) { return cost <= least * 1.01; });
+      std::count_if(costs.begin(), costs.end(), [&](double each) { return each <= least * 1.01; });
   const std::size_t all = starts.size();
-  if (all == 1) {
+  if (costs.empty()) {
+    view["reading"] = "No start ended with a cost: there is no answer.";
+  } else if (all == 1) {
     view["reading"] = "One start alone: whether another minimum lies lower was not looked for.";
   } else {
     view["reading"] =
         fmt::format("{} of {} starts ended within 1 % of the lowest cost{}.", near, all,
                     near >= 2 ? ", so that the answer was found more than once"
                               : ": the answer was found once");
+  }
+  const auto cost = number_of(result, "cost");
+  constexpr double kSameCost = 1e-3;
+  if (cost && !costs.empty() && std::abs(*cost - least) > kSameCost * least) {
+    view["reading"] = fmt::format(
+        "{} These costs are by the noise as it was taken before the last estimate of it; by that "
+        "of the result the cost is {:.6g}.",
+        text_of(view, "reading"), *cost);
   }
   view["waterfall"] = costs.size() > 1;
   if (costs.size() > 1) {
@@ -99,14 +109,14 @@ Json provenance_view(const Json& result, const std::string& name, const std::str
   add_number("Residuals", "residual_count", 12, "");
   add_number("Evaluations", "evaluations", 12, "");
   add_number("Time", "wall_seconds", 3, " s");
-  // Where nothing was estimated there is no cost, and a nil would look like a perfect fit.
-  if (number_of(result, "evaluations").value_or(0.0) > 0.0) add_number("Cost", "cost", 8, "");
+  add_number("Cost", "cost", 8, "");
   add_number("Reduced chi-square", "reduced_chi_square", 5, "");
   view["inputs"] = Json::array();
   for (const Json& input : provenance.at("inputs"))
     view["inputs"].push_back(
         {{"path", text_of(input, "path")}, {"sha256", text_of(input, "sha256")}});
-  view["input_count"] = fmt::format("{}", view["inputs"].size());
+  const std::size_t count = view["inputs"].size();
+  view["input_count"] = fmt::format("{} input file{}", count, count == 1 ? "" : "s");
   return view;
 }
 

@@ -36,11 +36,15 @@ Plot correlation_plot(const Json& curve, const std::string& title, bool bars) {
   Trace trace;
   trace.kind = bars ? Trace::Kind::bars : Trace::Kind::line;
   trace.style = "residual";
-  trace.y = numbers_of(curve.at("values"));
+  const std::vector<double> values = numbers_of(curve.at("values"));
   double size = 0.0;
-  for (std::size_t i = 0; i < trace.y.size(); ++i) {
-    trace.x.push_back(first + step * static_cast<double>(i));
-    size = std::max(size, std::abs(trace.x.back()));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double lag = first + step * static_cast<double>(i);
+    // A residual's correlation with itself is 1 and would only flatten what counts.
+    if (bars && lag == 0.0) continue;
+    trace.x.push_back(lag);
+    trace.y.push_back(values[i]);
+    size = std::max(size, std::abs(lag));
   }
   const ReadableUnit unit = readable_unit(size, "s");
   for (double& x : trace.x) x /= unit.si;

@@ -30,6 +30,7 @@ constexpr double kNotIdentified = 100.0;
 constexpr double kAtBound = 50.0;
 constexpr double kWeak = 20.0;
 constexpr double kMisfit = 10.0;
+constexpr double kDriven = 5.0;
 
 struct WorstAgreement {
   double rho2 = 2.0;
@@ -92,6 +93,82 @@ void add_parameters(const Json& result, std::vector<Reason>& reasons) {
   }
 }
 
+/// Whether the model leaves more than noise; null where nothing tells the noise.
+Json misfit_of(const Json& result) {
+  const auto lack = result.find("lack_of_fit");
+  if (lack == result.end() || !lack->is_object()) return nullptr;
+  const auto misfit = lack->find("misfit");
+  return misfit == lack->end() ? Json(nullptr) : *misfit;
+}
+
+void add_misfit(const Json& result, std::vector<Reason>& reasons) {
+  constexpr double kLarge = 1.5;
+  const auto chi = number_of(result, "reduced_chi_square");
+  if (!chi) return;
+  if (*chi > kLarge) {
+    reasons.push_back(
+        {kMisfit,
+         fmt::format("the residuals are {:.3g} times as large as the noise: the model "
+                     "does not explain all of the records",
+                     std::sqrt(*chi)),
+         "conditions"});
+  } else if (misfit_of(result) == true) {
+    reasons.push_back(
+        {kMisfit, "the model leaves more than noise (lack of fit)", "identifiability"});
+  }
+}
+
+/// The residual that follows the input most: what a better model could still explain.
+void add_driven_residual(const Json& result, std::vector<Reason>& reasons) {
+  constexpr double kLeastShare = 0.1;  // of the variance; below it is hardly seen
+  double largest = 0.0;
+  std::string condition_id;
+  std::string channel_name;
+  int count = 0;
+  for (const Json& condition : result.at("conditions")) {
+    const auto tests = condition.find("residual_tests");
+    if (tests == condition.end() || !tests->is_object()) continue;
+    for (const auto& [channel, found] : tests->items()) {
+      if (!found.is_object() || !found.at("cross_correlation").is_object()) continue;
+      const Json& test = found.at("cross_correlation");
+      const double peak = number_of(test, "peak").value_or(0.0);
+      if (test.at("passed").get<bool>() || peak * peak < kLeastShare) continue;
+      ++count;
+      if (peak * peak <= largest) continue;
+      largest = peak * peak;
+      condition_id = text_of(condition, "id");
+      channel_name = channel;
+    }
+  }
+  if (count == 0) return;
+  const std::string others = count == 1   ? std::string()
+                             : count == 2 ? std::string(", and 1 other likewise")
+                                          : fmt::format(", and {} others likewise", count - 1);
+  reasons.push_back(
+      {kDriven,
+       fmt::format("{}: {:.0f} % of what is left of {} follows the input{}: dynamics that the "
+                   "model lacks, or a wrong parameter",
+                   condition_id, 100.0 * largest, channel_name, others),
+       anchor(condition_id)});
+}
+
+/// How large the residuals are by the noise, as far as that is known.
+Reason noise_reason(const Json& result, double chi_square) {
+  if (!misfit_of(result).is_boolean()) {
+    constexpr double kUnknownNoise = 2.5;  // before what speaks for the estimates
+    return {kUnknownNoise,
+            "neither repeats nor sd tell the noise: whether the model leaves more is not known",
+            "identifiability"};
+  }
+  constexpr double kSame = 0.005;
+  const double ratio = std::sqrt(chi_square);
+  return {1.0,
+          std::abs(ratio - 1.0) < kSame
+              ? std::string("the residuals are as large as the noise")
+              : fmt::format("the residuals are {:.3g} times as large as the noise", ratio),
+          "conditions"};
+}
+
 /// What a good result has to show for itself.
 std::vector<Reason> praise(const Json& result) {
   std::vector<Reason> reasons;
@@ -128,11 +205,7 @@ std::vector<Reason> praise(const Json& result) {
   }
   const auto chi = result.contains("reduced_chi_square") ? number_of(result, "reduced_chi_square")
                                                          : std::nullopt;
-  if (chi) {
-    reasons.push_back(
-        {1.0, fmt::format("the residuals are {:.3g} times as large as the noise", std::sqrt(*chi)),
-         "conditions"});
-  }
+  if (chi) reasons.push_back(noise_reason(result, *chi));
   return reasons;
 }
 
@@ -151,15 +224,8 @@ std::vector<Reason> reasons_of(const Json& result) {
     reasons.push_back({kPoor, text, worst.condition.empty() ? "matrix" : anchor(worst.condition)});
   }
   add_parameters(result, reasons);
-  const auto chi = number_of(result, "reduced_chi_square");
-  if (chi && *chi > 1.5) {
-    reasons.push_back(
-        {kMisfit,
-         fmt::format("the residuals are {:.3g} times as large as the noise: the model "
-                     "does not explain all of the records",
-                     std::sqrt(*chi)),
-         "conditions"});
-  }
+  add_misfit(result, reasons);
+  add_driven_residual(result, reasons);
   if (reasons.size() < kLeastReasons && status == "converged") {
     for (Reason& reason : praise(result)) {
       reason.weight *= 1e-3;
@@ -235,6 +301,11 @@ Json coverage_rows(const Json& validity) {
     if (!row.is_null()) rows.push_back(std::move(row));
   };
   add("frequency_hz", "Frequency", "Hz");
+  if (rows.empty()) {
+    const Json unstated{{"exact", ""}, {"text", "not stated: the signals are recorded ones"}};
+    rows.push_back(
+        {{"name", "Frequency"}, {"low", unstated}, {"high", unstated}, {"single", true}});
+  }
   add("amplitude_m", "Amplitude (half of peak to peak)", "m");
   add("amplitude_v", "Amplitude (half of peak to peak)", "V");
   add("supply_pressure_pa", "Supply pressure", "Pa");

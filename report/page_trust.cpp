@@ -157,6 +157,7 @@ Json trust_view(const Json& result) {
   view["combinations"] = combinations.is_array() ? combinations : Json::array();
   view["has_combinations"] = !view["combinations"].empty();
   view["lack"] = lack_of_fit_view(optional_part(result, "lack_of_fit"));
+  if (text_of(result, "status") == "failed") view["lack"]["known"] = false;
   view["cross_validation"] = cross_validation_rows(optional_part(result, "cross_validation"));
   view["has_cross_validation"] = !view["cross_validation"].empty();
   view["agreement"] = text_of(result, "agreement");

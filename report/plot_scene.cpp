@@ -64,18 +64,21 @@ std::vector<Tick> ticks_of(const Axis& axis, int count) {
     return ticks;
   }
   if (axis.logarithmic) {
-    const double decades = std::max(1.0, std::ceil((axis.high - axis.low) / count));
     // Less than two decades need the twos and fives too.
     const bool close = axis.high - axis.low < 2.0;
-    for (double d = std::floor(axis.low); d <= axis.high; d += decades) {
-      for (const double factor : {1.0, 2.0, 5.0}) {
-        const double value = factor * std::pow(10.0, d);
-        if (factor > 1.0 && !close) break;
-        if (std::log10(value) >= axis.low && std::log10(value) <= axis.high)
-          ticks.push_back({value, fmt::format("{:g}", value)});
+    for (double decades = std::max(1.0, std::ceil((axis.high - axis.low) / count)); decades >= 1.0;
+         decades -= 1.0) {
+      ticks.clear();
+      for (double d = std::floor(axis.low); d <= axis.high; d += decades) {
+        for (const double factor : {1.0, 2.0, 5.0}) {
+          const double value = factor * std::pow(10.0, d);
+          if (factor > 1.0 && !close) break;
+          if (std::log10(value) >= axis.low && std::log10(value) <= axis.high)
+            ticks.push_back({value, fmt::format("{:g}", value)});
+        }
       }
+      if (ticks.size() > 1) return ticks;
     }
-    if (ticks.size() > 1) return ticks;
     // So short a stretch is as good as linear.
     ticks.clear();
     for (const double value :

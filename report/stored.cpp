@@ -15,6 +15,17 @@ std::string path_in(const std::string& where, const std::string& name) {
   return (std::filesystem::path(where) / name).string();
 }
 
+Json parsed(const ReadFile& read, const std::string& where, const std::string& name) {
+  const auto text = read(name);
+  if (!text)
+    throw InputError({path_in(where, name)}, "is missing; make the result again with this version");
+  try {
+    return Json::parse(*text);
+  } catch (const Json::parse_error& error) {
+    throw InputError({path_in(where, name)}, fmt::format("this is not JSON: {}", error.what()));
+  }
+}
+
 }  // namespace
 
 ReadFile files_in(const std::filesystem::path& folder) {
@@ -30,28 +41,29 @@ ReadFile files_in(const std::filesystem::path& folder) {
 }
 
 Json load_json(const ReadFile& read, const std::string& where, const std::string& name) {
-  const auto text = read(name);
-  if (!text)
-    throw InputError({path_in(where, name)}, "is missing; make the result again with this version");
-  try {
-    return Json::parse(*text);
-  } catch (const Json::parse_error& error) {
-    throw InputError({path_in(where, name)}, fmt::format("this is not JSON: {}", error.what()));
-  }
+  Json json = parsed(read, where, name);
+  const std::string expected =
+      fmt::format("rigcal.{}/1", std::filesystem::path(name).stem().string());
+  const bool has_schema = json.is_object() && json.contains("schema");
+  if (has_schema && json["schema"] == expected) return json;
+  throw InputError(
+      {path_in(where, name)},
+      fmt::format("found {}; expected \"schema\": \"{}\"",
+                  has_schema ? "\"schema\": " + json["schema"].dump() : "no schema", expected));
 }
 
 Calibration load_calibration(const ReadFile& read, const std::string& where, int threads) {
   Calibration stored;
   const bool has_fit = read("fit.json").has_value();
   const bool both = has_fit && read("validation.json").has_value();
-  if (both) stored.curves = load_json(read, where, "residual_tests.json");
+  if (both) stored.curves = parsed(read, where, "residual_tests.json");
   const bool is_fit = both ? text_of(stored.curves, "of") == "rigcal.fit/1" : has_fit;
   stored.file = is_fit ? "fit.json" : "validation.json";
   stored.result = load_json(read, where, stored.file);
   stored.of_tables =
       stored.result.is_object() && text_of(stored.result, "of") == "published tables";
   if (stored.of_tables) return stored;
-  if (!both) stored.curves = load_json(read, where, "residual_tests.json");
+  if (!both) stored.curves = parsed(read, where, "residual_tests.json");
   const Json& conditions = stored.result.at("conditions");
   stored.series.resize(conditions.size());
   parallel_for(conditions.size(), threads, [&](std::size_t i) {

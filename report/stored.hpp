@@ -44,7 +44,7 @@ struct LeakTableFiles {
 };
 LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where);
 
-/// A JSON file.
+/// A result in JSON, whose schema is that of the name of its file.
 Json load_json(const ReadFile& read, const std::string& where, const std::string& name);
 
 /// A text as part of the name of a file: letters, digits, ".", "-", and "_" for all else.

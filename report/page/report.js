@@ -137,7 +137,7 @@
       const chart = new uPlot({
         width: figure.clientWidth, height: plot.height, series, bands,
         scales: {x: {time: false}},
-        axes: [{...axis, size: 28, values: (_, ticks) => ticks.map((t) => digits(t) + " s")}, {...axis, size: 64}],
+        axes: [{...axis, size: 28, values: (_, ticks) => ticks.map((t) => digits(t) + " s")}, {...axis, size: 64, values: (_, ticks) => ticks.map(digits)}],
         legend: {live: true},
         cursor: {sync: {key: this.sync.key, setSeries: false, scales: ["x", null]}, drag: {x: true, y: false}, focus: {prox: -1}},
         hooks: {setScale: [(u, key) => { if (key === "x" && u.status === 1) this.zoom(u.scales.x.min, u.scales.x.max, u); }]},

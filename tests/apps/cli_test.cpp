@@ -556,7 +556,7 @@ TEST_CASE("fit: stopped by a signal it keeps the best so far", "[apps]") {
           "iteration", signal);
       CAPTURE(outcome.err);
       CHECK(outcome.exit_code == 4);
-      CHECK_THAT(outcome.err, Contains(", change ") && Contains(" left\n"));
+      CHECK_THAT(outcome.err, Contains(", iteration ") && Contains(" left\n"));
       auto files = files_in(folder, "out/");
       files.erase("out/checkpoint.json");  // there once a start is finished
       CHECK(files == kFitFiles);

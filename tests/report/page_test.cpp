@@ -95,6 +95,31 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     json["status"] = "stopped";
     CHECK_THAT(word_of(page(json)), Contains("STOPPED"));
   }
+  SECTION("stopped: neither scores nor intervals pass for those of a calibration") {
+    json["status"] = "stopped";
+    const std::string html = page(json);
+    CHECK_THAT(html, Contains("not of a calibration") && Contains("a minimum, which this is not"));
+    CHECK_THAT(page(stored_result()), !Contains("not of a calibration"));
+  }
+  SECTION("noise that nothing tells") {
+    json["lack_of_fit"] = {{"misfit", nullptr}, {"tests", Json::array()}};
+    CHECK_THAT(page(json), Contains("neither repeats nor sd tell the noise"));
+    json["lack_of_fit"]["misfit"] = false;
+    CHECK_THAT(page(json), !Contains("neither repeats nor sd tell the noise"));
+    json["lack_of_fit"]["misfit"] = true;
+    CHECK_THAT(page(json), Contains("leaves more than noise (lack of fit)"));
+  }
+  SECTION("a residual that follows the input") {
+    Json& tests = json["conditions"][0]["residual_tests"]["position"];
+    tests = Json::object();
+    for (const char* key : {"autocorrelation", "periodogram", "normality", "drift"})
+      tests[key] = nullptr;
+    Json& test = tests["cross_correlation"];
+    test = {{"passed", false}, {"peak", -0.8}, {"verdict", "depends on the input"}};
+    CHECK_THAT(page(json), Contains("sine: 64 % of what is left of position follows the input"));
+    test["peak"] = 0.2;
+    CHECK_THAT(page(json), !Contains("follows the input"));
+  }
   SECTION("outside the limits") {
     json["verdict"] = json["conditions"][0]["verdict"] = "FAIL";
     json["conditions"][0]["metrics"]["position"]["rho2"] = 0.5;
@@ -168,6 +193,9 @@ TEST_CASE("page: what a fit holds beyond is drawn, what it lacks is left out", "
   CHECK_THAT(html, Contains("mass: lower end 84.9 kg, open at its upper end: followed to 500 kg"));
   CHECK_THAT(html, Contains("only valve_gain / &lt;mass&gt; is fixed"));
   CHECK_THAT(html, Contains("The model leaves more than noise."));
+  CHECK_THAT(html, !Contains("is missing or holds no rows"));
+  json["conditions"][0]["id"] = "lost";
+  CHECK_THAT(page(json), Contains("residuals/lost.csv is missing or holds no rows"));
 }
 
 TEST_CASE("page: a result that cannot be read is named beside those that can", "[report]") {
@@ -186,6 +214,8 @@ TEST_CASE("page: refuses what is no result of this version", "[report]") {
   using rigcal::InputError;
   CHECK_THROWS_AS(page(Json::array()), InputError);
   CHECK_THROWS_AS(page(Json::object()), InputError);
+  CHECK_THROWS_WITH(page({{"schema", "other/1"}}),
+                    Contains("fit.json") && Contains("other/1") && Contains("rigcal.fit/1"));
   CHECK_THROWS_WITH(page(stored_result(), "other.json"),
                     Contains("neither fit.json nor validation.json"));
   Json json = stored_result();

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Opens reports in headless Chromium as a reader does: page_test.py RIGCAL SOURCES. Exit code 77: no browser."""
 
+import collections
 import json
 import pathlib
 import re
@@ -114,6 +115,29 @@ def check_widths(page):
     for width in (1280, 400):
         page.size(width)
         page.wait_for(f"document.documentElement.scrollWidth <= {width}", f"no sideways scroll at {width}")
+    check_paper(page)
+
+
+def check_paper(page):
+    """On a sheet of A4 nothing is cut off at the right: the words of every table are there."""
+    if shutil.which("pdftotext") is None:
+        return
+    margin = 595 - 14 / 25.4 * 72 + 1  # points
+    with tempfile.NamedTemporaryFile(suffix=".pdf") as sheet:
+        page.pdf(sheet.name)
+        boxes = subprocess.run(["pdftotext", "-bbox", sheet.name, "-"], capture_output=True, check=True).stdout.decode()
+    words = re.findall(r'<word [^>]*xMax="([0-9.]+)"[^>]*>([^<]*)<', boxes)
+    check(words, "there are words on paper")
+    beyond = [word for right, word in words if float(right) > margin]
+    check(not beyond, f"beyond the margin: {beyond[:5]}")
+    printed = collections.Counter(word for _, word in words)
+    page.run("document.querySelectorAll('details').forEach(d => { d.open = true; })")
+    rows = page.run("[...document.querySelectorAll('main tbody')].filter(b => !b.closest('.uplot'))"
+                    ".map(b => b.innerText).join(' ')")
+    # Plain words alone: what is longer may be broken.
+    shown = collections.Counter(word for word in rows.split() if re.fullmatch("[a-z]{4,12}", word))
+    lost = {word: count for word, count in shown.items() if printed[word] < count}
+    check(not lost, f"in tables, but not on paper: {lost}")
 
 
 def check_printed(page, folder, words):
@@ -214,6 +238,7 @@ def check_bad(binary, work):
             check(page.run("document.body.className") == "bad", f"{folder}: the page is marked")
             check_sections(page)
             check_printed(page, work, [word])
+            check_widths(page)
             check_quiet(page, path)
 
 
@@ -258,6 +283,32 @@ def check_diagnosis(binary, work):
         check_quiet(page, path)
 
 
+def check_models(page, compared):
+    """The likelihood-ratio table: a row per result after the first, with the numbers of comparison.json."""
+    check(page.run("document.querySelector('.models caption').textContent").startswith("AIC"), "its caption is to be seen")
+    shown = page.run("[...document.querySelectorAll('.models tbody tr')].map(r => [...r.querySelectorAll('data')]"
+                     ".map(d => d.value))")
+    stored = [["" if m[key] is None else m[key] for key in ("delta_aic", "delta_bic", "likelihood_ratio")]
+              for m in compared["models"][1:]]
+    check([[float(v) if v else "" for v in row] for row in shown] == stored, f"models: {shown}, {stored}")
+    return stored
+
+
+def check_model_choice(binary, work):
+    """Two fits to the same records, of which one contains the other."""
+    check(rigcal(binary, work, "fit", "twin/campaign.toml", "--free", "valve_gain", "--out", "smaller") in (0, 1),
+          "the smaller model")
+    check(rigcal(binary, work, "compare", "smaller", "good", "--out", "choice") == 0, "compare")
+    compared = json.loads((work / "choice" / "comparison.json").read_text())
+    check(compared["models"][1]["freedom"] == 1, "one parameter more")
+    with Browser() as page:
+        page.open(work / "choice" / "report.html")
+        check(all(value != "" for value in check_models(page, compared)[0]), "every number is there")
+        check_access(page)
+        check_widths(page)
+        check_quiet(page, work / "choice" / "report.html")
+
+
 def check_comparison(binary, work):
     """The estimates of both fits side by side, and what lies together in one folder on one page."""
     check(rigcal(binary, work, "compare", "good", "healthy", "--out", "both") == 0, "compare")
@@ -272,6 +323,7 @@ def check_comparison(binary, work):
             for estimate in parameter["estimates"]:
                 if estimate and estimate["fitted"]:
                     check(estimate["value"] in shown, f"{parameter['key']} is shown")
+        check_models(page, compared)
         check_widths(page)
         check_quiet(page, path)
     shutil.copy(work / "found" / "diagnosis.json", work / "good")
@@ -378,6 +430,7 @@ def main():
         check_leak_table(binary, work, sources)
         check_diagnosis(binary, work)
         check_comparison(binary, work)
+        check_model_choice(binary, work)
         check_names(binary, work)
         check_utfsm(binary, work, sources)
         check_festo(binary, work, sources)
