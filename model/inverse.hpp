@@ -13,28 +13,35 @@ Eigen::Matrix<double, N, N> inverse_of(const Eigen::Matrix<double, N, N>& matrix
   if constexpr (N <= 4) {
     return matrix.inverse();
   } else {
-    Eigen::Matrix<double, N, N, Eigen::RowMajor> left = matrix;
-    Eigen::Matrix<double, N, N, Eigen::RowMajor> right = decltype(right)::Identity();
+    double row[N][2 * N];  // the matrix, and beside it what becomes its inverse
+    for (int i = 0; i < N; ++i) {
+      for (int k = 0; k < N; ++k) {
+        row[i][k] = matrix(i, k);
+        row[i][N + k] = i == k ? 1.0 : 0.0;
+      }
+    }
     for (int k = 0; k < N; ++k) {
       int pivot = k;
       for (int i = k + 1; i < N; ++i) {
-        if (std::abs(left(i, k)) > std::abs(left(pivot, k))) pivot = i;
+        if (std::abs(row[i][k]) > std::abs(row[pivot][k])) pivot = i;
       }
-      if (pivot != k) {
-        left.row(k).swap(left.row(pivot));
-        right.row(k).swap(right.row(pivot));
+      const double scale = 1.0 / row[pivot][k];
+      for (int j = 0; j < 2 * N; ++j) {
+        const double moved = row[pivot][j] * scale;
+        row[pivot][j] = row[k][j];
+        row[k][j] = moved;
       }
-      const double scale = 1.0 / left(k, k);
-      left.row(k) *= scale;
-      right.row(k) *= scale;
       for (int i = 0; i < N; ++i) {
         if (i == k) continue;
-        const double factor = left(i, k);
-        left.row(i) -= factor * left.row(k);
-        right.row(i) -= factor * right.row(k);
+        const double factor = row[i][k];
+        for (int j = 0; j < 2 * N; ++j) row[i][j] -= factor * row[k][j];
       }
     }
-    return right;
+    Eigen::Matrix<double, N, N> result;
+    for (int i = 0; i < N; ++i) {
+      for (int k = 0; k < N; ++k) result(i, k) = row[i][N + k];
+    }
+    return result;
   }
 }
 
