@@ -179,8 +179,7 @@ void six_signals(int rounds) {
   row("fit, with intervals and scores", fits[0], fits[2], "", "");
   fmt::print(
       "\nLargest error of position, of its peak: baseline at 1e-6 {:.1e}, rigcal at 1e-6 {:.1e}; "
-      "at "
-      "{:.0e} {:.1e} (with sensitivities {:.1e}).\n",
+      "at {:.0e} {:.1e} (with sensitivities {:.1e}).\n",
       error[0], error[1], kAsAccurate, error[2], error[3]);
   fmt::print(
       "Evaluations of a fit: baseline {} with and {} without derivatives, rigcal {} (all with).\n",
