@@ -263,11 +263,14 @@ class Run {
   /// Inputs that end a segment now go to their next one, then the controller ticks. Where the time
   /// of a jump depends on the transport delay, the sensitivity to it jumps by f(before) - f(after).
   void pass_events() {
-    bool jumped = false;
-    for_each_track([&](InputTrack& track) { jumped = jumped || passed(track, t_); });
+    const bool drive_jumped = passed(system_.drive(), t_);
+    bool others_jumped = false;
+    for_each_track([&](InputTrack& track) {
+      if (&track != &system_.drive()) others_jumped = others_jumped || passed(track, t_);
+    });
     if constexpr (P > 0) {
       const int delay = system_.delay_direction();
-      if (delay >= 0 && passed(system_.drive(), t_)) {
+      if (delay >= 0 && drive_jumped) {
         const X before = system_.derivative(x_, t_);
         advance(system_.drive(), t_);
         const X after = system_.derivative(x_, t_);
@@ -282,11 +285,12 @@ class Run {
     if (at(next_tick(), t_)) {
       system_.tick(x_, t_);
       ++ticks_;
-      jumped = true;
+      others_jumped = true;
     }
-    if (jumped) {
+    if (drive_jumped || others_jumped) {
       slope_known_ = false;
-      lin_known_ = false;
+      lin_known_ = lin_known_ && !others_jumped && system_.drive_stops_at_valve();
+      if (lin_known_) system_.follow_drive(values_of(x_), t_, lin_);
       // What the last jump needed, this one will too: saves a rejection at each recorded sample.
       h_ = std::min(h_, h_after_jump_);
       after_jump_ = true;

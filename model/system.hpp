@@ -66,10 +66,33 @@ class System {
 
   /// f and its partial derivatives by states, time and parameters.
   Linearisation<N, P> linearise(const Values<N>& x, double t) const {
-    if constexpr (N == 3) {
+    if constexpr (N <= Plant::kStates + 1) {
       return linearise_inlined(x, t);
     } else {
       return linearise_by_calls(x, t);
+    }
+  }
+
+  /// Whether the drive acts on controller and valve alone: the plant sees the states of the valve.
+  bool drive_stops_at_valve() const { return N > Plant::kStates && layout_.valve_order > 0; }
+
+  /// Brings a linearisation at (x, t) up to date after a jump of the drive, which stops at the
+  /// valve: the rows of controller and valve. A recorded command jumps at every sample.
+  void follow_drive(const Values<N>& x, double t, Linearisation<N, P>& lin) const {
+    if constexpr (N > Plant::kStates) {
+      Numbers<ByStates> rates{};
+      loop_rates<ByStates>(lifted(x), input_value<ByStates>(drive_, t, true), rates);
+      for (std::size_t i = Plant::kStates; i < N; ++i) {
+        if (is_of_loop(i)) take_row(rates[i], i, lin);
+      }
+      if constexpr (P > 0) {
+        X by_parameters{};
+        loop_rates<ByParameters>(held(x), input_value<ByParameters>(drive_, t, true),
+                                 by_parameters);
+        for (std::size_t i = Plant::kStates; i < N; ++i) {
+          if (is_of_loop(i)) lin.f_p[i] = by_parameters[i].derivative;
+        }
+      }
     }
   }
 
@@ -169,6 +192,7 @@ class System {
   struct ByStates {
     using Number = Dual<N + 1>;  ///< directions: the states, then time
   };
+  static constexpr int kTime = N;
   template <typename K>
   using Number = typename K::Number;
   template <typename K>
@@ -215,29 +239,45 @@ class System {
     } else {
       const SignalSample s = track.sample(t);
       Number<K> value(s.value);
-      value.derivative.set(N, s.slope);
+      value.derivative.set(kTime, s.slope);
       return value;
     }
   }
 
-  /// By states and time, then by the parameters, each in one go.
-  Linearisation<N, P> linearise_by_calls(const Values<N>& x, double t) const {
-    Numbers<ByStates> lifted;
+  /// Whether loop_rates() gives the derivative of a state.
+  bool is_of_loop(std::size_t i) const {
+    const int state = static_cast<int>(i);
+    return state == layout_.integral || state == layout_.filter ||
+           (state >= layout_.valve && state < layout_.valve + layout_.valve_order);
+  }
+
+  /// The states as independent variables, or as numbers without derivatives by the parameters.
+  static Numbers<ByStates> lifted(const Values<N>& x) {
+    Numbers<ByStates> result;
     for (int i = 0; i < N; ++i) {
       const auto row = static_cast<std::size_t>(i);
-      lifted[row] = Number<ByStates>::variable(x[row], i);
+      result[row] = Number<ByStates>::variable(x[row], i);
     }
-    const auto f = right_hand_side<ByStates>(lifted, t);
+    return result;
+  }
+  static X held(const Values<N>& x) {
+    X result;
+    for (std::size_t i = 0; i < N; ++i) result[i] = x[i];
+    return result;
+  }
+  static void take_row(const Number<ByStates>& f, std::size_t i, Linearisation<N, P>& lin) {
+    lin.f[i] = f.value;
+    lin.f_t[i] = f.derivative[kTime];
+    for (std::size_t k = 0; k < N; ++k) lin.jacobian[i][k] = f.derivative[k];
+  }
+
+  /// By states and time, then by the parameters, each in one go.
+  Linearisation<N, P> linearise_by_calls(const Values<N>& x, double t) const {
+    const auto f = right_hand_side<ByStates>(lifted(x), t);
     Linearisation<N, P> lin;
-    for (std::size_t i = 0; i < N; ++i) {
-      lin.f[i] = f[i].value;
-      lin.f_t[i] = f[i].derivative[N];
-      for (std::size_t k = 0; k < N; ++k) lin.jacobian[i][k] = f[i].derivative[k];
-    }
+    for (std::size_t i = 0; i < N; ++i) take_row(f[i], i, lin);
     if constexpr (P > 0) {
-      X held;
-      for (std::size_t i = 0; i < N; ++i) held[i] = x[i];
-      const X with_parameters = right_hand_side<ByParameters>(held, t);
+      const X with_parameters = right_hand_side<ByParameters>(held(x), t);
       for (std::size_t i = 0; i < N; ++i) lin.f_p[i] = with_parameters[i].derivative;
     }
     return lin;
@@ -311,11 +351,12 @@ class System {
     }
   }
 
-  /// The derivative of valve, controller and plant together.
+  /// The derivatives of controller and valve; the others are left as they are.
+  ///
+  /// @return  what the valve is told
   template <typename K>
-  Numbers<K> with_states_of_the_loop(const Numbers<K>& x, const Number<K>& drive, double t) const {
+  Number<K> loop_rates(const Numbers<K>& x, const Number<K>& drive, Numbers<K>& dx) const {
     const auto& p = parameters_of<K>();
-    Numbers<K> dx{};
     Number<K> command = drive;
     if (layout_.pid) {
       if (layout_.sampled()) {
@@ -343,6 +384,15 @@ class System {
       dx[spool + 1] = (command - x[spool]) * (omega * omega) -
                       x[spool + 1] * (2.0 * p.valve_damping_ratio * omega);
     }
+    return command;
+  }
+
+  /// The derivative of valve, controller and plant together.
+  template <typename K>
+  Numbers<K> with_states_of_the_loop(const Numbers<K>& x, const Number<K>& drive, double t) const {
+    const auto& p = parameters_of<K>();
+    Numbers<K> dx{};
+    const Number<K> command = loop_rates<K>(x, drive, dx);
     const PlantInput<Number<K>> in = plant_input<K>(x, command, t);
     const auto plant_dx = Plant::derivative(x, in, p, layout_.terms);
     for (std::size_t i = 0; i < plant_dx.size(); ++i) dx[i] = plant_dx[i];
