@@ -65,14 +65,15 @@ model::SimulationOptions simulation_options(const Problem& problem, std::size_t 
 
 ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
                                        std::span<const double> z, const std::atomic<bool>* cancel,
-                                       ConditionRows* rows, std::optional<double> tolerance) {
+                                       ConditionRows* rows, Effort effort) {
   const ProblemCondition& data = problem.conditions[condition];
   const datasets::Campaign& campaign = *problem.campaign;
   const auto options =
-      simulation_options(problem, condition, tolerance.value_or(problem.tolerance), cancel);
-  const model::Simulation run =
-      model::simulate(data.rig, problem.values_at(condition, z), data.free, data.inputs,
-                      data.fit_times(), data.outputs, options);
+      simulation_options(problem, condition, problem.tolerance_of(condition, effort), cancel);
+  const bool slopes_too = effort != Effort::cost;
+  const model::Simulation run = model::simulate(
+      data.rig, problem.values_at(condition, z), slopes_too ? data.free : std::vector<int>(),
+      data.inputs, data.fit_times(effort), data.outputs, options);
 
   ConditionEvaluation result;
   result.status = run.status;
@@ -81,9 +82,11 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
   result.reason = run.reason;
   if (!run.ok()) return result;
 
-  const Eigen::VectorXd slopes = acting_slopes(problem, condition, z);
+  const Eigen::VectorXd slopes =
+      slopes_too ? acting_slopes(problem, condition, z) : Eigen::VectorXd();
   const Eigen::Index unknowns = slopes.size();
-  const auto samples = static_cast<Eigen::Index>(data.rows.size());
+  const std::size_t count = data.rows_at(effort);
+  const auto samples = static_cast<Eigen::Index>(count);
   if (rows != nullptr) {
     const Eigen::Index total = samples * static_cast<Eigen::Index>(data.channels.size());
     rows->jacobian.resize(total, unknowns);
@@ -92,8 +95,8 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
   Triangle triangle(unknowns + 1);
   for (std::size_t k = 0; k < data.channels.size(); ++k) {
     double square_sum = 0.0;
-    for (std::size_t begin = 0; begin < data.rows.size(); begin += Triangle::kBlock) {
-      const std::size_t end = std::min(begin + Triangle::kBlock, data.rows.size());
+    for (std::size_t begin = 0; begin < count; begin += Triangle::kBlock) {
+      const std::size_t end = std::min(begin + Triangle::kBlock, count);
       const Eigen::MatrixXd weighted =
           weighted_rows(data, k, {begin, end, 0}, run, slopes, campaign.fit, square_sum);
       triangle.add(weighted);
@@ -108,7 +111,7 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
   result.triangle = triangle.get();
   if (!result.triangle.allFinite()) {
     result.status = model::SimulationStatus::not_finite;
-    result.failed_at_s = data.fit_times().back();
+    result.failed_at_s = data.fit_times(effort).back();
     result.reason = "a residual or its derivative is not finite";
     result.triangle.resize(0, 0);
   }

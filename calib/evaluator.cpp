@@ -10,8 +10,6 @@ namespace {
 
 /// Failures that are kept in words, of each condition and kind.
 constexpr int kFailuresKept = 3;
-/// Tolerance far from an optimum: less buys no fewer steps of the optimiser.
-constexpr double kCoarseTolerance = 1e-4;
 
 double prior_cost(const Problem& problem, std::span<const double> z) {
   double cost = 0.0;
@@ -32,12 +30,12 @@ bool is_at(const Evaluation& evaluation, std::span<const double> z) {
 }  // namespace
 
 Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
-                       const std::atomic<bool>* cancel, std::optional<double> tolerance) {
+                       const std::atomic<bool>* cancel, Effort effort) {
   Evaluation evaluation;
   evaluation.z.assign(z.begin(), z.end());
   evaluation.conditions.resize(problem.conditions.size());
   parallel_for(problem.conditions.size(), threads, [&](std::size_t i) {
-    evaluation.conditions[i] = evaluate_condition(problem, i, z, cancel, nullptr, tolerance);
+    evaluation.conditions[i] = evaluate_condition(problem, i, z, cancel, nullptr, effort);
   });
   evaluation.ok = std::all_of(evaluation.conditions.begin(), evaluation.conditions.end(),
                               [](const ConditionEvaluation& each) { return each.ok(); });
@@ -64,15 +62,17 @@ const Evaluation& Evaluator::evaluate(std::span<const double> z) {
       each.status = model::SimulationStatus::cancelled;
     return last_;
   }
-  Evaluation evaluation = evaluate_at(problem_, z, options_.threads, options_.cancel, tolerance());
-  record(evaluation);
-  last_ = std::move(evaluation);
+  last_ = evaluate_at(problem_, z, options_.threads, options_.cancel, effort_);
+  record(last_);
   keep_best();
   return last_;
 }
 
-double Evaluator::tolerance() const {
-  return coarse_ ? std::max(kCoarseTolerance, problem_.tolerance) : problem_.tolerance;
+const Evaluation& Evaluator::conclude(std::span<const double> z) {
+  if (!aborted()) return evaluate(z);
+  last_ = evaluate_at(problem_, z, options_.threads, nullptr, effort_);
+  keep_best();
+  return last_;
 }
 
 void Evaluator::keep_best() {
@@ -84,9 +84,9 @@ void Evaluator::begin_start(int number) {
   best_ = {};
 }
 
-void Evaluator::be_coarse(bool coarse) {
-  if (coarse != coarse_) forget();
-  coarse_ = coarse;
+void Evaluator::set_effort(Effort effort) {
+  if (effort != effort_) forget();
+  effort_ = effort;
 }
 
 void Evaluator::forget() {

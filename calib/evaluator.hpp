@@ -22,12 +22,9 @@ struct EvaluationLedger {
   std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept;
 };
 
-/// Every condition at z, whatever signals and limits say.
-///
-/// @param tolerance  of the simulations, if not the problem's
+/// Every condition at z, whatever limits say.
 Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
-                       const std::atomic<bool>* cancel = nullptr,
-                       std::optional<double> tolerance = std::nullopt);
+                       const std::atomic<bool>* cancel = nullptr, Effort effort = Effort::full);
 
 /// Evaluates all conditions of a problem in parallel and hands the results to Ceres' cost
 /// functions.
@@ -52,14 +49,14 @@ class Evaluator final : public ceres::EvaluationCallback {
 
   /// The evaluation at z; not ok where a condition could not be simulated, which is recorded.
   const Evaluation& evaluate(std::span<const double> z);
+  /// The same whatever signals and limits say, not counted beyond them: what a fit has come to when
+  /// it is stopped is judged by all of its records.
+  const Evaluation& conclude(std::span<const double> z);
 
-  /// Simulates no finer than need be far from an optimum, where errors of the simulation are
-  /// nothing against those of the parameters; or at the tolerance of the problem again. Drops what
-  /// is kept of earlier points.
-  void be_coarse(bool coarse);
-  bool coarse() const { return coarse_; }
-  /// Of the simulations, now.
-  double tolerance() const;
+  /// Simulates no more and no finer than need be. Far from an optimum errors of the simulation are
+  /// nothing against those of the parameters. A change drops what is kept of earlier points.
+  void set_effort(Effort effort);
+  Effort effort() const { return effort_; }
 
   /// Begins a start of a multi-start: best() is then the best of this start.
   void begin_start(int number);
@@ -103,7 +100,7 @@ class Evaluator final : public ceres::EvaluationCallback {
   Evaluation best_;
   std::span<const double> watched_;
   std::exception_ptr error_;
-  bool coarse_ = false;
+  Effort effort_ = Effort::full;
   int start_ = 1;
   EvaluationLedger ledger_;
 };

@@ -199,7 +199,7 @@ struct Solved {
 
 /// Solves a problem and describes what was found, all but the scores.
 Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options, Fit& fit) {
-  evaluator.be_coarse(true);
+  evaluator.set_effort(problem.of_starts());
   budget_steps(problem, evaluator.evaluate(problem.start()));
   MultiStart found = multi_start(problem, evaluator, options);
   sharpen(problem, evaluator, options, found);

@@ -88,7 +88,7 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
     if (i > 0 && evaluator.aborted()) break;
     const int number = static_cast<int>(i) + 1;
     evaluator.begin_start(number);
-    evaluator.be_coarse(true);
+    evaluator.set_effort(problem.of_starts());
     StartReport report;
     report.number = number;
     report.start_values = problem.to_physical(points[i]);
@@ -118,7 +118,7 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
     if (options.checkpoint && !evaluator.aborted())
       options.checkpoint({result.starts, result.best, result.optimum.z, evaluator.ledger()});
   }
-  evaluator.be_coarse(false);  // a last start that failed, or none that was left, leaves it coarse
+  evaluator.set_effort(Effort::full);  // a last start that failed, or none that was left
   return result;
 }
 

@@ -461,7 +461,7 @@ ShootingResult multiple_shooting(const Problem& problem, Evaluator& evaluator,
   if (!pieces.begin_at(result.z, interval_s)) return result;
   for (std::size_t k = 0; k < kStages; ++k) {
     const int left = (iterations - result.iterations) / static_cast<int>(kStages - k);
-    pieces.set_tolerance(k + 1 < kStages ? evaluator.tolerance() : problem.tolerance);
+    pieces.set_tolerance(k + 1 < kStages ? problem.coarse_tolerance() : problem.tolerance);
     StageWatcher watcher(pieces, options, start, result.iterations);
     const bool usable = stage(problem, pieces, k, left, watcher);
     pieces.rethrow();

@@ -27,6 +27,10 @@ constexpr double kGuessedNoise = 1e-2;
 /// jump by about the tolerance when the steps of a simulation change, which stalls the optimiser.
 constexpr double kDefaultTolerance = 1e-6;
 constexpr double kLeastTolerance = 1e-8;
+/// Largest of a record whose noise lets it be simulated less exactly than others.
+constexpr double kLargestTolerance = 1e-5;
+/// Far from an optimum: less buys no fewer steps of the optimiser.
+constexpr double kCoarseTolerance = 1e-4;
 /// Residuals below this share of the peak-to-peak are no noise: a sensor of 20 bits resolves as
 /// much.
 constexpr double kLeastShare = 1e-6;
@@ -106,6 +110,20 @@ void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   }
 }
 
+/// Rows up to a period after the first, where the reference is a sine or a square.
+std::size_t count_first_period(const ProblemCondition& condition) {
+  const Condition& settings = *condition.condition;
+  const bool periodic = settings.waveform == datasets::Waveform::sine ||
+                        settings.waveform == datasets::Waveform::square;
+  if (!periodic || !settings.frequency_hz || !(*settings.frequency_hz > 0.0))
+    return condition.rows.size();
+  const auto& time_s = condition.record->time_s;
+  const double end_s = time_s[condition.rows.front()] + 1.0 / *settings.frequency_hz;
+  const auto last = std::find_if(condition.rows.begin(), condition.rows.end(),
+                                 [&](std::size_t row) { return time_s[row] > end_s; });
+  return static_cast<std::size_t>(last - condition.rows.begin());
+}
+
 ProblemCondition make_condition(const Campaign& campaign, const std::vector<Record>& records,
                                 const Condition& condition,
                                 const std::vector<datasets::FittedValue>* fitted) {
@@ -130,12 +148,46 @@ ProblemCondition make_condition(const Campaign& campaign, const std::vector<Reco
     result.channels.push_back(make_channel(campaign, result, channel));
     result.outputs.push_back(datasets::model_output(channel).value());
   }
+  result.first_period_rows = count_first_period(result);
   // The start point is simulated with this budget; later points with one from the steps it took.
   result.max_steps = 1'000'000 + 50 * static_cast<long>(result.record->time_s.size());
   return result;
 }
 
+/// Least standard deviation over peak-to-peak of the outputs of a condition; 0 if one is not known,
+/// infinite if none moves.
+double relative_noise(const ProblemCondition& condition) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ProblemChannel& channel : condition.channels) {
+    if (!channel.sd_known) return 0.0;
+    if (channel.peak_to_peak > 0.0) least = std::min(least, channel.sd / channel.peak_to_peak);
+  }
+  return least;
+}
+
 }  // namespace
+
+double Problem::coarse_tolerance() const { return std::max(kCoarseTolerance, tolerance); }
+
+double Problem::tolerance_of(std::size_t condition, Effort effort) const {
+  if (effort != Effort::full) return coarse_tolerance();
+  if (tolerance_fixed) return tolerance;
+  double least = std::numeric_limits<double>::infinity();
+  for (const ProblemCondition& each : conditions) least = std::min(least, relative_noise(each));
+  const double own = relative_noise(conditions[condition]);
+  if (!(least > 0.0) || !std::isfinite(own)) return tolerance;
+  return std::max(tolerance, std::min(tolerance * (own / least), kLargestTolerance));
+}
+
+double Problem::share_at(Effort effort) const {
+  std::size_t seen = 0;
+  std::size_t all = 0;
+  for (const ProblemCondition& each : conditions) {
+    seen += each.rows_at(effort) * each.channels.size();
+    all += each.rows.size() * each.channels.size();
+  }
+  return static_cast<double>(seen) / static_cast<double>(all);
+}
 
 long Problem::residual_count() const {
   std::size_t count = 0;

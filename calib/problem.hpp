@@ -11,6 +11,14 @@
 
 namespace rigcal::calib {
 
+/// What a simulation has to be good for.
+enum class Effort {
+  cost,           ///< the cost of a start: coarse, and without derivatives
+  first_periods,  ///< a long way: coarse, and of a sine or square its first period alone
+  coarse,         ///< to within a standard error or so of the parameters
+  full,           ///< as exact as the noise asks for
+};
+
 /// One recorded channel that the model is compared with.
 struct ProblemChannel {
   datasets::Channel channel = datasets::Channel::position;
@@ -31,11 +39,16 @@ struct ProblemCondition {
   std::vector<model::Output> outputs;  ///< of the channels
   std::vector<std::size_t> rows;       ///< samples that count (inside the windows)
   std::vector<int> free;               ///< table indices of the acting unknowns
+  std::size_t first_period_rows = 0;   ///< how many of `rows` tell what periods repeat
   long max_steps = 0;                  ///< budget of one simulation
 
+  /// How many of `rows` an effort looks at.
+  std::size_t rows_at(Effort effort) const {
+    return effort == Effort::first_periods ? first_period_rows : rows.size();
+  }
   /// Sample times up to the last that counts.
-  std::span<const double> fit_times() const {
-    return std::span(record->time_s).first(rows.back() + 1);
+  std::span<const double> fit_times(Effort effort = Effort::full) const {
+    return std::span(record->time_s).first(rows[rows_at(effort) - 1] + 1);
   }
 };
 
@@ -44,9 +57,21 @@ struct Problem {
   const datasets::Campaign* campaign = nullptr;
   ParameterMap map;
   std::vector<ProblemCondition> conditions;
-  double tolerance = 0.0;        ///< of the simulations
+  double tolerance = 0.0;        ///< of the simulations: the least that a condition asks for
   bool tolerance_fixed = false;  ///< by the campaign
 
+  /// Tolerance of the simulations of a condition: as much above the least as its noise is, in
+  /// shares of the motion, where that is known of all.
+  double tolerance_of(std::size_t condition, Effort effort = Effort::full) const;
+  /// Tolerance far from an optimum.
+  double coarse_tolerance() const;
+  /// Share of all residuals that an effort looks at.
+  double share_at(Effort effort) const;
+  /// Whether the first periods are less than everything.
+  bool repeats_itself() const { return share_at(Effort::first_periods) < 1.0; }
+  /// Effort that a start deserves: its derivatives help where the optimiser begins with all
+  /// samples.
+  Effort of_starts() const { return repeats_itself() ? Effort::cost : Effort::coarse; }
   /// Number of weighted residuals, priors included.
   long residual_count() const;
   bool has_estimated_sd() const;
@@ -77,7 +102,7 @@ std::vector<datasets::Channel> output_channels(const datasets::Campaign& campaig
 std::vector<std::size_t> samples_that_count(const datasets::Condition& condition,
                                             const datasets::Record& record);
 
-/// Tolerance of the simulations that the noise of the channels asks for, between 1e-8 and 1e-6.
+/// Least tolerance that the noise of the channels asks for, between 1e-8 and 1e-6.
 ///
 /// @param estimated  count channels of estimated noise too
 double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, bool estimated);

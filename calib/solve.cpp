@@ -38,7 +38,8 @@ bool lets_go(const std::vector<bool>& held, const std::vector<bool>& now) {
 }
 
 bool near_enough(const Evaluator& evaluator, const OptimumCheck& check) {
-  return evaluator.coarse() ? check.relative_offset <= kCoarseOffset : check.stationary();
+  return evaluator.effort() == Effort::full ? check.stationary()
+                                            : check.relative_offset <= kCoarseOffset;
 }
 
 /// Tells of each iteration, and ends the call at a stationary point, when the set of parameters to
@@ -59,7 +60,8 @@ class Watcher final : public ceres::IterationCallback {
       iterations_ = summary.iteration;
       if (options_.progress) {
         const double change = summary.cost > 0.0 ? summary.cost_change / summary.cost : 0.0;
-        options_.progress(start_, first_iteration_ + summary.iteration, summary.cost, change,
+        options_.progress(start_, first_iteration_ + summary.iteration,
+                          summary.cost / problem_.share_at(evaluator_.effort()), change,
                           summary.cumulative_time_in_seconds);
       }
       const OptimumCheck check = check_optimum(problem_, evaluator_.best());
@@ -129,7 +131,8 @@ ceres::Solver::Summary call_ceres(const Problem& problem, Evaluator& evaluator,
   settings.minimizer_progress_to_stdout = false;
   settings.max_num_iterations = iterations;
   settings.initial_trust_region_radius = trust_radius;
-  settings.function_tolerance = evaluator.coarse() ? kCoarseChange : options.function_tolerance;
+  settings.function_tolerance =
+      evaluator.effort() == Effort::full ? options.function_tolerance : kCoarseChange;
   settings.gradient_tolerance = options.gradient_tolerance;
   settings.parameter_tolerance = options.parameter_tolerance;
   settings.callbacks.push_back(&watcher);
@@ -247,8 +250,8 @@ SolveResult descend(const Problem& problem, Evaluator& evaluator, std::vector<do
     z = evaluator.best().z;
     result.check = check_optimum(problem, evaluator.best());
     const bool agreed = summary.termination_type == ceres::CONVERGENCE;
-    const bool nearly =
-        evaluator.coarse() ? !lets_go(held, result.check.held) : result.check.nearly_stationary();
+    const bool nearly = evaluator.effort() == Effort::full ? result.check.nearly_stationary()
+                                                           : !lets_go(held, result.check.held);
     if (near_enough(evaluator, result.check) || (agreed && nearly)) {
       result.status = FitStatus::converged;
       result.message = converged_after(result.iterations);
@@ -309,11 +312,40 @@ int shoot(const Problem& problem, Evaluator& evaluator, std::vector<double>& z, 
   return found.iterations;
 }
 
+/// Where first periods have led.
+struct Lead {
+  int iterations = 0;
+  bool near = false;  ///< full steps on whole records can follow
+};
+
+/// Solves with the first periods alone: what later ones repeat is not worth its time yet.
+///
+/// @param z  in: the start; out: where to go on from, the start itself where whole records speak
+///           against what was found
+Lead by_first_periods(const Problem& problem, Evaluator& evaluator, std::vector<double>& z,
+                      int iterations, int start, const FitOptions& options) {
+  const std::vector<double> begin = z;
+  const double begin_cost = evaluator.evaluate(z).cost;
+  Lead lead;
+  evaluator.set_effort(Effort::first_periods);
+  lead.iterations =
+      descend(problem, evaluator, z, kFirstTrustRadius, iterations, start, options).iterations;
+  if (evaluator.best().ok) z = evaluator.best().z;
+  evaluator.set_effort(Effort::full);
+  const Evaluation& all = evaluator.conclude(z);
+  lead.near = all.ok && check_optimum(problem, all).relative_offset <= kFullStepOffset;
+  if (!all.ok || all.cost > begin_cost) {
+    z = begin;
+    if (evaluator.aborted()) evaluator.conclude(z);  // the best there is
+  }
+  return lead;
+}
+
 }  // namespace
 
 SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
                   int iterations, int start, const FitOptions& options) {
-  evaluator.be_coarse(true);
+  evaluator.set_effort(problem.of_starts());
   int used = 0;
   FitOptions counting = options;  // one count of iterations through all
   if (options.progress) {
@@ -325,14 +357,25 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
     used = shoot(problem, evaluator, z, *interval_s, iterations, start, options);
   const Evaluation first = evaluator.evaluate(z);
   if (!first.ok) return no_start(problem, evaluator, first);
-  SolveResult coarse =
-      descend(problem, evaluator, z, kFirstTrustRadius, iterations - used, start, counting);
-  used += coarse.iterations;
-  coarse.iterations = used;
-  if (evaluator.aborted()) return coarse;
+  bool near = false;
+  if (problem.repeats_itself()) {
+    const Lead lead = by_first_periods(problem, evaluator, z, iterations - used, start, counting);
+    used += lead.iterations;
+    near = lead.near;
+  }
+  if (!near && !evaluator.aborted()) {
+    evaluator.set_effort(Effort::coarse);
+    used += descend(problem, evaluator, z, kFirstTrustRadius, iterations - used, start, counting)
+                .iterations;
+    z = evaluator.best().z;
+  }
+  if (evaluator.aborted()) {
+    SolveResult stopped{FitStatus::stopped, stop_reason(evaluator, iterations), used, {}};
+    if (evaluator.best().ok) stopped.check = check_optimum(problem, evaluator.best());
+    return stopped;
+  }
 
-  z = evaluator.best().z;
-  evaluator.be_coarse(false);
+  evaluator.set_effort(Effort::full);
   SolveResult result = refine(problem, evaluator, z, iterations - used, start, counting);
   result.iterations += used;
   if (result.status == FitStatus::converged) result.message = converged_after(result.iterations);

@@ -20,8 +20,9 @@ struct SolveResult {
 /// Parameters at a bound that the cost pushes outwards are held there in the next call, because a
 /// projected Gauss-Newton step is none for the others; those that it pushes inwards are let go.
 ///
-/// First to about a standard error with coarse simulations, then on from there with those of the
-/// problem's tolerance; the result is of the latter.
+/// First to about a standard error with coarse simulations, of the first periods where records
+/// repeat themselves, then on from there with those of the problem's tolerance; the result is of
+/// the latter.
 ///
 /// @param iterations  budget of all calls together
 /// @param start       number of the start, for `options.progress`

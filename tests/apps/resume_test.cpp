@@ -30,7 +30,7 @@ TEST_CASE("resume: a killed fit goes on to the result of one that was not", "[ap
   const CommandFolder folder;
   REQUIRE(write_quick_twin(folder).exit_code == 0);
   const CommandFolder::Arguments whole{
-      "fit", "twin/campaign.toml", "--starts", "40", "--out", "whole", "--quiet", "--threads", "1"};
+      "fit", "twin/campaign.toml", "--starts", "100", "--out", "whole", "--quiet", "--threads", "1"};
   REQUIRE(folder.run(whole).exit_code == 0);
   CHECK_FALSE(folder.has("whole/checkpoint.json"));  // a fit that ended needs none
 
@@ -38,7 +38,7 @@ TEST_CASE("resume: a killed fit goes on to the result of one that was not", "[ap
   parts[5] = "parts";
   parts.back() = "2";  // nor does the number of threads matter
   int killed = 0;
-  for (const char* start : {"\"number\": 2", "\"number\": 5", "\"number\": 12"}) {
+  for (const char* start : {"\"number\": 2", "\"number\": 10", "\"number\": 30"}) {
     killed += folder.run_and_kill(parts, "parts/checkpoint.json", start).exit_code == -SIGKILL;
     if (parts.back() != "--resume") parts.push_back("--resume");
   }
