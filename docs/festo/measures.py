@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Speeds, ringing and leakage of the Festo records, measured and simulated.
 
-    docs/festo/measures.py RESULT_DIR     (needs python3-numpy; RESULT_DIR from `rigcal fit`)
+    docs/festo/measures.py RESULT_DIR [DATA_DIR]     (needs python3-numpy; RESULT_DIR from `rigcal fit`;
+                                                      with DATA_DIR the ring of every repeat too)
 """
 import sys
 
@@ -22,14 +23,27 @@ def speed(t, x, begin, end):
 
 
 def ring(t, p, begin):
-    """First peak of a pressure after a step [bar], and frequency of what follows it [Hz]."""
+    """First peak of a pressure after a step [bar], and frequency of what follows it [Hz]: from the first peak to
+    the second, each the highest within 8 ms, likewise the valley between them, so that no drift is taken for one."""
     w = (t >= begin) & (t < begin + 0.3)
     t, p = t[w], 1e-5 * p[w]
     smooth = np.convolve(p, np.ones(3) / 3, "same")
     k = int(np.argmax(smooth[5:80])) + 5
-    valley = k + int(np.argmin(smooth[k:k + 40]))
-    second = valley + int(np.argmax(smooth[valley:valley + 40]))
+
+    def next_extremum(y, first):
+        return next(i for i in range(first + 5, len(y) - 8) if y[i] == y[i - 8:i + 9].max())
+
+    second = next_extremum(smooth, next_extremum(-smooth, k))
     return smooth[k], 1.0 / (t[second] - t[k])
+
+
+def rings_of_repeats(path, begin):
+    """First peaks [bar] and frequencies [Hz] of the single repeats, whose noise asks for a mean over 5 ms."""
+    names = open(path).readline().strip().split(",")
+    table = np.genfromtxt(path, delimiter=",", skip_header=1)
+    repeats = [i for i, name in enumerate(names) if name.startswith("pA_bar_")]
+    rings = [ring(table[:, 0], 1e5 * np.convolve(table[:, i], np.ones(5) / 5, "same"), begin) for i in repeats]
+    return np.array(rings).T
 
 
 def taken_up(t, x, p, back, end):
@@ -49,7 +63,7 @@ def taken_up(t, x, p, back, end):
     return result
 
 
-def main(folder):
+def main(folder, data=None):
     for name in ("steps_1V", "steps_2V", "steps_4V"):
         r = residuals(f"{folder}/residuals/{name}.csv")
         t = r["time_s"]
@@ -69,7 +83,11 @@ def main(folder):
                 high, low = taken_up(t, x, a, back, t[-1])
                 print(f"{volts} V measured : chamber A takes up {1e13 * high:.2f}e-13 m3/Pa near 33 bar, "
                       f"{1e13 * low:.2f}e-13 near 16 bar")
+        if data:
+            peaks, hertz = rings_of_repeats(f"{data}/{name}_1kHz.csv", out)
+            print(f"{volts} V repeats  : p_A first peak {peaks.min():.2f} to {peaks.max():.2f} bar, ring "
+                  f"{hertz.min():.1f} to {hertz.max():.1f} Hz, median {np.median(hertz):.1f} Hz")
 
 
 if __name__ == "__main__":
-    main(sys.argv[1])
+    main(*sys.argv[1:])
