@@ -11,6 +11,7 @@
 #include "calib/acceptance.hpp"
 #include "calib/basins.hpp"
 #include "calib/bootstrap.hpp"
+#include "calib/checkpoint.hpp"
 #include "calib/combinations.hpp"
 #include "calib/cross_validation.hpp"
 #include "calib/evaluator.hpp"
@@ -243,6 +244,31 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   return {std::move(found.optimum), std::move(spread)};
 }
 
+/// Solves a problem; where its only start ends at no minimum, goes on with further starts as a
+/// multi-start would that had begun with that one.
+Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                         Fit& fit) {
+  const Problem fresh = problem;
+  const std::vector<std::string> warnings = fit.warnings;
+  Solved first = solve_problem(problem, evaluator, options, fit);
+  const bool lost = fit.status == FitStatus::failed && first.optimum.ok && !evaluator.aborted();
+  if (!lost || options.starts > 1 || options.further_starts == 0) return first;
+  const Checkpoint checkpoint{fit.starts, fit.best_start, first.optimum.z, evaluator.ledger()};
+  FitOptions more = options;
+  more.starts += options.further_starts;
+  more.resume = &checkpoint;
+  problem = fresh;  // the weights of a point that is no minimum are not those of the others
+  evaluator.forget();
+  const std::string why = fit.message;
+  fit = {};
+  fit.warnings = warnings;
+  fit.warnings.push_back(
+      fmt::format("the start of the campaign led to no minimum ({}): {} further starts were made, "
+                  "as with --starts {}",
+                  why, options.further_starts, more.starts));
+  return solve_problem(problem, evaluator, more, fit);
+}
+
 /// What was asked for beside the fit: bootstrap, profiles, cross-validation.
 void look_again(const Problem& problem, const Campaign& campaign,
                 const std::vector<Record>& records, const Solved& solved, const FitOptions& options,
@@ -346,6 +372,7 @@ void FitOptions::validate() const {
     if (!holds) throw std::invalid_argument(std::string("FitOptions: ") + message);
   };
   require(starts >= 1, "starts must be at least 1");
+  require(further_starts >= 0, "further_starts must not be negative");
   require(threads >= 1, "threads must be at least 1");
   require(max_iterations >= 0, "max_iterations must not be negative");
   require(bootstrap >= 0, "bootstrap must not be negative");
@@ -436,7 +463,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
   Fit result;
   warn_of_start(campaign, fitted, records, result);
   Evaluator evaluator(problem, evaluator_options(campaign, options, began));
-  const Solved solved = solve_problem(problem, evaluator, options, result);
+  const Solved solved = solve_from_starts(problem, evaluator, options, result);
   if (solved.optimum.ok) {
     result.conditions = score_conditions(problem, solved.optimum.z, options.threads);
     if (result.status == FitStatus::converged)

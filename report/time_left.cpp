@@ -19,6 +19,7 @@ void TimeLeft::note(int start, double relative_change) {
   if (first_ == 0) first_ = start;
   if (start > latest_) {
     latest_ = start;
+    starts_ = std::max(starts_, start);  // further ones than were planned
     share_ = 0.0;
   }
   const double change = std::abs(relative_change);

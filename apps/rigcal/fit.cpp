@@ -20,6 +20,8 @@ namespace rigcal::app {
 namespace {
 
 constexpr int kMostStarts = 100'000;
+/// Where nobody said how many starts to make and the campaign's ends at no minimum.
+constexpr int kFurtherStarts = 3;
 constexpr int kMostReplicates = 1'000'000;
 
 struct FitRequest {
@@ -50,6 +52,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
                              options.common.threads, options.bootstrap > 0);
   calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
   settings.starts = options.starts.value_or(settings.starts);
+  if (!options.starts) settings.further_starts = kFurtherStarts;
   settings.seed = options.seed;
   settings.bootstrap = options.bootstrap;
   settings.profiles = options.profiles;
@@ -73,7 +76,9 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   calib::Fit fit;
   {
     FitProgress progress(options.common.print.quiet,
-                         fmt::format("start {{}} of {}", settings.starts), settings);
+                         settings.starts > 1 ? fmt::format("start {{}} of {}", settings.starts)
+                                             : std::string("start {}"),
+                         settings);
     settings.progress = std::ref(progress);
     fit = calib::fit(campaign, records, settings);
   }
@@ -88,8 +93,10 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
 Run add_fit(CLI::App& verb) {
   const auto options = std::make_shared<FitRequest>();
   add_campaign_options(verb, options->common);
-  verb.add_option("--starts", options->starts,
-                  "Number of starts (default: the campaign's, or 1); the best result counts")
+  verb.add_option(
+          "--starts", options->starts,
+          "Number of starts (default: the campaign's, or 1, and 3 more where that ends at no "
+          "minimum); the best result counts")
       ->check(CLI::Range(1, kMostStarts));
   verb.add_option("--seed", options->seed, "Seed of the further starts")
       ->check(CLI::NonNegativeNumber)

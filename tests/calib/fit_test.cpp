@@ -157,6 +157,32 @@ TEST_CASE("fit: leakage at zero has a one-sided interval", "[calib]") {
   CHECK_THAT(leakage.reason, Contains("cannot be told from 0"));
 }
 
+TEST_CASE("fit: where the only start finds no minimum others are tried", "[calib]") {
+  Twin twin = small_twin();
+  twin.noise_sd_m = 1e-7;
+  twin.campaign.simulation.tolerance = 1e-2;  // errors far above the noise: nowhere a minimum
+  const auto records = twin.records(250, 500.0, 3);
+  FitOptions options;
+  const Fit alone = fit(twin.campaign, records, options);
+  REQUIRE(alone.status == FitStatus::failed);
+  REQUIRE(alone.starts.size() == 1);
+  options.further_starts = 2;
+  const Fit found = fit(twin.campaign, records, options);
+  CHECK(found.status == FitStatus::failed);
+  CHECK(mentions(found.warnings, "led to no minimum (" + alone.message + "): 2 further starts"));
+  CHECK(found.evaluations > alone.evaluations);
+  // What a multi-start would have made of the same.
+  options.starts = 3;
+  const Fit several = fit(twin.campaign, records, options);
+  REQUIRE(found.starts.size() == several.starts.size());
+  CHECK(found.best_start == several.best_start);
+  for (std::size_t i = 0; i < found.starts.size(); ++i) {
+    CHECK(found.starts[i].start_values == several.starts[i].start_values);
+    CHECK(found.starts[i].final_cost == several.starts[i].final_cost);
+  }
+  CHECK_FALSE(mentions(several.warnings, "further starts"));
+}
+
 TEST_CASE("fit: a start that cannot be simulated fails in words", "[calib]") {
   Twin twin = small_twin();
   twin.campaign.simulation.max_seconds = 1e-9;

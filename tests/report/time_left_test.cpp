@@ -32,6 +32,13 @@ TEST_CASE("TimeLeft: starts that are done count whole, resumed ones not at all",
   CHECK_THAT(*left.seconds(59.0), WithinRel(1.0, 1e-12));
 }
 
+TEST_CASE("TimeLeft: a start beyond those planned counts too", "[report]") {
+  TimeLeft left(1, 1e-8);
+  left.note(1, 1e-4);
+  left.note(2, 1e-4);  // one and a half of two
+  CHECK_THAT(left.seconds(30.0).value(), WithinRel(10.0, 1e-9));
+}
+
 TEST_CASE("duration_text: three digits at most", "[report]") {
   CHECK(duration_text(0.2) == "1 s");
   CHECK(duration_text(98.0) == "98 s");
