@@ -388,10 +388,9 @@ std::vector<fs::path> recordings_among(const std::vector<fs::path>& files, std::
       continue;
     }
     if (first.empty()) first = lacks;
-    left_out += fmt::format("# left out: {} ({})\n", file.filename().string(), lacks);
+    left_out += fmt::format("{}{} ({})\n", kLeftOut, file.filename().string(), lacks);
   }
   if (recordings.empty()) throw InputError({files.at(0).string()}, first);
-  if (!left_out.empty()) left_out += "\n";
   return recordings;
 }
 
@@ -417,11 +416,41 @@ std::vector<FileGroup> groups_of(const std::vector<fs::path>& files) {
   return result;
 }
 
+/// Reads what a draft is made from: time and drive of the first file of each group. Where it cannot
+/// be read, as where several runs stand below each other and the time restarts, the file is named
+/// in `left_out` and the next one of its group takes its place.
+/// @throws InputError  of the first file that cannot be read, if no group remains
+std::vector<FileGroup> readable_among(std::vector<FileGroup> groups, std::string& left_out) {
+  std::optional<InputError> first;
+  const auto reads = [&](const fs::path& file) {
+    const FileColumns columns = columns_of(file);
+    const ChannelColumns* drive = drive_of(columns);
+    try {
+      signal_of(file, columns, drive != nullptr ? *drive : columns.channels.front());
+    } catch (const InputError& error) {
+      if (!first) first = error;
+      left_out += fmt::format("{}{}{}\n", kLeftOut, file.filename().string(),
+                              std::string_view(error.what()).substr(error.where().file.size()));
+      return false;
+    }
+    return true;
+  };
+  for (FileGroup& group : groups)
+    while (!group.files.empty() && !reads(group.files.front()))
+      group.files.erase(group.files.begin());
+  groups.erase(std::remove_if(groups.begin(), groups.end(),
+                              [](const FileGroup& group) { return group.files.empty(); }),
+               groups.end());
+  if (groups.empty()) throw *first;
+  return groups;
+}
+
 }  // namespace
 
 std::string draft_campaign(const std::vector<fs::path>& files, const fs::path& folder) {
   std::string left_out;
-  const auto groups = groups_of(recordings_among(files, left_out));
+  const auto groups = readable_among(groups_of(recordings_among(files, left_out)), left_out);
+  if (!left_out.empty()) left_out += "\n";
   const FileColumns columns = columns_of(groups.at(0).files.at(0));
   const bool closed_loop = find(columns, Channel::reference) != nullptr;
   const bool chambers = std::any_of(groups.begin(), groups.end(), [](const FileGroup& group) {

@@ -9,6 +9,9 @@ namespace rigcal::datasets {
 /// What stands in a draft where only the user knows.
 inline constexpr const char* kBlank = "FILL IN";
 
+/// What lines of a draft begin with that name a file it does not use, and why.
+inline constexpr const char* kLeftOut = "# left out: ";
+
 /// Drafts a campaign file from recordings: columns and units from their names, repeats from files
 /// or columns that differ in a number at the end, waveform, frequency and amplitude from the
 /// signals. Everything that the files do not tell is a blank; with the blanks filled the draft is a
@@ -19,9 +22,9 @@ inline constexpr const char* kBlank = "FILL IN";
 /// @param files   CSV or MAT files; those whose names differ in their last number only are repeats
 /// @param folder  record paths are written relative to it
 /// @return        the text of a campaign file, with comments
-/// @throws InputError  a file is wrong, or no file holds a column that looks like a time and one
-/// like
-///                     a channel
+///                 A file without a time or a channel is left out, and so is the first of a
+///                 group if it cannot be read: lines of the draft name them (kLeftOut)
+/// @throws InputError  no file remains: what is wrong with the first
 std::string draft_campaign(const std::vector<std::filesystem::path>& files,
                            const std::filesystem::path& folder);
 

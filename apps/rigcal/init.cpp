@@ -57,6 +57,17 @@ std::vector<std::filesystem::path> with_folders_opened(
   return files;
 }
 
+/// Names of the files that the draft does not use, with the reasons.
+std::vector<std::string> left_out_of(const std::string& draft) {
+  const std::string mark = datasets::kLeftOut;
+  std::vector<std::string> files;
+  for (std::size_t at = draft.find(mark); at != std::string::npos; at = draft.find(mark, at)) {
+    at += mark.size();
+    files.push_back(draft.substr(at, draft.find('\n', at) - at));
+  }
+  return files;
+}
+
 ExitCode run_init(const InitRequest& options) {
   const auto path = options.out / "campaign.toml";
   if (std::filesystem::exists(path)) {
@@ -71,9 +82,13 @@ ExitCode run_init(const InitRequest& options) {
   report::Json json;
   json["campaign"] = path.string();
   json["blanks"] = blanks;
+  const std::vector<std::string> left_out = left_out_of(draft);
+  json["left_out"] = left_out;
+  std::string text;
+  for (const std::string& file : left_out) text += fmt::format("warning: left out: {}\n", file);
   print(options.print,
-        fmt::format("files: {}\n{} blanks marked \"{}\"; then: rigcal check {}\n", path.string(),
-                    blanks, datasets::kBlank, path.string()),
+        text + fmt::format("files: {}\n{} blanks marked \"{}\"; then: rigcal check {}\n",
+                           path.string(), blanks, datasets::kBlank, path.string()),
         json);
   return ExitCode::done;
 }

@@ -125,6 +125,23 @@ TEST_CASE("init: the Festo records", "[apps]") {
   CHECK_THAT(checked.out, Contains("steps_1V_1kHz: fit") && Contains("20 repeats"));
 }
 
+TEST_CASE("init: a folder with a file that is no record", "[apps]") {
+  const std::filesystem::path records =
+      std::filesystem::path(RIGCAL_RECORDINGS_DIR) / "festo_tp511_servo_cylinder";
+  if (!std::filesystem::exists(records)) {
+    WARN("no recordings here");
+    return;
+  }
+  const CommandFolder folder;
+  const Outcome all = folder.run({"init", records.string(), "--out", "new"});
+  CHECK(all.exit_code == 0);
+  // Several records below each other, and a table of speeds.
+  CHECK_THAT(all.out,
+             Contains("warning: left out: transients_10kHz_mean_of_10_repeats.csv:8002:7: time") &&
+                 Contains("warning: left out: run_summary.csv (no column looks like a time"));
+  CHECK_THAT(folder.read("new/campaign.toml"), Contains("id = \"steps_4V_1kHz\""));
+}
+
 TEST_CASE("init: what it refuses", "[apps]") {
   const CommandFolder folder;
   write_campaign(folder);

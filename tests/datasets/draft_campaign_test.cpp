@@ -138,6 +138,22 @@ TEST_CASE("draft_campaign: a summary beside the recordings is left out", "[datas
   CHECK_THAT(draft, Contains("model = \"load_pressure\""));
 }
 
+TEST_CASE("draft_campaign: a file whose time restarts is left out", "[datasets]") {
+  const TemporaryFolder folder;
+  const std::string restarts = "t_s,u_V,x_mm\n0,1,0\n0.1,1,1\n0,1,0\n0.1,1,1\n";
+  const fs::path cuts = folder.write("cuts.csv", restarts);
+  const fs::path run = folder.write("sine_2.csv", sine_csv(0.1));
+  const std::string draft = draft_campaign({cuts, run}, folder.path());
+  CHECK_THAT(draft, Contains("# left out: cuts.csv:4:1: time 't_s' does not increase"));
+  CHECK_THAT(draft, !Contains("id = \"cuts\"") && Contains("\"sine_2.csv\""));
+  // The first of two repeats: the second stands for them.
+  const std::string rest =
+      draft_campaign({folder.write("sine_1.csv", restarts), run}, folder.path());
+  CHECK_THAT(rest,
+             Contains("# left out: sine_1.csv:4:1") && Contains("repeats = [ \"sine_2.csv\" ]"));
+  CHECK_THROWS_WITH(draft_campaign({cuts}, folder.path()), Contains("cuts.csv:4:1: time 't_s'"));
+}
+
 TEST_CASE("draft_campaign: files that tell nothing", "[datasets]") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH(draft_campaign({folder.write("a.csv", "block,x_mm\n1,2\n")}, folder.path()),
