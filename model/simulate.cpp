@@ -73,33 +73,25 @@ void run_sized(const SizedRequest& request, Simulation& result) {
   simulate_sized<Plant, N, InstructionSet::base>(request, result);
 }
 
-/// The sizes that were compiled (CMakeLists.txt).
+/// By the first of the sizes, which increase, that has room for all states.
+template <typename Plant, int N, int... Larger>
+void run_first_with_room(const SizedRequest& request, Simulation& result) {
+  if (request.layout.states <= N) return run_sized<Plant, N>(request, result);
+  if constexpr (sizeof...(Larger) > 0) {
+    run_first_with_room<Plant, Larger...>(request, result);
+  } else {
+    throw std::logic_error("simulate: a layout with an unexpected number of states");
+  }
+}
+
+/// The sizes that were compiled are those of CMakeLists.txt.
 void dispatch(const SizedRequest& request, Simulation& result) {
   const SubnormalsAreZero while_it_runs;
-  const int states = request.layout.states;
   if (request.parameters.plant == PlantKind::two_chamber) {
-    if (states <= 5) return run_sized<TwoChamberPlant, 5>(request, result);
-    if (states <= 7) return run_sized<TwoChamberPlant, 7>(request, result);
-    if (states <= 12) return run_sized<TwoChamberPlant, 12>(request, result);
+    run_first_with_room<TwoChamberPlant, RIGCAL_TWO_CHAMBER_SIZES>(request, result);
   } else {
-    switch (states) {
-      case 3:
-        return run_sized<LoadPressurePlant, 3>(request, result);
-      case 4:
-        return run_sized<LoadPressurePlant, 4>(request, result);
-      case 5:
-        return run_sized<LoadPressurePlant, 5>(request, result);
-      case 6:
-        return run_sized<LoadPressurePlant, 6>(request, result);
-      case 7:
-        return run_sized<LoadPressurePlant, 7>(request, result);
-      case 8:
-        return run_sized<LoadPressurePlant, 8>(request, result);
-      default:
-        break;
-    }
+    run_first_with_room<LoadPressurePlant, RIGCAL_LOAD_PRESSURE_SIZES>(request, result);
   }
-  throw std::logic_error("simulate: a layout with an unexpected number of states");
 }
 
 }  // namespace
