@@ -24,6 +24,14 @@ struct Pack {
   void set(std::size_t i, double x) { part[i / kLanes][i % kLanes] = x; }
 };
 
+/// Replaces one block of a pack, which holds a whole number of them.
+template <int N, int M>
+void put(const Pack<N>& block, std::size_t index, Pack<M>& whole) {
+  static_assert(M % N == 0 && N % Pack<N>::kLanes == 0);
+  for (std::size_t k = 0; k < block.kParts; ++k)
+    whole.part[index * block.kParts + k] = block.part[k];
+}
+
 template <int N>
 Pack<N> operator-(const Pack<N>& a) {
   Pack<N> r;

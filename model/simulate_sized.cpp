@@ -6,7 +6,8 @@
 #include "model/run.hpp"
 #include RIGCAL_PLANT_HEADER
 
-#if !defined(RIGCAL_STATES) || !defined(RIGCAL_PLANT) || !defined(RIGCAL_INSTRUCTION_SET)
+#if !defined(RIGCAL_STATES) || !defined(RIGCAL_PLANT) || !defined(RIGCAL_INSTRUCTION_SET) || \
+    !defined(RIGCAL_WIDTHS)
 #error "compiled once per plant, number of states and instruction set: model/CMakeLists.txt"
 #endif
 
@@ -85,28 +86,28 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   run(start, result, first, count);
 }
 
-/// Passes until every column had its turn: up to eight sensitivities at a time, four where
-/// they suffice, or where so many states are rare and would take long to compile.
+/// The pass from column `first` on: with the first of the widths that has room for what is left, or
+/// the last.
+///
+/// @return  number of columns that had their turn
+template <typename Plant, int N, int Width, int... Wider>
+int next_pass(const SizedRequest& request, int first, int left, Simulation& result) {
+  if constexpr (sizeof...(Wider) > 0) {
+    if (left > Width) return next_pass<Plant, N, Wider...>(request, first, left, result);
+  }
+  const int count = std::min(left, Width);
+  pass<Plant, N, Width>(request, first, count, result);
+  return count;
+}
+
+/// Passes until every column of the sensitivities had its turn.
 template <typename Plant, int N>
 void passes(const SizedRequest& request, Simulation& result) {
-  const int free = static_cast<int>(request.free.size()) +
-                   (request.state != nullptr ? request.layout.states : 0);
-  if (free == 0) return pass<Plant, N, 0>(request, 0, 0, result);
-  for (int first = 0; first < free && result.ok();) {
-    const int left = free - first;
-    if constexpr (N > 8) {
-      const int count = std::min(left, 4);
-      pass<Plant, N, 4>(request, first, count, result);
-      first += count;
-    } else if (left <= 4) {
-      pass<Plant, N, 4>(request, first, left, result);
-      first += left;
-    } else {
-      const int count = std::min(left, 8);
-      pass<Plant, N, 8>(request, first, count, result);
-      first += count;
-    }
-  }
+  const int columns = static_cast<int>(request.free.size()) +
+                      (request.state != nullptr ? request.layout.states : 0);
+  if (columns == 0) return pass<Plant, N, 0>(request, 0, 0, result);
+  for (int first = 0; first < columns && result.ok();)
+    first += next_pass<Plant, N, RIGCAL_WIDTHS>(request, first, columns - first, result);
 }
 
 }  // namespace

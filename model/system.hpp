@@ -37,6 +37,11 @@ class System {
     passive_ = coefficients<double>(values, free);
     if constexpr (P > 0) {
       active_ = coefficients<C>(values, free);
+      for (std::size_t b = 0; b < kBlocks; ++b) {
+        const std::size_t first = std::min(b * kBlock, free.size());
+        const std::size_t count = std::min<std::size_t>(kBlock, free.size() - first);
+        active_blocks_[b] = coefficients<Dual<kBlock>>(values, free.subspan(first, count));
+      }
       const auto table = Plant::template fields<double>();
       for (std::size_t j = 0; j < free.size(); ++j) {
         const auto& spec = table[static_cast<std::size_t>(free[j])].spec;
@@ -56,12 +61,12 @@ class System {
 
   /// Derivative of the states and, by the chain rule, of their sensitivities.
   [[gnu::flatten]] X derivative(const X& x, double t) const {
-    return right_hand_side<ByParameters>(x, t);
+    return right_hand_side(ByParameters{}, x, t);
   }
 
   /// Derivative of the states alone.
   [[gnu::flatten]] Values<N> derivative_of_values(const Values<N>& x, double t) const {
-    return right_hand_side<Plain>(x, t);
+    return right_hand_side(Plain{}, x, t);
   }
 
   /// f and its partial derivatives by states, time and parameters.
@@ -81,14 +86,14 @@ class System {
   void follow_drive(const Values<N>& x, double t, Linearisation<N, P>& lin) const {
     if constexpr (N > Plant::kStates) {
       Numbers<ByStates> rates{};
-      loop_rates<ByStates>(lifted(x), input_value<ByStates>(drive_, t, true), rates);
+      loop_rates(ByStates{}, lifted(x), input_value(ByStates{}, drive_, t, true), rates);
       for (std::size_t i = Plant::kStates; i < N; ++i) {
         if (is_of_loop(i)) take_row(rates[i], i, lin);
       }
       if constexpr (P > 0) {
         X by_parameters{};
-        loop_rates<ByParameters>(held(x), input_value<ByParameters>(drive_, t, true),
-                                 by_parameters);
+        loop_rates(ByParameters{}, held<ByParameters>(x),
+                   input_value(ByParameters{}, drive_, t, true), by_parameters);
         for (std::size_t i = Plant::kStates; i < N; ++i) {
           if (is_of_loop(i)) lin.f_p[i] = by_parameters[i].derivative;
         }
@@ -98,8 +103,8 @@ class System {
 
   /// The sampled controller's tick at t.
   void tick(X& x, double t) const {
-    const C error = input_value<ByParameters>(drive_, t, true) - x[Plant::position];
-    controller_tick(error, x, parameters_of<ByParameters>(), layout_);
+    const C error = input_value(ByParameters{}, drive_, t, true) - x[Plant::position];
+    controller_tick(error, x, parameters_of(ByParameters{}), layout_);
   }
 
   /// Value of each wanted output, with sensitivities; sensors come after (sensors.hpp).
@@ -109,8 +114,8 @@ class System {
     const bool of_states_alone = std::all_of(outputs.begin(), outputs.end(),
                                              [](Output output) { return Plant::state_of(output); });
     if (!of_states_alone) {
-      command = valve_command<ByParameters>(x, input_value<ByParameters>(drive_, t, true));
-      in = plant_input<ByParameters>(x, command, t);
+      command = valve_command(ByParameters{}, x, input_value(ByParameters{}, drive_, t, true));
+      in = plant_input(ByParameters{}, x, command, t);
     }
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       switch (outputs[k]) {
@@ -125,19 +130,19 @@ class System {
           break;
         default:
           result[k] =
-              Plant::output(outputs[k], x, in, parameters_of<ByParameters>(), layout_.terms);
+              Plant::output(outputs[k], x, in, parameters_of(ByParameters{}), layout_.terms);
       }
     }
   }
 
   /// State at the first sample.
   X initial(InitialState mode, double t) const {
-    const Coefficients<C>& p = parameters_of<ByParameters>();
+    const Coefficients<C>& p = parameters_of(ByParameters{});
     X states;
     states.fill(C(0.0));
     if (layout_.supply >= 0)
-      states[static_cast<std::size_t>(layout_.supply)] = source_pressure<ByParameters>(t);
-    const PlantInput<C> in = plant_input<ByParameters>(states, C(0.0), t);
+      states[static_cast<std::size_t>(layout_.supply)] = source_pressure(ByParameters{}, t);
+    const PlantInput<C> in = plant_input(ByParameters{}, states, C(0.0), t);
     const bool given = mode == InitialState::given;
     const auto plant =
         given ? Plant::initial(in, p, layout_.terms) : Plant::rest(in, p, layout_.terms);
@@ -151,7 +156,7 @@ class System {
     }
     if (given) {
       // The loop was closed before the record began: no kick of the derivative, spool at rest.
-      const C drive = input_value<ByParameters>(drive_, t, true);
+      const C drive = input_value(ByParameters{}, drive_, t, true);
       if (layout_.filter >= 0) {
         states[static_cast<std::size_t>(layout_.filter)] = drive - plant[Plant::position];
       }
@@ -161,7 +166,7 @@ class System {
       }
       if (layout_.valve_order > 0) {
         states[static_cast<std::size_t>(layout_.valve)] =
-            valve_command<ByParameters>(states, drive);
+            valve_command(ByParameters{}, states, drive);
       }
     }
     return states;
@@ -182,7 +187,7 @@ class System {
 
  private:
   // What a right-hand side is computed with: numbers alone, or numbers and their derivatives by the
-  // parameters, or by the states and time.
+  // parameters, by a few of these, or by the states and time.
   struct Plain {
     using Number = double;
   };
@@ -193,6 +198,14 @@ class System {
     using Number = Dual<N + 1>;  ///< directions: the states, then time
   };
   static constexpr int kTime = N;
+  static constexpr int kBlock = 4;
+  static constexpr std::size_t kBlocks = P / kBlock;
+  static_assert(P % kBlock == 0);
+  /// The derivatives by more parameters at a time do not stay in registers.
+  struct ByBlock {
+    using Number = Dual<kBlock>;
+    std::size_t block;  ///< of the parameters
+  };
   template <typename K>
   using Number = typename K::Number;
   template <typename K>
@@ -216,25 +229,35 @@ class System {
 
   /// The parameters, with their derivatives where Number<K> is to have derivatives by them.
   template <typename K>
-  const auto& parameters_of() const {
+  const auto& parameters_of([[maybe_unused]] K by) const {
     if constexpr (P > 0 && std::is_same_v<K, ByParameters>) {
       return active_;
+    } else if constexpr (P > 0 && std::is_same_v<K, ByBlock>) {
+      return active_blocks_[by.block];
     } else {
       return passive_;
     }
   }
 
+  /// Direction of the transport delay among those of a number, or -1.
+  int direction_of_delay(ByParameters /*by*/) const { return delay_direction_; }
+  int direction_of_delay(ByBlock by) const {
+    const int direction = delay_direction_ - kBlock * static_cast<int>(by.block);
+    return direction < kBlock ? std::max(direction, -1) : -1;
+  }
+
   /// An input at one instant: with its derivative by time, or by the transport delay, -d/dt, where
   /// it is delayed and that is a parameter of the sensitivities.
   template <typename K>
-  Number<K> input_value(const InputTrack& track, double t, bool delayed) const {
+  Number<K> input_value(K by, const InputTrack& track, double t, bool delayed) const {
     if constexpr (std::is_same_v<Number<K>, double>) {
       return track.value(t);
-    } else if constexpr (std::is_same_v<K, ByParameters>) {
-      if (!delayed || delay_direction_ < 0) return Number<K>(track.value(t));
+    } else if constexpr (!std::is_same_v<K, ByStates>) {
+      const int direction = direction_of_delay(by);
+      if (!delayed || direction < 0) return Number<K>(track.value(t));
       const SignalSample s = track.sample(t);
       Number<K> value(s.value);
-      value.derivative.set(static_cast<std::size_t>(delay_direction_), -s.slope);
+      value.derivative.set(static_cast<std::size_t>(direction), -s.slope);
       return value;
     } else {
       const SignalSample s = track.sample(t);
@@ -260,8 +283,9 @@ class System {
     }
     return result;
   }
-  static X held(const Values<N>& x) {
-    X result;
+  template <typename K>
+  static Numbers<K> held(const Values<N>& x) {
+    Numbers<K> result;
     for (std::size_t i = 0; i < N; ++i) result[i] = x[i];
     return result;
   }
@@ -271,14 +295,14 @@ class System {
     for (std::size_t k = 0; k < N; ++k) lin.jacobian[i][k] = f.derivative[k];
   }
 
-  /// By states and time, then by the parameters, each in one go.
+  /// By states and time, then by the parameters.
   Linearisation<N, P> linearise_by_calls(const Values<N>& x, double t) const {
-    const auto f = right_hand_side<ByStates>(lifted(x), t);
+    const auto f = right_hand_side(ByStates{}, lifted(x), t);
     Linearisation<N, P> lin;
     for (std::size_t i = 0; i < N; ++i) take_row(f[i], i, lin);
-    if constexpr (P > 0) {
-      const X with_parameters = right_hand_side<ByParameters>(held(x), t);
-      for (std::size_t i = 0; i < N; ++i) lin.f_p[i] = with_parameters[i].derivative;
+    for (std::size_t block = 0; block < kBlocks; ++block) {
+      const auto by_parameters = right_hand_side(ByBlock{block}, held<ByBlock>(x), t);
+      for (std::size_t i = 0; i < N; ++i) put(by_parameters[i].derivative, block, lin.f_p[i]);
     }
     return lin;
   }
@@ -291,21 +315,22 @@ class System {
 
   /// What the valve is told: the held output, the controller's, or the recorded command.
   template <typename K>
-  Number<K> valve_command(const Numbers<K>& x, const Number<K>& drive) const {
+  Number<K> valve_command(K by, const Numbers<K>& x, const Number<K>& drive) const {
     if (!layout_.pid) return drive;
     const Number<K> error = drive - x[Plant::position];
     if constexpr (N == Plant::kStates) {
       constexpr Layout kNoStates;
-      return controller_output(error, x, parameters_of<K>(), kNoStates).limited;
+      return controller_output(error, x, parameters_of(by), kNoStates).limited;
     } else {
       if (layout_.sampled()) return x[static_cast<std::size_t>(layout_.held)];
-      return controller_output(error, x, parameters_of<K>(), layout_).limited;
+      return controller_output(error, x, parameters_of(by), layout_).limited;
     }
   }
 
   template <typename K>
-  PlantInput<Number<K>> plant_input(const Numbers<K>& x, const Number<K>& command, double t) const {
-    const auto& p = parameters_of<K>();
+  PlantInput<Number<K>> plant_input(K by, const Numbers<K>& x, const Number<K>& command,
+                                    double t) const {
+    const auto& p = parameters_of(by);
     PlantInput<Number<K>> in;
     in.spool_command_v = command;
     if constexpr (N > Plant::kStates) {
@@ -314,12 +339,12 @@ class System {
     if (layout_.terms.external_force) {
       in.external_force_n = Number<K>(p.external_force_n);
       if (external_force_)
-        in.external_force_n = in.external_force_n + input_value<K>(*external_force_, t, false);
+        in.external_force_n = in.external_force_n + input_value(by, *external_force_, t, false);
     }
     in.supply_pressure_pa =
-        layout_.supply >= 0 ? x[static_cast<std::size_t>(layout_.supply)] : source_pressure<K>(t);
+        layout_.supply >= 0 ? x[static_cast<std::size_t>(layout_.supply)] : source_pressure(by, t);
     if constexpr (requires { p.tank_pressure_pa; }) {
-      in.tank_pressure_pa = tank_pressure_ ? input_value<K>(*tank_pressure_, t, false)
+      in.tank_pressure_pa = tank_pressure_ ? input_value(by, *tank_pressure_, t, false)
                                            : Number<K>(p.tank_pressure_pa);
     }
     return in;
@@ -327,27 +352,27 @@ class System {
 
   /// Supply pressure before its resistance.
   template <typename K>
-  Number<K> source_pressure(double t) const {
-    return supply_pressure_ ? input_value<K>(*supply_pressure_, t, false)
-                            : Number<K>(parameters_of<K>().supply_pressure_pa);
+  Number<K> source_pressure(K by, double t) const {
+    return supply_pressure_ ? input_value(by, *supply_pressure_, t, false)
+                            : Number<K>(parameters_of(by).supply_pressure_pa);
   }
 
   /// Rate of the spool signal within its limit [V/s].
   template <typename K>
-  Number<K> spool_rate(const Number<K>& rate) const {
+  Number<K> spool_rate(K by, const Number<K>& rate) const {
     return layout_.terms.valve_rate_limit
-               ? clamp_symmetric(rate, parameters_of<K>().valve_rate_limit_v_per_s)
+               ? clamp_symmetric(rate, parameters_of(by).valve_rate_limit_v_per_s)
                : rate;
   }
 
   template <typename K>
-  Numbers<K> right_hand_side(const Numbers<K>& x, double t) const {
-    const Number<K> drive = input_value<K>(drive_, t, true);
+  Numbers<K> right_hand_side(K by, const Numbers<K>& x, double t) const {
+    const Number<K> drive = input_value(by, drive_, t, true);
     if constexpr (N == Plant::kStates) {
-      const Number<K> command = valve_command<K>(x, drive);
-      return Plant::derivative(x, plant_input<K>(x, command, t), parameters_of<K>(), layout_.terms);
+      const Number<K> command = valve_command(by, x, drive);
+      return Plant::derivative(x, plant_input(by, x, command, t), parameters_of(by), layout_.terms);
     } else {
-      return with_states_of_the_loop<K>(x, drive, t);
+      return with_states_of_the_loop(by, x, drive, t);
     }
   }
 
@@ -355,8 +380,8 @@ class System {
   ///
   /// @return  what the valve is told
   template <typename K>
-  Number<K> loop_rates(const Numbers<K>& x, const Number<K>& drive, Numbers<K>& dx) const {
-    const auto& p = parameters_of<K>();
+  Number<K> loop_rates(K by, const Numbers<K>& x, const Number<K>& drive, Numbers<K>& dx) const {
+    const auto& p = parameters_of(by);
     Number<K> command = drive;
     if (layout_.pid) {
       if (layout_.sampled()) {
@@ -376,11 +401,11 @@ class System {
     }
     if (layout_.valve_order == 1) {
       const auto spool = static_cast<std::size_t>(layout_.valve);
-      dx[spool] = spool_rate<K>(Number<K>((command - x[spool]) / p.valve_time_constant_s));
+      dx[spool] = spool_rate(by, Number<K>((command - x[spool]) / p.valve_time_constant_s));
     } else if (layout_.valve_order == 2) {
       const auto spool = static_cast<std::size_t>(layout_.valve);
       const auto& omega = p.valve_frequency_rad_per_s;
-      dx[spool] = spool_rate<K>(x[spool + 1]);
+      dx[spool] = spool_rate(by, x[spool + 1]);
       dx[spool + 1] = (command - x[spool]) * (omega * omega) -
                       x[spool + 1] * (2.0 * p.valve_damping_ratio * omega);
     }
@@ -389,11 +414,12 @@ class System {
 
   /// The derivative of valve, controller and plant together.
   template <typename K>
-  Numbers<K> with_states_of_the_loop(const Numbers<K>& x, const Number<K>& drive, double t) const {
-    const auto& p = parameters_of<K>();
+  Numbers<K> with_states_of_the_loop(K by, const Numbers<K>& x, const Number<K>& drive,
+                                     double t) const {
+    const auto& p = parameters_of(by);
     Numbers<K> dx{};
-    const Number<K> command = loop_rates<K>(x, drive, dx);
-    const PlantInput<Number<K>> in = plant_input<K>(x, command, t);
+    const Number<K> command = loop_rates(by, x, drive, dx);
+    const PlantInput<Number<K>> in = plant_input(by, x, command, t);
     const auto plant_dx = Plant::derivative(x, in, p, layout_.terms);
     for (std::size_t i = 0; i < plant_dx.size(); ++i) dx[i] = plant_dx[i];
     if constexpr (requires { p.hose_yield_pa; }) {
@@ -406,7 +432,7 @@ class System {
     if constexpr (requires { p.supply_capacity_m3_per_pa; }) {
       if (layout_.supply >= 0) {
         const Number<K> inflow =
-            (source_pressure<K>(t) - in.supply_pressure_pa) / p.supply_resistance_pa_s_per_m3;
+            (source_pressure(by, t) - in.supply_pressure_pa) / p.supply_resistance_pa_s_per_m3;
         dx[static_cast<std::size_t>(layout_.supply)] =
             (inflow - Plant::supply_flow(x, in, p, layout_.terms)) / p.supply_capacity_m3_per_pa;
       }
@@ -417,6 +443,7 @@ class System {
   Layout layout_;
   Coefficients<double> passive_{};
   Coefficients<C> active_{};  ///< with derivatives by the free parameters
+  std::array<Coefficients<Dual<kBlock>>, kBlocks> active_blocks_{};  ///< the same, by blocks
   InputTrack drive_;
   std::optional<InputTrack> external_force_;
   std::optional<InputTrack> supply_pressure_;
