@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <cstdlib>
 #include <iostream>
@@ -15,6 +14,7 @@
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
 #include "datasets/noise.hpp"
+#include "metrics/distributions.hpp"
 
 namespace rigcal::bench {
 namespace {
@@ -140,9 +140,8 @@ struct Outcome {
 
 Outcome outcome_of(const calib::Fit& fit, const std::vector<double>& truth) {
   if (fit.status != calib::FitStatus::converged) throw std::runtime_error(fit.message);
-  const boost::math::students_t t(
-      static_cast<double>(fit.residual_count - static_cast<long>(kFree.size())));
-  const double quantile = boost::math::quantile(t, 0.975);
+  const double quantile = metrics::student_t_quantile(
+      0.975, static_cast<double>(fit.residual_count - static_cast<long>(kFree.size())));
   Outcome result;
   for (std::size_t j = 0; j < kFree.size(); ++j) {
     const calib::FittedParameter& found = parameter(fit, kFree[j]);

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 
 #include "calib/solve.hpp"
 #include "common/parallel.hpp"
 #include "datasets/noise.hpp"
+#include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -134,8 +134,7 @@ BootstrapSpread replicate_spread(std::vector<double> values, double estimate, do
   double squares = 0.0;
   for (const double value : values) squares += (value - mean) * (value - mean);
   std::sort(values.begin(), values.end());
-  const double widened =
-      student_t(freedom) / boost::math::quantile(boost::math::normal_distribution<>(), 0.975);
+  const double widened = student_t(freedom) / metrics::normal_quantile(0.975);
   const auto end = [&](double share) {
     return std::clamp(estimate + widened * (quantile(values, share) - estimate), spec.lower,
                       spec.upper);

@@ -6,16 +6,16 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <chrono>
 #include <cmath>
 #include <exception>
 
 #include "calib/optimum.hpp"
+#include "calib/svd.hpp"
 #include "calib/table_residuals.hpp"
 #include "common/error.hpp"
+#include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -171,7 +171,7 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, TablesFit& fit) 
   const Eigen::VectorXd inverse_length =
       length.unaryExpr([](double l) { return l > 0.0 ? 1.0 / l : 0.0; });
   const Eigen::MatrixXd scaled = optimum.jacobian * inverse_length.asDiagonal();
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinV);
+  const Svd svd(scaled, Eigen::ComputeThinV);
   const Eigen::VectorXd& s = svd.singularValues();
   const auto rank = (s.array() > kRankThreshold * s(0)).count();
   const auto freedom = static_cast<double>(optimum.residuals.size() - rank);
@@ -188,8 +188,7 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, TablesFit& fit) 
   }
   covariance *= optimum.residuals.squaredNorm() / freedom;
   covariance = inverse_length.asDiagonal() * covariance * inverse_length.asDiagonal();
-  const double t =
-      boost::math::quantile(boost::math::students_t_distribution<double>(freedom), 0.975);
+  const double t = metrics::student_t_quantile(0.975, freedom);
   fit.correlation.setIdentity(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     FittedAssumption& parameter = fit.parameters[static_cast<std::size_t>(j)];

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/optimum.hpp"
+#include "calib/svd.hpp"
 #include "calib/triangle.hpp"
 
 namespace rigcal::calib {
@@ -144,7 +144,7 @@ std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<
   for (Eigen::Index j = 0; j < n; ++j) {
     if (norms(j) > 0.0) scaled.col(j) /= norms(j);
   }
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeFullV | Eigen::ComputeThinU);
+  Svd svd(scaled, Eigen::ComputeFullV | Eigen::ComputeThinU);
   svd.setThreshold(rank_threshold(problem.tolerance));
   const Eigen::Index rank = svd.rank();
   const Eigen::MatrixXd& V = svd.matrixV();

@@ -1,10 +1,10 @@
 #include "calib/lack_of_fit.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/fisher_f.hpp>
 #include <cmath>
 #include <limits>
+
+#include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -24,14 +24,10 @@ double square_inflation(const metrics::Autoregression& noise, double samples) {
 }
 
 double exceedance(const LackOfFit& test) {
-  namespace bm = boost::math;
   if (!(test.ratio > 0.0)) return 1.0;
-  if (std::isinf(test.pure_freedom)) {
-    const bm::chi_squared distribution(test.freedom);
-    return bm::cdf(bm::complement(distribution, test.ratio * test.freedom));
-  }
-  const bm::fisher_f distribution(test.freedom, test.pure_freedom);
-  return bm::cdf(bm::complement(distribution, test.ratio));
+  if (std::isinf(test.pure_freedom))
+    return metrics::chi_squared_exceedance(test.ratio * test.freedom, test.freedom);
+  return metrics::fisher_f_exceedance(test.ratio, test.freedom, test.pure_freedom);
 }
 
 }  // namespace

@@ -3,10 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+
+#include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 
@@ -93,8 +94,7 @@ ModelChoice choose(const Candidate& smaller, const Candidate& larger) {
   result.freedom = larger.parameters - smaller.parameters;
   const Noise noise(larger);
   result.likelihood_ratio = noise.weighed(std::max(0.0, smaller.deviance() - larger.deviance()));
-  const boost::math::chi_squared distribution(result.freedom);
-  result.p = boost::math::cdf(boost::math::complement(distribution, result.likelihood_ratio));
+  result.p = metrics::chi_squared_exceedance(result.likelihood_ratio, result.freedom);
   result.delta_aic = 2.0 * result.freedom - result.likelihood_ratio;
   result.delta_bic = result.freedom * std::log(noise.effective_samples) - result.likelihood_ratio;
   constexpr double kLevel = 0.05;

@@ -1,8 +1,9 @@
 #include "calib/optimum.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+
+#include "calib/svd.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -43,7 +44,7 @@ OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation)
   Eigen::MatrixXd scaled = system.jacobian(Eigen::all, free);
   const Eigen::VectorXd norms = scaled.colwise().norm();
   scaled.array().rowwise() /= norms.transpose().array();
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU);
+  Svd svd(scaled, Eigen::ComputeThinU);
   svd.setThreshold(rank_threshold(problem.tolerance));
   const Eigen::Index rank = svd.rank();
   const Eigen::VectorXd explained = svd.matrixU().leftCols(rank).transpose() * system.residual;

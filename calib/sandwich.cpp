@@ -1,10 +1,11 @@
 #include "calib/sandwich.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <span>
+
+#include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -281,8 +282,7 @@ double RobustVariance::quantile() const {
 }
 
 double student_t(double freedom) {
-  const boost::math::students_t distribution(std::max(freedom, 1.0));
-  return boost::math::quantile(distribution, 0.975);
+  return metrics::student_t_quantile(0.975, std::max(freedom, 1.0));
 }
 
 }  // namespace rigcal::calib

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 
 #include "calib/multiple_shooting.hpp"
 #include "calib/residual.hpp"
+#include "calib/svd.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -201,7 +201,7 @@ std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evalu
   Eigen::MatrixXd scaled = system.jacobian(Eigen::all, free);
   const Eigen::VectorXd norms = scaled.colwise().norm();
   scaled.array().rowwise() /= norms.transpose().array();
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  Svd svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
   svd.setThreshold(rank_threshold(problem.tolerance));
   const Eigen::VectorXd step = -(svd.solve(system.residual).array() / norms.array()).matrix();
   for (std::size_t k = 0; k < free.size(); ++k) {

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/optimum.hpp"
+#include "calib/svd.hpp"
 #include "common/parallel.hpp"
 
 namespace rigcal::calib {
@@ -69,7 +69,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
   Eigen::VectorXd inverse_norms(n);
   for (Eigen::Index j = 0; j < n; ++j) inverse_norms(j) = norms(j) > 0.0 ? 1.0 / norms(j) : 0.0;
   const Eigen::MatrixXd scaled = system.jacobian * inverse_norms.asDiagonal();
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd(scaled, Eigen::ComputeThinU | Eigen::ComputeFullV);
+  Svd svd(scaled, Eigen::ComputeThinU | Eigen::ComputeFullV);
   svd.setThreshold(rank_threshold(problem.tolerance));
   const Eigen::Index rank = svd.rank();
   const Eigen::VectorXd s = svd.singularValues();

@@ -8,9 +8,10 @@
 
 #include "common/error.hpp"
 #include "datasets/campaign.hpp"
-#include "datasets/toml_reader.hpp"
 
 namespace rigcal::datasets {
+
+class TomlNode;  // toml_reader.hpp, whose package takes long to compile
 
 /// A coefficient as a publication prints it.
 struct PrintedCoefficient {

@@ -1,9 +1,10 @@
 #include "diagnosis/accuracy.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <set>
+
+#include "metrics/distributions.hpp"
 
 namespace rigcal::diagnosis {
 
@@ -33,7 +34,7 @@ Accuracy accuracy_of(const std::vector<Judged>& judged) {
 }
 
 std::pair<double, double> wilson_interval(double proportion, double trials) {
-  const double z = boost::math::quantile(boost::math::normal(), 0.975);
+  const double z = metrics::normal_quantile(0.975);
   const double z2 = z * z;
   const double centre = proportion + z2 / (2.0 * trials);
   const double half =

@@ -1,11 +1,11 @@
 #include "diagnosis/leak_estimate.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
 #include <vector>
+
+#include "metrics/distributions.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
@@ -37,13 +37,14 @@ class ShareDistribution {
   ShareDistribution(const LeakEstimate& estimate, double own_se, double rig_se,
                     const LeakCurve& curve)
       : blur_(std::max(rig_se, kLeastShareError)) {
-    const boost::math::students_t t(estimate.freedom);
     const double below_zero =
-        own_se > 0.0 ? boost::math::cdf(t, -estimate.coefficient / own_se) : 0.0;
+        own_se > 0.0 ? metrics::student_t_cdf(-estimate.coefficient / own_se, estimate.freedom)
+                     : 0.0;
     for (int i = 0; i < kDraws; ++i) {
       const double p = below_zero + (1.0 - below_zero) * (i + 0.5) / kDraws;
       const double coefficient =
-          p < 1.0 ? estimate.coefficient + own_se * boost::math::quantile(t, p) : 0.0;
+          p < 1.0 ? estimate.coefficient + own_se * metrics::student_t_quantile(p, estimate.freedom)
+                  : 0.0;
       shares_.push_back(curve.share(std::max(0.0, coefficient)));
     }
   }
@@ -66,9 +67,8 @@ class ShareDistribution {
 
  private:
   double raw_below(double x) const {
-    const boost::math::normal standard;
     double sum = 0.0;
-    for (const double share : shares_) sum += boost::math::cdf(standard, (x - share) / blur_);
+    for (const double share : shares_) sum += metrics::normal_cdf((x - share) / blur_);
     return sum / static_cast<double>(shares_.size());
   }
 
@@ -116,8 +116,8 @@ LeakEstimate estimate_leak(const LeakFit& fit, const LeakCurve& curve, const Sig
   estimate.coefficient = fit.coefficient;
   estimate.standard_error = std::sqrt(own_variance + squared(fit.rig_se));
   estimate.freedom = effective_freedom(parts);
-  const boost::math::students_t t(estimate.freedom);
-  const double half = boost::math::quantile(t, 0.975) * estimate.standard_error;
+  const double half =
+      metrics::student_t_quantile(0.975, estimate.freedom) * estimate.standard_error;
   estimate.ci95 = {std::max(0.0, fit.coefficient - half), std::max(0.0, fit.coefficient + half)};
   estimate.share = curve.share(fit.coefficient);
   estimate.leak_flow_m3_per_s = curve.leak_flow_m3_per_s(fit.coefficient);
@@ -131,16 +131,16 @@ LeakEstimate estimate_leak(const LeakFit& fit, const LeakCurve& curve, const Sig
   if (estimate.standard_error > 0.0) {
     estimate.leak_score = estimate.coefficient / estimate.standard_error;
     estimate.leak_detected =
-        estimate.leak_score > boost::math::quantile(t, 1.0 - settings.false_alarms);
+        estimate.leak_score >
+        metrics::student_t_quantile(1.0 - settings.false_alarms, estimate.freedom);
   }
   return estimate;
 }
 
 DetectionLimit detection_limit(const LeakEstimate& healthy, const LeakCurve& curve,
                                const datasets::DiagnosisSettings& settings) {
-  const boost::math::students_t t(healthy.freedom);
-  const double errors = boost::math::quantile(t, 1.0 - settings.false_alarms) +
-                        boost::math::quantile(t, settings.detection);
+  const double errors = metrics::student_t_quantile(1.0 - settings.false_alarms, healthy.freedom) +
+                        metrics::student_t_quantile(settings.detection, healthy.freedom);
   DetectionLimit limit;
   limit.coefficient = errors * healthy.standard_error;
   limit.leak_flow_m3_per_s = curve.leak_flow_m3_per_s(limit.coefficient);

@@ -2,13 +2,13 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/normal.hpp>
 #include <cmath>
 #include <complex>
 #include <limits>
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
+
+#include "metrics/distributions.hpp"
 
 namespace rigcal::metrics {
 namespace {
@@ -18,10 +18,6 @@ using Complex = std::complex<double>;
 constexpr double kLevel = 0.05;
 constexpr std::size_t kLeastSamples = 16;
 constexpr int kTestedLags = 25;
-
-double normal_quantile(double probability) {
-  return boost::math::quantile(boost::math::normal_distribution<double>(), probability);
-}
 
 double two_sided_p(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
 
@@ -82,8 +78,7 @@ Autocorrelation test_autocorrelation(const std::vector<double>& e, const std::ve
     sum += r * r / (n - k);
   }
   result.ljung_box = n * (n + 2.0) * sum;
-  result.p_value = boost::math::cdf(boost::math::complement(
-      boost::math::chi_squared_distribution<double>(result.tested_lags), result.ljung_box));
+  result.p_value = chi_squared_exceedance(result.ljung_box, result.tested_lags);
   double steps = 0.0;
   for (std::size_t i = 1; i < e.size(); ++i) steps += (e[i] - e[i - 1]) * (e[i] - e[i - 1]);
   result.durbin_watson = steps / (n * mean_square(e));

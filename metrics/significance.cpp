@@ -1,12 +1,11 @@
 #include "metrics/significance.hpp"
 
 #include <algorithm>
-#include <boost/math/distributions/binomial.hpp>
-#include <boost/math/distributions/normal.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
+
+#include "metrics/distributions.hpp"
 
 namespace rigcal::metrics {
 
@@ -15,8 +14,7 @@ double difference_p_value(double difference, double standard_error) {
     throw std::invalid_argument(
         "difference_p_value: expected a finite difference and a positive error");
   }
-  const boost::math::normal standard;
-  return 2.0 * cdf(complement(standard, std::abs(difference) / standard_error));
+  return 2.0 * normal_cdf(-std::abs(difference) / standard_error);
 }
 
 std::vector<double> holm(std::span<const double> p_values) {
@@ -38,8 +36,7 @@ double sign_test_p_value(int better, int worse) {
   if (better < 0 || worse < 0) throw std::invalid_argument("sign_test_p_value: negative count");
   const int pairs = better + worse;
   if (pairs == 0) return 1.0;
-  const boost::math::binomial fair(pairs, 0.5);
-  return std::min(1.0, 2.0 * cdf(fair, std::min(better, worse)));
+  return std::min(1.0, 2.0 * binomial_cdf(std::min(better, worse), pairs, 0.5));
 }
 
 Trend weighted_trend(std::span<const double> x, std::span<const double> y,
@@ -81,12 +78,10 @@ Trend weighted_trend(std::span<const double> x, std::span<const double> y,
   const double freedom = static_cast<double>(n - 2);
   trend.reduced_chi_square = chi_square / freedom;
   trend.slope_standard_error = std::sqrt(std::max(1.0, trend.reduced_chi_square) / sxx);
-  const boost::math::students_t distribution(freedom);
-  const double half = quantile(distribution, 0.975) * trend.slope_standard_error;
+  const double half = student_t_quantile(0.975, freedom) * trend.slope_standard_error;
   trend.ci95_low = trend.slope - half;
   trend.ci95_high = trend.slope + half;
-  trend.p_value =
-      2.0 * cdf(complement(distribution, std::abs(trend.slope) / trend.slope_standard_error));
+  trend.p_value = 2.0 * student_t_cdf(-std::abs(trend.slope) / trend.slope_standard_error, freedom);
   return trend;
 }
 

@@ -1,0 +1,3 @@
+#include "calib/svd.hpp"
+
+template class Eigen::JacobiSVD<Eigen::MatrixXd>;

@@ -1,0 +1,38 @@
+#include "metrics/distributions.hpp"
+
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/fisher_f.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
+namespace rigcal::metrics {
+
+double normal_quantile(double probability) {
+  return boost::math::quantile(boost::math::normal(), probability);
+}
+
+double normal_cdf(double x) { return boost::math::cdf(boost::math::normal(), x); }
+
+double student_t_quantile(double probability, double freedom) {
+  return boost::math::quantile(boost::math::students_t(freedom), probability);
+}
+
+double student_t_cdf(double t, double freedom) {
+  return boost::math::cdf(boost::math::students_t(freedom), t);
+}
+
+double chi_squared_exceedance(double x, double freedom) {
+  return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), x));
+}
+
+double fisher_f_exceedance(double x, double numerator_freedom, double denominator_freedom) {
+  const boost::math::fisher_f distribution(numerator_freedom, denominator_freedom);
+  return boost::math::cdf(boost::math::complement(distribution, x));
+}
+
+double binomial_cdf(int successes, int trials, double probability) {
+  return boost::math::cdf(boost::math::binomial(trials, probability), successes);
+}
+
+}  // namespace rigcal::metrics

@@ -1,0 +1,39 @@
+#pragma once
+
+// Boost's distributions in one place: their headers take longer to compile than what calls them.
+
+namespace rigcal::metrics {
+
+/// Value below which a standard normal variable lies with `probability`.
+///
+/// @param probability  in [0, 1]
+/// @throws std::domain_error  it is not
+/// @throws std::overflow_error  it is 0 or 1
+double normal_quantile(double probability);
+
+/// Probability that a standard normal variable lies below x; any x.
+double normal_cdf(double x);
+
+/// The same of Student's t with `freedom` degrees of freedom > 0, which need not be whole.
+///
+/// @throws std::domain_error  no such probability or freedom
+/// @throws std::overflow_error  a probability of 0 or 1
+double student_t_quantile(double probability, double freedom);
+double student_t_cdf(double t, double freedom);
+
+/// Probability that chi-square with `freedom` degrees of freedom > 0 exceeds x >= 0.
+///
+/// @throws std::domain_error  no such x or freedom
+double chi_squared_exceedance(double x, double freedom);
+
+/// Probability that Fisher's F with these degrees of freedom > 0 exceeds x >= 0.
+///
+/// @throws std::domain_error  no such x or freedom
+double fisher_f_exceedance(double x, double numerator_freedom, double denominator_freedom);
+
+/// Probability of at most `successes` in `trials` >= 0 that each succeed with `probability`.
+///
+/// @throws std::domain_error  no such count or probability
+double binomial_cdf(int successes, int trials, double probability);
+
+}  // namespace rigcal::metrics
