@@ -26,6 +26,8 @@ constexpr double kCoarseOffset = 1.0;
 /// Where full Gauss-Newton steps begin, in standard errors, and how many of them there are.
 constexpr double kFullStepOffset = 30.0;
 constexpr int kFullSteps = 4;
+/// Where they end: a third of what counts as stationary, since each is all but exact.
+constexpr double kFullStepEnd = 0.003;
 /// Relative change of the cost below which coarse simulations tell no more.
 constexpr double kCoarseChange = 1e-4;
 
@@ -219,7 +221,8 @@ std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evalu
 std::pair<int, OptimumCheck> full_steps(const Problem& problem, Evaluator& evaluator, int most) {
   OptimumCheck check = check_optimum(problem, evaluator.best());
   int steps = 0;
-  while (steps < most && check.relative_offset <= kFullStepOffset && !check.stationary()) {
+  while (steps < most && check.relative_offset <= kFullStepOffset &&
+         check.relative_offset > kFullStepEnd) {
     const std::vector<double> next = gauss_newton(problem, evaluator.best(), check.held);
     const Evaluation& after = evaluator.evaluate(next);
     if (!after.ok) break;
