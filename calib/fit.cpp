@@ -248,11 +248,13 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
 /// multi-start would that had begun with that one.
 Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOptions& options,
                          Fit& fit) {
+  if (options.starts > 1 || options.further_starts == 0)
+    return solve_problem(problem, evaluator, options, fit);
   const Problem fresh = problem;
   const std::vector<std::string> warnings = fit.warnings;
   Solved first = solve_problem(problem, evaluator, options, fit);
   const bool lost = fit.status == FitStatus::failed && first.optimum.ok && !evaluator.aborted();
-  if (!lost || options.starts > 1 || options.further_starts == 0) return first;
+  if (!lost) return first;
   const Checkpoint checkpoint{fit.starts, fit.best_start, first.optimum.z, evaluator.ledger()};
   FitOptions more = options;
   more.starts += options.further_starts;

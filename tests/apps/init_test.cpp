@@ -42,6 +42,15 @@ const Edits kTwoChamberValues{{"\"FILL IN kg\"", "\"5 kg\""},
                               {"\"FILL IN\"  # C_leak", "0  # C_leak"},
                               {"leakage_area = \"FILL IN m2\"", "leakage_area = \"1 mm2\""}};
 
+/// Folder of the Festo recordings; empty, with a message, where it is absent.
+std::filesystem::path festo_records() {
+  std::filesystem::path folder =
+      std::filesystem::path(RIGCAL_RECORDINGS_DIR) / "festo_tp511_servo_cylinder";
+  if (std::filesystem::exists(folder)) return folder;
+  WARN("no recordings here");
+  return {};
+}
+
 }  // namespace
 
 TEST_CASE("init: a draft that check accepts once its blanks are filled", "[apps]") {
@@ -100,12 +109,8 @@ TEST_CASE("init: from recordings of both chambers to a fit", "[apps]") {
 }
 
 TEST_CASE("init: the Festo records", "[apps]") {
-  const std::filesystem::path records =
-      std::filesystem::path(RIGCAL_RECORDINGS_DIR) / "festo_tp511_servo_cylinder";
-  if (!std::filesystem::exists(records)) {
-    WARN("no recordings here");
-    return;
-  }
+  const std::filesystem::path records = festo_records();
+  if (records.empty()) return;
   const CommandFolder folder;
   REQUIRE(folder
               .run({"init", (records / "steps_1V_1kHz.csv").string(),
@@ -126,12 +131,8 @@ TEST_CASE("init: the Festo records", "[apps]") {
 }
 
 TEST_CASE("init: a folder with a file that is no record", "[apps]") {
-  const std::filesystem::path records =
-      std::filesystem::path(RIGCAL_RECORDINGS_DIR) / "festo_tp511_servo_cylinder";
-  if (!std::filesystem::exists(records)) {
-    WARN("no recordings here");
-    return;
-  }
+  const std::filesystem::path records = festo_records();
+  if (records.empty()) return;
   const CommandFolder folder;
   const Outcome all = folder.run({"init", records.string(), "--out", "new"});
   CHECK(all.exit_code == 0);
