@@ -24,7 +24,8 @@ def speed(t, x, begin, end):
 
 def ring(t, p, begin):
     """First peak of a pressure after a step [bar], and frequency of what follows it [Hz]: from the first peak to
-    the second, each the highest within 8 ms, likewise the valley between them, so that no drift is taken for one."""
+    the second, each the highest within 8 ms, likewise the valley between them, so that no drift is taken for one.
+    The top of a peak is that of the parabola through its three samples: one of 1 ms would be 3 % of the period."""
     w = (t >= begin) & (t < begin + 0.3)
     t, p = t[w], 1e-5 * p[w]
     smooth = np.convolve(p, np.ones(3) / 3, "same")
@@ -33,8 +34,23 @@ def ring(t, p, begin):
     def next_extremum(y, first):
         return next(i for i in range(first + 5, len(y) - 8) if y[i] == y[i - 8:i + 9].max())
 
+    def top(i):
+        before, at, after = smooth[i - 1:i + 2]
+        bend = before - 2.0 * at + after
+        return t[i] + 0.5 * (before - after) / bend * (t[i + 1] - t[i]) if bend < 0.0 else t[i]
+
     second = next_extremum(smooth, next_extremum(-smooth, k))
-    return smooth[k], 1.0 / (t[second] - t[k])
+    return smooth[k], 1.0 / (top(second) - top(k))
+
+
+def steps(r):
+    """Voltage of a record, and when it is stepped out, ended and stepped back [s]."""
+    t = r["time_s"]
+    u = r["drive_v"] if "drive_v" in r else r["command_v"]
+    volts = round(u.max())  # another voltage's file may stand under this name
+    first = np.flatnonzero(u > 0.9 * volts)
+    second = np.flatnonzero(u < -0.9 * volts)
+    return volts, t[first[0]], t[first[-1]], t[second[0]]
 
 
 def rings_of_repeats(path, begin):
@@ -67,11 +83,7 @@ def main(folder, data=None):
     for name in ("steps_1V", "steps_2V", "steps_4V"):
         r = residuals(f"{folder}/residuals/{name}.csv")
         t = r["time_s"]
-        u = r["drive_v"] if "drive_v" in r else r["command_v"]
-        volts = round(u.max())  # another voltage's file may stand under this name
-        first = np.flatnonzero(u > 0.9 * volts)
-        second = np.flatnonzero(u < -0.9 * volts)
-        out, stop, back = t[first[0]], t[first[-1]], t[second[0]]
+        volts, out, stop, back = steps(r)
         closed = (t > stop + 0.01) & (t < back - 0.002)
         for kind in ("measured", "simulated"):
             x, a = r[f"{kind}_position_m"], r[f"{kind}_pressure_a_pa"]

@@ -410,7 +410,7 @@ def check_festo(binary, work, sources):
     if data is None:
         return
     campaign = sources / "datasets" / "festo_tp511" / "campaign.toml"
-    # The starts of the campaign are the fit; fitting again would take long.
+    # What is tested is the page, for which the starts of the campaign do; a fit takes longer.
     check(rigcal(binary, work, "validate", campaign, "--data", data, "--out", "festo") in (0, 1), "Festo's machine")
     check_recorded(work / "festo", "validation.json", SECTIONS)
 
