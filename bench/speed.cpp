@@ -68,7 +68,8 @@ model::Simulation run(const model::ParameterValues& values, const std::vector<in
   return result;
 }
 
-/// What a fit computes before it describes the result: the problem solved from its start.
+/// What a fit computes before it describes the result: the problem solved from its start, the last
+/// step predicted. The simulation that judges the optimum belongs to its intervals.
 struct Solved {
   calib::Problem problem;
   calib::MultiStart found;
@@ -182,7 +183,9 @@ void six_signals(int rounds) {
       "at {:.0e} {:.1e} (with sensitivities {:.1e}).\n",
       error[0], error[1], kAsAccurate, error[2], error[3]);
   fmt::print(
-      "Evaluations of a fit: baseline {} with and {} without derivatives, rigcal {} (all with).\n",
+      "Evaluations of a fit: baseline {} with and {} without derivatives, rigcal {} (all but the "
+      "first "
+      "with). The last step is predicted; the simulation that judges it is in the row below.\n",
       theirs.jacobians / 6, theirs.residuals / 6, ours->evaluations);
   fmt::print(
       "Distance from the optimum of simulations at 1e-10, in standard errors: baseline {:.4f}, "

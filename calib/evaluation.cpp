@@ -16,27 +16,32 @@ Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t cha
   const auto column = static_cast<Eigen::Index>(channel);
   const Eigen::Index unknowns = slopes.size();
   const auto count = static_cast<Eigen::Index>(range.end - range.begin);
-  const auto sample_of = [&](Eigen::Index row) {
-    return static_cast<Eigen::Index>(condition.rows[range.begin + static_cast<std::size_t>(row)] -
-                                     range.first_sample);
-  };
   const bool squared = settings.loss == datasets::Loss::squared;
+  const Eigen::Map<const Eigen::VectorXd> measured(data.measured.data() + range.begin, count);
   Eigen::MatrixXd rows(count, unknowns + 1);
-  Eigen::VectorXd weight(count);
-  for (Eigen::Index row = 0; row < count; ++row) {
-    const double error = run.outputs(sample_of(row), column) -
-                         data.measured[range.begin + static_cast<std::size_t>(row)];
-    square_sum += error * error;
-    const double residual = error / data.sd;
-    const LossValue loss = squared ? LossValue{residual, 1.0}
-                                   : apply_loss(settings.loss, settings.loss_scale, residual);
-    weight(row) = loss.slope / data.sd;
-    rows(row, unknowns) = loss.residual;
-  }
-  const Eigen::MatrixXd& sensitivity = run.sensitivities[channel];
-  for (Eigen::Index j = 0; j < unknowns; ++j) {
-    for (Eigen::Index row = 0; row < count; ++row)
-      rows(row, j) = sensitivity(sample_of(row), j) * slopes(j) * weight(row);
+  const auto fill = [&](const auto& samples) {
+    const Eigen::VectorXd error = run.outputs(samples, column) - measured;
+    square_sum += error.squaredNorm();
+    Eigen::VectorXd weight = Eigen::VectorXd::Constant(count, 1.0 / data.sd);
+    rows.col(unknowns) = error / data.sd;
+    for (Eigen::Index row = 0; row < count && !squared; ++row) {
+      const LossValue loss = apply_loss(settings.loss, settings.loss_scale, rows(row, unknowns));
+      weight(row) *= loss.slope;
+      rows(row, unknowns) = loss.residual;
+    }
+    for (Eigen::Index j = 0; j < unknowns; ++j) {
+      rows.col(j) = run.sensitivities[channel](samples, j).cwiseProduct(weight) * slopes(j);
+    }
+  };
+  if (count == 0) return rows;
+  const auto first = static_cast<Eigen::Index>(condition.rows[range.begin] - range.first_sample);
+  if (condition.rows[range.end - 1] - condition.rows[range.begin] + 1 == range.end - range.begin) {
+    fill(Eigen::seqN(first, count));  // no gap: in vector registers
+  } else {
+    std::vector<Eigen::Index> samples;
+    for (std::size_t i = range.begin; i < range.end; ++i)
+      samples.push_back(static_cast<Eigen::Index>(condition.rows[i] - range.first_sample));
+    fill(samples);
   }
   return rows;
 }
@@ -97,14 +102,15 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
     double square_sum = 0.0;
     for (std::size_t begin = 0; begin < count; begin += Triangle::kBlock) {
       const std::size_t end = std::min(begin + Triangle::kBlock, count);
-      const Eigen::MatrixXd weighted =
+      Eigen::MatrixXd weighted =
           weighted_rows(data, k, {begin, end, 0}, run, slopes, campaign.fit, square_sum);
-      triangle.add(weighted);
-      if (rows == nullptr) continue;
-      const Eigen::Index first =
-          static_cast<Eigen::Index>(k) * samples + static_cast<Eigen::Index>(begin);
-      rows->jacobian.middleRows(first, weighted.rows()) = weighted.leftCols(unknowns);
-      rows->residual.segment(first, weighted.rows()) = weighted.col(unknowns);
+      if (rows != nullptr) {
+        const Eigen::Index first =
+            static_cast<Eigen::Index>(k) * samples + static_cast<Eigen::Index>(begin);
+        rows->jacobian.middleRows(first, weighted.rows()) = weighted.leftCols(unknowns);
+        rows->residual.segment(first, weighted.rows()) = weighted.col(unknowns);
+      }
+      triangle.add(std::move(weighted));
     }
     result.rms.push_back(std::sqrt(square_sum / static_cast<double>(samples)));
   }

@@ -60,8 +60,8 @@ model::SimulationOptions simulation_options(const Problem& problem, std::size_t 
 /// measured) / sd, then the loss. Never throws for a point that cannot be simulated. With
 /// Effort::cost the triangle has the column of residuals alone.
 ///
-/// @param z       shape (unknowns), in the unit box
-/// @param rows    if not null, receives every row
+/// @param z     shape (unknowns), in the unit box
+/// @param rows  if not null, receives every row
 ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
                                        std::span<const double> z, const std::atomic<bool>* cancel,
                                        ConditionRows* rows = nullptr, Effort effort = Effort::full);
@@ -72,6 +72,10 @@ struct Evaluation {
   std::vector<ConditionEvaluation> conditions;
   double cost = 0.0;  ///< half the sum of squares, priors included
   bool ok = false;    ///< every condition could be simulated
+  /// The point that was simulated, where the residuals are what its derivatives predict at z.
+  std::vector<double> predicted_from;
+
+  bool simulated() const { return predicted_from.empty(); }
 };
 
 /// Least-squares system of all conditions and priors at one point, as a triangle.

@@ -24,18 +24,22 @@ double prior_cost(const Problem& problem, std::span<const double> z) {
 }
 
 bool is_at(const Evaluation& evaluation, std::span<const double> z) {
-  return std::equal(evaluation.z.begin(), evaluation.z.end(), z.begin(), z.end());
+  return evaluation.simulated() &&
+         std::equal(evaluation.z.begin(), evaluation.z.end(), z.begin(), z.end());
 }
 
 }  // namespace
 
 Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
-                       const std::atomic<bool>* cancel, Effort effort) {
+                       const EvaluationOptions& options) {
   Evaluation evaluation;
   evaluation.z.assign(z.begin(), z.end());
   evaluation.conditions.resize(problem.conditions.size());
+  if (options.rows != nullptr) options.rows->resize(problem.conditions.size());
   parallel_for(problem.conditions.size(), threads, [&](std::size_t i) {
-    evaluation.conditions[i] = evaluate_condition(problem, i, z, cancel, nullptr, effort);
+    ConditionRows* const rows = options.rows != nullptr ? &(*options.rows)[i] : nullptr;
+    evaluation.conditions[i] =
+        evaluate_condition(problem, i, z, options.cancel, rows, options.effort);
   });
   evaluation.ok = std::all_of(evaluation.conditions.begin(), evaluation.conditions.end(),
                               [](const ConditionEvaluation& each) { return each.ok(); });
@@ -43,6 +47,25 @@ Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int th
   evaluation.cost = prior_cost(problem, z);
   for (const ConditionEvaluation& each : evaluation.conditions) evaluation.cost += each.cost();
   return evaluation;
+}
+
+Evaluation predict(const Problem& problem, const Evaluation& from, std::span<const double> z) {
+  Evaluation there = from;
+  there.predicted_from = from.z;
+  there.z.assign(z.begin(), z.end());
+  there.cost = prior_cost(problem, z);
+  for (std::size_t i = 0; i < there.conditions.size(); ++i) {
+    const std::vector<int>& acting = problem.map.acting(i);
+    Eigen::VectorXd step(static_cast<Eigen::Index>(acting.size()));
+    for (std::size_t j = 0; j < acting.size(); ++j) {
+      const auto u = static_cast<std::size_t>(acting[j]);
+      step(static_cast<Eigen::Index>(j)) = z[u] - from.z[u];
+    }
+    Eigen::MatrixXd& triangle = there.conditions[i].triangle;
+    triangle.col(step.size()) += triangle.leftCols(step.size()) * step;
+    there.cost += there.conditions[i].cost();
+  }
+  return there;
 }
 
 const Evaluation& Evaluator::evaluate(std::span<const double> z) {
@@ -62,7 +85,7 @@ const Evaluation& Evaluator::evaluate(std::span<const double> z) {
       each.status = model::SimulationStatus::cancelled;
     return last_;
   }
-  last_ = evaluate_at(problem_, z, options_.threads, options_.cancel, effort_);
+  last_ = evaluate_now(z, options_.cancel);
   record(last_);
   keep_best();
   return last_;
@@ -70,9 +93,14 @@ const Evaluation& Evaluator::evaluate(std::span<const double> z) {
 
 const Evaluation& Evaluator::conclude(std::span<const double> z) {
   if (!aborted()) return evaluate(z);
-  last_ = evaluate_at(problem_, z, options_.threads, nullptr, effort_);
+  last_ = evaluate_now(z, nullptr);
   keep_best();
   return last_;
+}
+
+Evaluation Evaluator::evaluate_now(std::span<const double> z,
+                                   const std::atomic<bool>* cancel) const {
+  return evaluate_at(problem_, z, options_.threads, {effort_, cancel, nullptr});
 }
 
 void Evaluator::keep_best() {

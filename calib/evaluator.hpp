@@ -22,9 +22,21 @@ struct EvaluationLedger {
   std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept;
 };
 
+/// How a point is evaluated.
+struct EvaluationOptions {
+  Effort effort = Effort::full;
+  const std::atomic<bool>* cancel = nullptr;
+  std::vector<ConditionRows>* rows = nullptr;  ///< if not null, receives those of each condition
+};
+
 /// Every condition at z, whatever limits say.
 Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
-                       const std::atomic<bool>* cancel = nullptr, Effort effort = Effort::full);
+                       const EvaluationOptions& options = {});
+
+/// What the derivatives of an evaluation predict at z.
+///
+/// @param from  one that is ok
+Evaluation predict(const Problem& problem, const Evaluation& from, std::span<const double> z);
 
 /// Evaluates all conditions of a problem in parallel and hands the results to Ceres' cost
 /// functions.
@@ -67,6 +79,8 @@ class Evaluator final : public ceres::EvaluationCallback {
 
   /// Takes the last point for the best, whatever its cost.
   void take_last() { best_ = last_; }
+  /// Takes what was predicted for the best.
+  void take(Evaluation predicted) { best_ = std::move(predicted); }
 
   /// Where Ceres keeps the point; read at every PrepareForEvaluation.
   void watch(std::span<const double> z) { watched_ = z; }
@@ -92,6 +106,7 @@ class Evaluator final : public ceres::EvaluationCallback {
   void set_ledger(EvaluationLedger ledger) { ledger_ = std::move(ledger); }
 
  private:
+  Evaluation evaluate_now(std::span<const double> z, const std::atomic<bool>* cancel) const;
   void keep_best();
 
   const Problem& problem_;

@@ -24,6 +24,7 @@
 #include "calib/multi_start.hpp"
 #include "calib/profile.hpp"
 #include "calib/scorecard.hpp"
+#include "calib/settle.hpp"
 #include "calib/sharpen.hpp"
 #include "calib/symmetry.hpp"
 #include "calib/weights.hpp"
@@ -203,9 +204,13 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   evaluator.set_effort(problem.of_starts());
   budget_steps(problem, evaluator.evaluate(problem.start()));
   MultiStart found = multi_start(problem, evaluator, options);
-  sharpen(problem, evaluator, options, found);
-  if (found.optimum.ok && problem.has_estimated_sd())
+  std::vector<ConditionRows> rows = settle(problem, evaluator, options, found);
+  if (sharpen(problem, evaluator, options, found))
+    rows = settle(problem, evaluator, options, found);
+  if (found.optimum.ok && problem.has_estimated_sd()) {
     estimate_weights(problem, evaluator, options, found, fit.warnings);
+    rows = settle(problem, evaluator, options, found);
+  }
   fit.status = found.result.status;
   fit.message = found.result.message;
   fit.starts = std::move(found.starts);
@@ -228,7 +233,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
     return {};
   }
   fit.cost = found.optimum.cost;
-  Uncertainty spread = uncertainty(problem, found.optimum, options.threads);
+  Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads);
   fit.rank = spread.rank;
   fit.singular_values = spread.singular_values;
   fit.reduced_chi_square = spread.reduced_chi_square;

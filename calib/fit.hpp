@@ -120,7 +120,7 @@ struct StartReport {
   std::vector<double> start_values;  ///< SI, order of the unknowns
   std::vector<double> end_values;
   double initial_cost = 0.0;
-  double final_cost = 0.0;
+  double final_cost = 0.0;  ///< its last step may be predicted, not simulated
   int iterations = 0;
   FitStatus status = FitStatus::failed;
   std::string message;

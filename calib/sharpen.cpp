@@ -15,17 +15,17 @@ constexpr double kNearby = 1.0;
 
 }  // namespace
 
-void sharpen(Problem& problem, Evaluator& evaluator, const FitOptions& options, MultiStart& found) {
+bool sharpen(Problem& problem, Evaluator& evaluator, const FitOptions& options, MultiStart& found) {
   for (int round = 0; round < kFinerRounds; ++round) {
     const bool stalled = found.optimum.ok && found.result.status == FitStatus::failed &&
                          found.result.check.relative_offset <= kNearby;
-    if (!stalled || problem.tolerance_fixed || evaluator.aborted()) return;
+    if (!stalled || problem.tolerance_fixed || evaluator.aborted()) return round > 0;
     problem.tolerance = std::max(kFiner * problem.tolerance, kFinestTolerance);
     evaluator.forget();
     const int before = found.result.iterations;
     SolveResult result =
         refine(problem, evaluator, found.optimum.z, options.max_iterations, found.best, options);
-    if (!evaluator.best().ok) return;
+    if (!evaluator.best().ok) return true;
     result.iterations += before;
     if (result.status == FitStatus::converged)
       result.message = fmt::format("converged after {} iterations", result.iterations);
@@ -38,6 +38,7 @@ void sharpen(Problem& problem, Evaluator& evaluator, const FitOptions& options, 
     report.final_cost = found.optimum.cost;
     report.end_values = problem.to_physical(found.optimum.z);
   }
+  return true;
 }
 
 }  // namespace rigcal::calib

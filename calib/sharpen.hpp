@@ -11,6 +11,7 @@ namespace rigcal::calib {
 ///
 /// @param problem  its tolerance is changed
 /// @param found    optimum, result and report of its best start are those of the last round
-void sharpen(Problem& problem, Evaluator& evaluator, const FitOptions& options, MultiStart& found);
+/// @return         whether it did something
+bool sharpen(Problem& problem, Evaluator& evaluator, const FitOptions& options, MultiStart& found);
 
 }  // namespace rigcal::calib

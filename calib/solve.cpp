@@ -28,6 +28,9 @@ constexpr double kFullStepOffset = 30.0;
 constexpr int kFullSteps = 4;
 /// Where they end: a third of what counts as stationary, since each is all but exact.
 constexpr double kFullStepEnd = 0.003;
+/// Standard errors of a step after which nothing is simulated again: what it leaves is of the
+/// second order.
+constexpr double kLastStep = 0.3;
 /// Relative change of the cost below which coarse simulations tell no more.
 constexpr double kCoarseChange = 1e-4;
 
@@ -215,7 +218,8 @@ std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evalu
 
 /// Full Gauss-Newton steps from the evaluator's best point while they come nearer to a stationary
 /// one; near it the cost itself tells nothing, because errors of the simulation move it by more
-/// than is left to gain. Where it ends is the evaluator's best point.
+/// than is left to gain. Where it ends is the evaluator's best point; a last short step is
+/// predicted to end at a minimum, not simulated.
 ///
 /// @return  number of steps, and what is left
 std::pair<int, OptimumCheck> full_steps(const Problem& problem, Evaluator& evaluator, int most) {
@@ -224,6 +228,14 @@ std::pair<int, OptimumCheck> full_steps(const Problem& problem, Evaluator& evalu
   while (steps < most && check.relative_offset <= kFullStepOffset &&
          check.relative_offset > kFullStepEnd) {
     const std::vector<double> next = gauss_newton(problem, evaluator.best(), check.held);
+    if (check.relative_offset <= kLastStep) {
+      Evaluation predicted = predict(problem, evaluator.best(), next);
+      const OptimumCheck left = check_optimum(problem, predicted);
+      if (left.relative_offset <= kFullStepEnd) {
+        evaluator.take(std::move(predicted));
+        return {steps + 1, left};
+      }
+    }
     const Evaluation& after = evaluator.evaluate(next);
     if (!after.ok) break;
     const OptimumCheck found = check_optimum(problem, after);
@@ -334,14 +346,27 @@ Lead by_first_periods(const Problem& problem, Evaluator& evaluator, std::vector<
   lead.iterations =
       descend(problem, evaluator, z, kFirstTrustRadius, iterations, start, options).iterations;
   if (evaluator.best().ok) z = evaluator.best().z;
-  evaluator.set_effort(Effort::full);
+  evaluator.set_effort(evaluator.aborted() ? Effort::full : Effort::coarse);
   const Evaluation& all = evaluator.conclude(z);
-  lead.near = all.ok && check_optimum(problem, all).relative_offset <= kFullStepOffset;
   if (!all.ok || all.cost > begin_cost) {
     z = begin;
     if (evaluator.aborted()) evaluator.conclude(z);  // the best there is
+    return lead;
   }
+  lead.near = check_optimum(problem, all).relative_offset <= kFullStepOffset;
   return lead;
+}
+
+/// From coarse simulations to those of the problem's tolerance.
+///
+/// @return  where to go on from
+std::vector<double> end_coarse(const Problem& problem, Evaluator& evaluator) {
+  const Evaluation coarse = evaluator.best();
+  const OptimumCheck check = check_optimum(problem, coarse);
+  evaluator.set_effort(Effort::full);
+  if (check.relative_offset > kFullStepOffset) return coarse.z;
+  const std::vector<double> next = gauss_newton(problem, coarse, check.held);
+  return evaluator.evaluate(next).ok ? next : coarse.z;
 }
 
 }  // namespace
@@ -370,16 +395,16 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
     evaluator.set_effort(Effort::coarse);
     used += descend(problem, evaluator, z, kFirstTrustRadius, iterations - used, start, counting)
                 .iterations;
-    z = evaluator.best().z;
   }
   if (evaluator.aborted()) {
     SolveResult stopped{FitStatus::stopped, stop_reason(evaluator, iterations), used, {}};
     if (evaluator.best().ok) stopped.check = check_optimum(problem, evaluator.best());
     return stopped;
   }
+  if (!evaluator.best().ok) return no_start(problem, evaluator, evaluator.evaluate(z));
 
-  evaluator.set_effort(Effort::full);
-  SolveResult result = refine(problem, evaluator, z, iterations - used, start, counting);
+  SolveResult result = refine(problem, evaluator, end_coarse(problem, evaluator), iterations - used,
+                              start, counting);
   result.iterations += used;
   if (result.status == FitStatus::converged) result.message = converged_after(result.iterations);
   if (result.status == FitStatus::stopped) result.message = stop_reason(evaluator, iterations);

@@ -1,19 +1,30 @@
 #include "calib/triangle.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 
 namespace rigcal::calib {
 
-void Triangle::add(const Eigen::Ref<const Eigen::MatrixXd>& rows) {
-  const Eigen::Index columns = triangle_.cols();
+/// Householder's reflections of one row of the triangle and the new rows at a time: what else
+/// stands below the diagonal is zero already.
+void Triangle::add(Eigen::MatrixXd rows) {
   for (Eigen::Index first = 0; first < rows.rows(); first += kBlock) {
-    const Eigen::Index count = std::min(kBlock, rows.rows() - first);
-    Eigen::MatrixXd stacked(columns + count, columns);
-    stacked.topRows(columns) = triangle_;
-    stacked.bottomRows(count) = rows.middleRows(first, count);
-    const Eigen::HouseholderQR<Eigen::Ref<Eigen::MatrixXd>> qr(stacked);
-    triangle_ = stacked.topRows(columns).triangularView<Eigen::Upper>();
+    auto block = rows.middleRows(first, std::min(kBlock, rows.rows() - first));
+    for (Eigen::Index k = 0; k < triangle_.cols(); ++k) {
+      const auto below = block.col(k);
+      const double square = below.squaredNorm();
+      if (square == 0.0) continue;
+      double& diagonal = triangle_(k, k);
+      const double reflected = -std::copysign(std::sqrt(diagonal * diagonal + square), diagonal);
+      const double above = diagonal - reflected;
+      const double scale = 2.0 / (above * above + square);
+      diagonal = reflected;
+      for (Eigen::Index j = k + 1; j < triangle_.cols(); ++j) {
+        const double share = scale * (above * triangle_(k, j) + below.dot(block.col(j)));
+        triangle_(k, j) -= share * above;
+        block.col(j) -= share * below;
+      }
+    }
   }
 }
 

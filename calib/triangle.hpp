@@ -12,7 +12,7 @@ class Triangle {
   explicit Triangle(Eigen::Index columns) : triangle_(Eigen::MatrixXd::Zero(columns, columns)) {}
 
   /// @param rows  shape (any, columns)
-  void add(const Eigen::Ref<const Eigen::MatrixXd>& rows);
+  void add(Eigen::MatrixXd rows);
 
   const Eigen::MatrixXd& get() const { return triangle_; }
 

@@ -8,7 +8,6 @@
 
 #include "calib/optimum.hpp"
 #include "calib/svd.hpp"
-#include "common/parallel.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -18,20 +17,17 @@ namespace {
 constexpr double kFelt = 0.1;
 constexpr double kMoves = 0.05;
 
-/// Scores of every condition in coordinates of `root`; empty where one cannot be simulated.
-std::vector<ScoreRows> score_rows(const Problem& problem, std::span<const double> z,
-                                  const Eigen::MatrixXd& root, int threads) {
-  std::vector<ScoreRows> result(problem.conditions.size());
-  parallel_for(result.size(), threads, [&](std::size_t i) {
-    ConditionRows rows;
-    if (!evaluate_condition(problem, i, z, nullptr, &rows).ok()) return;
-    result[i].jacobian = rows.jacobian * root(problem.map.acting(i), Eigen::all);
-    result[i].residual = std::move(rows.residual);
+/// Scores of every condition in coordinates of `root`.
+std::vector<ScoreRows> score_rows(const Problem& problem, std::vector<ConditionRows> rows,
+                                  const Eigen::MatrixXd& root) {
+  std::vector<ScoreRows> result(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    result[i].jacobian = rows[i].jacobian * root(problem.map.acting(i), Eigen::all);
+    result[i].residual = std::move(rows[i].residual);
+    rows[i].jacobian.resize(0, 0);
     result[i].channels = static_cast<Eigen::Index>(problem.conditions[i].channels.size());
-  });
-  const bool whole = std::all_of(result.begin(), result.end(),
-                                 [](const ScoreRows& rows) { return rows.residual.size() > 0; });
-  return whole ? result : std::vector<ScoreRows>{};
+  }
+  return result;
 }
 
 /// J^T J of the priors in coordinates of `root`.
@@ -62,7 +58,8 @@ std::string null_reason(const Problem& problem, const std::vector<std::size_t>& 
 
 }  // namespace
 
-Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int threads) {
+Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
+                        std::vector<ConditionRows> rows, int threads) {
   const Linearisation system = linearise(problem, optimum);
   const auto n = static_cast<Eigen::Index>(optimum.z.size());
   const Eigen::VectorXd norms = system.jacobian.colwise().norm();
@@ -94,8 +91,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int t
   result.known = known_uncertainty(problem, optimum.z, root, threads);
   const Eigen::MatrixXd priors = prior_information(problem, optimum.z, root);
   if (rank > 0 && freedom > 0.0) {
-    const auto rows = score_rows(problem, optimum.z, root, threads);
-    result.scatter = score_scatter(rows, priors, root);
+    result.scatter = score_scatter(score_rows(problem, std::move(rows), root), priors, root);
     for (const ScoreScatter& each : result.scatter)
       result.effective_samples += each.effective_samples;
   }

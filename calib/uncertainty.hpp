@@ -45,6 +45,8 @@ struct Uncertainty {
 /// number says. Absent without a residual to spare.
 ///
 /// @param optimum  an evaluation that is ok
-Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum, int threads);
+/// @param rows     all its rows, per condition; no longer needed by the caller
+Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
+                        std::vector<ConditionRows> rows, int threads);
 
 }  // namespace rigcal::calib

@@ -88,8 +88,10 @@ TEST_CASE("effort: the cost of a start needs no derivatives", "[calib]") {
   const Twin twin = three_signals();
   const auto records = twin.records(2000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
-  const Evaluation alone = evaluate_at(problem, problem.start(), 1, nullptr, Effort::cost);
-  const Evaluation whole = evaluate_at(problem, problem.start(), 1, nullptr, Effort::full);
+  EvaluationOptions cost_alone;
+  cost_alone.effort = Effort::cost;
+  const Evaluation alone = evaluate_at(problem, problem.start(), 1, cost_alone);
+  const Evaluation whole = evaluate_at(problem, problem.start(), 1);
   REQUIRE(alone.ok);
   CHECK(alone.conditions.front().triangle.cols() == 1);
   CHECK_THAT(alone.cost, WithinRel(whole.cost, 1e-2));
