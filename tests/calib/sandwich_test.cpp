@@ -8,6 +8,8 @@
 #include <limits>
 #include <vector>
 
+#include "tests/support/sanitized.hpp"
+
 namespace rigcal::calib {
 namespace {
 
@@ -46,6 +48,11 @@ class Noise {
   boost::random::mt19937_64 random_;
   boost::random::normal_distribution<double> normal_;
 };
+
+/// Of the draws of an experiment, those that are made.
+constexpr int kPart = test::kSanitized ? 4 : 1;
+/// What a share of them scatters more for it.
+const double kWider = std::sqrt(kPart);
 
 /// Share of draws in which the 95 % interval of a direction holds the truth, 0; by Student's t of
 /// the degrees of freedom alone, too.
@@ -113,20 +120,20 @@ TEST_CASE("sandwich: white noise gives the plain covariance", "[calib]") {
 TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", "[calib]") {
   const MatrixXd model = slow_model(1500);
   // Binomial, the three directions of a draw independent: 600 at 95 % scatter by 0.9 %; 3.5 times.
-  CHECK_THAT(coverage(model, 0.0, 200), WithinAbs(0.95, 0.031));
+  CHECK_THAT(coverage(model, 0.0, 200 / kPart), WithinAbs(0.95, 0.031 * kWider));
   // 38 effective samples tell their own correlation to a fifth; t is then not quite its law.
-  CHECK_THAT(coverage(model, 0.95, 200), WithinAbs(0.95, 0.035));
-  CHECK_THAT(coverage(model, 0.0, 200, 0.8), WithinAbs(0.95, 0.031));
+  CHECK_THAT(coverage(model, 0.95, 200 / kPart), WithinAbs(0.95, 0.035 * kWider));
+  CHECK_THAT(coverage(model, 0.0, 200 / kPart, 0.8), WithinAbs(0.95, 0.031 * kWider));
 }
 
 TEST_CASE("sandwich: what a few correlated samples tell is covered no more than it should be",
           "[calib]") {
-  const auto covered = coverage_of_each(brief_model(1500), 0.95, 1000);
+  const auto covered = coverage_of_each(brief_model(1500), 0.95, 1000 / kPart);
   // Binomial: 1000 at 95 % scatter by 0.7 %; 3.5 times. Residuals that few samples tell hold their
   // own error, so Student's t alone covers more.
-  CHECK_THAT(covered[0].found, WithinAbs(0.95, 0.025));
+  CHECK_THAT(covered[0].found, WithinAbs(0.95, 0.025 * kWider));
   CHECK(covered[0].by_freedom > 0.98);
-  CHECK_THAT(covered[1].found, WithinAbs(0.95, 0.035));
+  CHECK_THAT(covered[1].found, WithinAbs(0.95, 0.035 * kWider));
   // Where least squares is the best estimate its residuals are independent of its error.
   const MatrixXd model = brief_model(1500);
   const VectorXd noise = Noise(4).draw(1500, 0.0);

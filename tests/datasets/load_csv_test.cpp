@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "tests/support/sanitized.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
@@ -347,19 +348,9 @@ TEST_CASE("load_csv: a file above the limit of bytes is refused unread", "[datas
 
 namespace {
 
-constexpr bool under_address_sanitizer() {
-#if defined(__SANITIZE_ADDRESS__)
-  return true;
-#elif defined(__has_feature)
-  return __has_feature(address_sanitizer);
-#else
-  return false;
-#endif
-}
-
 // 200 MB for the whole command, of which 20 are left to the rest of it. The sanitizer's own memory
 // comes on top, and freed blocks stay in its quarantine.
-constexpr long kMostMegabytes = under_address_sanitizer() ? 700 : 180;
+constexpr long kMostMegabytes = rigcal::test::kSanitized ? 700 : 180;
 
 /// Resident memory of this process: a child starts with as much.
 long resident_megabytes() {
