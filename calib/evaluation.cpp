@@ -7,6 +7,14 @@
 #include "calib/triangle.hpp"
 
 namespace rigcal::calib {
+namespace {
+
+/// Errors of the derivatives leave the gradient of a residual that is noise alone off by a
+/// hundredth of a standard error and more where they are as loose as far from the optimum (decision
+/// 0004).
+constexpr double kLoosenessNearOptimum = 10.0;
+
+}  // namespace
 
 Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t channel,
                               const RowRange& range, const model::Simulation& run,
@@ -73,8 +81,9 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
                                        ConditionRows* rows, Effort effort) {
   const ProblemCondition& data = problem.conditions[condition];
   const datasets::Campaign& campaign = *problem.campaign;
-  const auto options =
+  auto options =
       simulation_options(problem, condition, problem.tolerance_of(condition, effort), cancel);
+  if (effort == Effort::full) options.sensitivity_looseness = kLoosenessNearOptimum;
   const bool slopes_too = effort != Effort::cost;
   const model::Simulation run = model::simulate(
       data.rig, problem.values_at(condition, z), slopes_too ? data.free : std::vector<int>(),

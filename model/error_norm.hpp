@@ -20,8 +20,8 @@ class ErrorNorm {
   /// @param parameter_scale  shape (P): typical size of each parameter, > 0
   ErrorNorm(const std::array<double, static_cast<std::size_t>(N)>& floor,
             const std::array<double, static_cast<std::size_t>(P)>& parameter_scale,
-            double tolerance)
-      : tolerance_(tolerance), sensitivity_tolerance_(kSensitivityLooseness * tolerance) {
+            double tolerance, double sensitivity_looseness)
+      : tolerance_(tolerance), sensitivity_tolerance_(sensitivity_looseness * tolerance) {
     for (std::size_t i = 0; i < N; ++i) peak_[i] = Active<P>(floor[i]);
     if constexpr (P > 0) {
       for (std::size_t j = 0; j < P; ++j)
@@ -66,7 +66,6 @@ class ErrorNorm {
 
  private:
   static constexpr double kSensitivityFloor = 1e-2;
-  static constexpr double kSensitivityLooseness = 50.0;
 
   Active<P> peak_of(std::size_t i, const Active<P>& x) const {
     if constexpr (P == 0) {

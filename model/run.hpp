@@ -33,7 +33,8 @@ class Run {
       std::span<const double> times_s, std::span<const Output> outputs,
       const SimulationOptions& options, std::chrono::steady_clock::time_point started)
       : system_(std::move(system)),
-        norm_(floors(system_.layout()), parameter_scale, options.tolerance),
+        norm_(floors(system_.layout()), parameter_scale, options.tolerance,
+              options.sensitivity_looseness),
         times_s_(times_s),
         outputs_(outputs),
         options_(options),

@@ -132,6 +132,7 @@ std::string_view to_string(SimulationStatus status) {
 
 void SimulationOptions::validate() const {
   require(tolerance > 0.0 && tolerance < 0.1, "tolerance must lie between 0 and 0.1");
+  require(sensitivity_looseness > 0.0, "sensitivity_looseness must be positive");
   require(max_steps > 0, "max_steps must be positive");
   require(max_seconds > 0.0, "max_seconds must be positive");
 }

@@ -64,6 +64,9 @@ struct SimulationOptions {
   Method method = Method::rosenbrock;
   /// Local error per step over the running peak of each state, and of each sensitivity.
   double tolerance = 1e-6;
+  /// How many times that the local error of a sensitivity may be: a fit needs derivatives to a part
+  /// in a thousand.
+  double sensitivity_looseness = 50.0;
   long max_steps = 5'000'000;                 ///< accepted and rejected
   double max_seconds = 120.0;                 ///< wall time of one simulation
   const std::atomic<bool>* cancel = nullptr;  ///< ends the simulation when it becomes true

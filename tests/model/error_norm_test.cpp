@@ -21,7 +21,7 @@ X state(double x, double x_p, double y, double y_p) {
   return s;
 }
 const X kZero = state(0.0, 0.0, 0.0, 0.0);
-Norm norm() { return {{1e-6, 100.0}, {2.0}, kTolerance}; }
+Norm norm() { return {{1e-6, 100.0}, {2.0}, kTolerance, 50.0}; }
 
 double worst(const Norm& n, const X& error, const X& x_new) {
   return std::max(n.of_states(error, x_new), n.of_sensitivities(error, x_new));
