@@ -222,13 +222,14 @@ std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evalu
 /// predicted to end at a minimum, not simulated.
 ///
 /// @return  number of steps, and what is left
-std::pair<int, OptimumCheck> full_steps(const Problem& problem, Evaluator& evaluator, int most) {
+std::pair<int, OptimumCheck> full_steps(const Problem& problem, Evaluator& evaluator, int most,
+                                        LastStep last) {
   OptimumCheck check = check_optimum(problem, evaluator.best());
   int steps = 0;
   while (steps < most && check.relative_offset <= kFullStepOffset &&
          check.relative_offset > kFullStepEnd) {
     const std::vector<double> next = gauss_newton(problem, evaluator.best(), check.held);
-    if (check.relative_offset <= kLastStep) {
+    if (last == LastStep::predicted && check.relative_offset <= kLastStep) {
       Evaluation predicted = predict(problem, evaluator.best(), next);
       const OptimumCheck left = check_optimum(problem, predicted);
       if (left.relative_offset <= kFullStepEnd) {
@@ -299,10 +300,11 @@ SolveResult descend(const Problem& problem, Evaluator& evaluator, std::vector<do
 }  // namespace
 
 SolveResult refine(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
-                   int iterations, int start, const FitOptions& options) {
+                   int iterations, int start, const FitOptions& options, LastStep last) {
   if (!evaluator.evaluate(z).ok || iterations == 0)
     return descend(problem, evaluator, std::move(z), kNearTrustRadius, iterations, start, options);
-  const auto [steps, check] = full_steps(problem, evaluator, std::min(kFullSteps, iterations));
+  const auto [steps, check] =
+      full_steps(problem, evaluator, std::min(kFullSteps, iterations), last);
   if (check.nearly_stationary())
     return {FitStatus::converged, converged_after(steps), steps, check};
   SolveResult result = descend(problem, evaluator, evaluator.best().z, kNearTrustRadius,

@@ -29,9 +29,16 @@ struct SolveResult {
 SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
                   int iterations, int start, const FitOptions& options);
 
+/// How a last short step may end.
+enum class LastStep {
+  predicted,  ///< where the derivatives predict, not simulated again
+  simulated,
+};
+
 /// The same without coarse simulations, from a point near the optimum.
 SolveResult refine(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
-                   int iterations, int start, const FitOptions& options);
+                   int iterations, int start, const FitOptions& options,
+                   LastStep last = LastStep::predicted);
 
 /// The first condition that could not be simulated, with time, reason and values.
 std::string describe_failure(const Problem& problem, const Evaluation& evaluation);
