@@ -4,6 +4,12 @@
 #include <cmath>
 
 namespace rigcal::calib {
+namespace {
+
+/// Sum of squares that is nothing: its inverse must remain a number.
+constexpr double kNothing = 1e-300;
+
+}  // namespace
 
 /// Householder's reflections of one row of the triangle and the new rows at a time: what else
 /// stands below the diagonal is zero already.
@@ -13,7 +19,7 @@ void Triangle::add(Eigen::MatrixXd rows) {
     for (Eigen::Index k = 0; k < triangle_.cols(); ++k) {
       const auto below = block.col(k);
       const double square = below.squaredNorm();
-      if (square == 0.0) continue;
+      if (square < kNothing) continue;
       double& diagonal = triangle_(k, k);
       const double reflected = -std::copysign(std::sqrt(diagonal * diagonal + square), diagonal);
       const double above = diagonal - reflected;

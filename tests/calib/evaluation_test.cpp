@@ -83,6 +83,22 @@ TEST_CASE("evaluation: the triangle keeps cost and normal equations", "[calib]")
   CHECK_THAT(found.cost(), WithinRel(0.5 * rows.residual.squaredNorm(), 1e-12));
 }
 
+TEST_CASE("triangle: a column of almost nothing leaves the others alone", "[calib]") {
+  // The sensitivity to an initial state that decays: its squares are no normal numbers.
+  const double size = GENERATE(0.0, 1e-162, 1e-157, 1e-155);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Random(700, 3);
+  rows.col(1) *= size;
+  Triangle triangle(3);
+  triangle.add(rows);
+  REQUIRE(triangle.get().allFinite());
+  Eigen::MatrixXd others(700, 2);
+  others << rows.col(0), rows.col(2);
+  Triangle alone(2);
+  alone.add(others);
+  CHECK_THAT(triangle.get().col(2).norm(), WithinRel(alone.get().col(1).norm(), 1e-12));
+  CHECK_THAT(std::abs(triangle.get()(0, 0)), WithinRel(others.col(0).norm(), 1e-12));
+}
+
 TEST_CASE("evaluation: residuals only inside the windows", "[calib]") {
   const Twin twin = twin_of_every_scope();
   const auto records = twin.records(400, 1000.0, 3);
