@@ -167,7 +167,7 @@ TEST_CASE("acceptance: FAIL beyond the limit, WARN between, PASS above both", "[
   CHECK(worst({failing, scored(1.0)}) == Verdict::fail);
 }
 
-TEST_CASE("acceptance: lower is better for errors; no limit, no verdict", "[calib]") {
+TEST_CASE("acceptance: lower is better for errors, and no limit means no verdict", "[calib]") {
   ConditionScore score = scored(1.0);
   judge({limit("absolute_error_percent", 1.0, 0.5)}, score);
   CHECK(score.verdict == Verdict::fail);

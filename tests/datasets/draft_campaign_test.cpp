@@ -54,7 +54,8 @@ std::string filled(std::string text, model::PlantKind plant = model::PlantKind::
 
 }  // namespace
 
-TEST_CASE("draft_campaign: repeats, waveform and columns; loads once it is filled", "[datasets]") {
+TEST_CASE("draft_campaign: repeats, waveform and columns, and loads once it is filled",
+          "[datasets]") {
   const TemporaryFolder folder;
   for (const std::string n : {"1", "2", "3"})
     folder.write("records/sine_" + n + ".csv", sine_csv(0.1));

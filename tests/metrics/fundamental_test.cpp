@@ -121,7 +121,7 @@ TEST_CASE("compare_fundamentals: gain, phase and delay of a delayed, weaker simu
   CHECK_THAT(c.delay_s, WithinAbs(delay_s, 1e-12));
 }
 
-TEST_CASE("compare_fundamentals: the phase is in (-180, 180]", "[metrics]") {
+TEST_CASE("compare_fundamentals: the phase is above -180 and at most 180 degrees", "[metrics]") {
   const Values t = times(1000, 1e-3);
   const auto phase = [&](double from, double to) {
     return compare_fundamentals(t, sine(t, 1.0, 2.0, from), sine(t, 1.0, 2.0, to), 2.0).phase_deg;
