@@ -22,7 +22,7 @@ struct SolveResult {
 ///
 /// First to about a standard error with coarse simulations, of the first periods where records
 /// repeat themselves, then on from there with those of the problem's tolerance; the result is of
-/// the latter.
+/// the latter. A last short step is predicted, not simulated: settle() judges where it ends.
 ///
 /// @param iterations  budget of all calls together
 /// @param start       number of the start, for `options.progress`

@@ -24,12 +24,6 @@ Twin three_signals() {
   return twin;
 }
 
-Problem problem_of(const Twin& twin, const std::vector<datasets::Record>& records) {
-  std::vector<const datasets::Condition*> conditions;
-  for (const auto& condition : twin.campaign.conditions) conditions.push_back(&condition);
-  return make_problem(twin.campaign, records, conditions, false, nullptr);
-}
-
 }  // namespace
 
 TEST_CASE("effort: the first period of a sine or square, all of another signal", "[calib]") {

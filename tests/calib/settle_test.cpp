@@ -20,12 +20,6 @@ Twin two_signals() {
   return twin;
 }
 
-Problem problem_of(const Twin& twin, const std::vector<datasets::Record>& records) {
-  std::vector<const datasets::Condition*> conditions;
-  for (const auto& condition : twin.campaign.conditions) conditions.push_back(&condition);
-  return make_problem(twin.campaign, records, conditions, false, nullptr);
-}
-
 /// A solver that claims to have ended at z, which it never simulated.
 MultiStart claimed_at(const Problem& problem, const std::vector<double>& z) {
   MultiStart found;

@@ -155,4 +155,11 @@ inline const FittedParameter& parameter(const Fit& fit, std::string_view key,
   throw std::runtime_error("no parameter " + std::string(key) + " " + level);
 }
 
+/// The problem of all conditions of a twin.
+inline Problem problem_of(const Twin& twin, const std::vector<datasets::Record>& records) {
+  std::vector<const datasets::Condition*> conditions;
+  for (const auto& condition : twin.campaign.conditions) conditions.push_back(&condition);
+  return make_problem(twin.campaign, records, conditions, false, nullptr);
+}
+
 }  // namespace rigcal::calib
