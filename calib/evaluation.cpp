@@ -78,13 +78,13 @@ model::SimulationOptions simulation_options(const Problem& problem, std::size_t 
 
 ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
                                        std::span<const double> z, const std::atomic<bool>* cancel,
-                                       ConditionRows* rows, Effort effort) {
+                                       ConditionRows* rows, const Effort& effort) {
   const ProblemCondition& data = problem.conditions[condition];
   const datasets::Campaign& campaign = *problem.campaign;
   auto options =
       simulation_options(problem, condition, problem.tolerance_of(condition, effort), cancel);
-  if (effort == Effort::full) options.sensitivity_looseness = kLoosenessNearOptimum;
-  const bool slopes_too = effort != Effort::cost;
+  if (effort.exact) options.sensitivity_looseness = kLoosenessNearOptimum;
+  const bool slopes_too = effort.derivatives;
   const model::Simulation run = model::simulate(
       data.rig, problem.values_at(condition, z), slopes_too ? data.free : std::vector<int>(),
       data.inputs, data.fit_times(effort), data.outputs, options);

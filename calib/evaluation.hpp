@@ -56,15 +56,16 @@ Eigen::VectorXd acting_slopes(const Problem& problem, std::size_t condition,
 model::SimulationOptions simulation_options(const Problem& problem, std::size_t condition,
                                             double tolerance, const std::atomic<bool>* cancel);
 
-/// Simulates one condition, with sensitivities but for Effort::cost. Residual: (simulated -
-/// measured) / sd, then the loss. Never throws for a point that cannot be simulated. With
-/// Effort::cost the triangle has the column of residuals alone.
+/// Simulates one condition. Residual: (simulated - measured) / sd, then the loss. Never throws for
+/// a point that cannot be simulated. Without derivatives the triangle has the column of residuals
+/// alone.
 ///
 /// @param z     shape (unknowns), in the unit box
 /// @param rows  if not null, receives every row
 ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
                                        std::span<const double> z, const std::atomic<bool>* cancel,
-                                       ConditionRows* rows = nullptr, Effort effort = Effort::full);
+                                       ConditionRows* rows = nullptr,
+                                       const Effort& effort = Effort::full);
 
 /// All conditions at one point.
 struct Evaluation {

@@ -112,7 +112,7 @@ void Evaluator::begin_start(int number) {
   best_ = {};
 }
 
-void Evaluator::set_effort(Effort effort) {
+void Evaluator::set_effort(const Effort& effort) {
   if (effort != effort_) forget();
   effort_ = effort;
 }

@@ -67,8 +67,8 @@ class Evaluator final : public ceres::EvaluationCallback {
 
   /// Simulates no more and no finer than need be. Far from an optimum errors of the simulation are
   /// nothing against those of the parameters. A change drops what is kept of earlier points.
-  void set_effort(Effort effort);
-  Effort effort() const { return effort_; }
+  void set_effort(const Effort& effort);
+  const Effort& effort() const { return effort_; }
 
   /// Begins a start of a multi-start: best() is then the best of this start.
   void begin_start(int number);

@@ -167,10 +167,26 @@ double relative_noise(const ProblemCondition& condition) {
 
 }  // namespace
 
+std::size_t ProblemCondition::rows_at(const Effort& effort) const {
+  if (effort.whole()) return rows.size();
+  const auto& time_s = record->time_s;
+  const double end_s = time_s[rows.front()] + effort.opening_s;
+  const auto end = rows.begin() + static_cast<std::ptrdiff_t>(first_period_rows);
+  const auto last = std::partition_point(rows.begin(), end,
+                                         [&](std::size_t row) { return time_s[row] <= end_s; });
+  return static_cast<std::size_t>(last - rows.begin());
+}
+
+bool Problem::repeats_itself() const {
+  return std::any_of(conditions.begin(), conditions.end(), [](const ProblemCondition& each) {
+    return each.first_period_rows < each.rows.size();
+  });
+}
+
 double Problem::coarse_tolerance() const { return std::max(kCoarseTolerance, tolerance); }
 
-double Problem::tolerance_of(std::size_t condition, Effort effort) const {
-  if (effort != Effort::full) return coarse_tolerance();
+double Problem::tolerance_of(std::size_t condition, const Effort& effort) const {
+  if (!effort.exact) return coarse_tolerance();
   if (tolerance_fixed) return tolerance;
   double least = std::numeric_limits<double>::infinity();
   for (const ProblemCondition& each : conditions) least = std::min(least, relative_noise(each));
@@ -179,7 +195,7 @@ double Problem::tolerance_of(std::size_t condition, Effort effort) const {
   return std::max(tolerance, std::min(tolerance * (own / least), kLargestTolerance));
 }
 
-double Problem::share_at(Effort effort) const {
+double Problem::share_at(const Effort& effort) const {
   std::size_t seen = 0;
   std::size_t all = 0;
   for (const ProblemCondition& each : conditions) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,12 +13,25 @@
 namespace rigcal::calib {
 
 /// What a simulation has to be good for.
-enum class Effort {
-  cost,           ///< the cost of a start: coarse, and without derivatives
-  first_periods,  ///< a long way: coarse, and of a sine or square its first period alone
-  coarse,         ///< to within a standard error or so of the parameters
-  full,           ///< as exact as the noise asks for
+struct Effort {
+  bool derivatives = true;
+  bool exact = false;  ///< as the noise asks for, else to within a standard error or so
+  /// Of each record the samples until so long after the first that counts, of a sine or square
+  /// those of its first period at most. Infinite: all samples.
+  double opening_s = std::numeric_limits<double>::infinity();
+
+  static const Effort cost;  ///< the cost of a start
+  static const Effort coarse;
+  static const Effort full;
+  static constexpr Effort opening(double length_s) { return {true, false, length_s}; }
+
+  bool whole() const { return opening_s == std::numeric_limits<double>::infinity(); }
+  friend bool operator==(const Effort&, const Effort&) = default;
 };
+
+inline constexpr Effort Effort::cost{false, false};
+inline constexpr Effort Effort::coarse{true, false};
+inline constexpr Effort Effort::full{true, true};
 
 /// One recorded channel that the model is compared with.
 struct ProblemChannel {
@@ -43,11 +57,9 @@ struct ProblemCondition {
   long max_steps = 0;                  ///< budget of one simulation
 
   /// How many of `rows` an effort looks at.
-  std::size_t rows_at(Effort effort) const {
-    return effort == Effort::first_periods ? first_period_rows : rows.size();
-  }
+  std::size_t rows_at(const Effort& effort) const;
   /// Sample times up to the last that counts.
-  std::span<const double> fit_times(Effort effort = Effort::full) const {
+  std::span<const double> fit_times(const Effort& effort = Effort::full) const {
     return std::span(record->time_s).first(rows[rows_at(effort) - 1] + 1);
   }
 };
@@ -62,13 +74,13 @@ struct Problem {
 
   /// Tolerance of the simulations of a condition: as much above the least as its noise is, in
   /// shares of the motion, where that is known of all.
-  double tolerance_of(std::size_t condition, Effort effort = Effort::full) const;
+  double tolerance_of(std::size_t condition, const Effort& effort = Effort::full) const;
   /// Tolerance far from an optimum.
   double coarse_tolerance() const;
   /// Share of all residuals that an effort looks at.
-  double share_at(Effort effort) const;
+  double share_at(const Effort& effort) const;
   /// Whether the first periods are less than everything.
-  bool repeats_itself() const { return share_at(Effort::first_periods) < 1.0; }
+  bool repeats_itself() const;
   /// Effort that a start deserves: its derivatives help where the optimiser begins with all
   /// samples.
   Effort of_starts() const { return repeats_itself() ? Effort::cost : Effort::coarse; }

@@ -1,6 +1,8 @@
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "calib/evaluator.hpp"
+#include "calib/openings.hpp"
 #include "calib/solve.hpp"
 #include "tests/calib/twin.hpp"
 
@@ -32,13 +34,28 @@ TEST_CASE("effort: the first period of a sine or square, all of another signal",
   const auto records = twin.records(2000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
   CHECK(problem.repeats_itself());
-  CHECK(problem.conditions[0].rows_at(Effort::first_periods) == 501);
+  const Effort longest = Effort::opening(opening_lengths_s(problem).back());
+  CHECK(problem.conditions[0].rows_at(longest) == 501);
   // From 0.25 s to 0.35 s, but for what lies between the windows.
-  CHECK(problem.conditions[1].rows_at(Effort::first_periods) == 26 + 51);
-  CHECK_THAT(problem.conditions[1].fit_times(Effort::first_periods).back(), WithinRel(0.35, 1e-12));
-  CHECK(problem.conditions[2].rows_at(Effort::first_periods) == 2000);
+  CHECK(problem.conditions[1].rows_at(longest) == 26 + 51);
+  CHECK_THAT(problem.conditions[1].fit_times(longest).back(), WithinRel(0.35, 1e-12));
+  CHECK(problem.conditions[2].rows_at(longest) == 2000);
+  CHECK(problem.conditions[1].rows_at(Effort::opening(0.02)) == 21);
+  CHECK(problem.conditions[2].rows_at(Effort::opening(0.02)) == 21);
   CHECK(problem.conditions[0].rows_at(Effort::coarse) == 2000);
   CHECK(problem.conditions[0].fit_times().size() == 2000);
+}
+
+TEST_CASE("effort: openings grow from four samples to the longest first period", "[calib]") {
+  Twin twin = three_signals();
+  twin.campaign.conditions.pop_back();  // the sweep, which does not repeat itself
+  const auto records = twin.records(2000, 1000.0, 1);
+  const std::vector<double> lengths_s = opening_lengths_s(problem_of(twin, records));
+  REQUIRE(lengths_s.size() == 5);  // four steps of at most 4 from 4 ms to 0.5 s
+  CHECK_THAT(lengths_s.front(), WithinRel(4e-3, 1e-12));
+  CHECK_THAT(lengths_s.back(), WithinRel(0.5, 1e-12));
+  for (std::size_t k = 1; k < lengths_s.size(); ++k)
+    CHECK_THAT(lengths_s[k] / lengths_s[k - 1], WithinRel(std::pow(125.0, 0.25), 1e-9));
 }
 
 TEST_CASE("effort: less than a period is everything", "[calib]") {
@@ -64,7 +81,7 @@ TEST_CASE("effort: each record is simulated as exactly as its own noise asks", "
     REQUIRE(share(1) > 3.0 * share(0));
     CHECK_THAT(problem.tolerance_of(1) / problem.tolerance_of(0),
                WithinRel(share(1) / share(0), 1e-9));
-    CHECK(problem.tolerance_of(1, Effort::first_periods) == problem.coarse_tolerance());
+    CHECK(problem.tolerance_of(1, Effort::opening(0.1)) == problem.coarse_tolerance());
   }
   SECTION("noise that is not known tells nothing") {
     const auto records = twin.records(2000, 1000.0, 1, model::InitialState::rest, false);
@@ -115,7 +132,50 @@ TEST_CASE("solve: first periods that mislead are not believed", "[calib]") {
   CHECK_THAT(reference.cost, WithinRel(from_truth.cost, 1e-5));
 }
 
-TEST_CASE("solve: a fit stopped among first periods is judged by whole records", "[calib]") {
+TEST_CASE("solve: openings that mislead are not believed", "[calib]") {
+  const Twin twin = three_signals();
+  auto records = twin.records(2000, 1000.0, 1);
+  for (std::size_t i = 0; i < 12; ++i)  // a plug that was not in yet
+    records[1].channels.at(datasets::Channel::position).mean[i] += 0.01 * (i % 2 == 0 ? 1.0 : -1.0);
+  const Problem problem = problem_of(twin, records);
+  Evaluator evaluator(problem, {});
+  const SolveResult found = solve(problem, evaluator, problem.start(), 100, 1, {});
+  CHECK(found.status == FitStatus::converged);
+  const std::vector<double> values = problem.to_physical(evaluator.best().z);
+  CHECK_THAT(values[0], WithinRel(85.0, 0.05));
+  CHECK_THAT(values[1], WithinRel(0.0406e-3, 0.02));
+}
+
+TEST_CASE("solve: what rings is found from a start that is out of step", "[calib]") {
+  // Three times the frequency of the truth: out of step by a cycle within 6 ms.
+  Twin twin;
+  twin.add_channel(datasets::Channel::load_pressure);
+  twin.free("mass", 40.0, 10.0, 500.0);
+  twin.free("bulk_modulus", 2900e6, 70e6, 7000e6);
+  twin.free("valve_gain", 0.025e-3, 0.01e-3, 0.2e-3);
+  twin.add("square", Waveform::square, 5.0, 0.002);
+  twin.truth.conditions = twin.campaign.conditions;
+  const auto records = twin.records(600, 1000.0, 1);
+  const Problem problem = problem_of(twin, records);
+  const auto fitted_from = [&](const auto& method) {
+    Evaluator evaluator(problem, {});
+    evaluator.set_effort(Effort::coarse);
+    method(evaluator);
+    return problem.to_physical(evaluator.best().z);
+  };
+  const auto by_openings = fitted_from(
+      [&](Evaluator& evaluator) { solve(problem, evaluator, problem.start(), 100, 1, {}); });
+  const auto all_at_once = fitted_from([&](Evaluator& evaluator) {
+    descend(problem, evaluator, problem.start(), kFirstTrustRadius, 100, 1, {});
+  });
+  const std::vector<double> truth{85.0, 689e6, 0.0406e-3};
+  for (std::size_t j = 0; j < truth.size(); ++j)
+    CHECK_THAT(by_openings[j], WithinRel(truth[j], 0.05));
+  // What openings are for: else the start ends in a valley of another frequency.
+  CHECK(std::abs(all_at_once[1] / truth[1] - 1.0) > 0.5);
+}
+
+TEST_CASE("solve: a fit stopped among openings is judged by whole records", "[calib]") {
   const Twin twin = three_signals();
   const auto records = twin.records(2000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "calib/evaluator.hpp"
+
+namespace rigcal::calib {
+
+/// Lengths of openings, each a few times the one before it: from four of the shortest sample
+/// intervals up to the longest first period.
+std::vector<double> opening_lengths_s(const Problem& problem);
+
+/// Solves with coarse simulations of longer and longer openings of the records. What rings is
+/// fitted while it has not yet rung once: where all of it is fitted at once, a frequency that is
+/// off by more than a cycle in the record leads into a valley of slow valves and stiff oil. What
+/// later samples repeat is not worth its time yet either.
+///
+/// Leaves the evaluator at Effort::coarse, or at full where the fit is stopped, its best point
+/// where it ended, all samples looked at.
+///
+/// @param z           in: a point that can be simulated; out: where to go on from, the same point
+///                    where all samples together speak against what was found
+/// @param iterations  budget
+/// @return            iterations that it took
+int by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double>& z,
+                int iterations, int start, const FitOptions& options);
+
+}  // namespace rigcal::calib
