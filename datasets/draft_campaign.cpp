@@ -378,7 +378,8 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
 
 /// Files without a time or a channel, as a summary beside the recordings, are named in `left_out`.
 /// @throws InputError  no file is a recording
-std::vector<fs::path> recordings_among(const std::vector<fs::path>& files, std::string& left_out) {
+std::vector<fs::path> recordings_among(const std::vector<fs::path>& files,
+                                       std::vector<std::string>& left_out) {
   std::vector<fs::path> recordings;
   std::string first;
   for (const fs::path& file : files) {
@@ -388,7 +389,7 @@ std::vector<fs::path> recordings_among(const std::vector<fs::path>& files, std::
       continue;
     }
     if (first.empty()) first = lacks;
-    left_out += fmt::format("{}{} ({})\n", kLeftOut, file.filename().string(), lacks);
+    left_out.push_back(fmt::format("{} ({})", file.filename().string(), lacks));
   }
   if (recordings.empty()) throw InputError({files.at(0).string()}, first);
   return recordings;
@@ -420,7 +421,8 @@ std::vector<FileGroup> groups_of(const std::vector<fs::path>& files) {
 /// be read, as where several runs stand below each other and the time restarts, the file is named
 /// in `left_out` and the next one of its group takes its place.
 /// @throws InputError  of the first file that cannot be read, if no group remains
-std::vector<FileGroup> readable_among(std::vector<FileGroup> groups, std::string& left_out) {
+std::vector<FileGroup> readable_among(std::vector<FileGroup> groups,
+                                      std::vector<std::string>& left_out) {
   std::optional<InputError> first;
   const auto reads = [&](const fs::path& file) {
     const FileColumns columns = columns_of(file);
@@ -429,8 +431,8 @@ std::vector<FileGroup> readable_among(std::vector<FileGroup> groups, std::string
       signal_of(file, columns, drive != nullptr ? *drive : columns.channels.front());
     } catch (const InputError& error) {
       if (!first) first = error;
-      left_out += fmt::format("{}{}{}\n", kLeftOut, file.filename().string(),
-                              std::string_view(error.what()).substr(error.where().file.size()));
+      left_out.push_back(file.filename().string() +
+                         std::string(error.what()).substr(error.where().file.size()));
       return false;
     }
     return true;
@@ -447,10 +449,9 @@ std::vector<FileGroup> readable_among(std::vector<FileGroup> groups, std::string
 
 }  // namespace
 
-std::string draft_campaign(const std::vector<fs::path>& files, const fs::path& folder) {
-  std::string left_out;
+Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder) {
+  std::vector<std::string> left_out;
   const auto groups = readable_among(groups_of(recordings_among(files, left_out)), left_out);
-  if (!left_out.empty()) left_out += "\n";
   const FileColumns columns = columns_of(groups.at(0).files.at(0));
   const bool closed_loop = find(columns, Channel::reference) != nullptr;
   const bool chambers = std::any_of(groups.begin(), groups.end(), [](const FileGroup& group) {
@@ -462,7 +463,8 @@ std::string draft_campaign(const std::vector<fs::path>& files, const fs::path& f
       "# rigcal check on this file. docs/campaign-file.md explains every key.\n"
       "schema = \"rigcal.campaign/1\"\nname = \"New rig\"\n\n",
       kBlank);
-  text += left_out;
+  for (const std::string& file : left_out) text += fmt::format("# left out: {}\n", file);
+  if (!left_out.empty()) text += "\n";
   text += rig_text(chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure,
                    closed_loop);
   text += "\n[recording]\n" + initial_text(groups);
@@ -480,7 +482,7 @@ std::string draft_campaign(const std::vector<fs::path>& files, const fs::path& f
     text += "# leak_level = \"none\"  # names the state of the rig, if there are several\n";
     text += repeats_text(group.files, own, folder);
   }
-  return text;
+  return {text, left_out};
 }
 
 }  // namespace rigcal::datasets

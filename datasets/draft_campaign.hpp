@@ -9,8 +9,10 @@ namespace rigcal::datasets {
 /// What stands in a draft where only the user knows.
 inline constexpr const char* kBlank = "FILL IN";
 
-/// What lines of a draft begin with that name a file it does not use, and why.
-inline constexpr const char* kLeftOut = "# left out: ";
+struct Draft {
+  std::string text;                   ///< of a campaign file, with comments
+  std::vector<std::string> left_out;  ///< files that it does not use, and why
+};
 
 /// Drafts a campaign file from recordings: columns and units from their names, repeats from files
 /// or columns that differ in a number at the end, waveform, frequency and amplitude from the
@@ -21,11 +23,10 @@ inline constexpr const char* kLeftOut = "# left out: ";
 ///
 /// @param files   CSV or MAT files; those whose names differ in their last number only are repeats
 /// @param folder  record paths are written relative to it
-/// @return        the text of a campaign file, with comments
-///                 A file without a time or a channel is left out, and so is the first of a
-///                 group if it cannot be read: lines of the draft name them (kLeftOut)
+/// @return        what was drafted. A file without a time or a channel is left out, and so is the
+///                 first of a group if it cannot be read; comments of the text name them too
 /// @throws InputError  no file remains: what is wrong with the first
-std::string draft_campaign(const std::vector<std::filesystem::path>& files,
-                           const std::filesystem::path& folder);
+Draft draft_campaign(const std::vector<std::filesystem::path>& files,
+                     const std::filesystem::path& folder);
 
 }  // namespace rigcal::datasets

@@ -57,35 +57,24 @@ std::vector<std::filesystem::path> with_folders_opened(
   return files;
 }
 
-/// Names of the files that the draft does not use, with the reasons.
-std::vector<std::string> left_out_of(const std::string& draft) {
-  const std::string mark = datasets::kLeftOut;
-  std::vector<std::string> files;
-  for (std::size_t at = draft.find(mark); at != std::string::npos; at = draft.find(mark, at)) {
-    at += mark.size();
-    files.push_back(draft.substr(at, draft.find('\n', at) - at));
-  }
-  return files;
-}
-
 ExitCode run_init(const InitRequest& options) {
   const auto path = options.out / "campaign.toml";
   if (std::filesystem::exists(path)) {
     throw UsageError(fmt::format("--out {}: {} is there already; choose another folder",
                                  options.out.string(), path.string()));
   }
-  const std::string draft =
+  const datasets::Draft draft =
       datasets::draft_campaign(with_folders_opened(options.files), options.out);
-  report::write_results(options.out, {{"campaign.toml", draft}}, {});
+  report::write_results(options.out, {{"campaign.toml", draft.text}}, {});
   // The first blank is in the head, which explains them.
-  const std::size_t blanks = count_of(draft, datasets::kBlank) - 1;
+  const std::size_t blanks = count_of(draft.text, datasets::kBlank) - 1;
   report::Json json;
   json["campaign"] = path.string();
   json["blanks"] = blanks;
-  const std::vector<std::string> left_out = left_out_of(draft);
-  json["left_out"] = left_out;
+  json["left_out"] = draft.left_out;
   std::string text;
-  for (const std::string& file : left_out) text += fmt::format("warning: left out: {}\n", file);
+  for (const std::string& file : draft.left_out)
+    text += fmt::format("warning: left out: {}\n", file);
   print(options.print,
         text + fmt::format("files: {}\n{} blanks marked \"{}\"; then: rigcal check {}\n",
                            path.string(), blanks, datasets::kBlank, path.string()),

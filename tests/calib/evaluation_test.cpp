@@ -14,12 +14,6 @@ using Catch::WithinRel;
 using datasets::Scope;
 using datasets::Waveform;
 
-Problem every_scope(const Twin& twin, const std::vector<datasets::Record>& records) {
-  std::vector<const datasets::Condition*> conditions;
-  for (const auto& condition : twin.campaign.conditions) conditions.push_back(&condition);
-  return make_problem(twin.campaign, records, conditions, false, nullptr);
-}
-
 Twin twin_of_every_scope() {
   Twin twin;
   twin.add_channel(datasets::Channel::load_pressure);
@@ -40,7 +34,7 @@ TEST_CASE("evaluation: Jacobian equals finite differences for every scope", "[ca
   Twin twin = twin_of_every_scope();
   twin.campaign.fit.loss = GENERATE(datasets::Loss::squared, datasets::Loss::soft_l1);
   const auto records = twin.records(400, 1000.0, 3);
-  const Problem problem = every_scope(twin, records);
+  const Problem problem = problem_of(twin, records);
   std::vector<double> z = problem.start();
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     ConditionRows rows;
@@ -69,7 +63,7 @@ TEST_CASE("evaluation: Jacobian equals finite differences for every scope", "[ca
 TEST_CASE("evaluation: the triangle keeps cost and normal equations", "[calib]") {
   const Twin twin = twin_of_every_scope();
   const auto records = twin.records(1300, 1000.0, 3);  // more than two blocks of rows
-  const Problem problem = every_scope(twin, records);
+  const Problem problem = problem_of(twin, records);
   const auto z = problem.start();
   ConditionRows rows;
   const ConditionEvaluation found = evaluate_condition(problem, 0, z, nullptr, &rows);
@@ -102,7 +96,7 @@ TEST_CASE("triangle: a column of almost nothing leaves the others alone", "[cali
 TEST_CASE("evaluation: residuals only inside the windows", "[calib]") {
   const Twin twin = twin_of_every_scope();
   const auto records = twin.records(400, 1000.0, 3);
-  const Problem problem = every_scope(twin, records);
+  const Problem problem = problem_of(twin, records);
   CHECK(problem.conditions[0].rows.size() == 400);
   CHECK(problem.conditions[1].rows.size() == 101 + 51);
   CHECK(problem.conditions[1].fit_times().back() == records[1].time_s[350]);

@@ -62,7 +62,8 @@ TEST_CASE("draft_campaign: repeats, waveform and columns, and loads once it is f
   const fs::path records = folder.path() / "records";
   const std::string draft =
       draft_campaign({records / "sine_1.csv", records / "sine_2.csv", records / "sine_3.csv"},
-                     folder.path() / "draft");
+                     folder.path() / "draft")
+          .text;
   CHECK_THAT(draft, Contains("time = { column = \"t_s\", unit = \"s\" }"));
   CHECK_THAT(draft, Contains("reference = { column = \"ref_mm\", unit = \"mm\" }"));
   CHECK_THAT(draft, Contains("position = { column = \"x_mm\", unit = \"mm\" }"));
@@ -92,7 +93,7 @@ TEST_CASE("draft_campaign: one column per repeat, two sets, no loop", "[datasets
                         x, i, x, i);
   }
   const fs::path file = folder.write("steps_2V.csv", text);
-  const std::string draft = draft_campaign({file}, folder.path());
+  const std::string draft = draft_campaign({file}, folder.path()).text;
   CHECK_THAT(draft, Contains("position = { unit = \"mm\" }"));
   CHECK_THAT(draft, Contains("command = { column = \"u_V\", unit = \"V\" }"));
   CHECK_THAT(draft, Contains("{ file = \"steps_2V.csv\", n = \"01..02\", columns = { position = "
@@ -121,7 +122,7 @@ TEST_CASE("draft_campaign: a MAT file, and a column in volts", "[datasets]") {
   write_mat(folder.path() / "run.mat", MatFormat::v7,
             {mat_struct(
                 "log", {{mat_array("time", t), mat_array("u_V", u), mat_array("position_V", u)}})});
-  const std::string draft = draft_campaign({folder.path() / "run.mat"}, folder.path());
+  const std::string draft = draft_campaign({folder.path() / "run.mat"}, folder.path()).text;
   CHECK_THAT(draft, Contains("time = { column = \"log.time\""));
   CHECK_THAT(draft, Contains("command = { column = \"log.u_V\", unit = \"V\" }"));
   CHECK_THAT(draft, Contains("position = { column = \"log.position_V\", unit = \"FILL IN\" }") &&
@@ -133,7 +134,9 @@ TEST_CASE("draft_campaign: a summary beside the recordings is left out", "[datas
   const TemporaryFolder folder;
   const fs::path summary = folder.write("summary.csv", "run,speed_mm_s\n1,2\n");
   const fs::path run = folder.write("sine_1.csv", sine_csv(0.1));
-  const std::string draft = draft_campaign({summary, run}, folder.path());
+  const auto [draft, left_out] = draft_campaign({summary, run}, folder.path());
+  REQUIRE(left_out.size() == 1);
+  CHECK_THAT(left_out[0], Contains("summary.csv (no column looks like a time"));
   CHECK_THAT(draft, Contains("# left out: summary.csv (no column looks like a time"));
   CHECK_THAT(draft, !Contains("id = \"summary\"") && Contains("\"sine_1.csv\""));
   CHECK_THAT(draft, Contains("model = \"load_pressure\""));
@@ -144,12 +147,12 @@ TEST_CASE("draft_campaign: a file whose time restarts is left out", "[datasets]"
   const std::string restarts = "t_s,u_V,x_mm\n0,1,0\n0.1,1,1\n0,1,0\n0.1,1,1\n";
   const fs::path cuts = folder.write("cuts.csv", restarts);
   const fs::path run = folder.write("sine_2.csv", sine_csv(0.1));
-  const std::string draft = draft_campaign({cuts, run}, folder.path());
+  const std::string draft = draft_campaign({cuts, run}, folder.path()).text;
   CHECK_THAT(draft, Contains("# left out: cuts.csv:4:1: time 't_s' does not increase"));
   CHECK_THAT(draft, !Contains("id = \"cuts\"") && Contains("\"sine_2.csv\""));
   // The first of two repeats: the second stands for them.
   const std::string rest =
-      draft_campaign({folder.write("sine_1.csv", restarts), run}, folder.path());
+      draft_campaign({folder.write("sine_1.csv", restarts), run}, folder.path()).text;
   CHECK_THAT(rest,
              Contains("# left out: sine_1.csv:4:1") && Contains("repeats = [ \"sine_2.csv\" ]"));
   CHECK_THROWS_WITH(draft_campaign({cuts}, folder.path()), Contains("cuts.csv:4:1: time 't_s'"));
