@@ -478,7 +478,8 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
   CHECK(fit["provenance"]["inputs"][0]["sha256"].get<std::string>().size() == 64);
   CHECK_THAT(folder.read("out/residuals/sine.csv"), StartsWith("time_s,measured_position_m,"));
 
-  SECTION("the report is drawn again to the same bytes") {
+  {
+    INFO("the report is drawn again to the same bytes");
     const std::string page = folder.read("out/report.html");
     CHECK(folder.run({"report", "out", "--figures", "--threads", "1"}).exit_code == 2);
     CHECK(folder.run({"report", "out", "--figures", "--quiet"}).exit_code == 0);
@@ -486,14 +487,16 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
     CHECK_THAT(folder.read("out/figures/sine_position.svg"), StartsWith("<svg xmlns="));
     CHECK(folder.run({"report", "twin"}).exit_code == 2);
   }
-  SECTION("the same numbers for any number of threads") {
+  {
+    INFO("the same numbers for any number of threads");
     folder.run({"fit", "twin/campaign.toml", "--out", "one", "--threads", "1", "--quiet"});
     folder.run({"fit", "twin/campaign.toml", "--out", "four", "--threads", "4", "--quiet"});
     CHECK(reproducible(folder, "one/fit.json") == reproducible(folder, "four/fit.json"));
     CHECK(folder.read("one/fitted.toml") == folder.read("four/fitted.toml"));
     CHECK(folder.read("one/scorecard.csv") == folder.read("four/scorecard.csv"));
   }
-  SECTION("validation with the fit") {
+  {
+    INFO("validation with the fit");
     const Outcome validation = folder.run(
         {"validate", "twin/campaign.toml", "--fit", "out/fit.json", "--out", "val", "--json"});
     CHECK(validation.exit_code == 0);
@@ -502,28 +505,32 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
     CHECK_THAT(validation.out, Contains("rigcal.validation/1"));
     check_complete(validation.out);
   }
-  SECTION("validation of what the fit does not cover is warned of") {
+  {
+    INFO("validation of what the fit does not cover is warned of");
     folder.write("twin/far.toml",
                  edited(folder.read("twin/campaign.toml"), {{"\"5 mm\"", "\"9 mm\""}}));
     const Outcome validation =
-        folder.run({"validate", "twin/far.toml", "--fit", "out/fit.json", "--out", "val"});
+        folder.run({"validate", "twin/far.toml", "--fit", "out/fit.json", "--out", "far"});
     CHECK_THAT(validation.out, Contains("warning: amplitude 4 to 9 mm is used, but the fit covers "
                                         "only 5 mm\n"));
   }
-  SECTION("the campaign that was fitted can be used at once") {
-    const Outcome validation = folder.run({"validate", "out/fitted.toml", "--out", "val"});
+  {
+    INFO("the campaign that was fitted can be used at once");
+    const Outcome validation = folder.run({"validate", "out/fitted.toml", "--out", "used"});
     CAPTURE(validation.err);
     CHECK(validation.exit_code == 0);
     CHECK_THAT(validation.out, Contains("All parameters as given."));
   }
-  SECTION("a verdict of FAIL is an exit code") {
+  {
+    INFO("a verdict of FAIL is an exit code");
     const Outcome validation = folder.run(
-        {"validate", "twin/campaign.toml", "--set", "valve_gain=1e-6 m/V", "--out", "val"});
+        {"validate", "twin/campaign.toml", "--set", "valve_gain=1e-6 m/V", "--out", "failed"});
     CHECK(validation.exit_code == 1);
     CHECK_THAT(validation.out, Contains("verdict: FAIL"));
-    CHECK(json::parse(folder.read("val/validation.json"))["verdict"] == "FAIL");
+    CHECK(json::parse(folder.read("failed/validation.json"))["verdict"] == "FAIL");
   }
-  SECTION("quiet is quiet") {
+  {
+    INFO("quiet is quiet");
     const Outcome quiet = folder.run({"fit", "twin/campaign.toml", "--out", "q", "--quiet"});
     CHECK(quiet.exit_code == 0);
     CHECK(quiet.out.empty());

@@ -7,6 +7,7 @@
 #include "calib/cross_validation.hpp"
 #include "calib/interval_advice.hpp"
 #include "tests/calib/twin.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -111,11 +112,11 @@ TEST_CASE("bootstrap: its spread is that of the noise, the same for any number o
   const Twin twin = small_twin();
   const auto records = twin.records(250, 500.0, 3);
   FitOptions options;
-  options.bootstrap = 100;
+  options.bootstrap = test::kSanitized ? 40 : 100;
   const Fit found = fit(twin.campaign, records, options);
   options.threads = 3;
   const Fit again = fit(twin.campaign, records, options);
-  CHECK(found.bootstrap_replicates == 100);
+  CHECK(found.bootstrap_replicates == options.bootstrap);
   for (const auto* key : {"mass", "valve_gain"}) {
     const FittedParameter& p = parameter(found, key);
     REQUIRE(p.bootstrap.has_value());

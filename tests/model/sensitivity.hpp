@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "rig.hpp"
+#include "tests/support/sanitized.hpp"
 
 // Sensitivities of a scenario against central differences.
 
@@ -89,6 +90,7 @@ inline void check_sensitivities(Experiment e, std::set<int>& seen,
     const std::string key(parameter_table(e.rig.plant)[index].key);
     const bool at_zero = e.values.value[index] == 0.0;
     if (at_zero || std::isinf(e.values.value[index])) continue;
+    if (test::kSanitized && seen.count(e.free[j]) == 1) continue;  // once for each parameter
     const Eigen::MatrixXd expected = difference_by(e, e.free[j], kRelativeStep);
     for (std::size_t k = 0; k < e.outputs.size(); ++k) {
       const Eigen::VectorXd exact = run.sensitivities[k].col(static_cast<Eigen::Index>(j));

@@ -141,7 +141,8 @@ TEST_CASE("sensitivity: many at once equal one at a time", "[model]") {
 }
 
 TEST_CASE("sensitivity: the same by every method", "[model]") {
-  for (const Scenario& scenario : scenarios()) {
+  for (std::size_t i = 0; i < scenarios().size(); i += rigcal::test::kSanitized ? 3 : 1) {
+    const Scenario& scenario = scenarios()[i];
     Experiment e = experiment(scenario);
     e.outputs = {Output::position, Output::load_pressure};
     e.free = fittable(e);

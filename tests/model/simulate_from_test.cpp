@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/sanitized.hpp"
 #include "two_chamber_rig.hpp"
 
 using namespace rigcal::model;
@@ -83,7 +84,7 @@ TEST_CASE("simulate_from: two halves are the whole", "[model]") {
 TEST_CASE("simulate_from: sensitivities to the state against differences", "[model]") {
   for (const auto& [name, e] : cases()) {
     CAPTURE(name);
-    const Experiment rest = part(e, 37, 80);
+    const Experiment rest = part(e, 37, rigcal::test::kSanitized ? 47 : 80);
     const Eigen::VectorXd state = part(e, 0, 37)().end_state;
     const Simulation run = from(rest, state);
     const auto parameters = static_cast<Eigen::Index>(e.free.size());
