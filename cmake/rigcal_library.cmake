@@ -1,3 +1,13 @@
+# Of an inline function that several objects have, the linker keeps the first: for what computes, not that of
+# a test or of what writes a page. So these objects come before the others.
+#   rigcal_optimised_first(target layer...)
+function(rigcal_optimised_first target)
+  foreach(layer IN LISTS ARGN)
+    get_property(objects GLOBAL PROPERTY RIGCAL_OPTIMISED_${layer})
+    target_sources(${target} PRIVATE ${objects})
+  endforeach()
+endfunction()
+
 # What computes is optimised under the sanitizers too, or the tests would crawl; not what prepares, judges
 # or writes, which compiles in a quarter of the time so. In a release that is optimised less.
 set(rigcal_optimised $<$<BOOL:${RIGCAL_SANITIZE}>:-O1>)
@@ -5,7 +15,7 @@ set(rigcal_less_optimised $<$<CONFIG:Release>:-O1>)
 set(rigcal_light diagnosis report)
 
 # rigcal_library(name SOURCES ... LIGHT ... LINKS ...): one layer as a static library, alias rigcal::name.
-# LIGHT: its sources that compute little, where the others do.
+# LIGHT: its sources that compute little, where the others do: not optimised under the sanitizers.
 function(rigcal_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIGHT;LINKS;PRIVATE_LINKS" ${ARGN})
   add_library(rigcal_${name} STATIC ${ARG_SOURCES})
@@ -19,10 +29,11 @@ function(rigcal_library name)
   foreach(part IN LISTS parts)
     target_compile_features(${part} PUBLIC cxx_std_20)
     target_include_directories(${part} PUBLIC ${PROJECT_SOURCE_DIR})
-    if(name IN_LIST rigcal_light OR part MATCHES "_light$")
+    if(name IN_LIST rigcal_light)
       target_compile_options(${part} PRIVATE ${rigcal_less_optimised})
-    else()
+    elseif(NOT part MATCHES "_light$")
       target_compile_options(${part} PRIVATE ${rigcal_optimised})
+      set_property(GLOBAL APPEND PROPERTY RIGCAL_OPTIMISED_${name} $<TARGET_OBJECTS:${part}>)
     endif()
     target_link_libraries(${part} PUBLIC ${ARG_LINKS}
       PRIVATE ${ARG_PRIVATE_LINKS} $<BUILD_INTERFACE:rigcal_warnings>)

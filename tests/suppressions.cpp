@@ -1,6 +1,3 @@
-#define CATCH_CONFIG_MAIN
-#include <catch2/catch.hpp>
-
 /// matio 1.5 loses some hundred bytes where it gives up on a damaged file; nothing of ours is
 /// hidden.
 extern "C" const char* __lsan_default_suppressions();
