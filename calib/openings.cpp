@@ -9,15 +9,26 @@
 namespace rigcal::calib {
 namespace {
 
-/// Where samples resolve what rings, so few are less than a cycle of it.
-constexpr double kShortestSamples = 4.0;
+/// Where samples resolve what rings, so few are less than a cycle of it. As many more for each
+/// unknown that one record alone has to tell: its initial state, the offset of a sensor.
+constexpr std::size_t kShortestSamples = 4;
 /// How much longer each opening is than the one before it, at most.
 constexpr double kGrowth = 4.0;
 /// A mean square residual so many times that of the opening before it was not foreseen.
 constexpr double kForeseen = 4.0;
+/// Iterations of one opening, and the share of all that openings may take: whole records decide.
+constexpr int kIterations = 30;
+constexpr int kShare = 2;
 
 double mean_square(const Problem& problem, const Evaluator& evaluator) {
   return evaluator.best().cost / problem.share_at(evaluator.effort());
+}
+
+std::size_t own_unknowns(const Problem& problem, std::size_t condition) {
+  const std::vector<int>& acting = problem.map.acting(condition);
+  return static_cast<std::size_t>(std::count_if(acting.begin(), acting.end(), [&](int j) {
+    return problem.map.unknowns()[static_cast<std::size_t>(j)].scope == datasets::Scope::condition;
+  }));
 }
 
 }  // namespace
@@ -25,7 +36,10 @@ double mean_square(const Problem& problem, const Evaluator& evaluator) {
 std::vector<double> opening_lengths_s(const Problem& problem) {
   double longest_s = 0.0;
   double interval_s = std::numeric_limits<double>::infinity();
-  for (const ProblemCondition& each : problem.conditions) {
+  std::size_t samples = 0;
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    const ProblemCondition& each = problem.conditions[i];
+    samples = std::max(samples, kShortestSamples * (1 + own_unknowns(problem, i)));
     const auto& time_s = each.record->time_s;
     const double last_s = time_s[each.rows[each.first_period_rows - 1]];
     longest_s = std::max(longest_s, last_s - time_s[each.rows.front()]);
@@ -33,7 +47,8 @@ std::vector<double> opening_lengths_s(const Problem& problem) {
     interval_s = std::min(
         interval_s, (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1));
   }
-  const double growth = std::log(std::max(1.0, longest_s / (kShortestSamples * interval_s)));
+  const double shortest_s = static_cast<double>(samples) * interval_s;
+  const double growth = std::log(std::max(1.0, longest_s / shortest_s));
   const double steps = std::ceil(growth / std::log(kGrowth));
   std::vector<double> result;
   for (double k = steps; k > 0.0; --k) result.push_back(longest_s * std::exp(-growth * k / steps));
@@ -62,11 +77,11 @@ int by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double
       evaluator.evaluate(before);
     if (!evaluator.best().ok) break;
     z = before = evaluator.best().z;
-    used += descend(problem, evaluator, z, kFirstTrustRadius, iterations - used, start, counting)
-                .iterations;
+    const int most = std::min(kIterations, iterations / kShare - used);
+    used += descend(problem, evaluator, z, kFirstTrustRadius, most, start, counting).iterations;
     z = evaluator.best().z;
     foreseen = mean_square(problem, evaluator);
-    if (evaluator.aborted() || used >= iterations) break;
+    if (evaluator.aborted() || used >= iterations / kShare) break;
   }
   evaluator.set_effort(evaluator.aborted() ? Effort::full : Effort::coarse);
   const Evaluation& all = evaluator.conclude(z);

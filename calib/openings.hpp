@@ -6,7 +6,7 @@
 
 namespace rigcal::calib {
 
-/// Lengths of openings, each a few times the one before it: from four of the shortest sample
+/// Lengths of openings, each a few times the one before it: from a few of the shortest sample
 /// intervals up to the longest first period.
 std::vector<double> opening_lengths_s(const Problem& problem);
 
@@ -20,7 +20,7 @@ std::vector<double> opening_lengths_s(const Problem& problem);
 ///
 /// @param z           in: a point that can be simulated; out: where to go on from, the same point
 ///                    where all samples together speak against what was found
-/// @param iterations  budget
+/// @param iterations  budget of the whole start; openings take half of it at most
 /// @return            iterations that it took
 int by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double>& z,
                 int iterations, int start, const FitOptions& options);

@@ -56,6 +56,9 @@ TEST_CASE("effort: openings grow from four samples to the longest first period",
   CHECK_THAT(lengths_s.back(), WithinRel(0.5, 1e-12));
   for (std::size_t k = 1; k < lengths_s.size(); ++k)
     CHECK_THAT(lengths_s[k] / lengths_s[k - 1], WithinRel(std::pow(125.0, 0.25), 1e-9));
+  // What a record alone has to tell takes four samples more.
+  twin.free("position_offset", 0.0, -5e-3, 5e-3, datasets::Scope::condition);
+  CHECK_THAT(opening_lengths_s(problem_of(twin, records)).front(), WithinRel(8e-3, 1e-12));
 }
 
 TEST_CASE("effort: less than a period is everything", "[calib]") {
