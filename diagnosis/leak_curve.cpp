@@ -69,6 +69,13 @@ SteadyPart steady_part(const calib::ProblemCondition& condition) {
 
 LeakPoint simulate_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
                         double coefficient) {
+  const SteadyPart part = steady_part(condition);
+  if (part.count < 2) {
+    throw NoResultError(
+        fmt::format("condition \"{}\": one sample counts, and a share is of flows over a time; "
+                    "expected at least 2",
+                    condition.condition->id));
+  }
   model::ParameterValues values = condition.values;
   values.set("leakage_coefficient", coefficient);
   std::vector<model::Output> outputs = condition.outputs;
@@ -97,7 +104,6 @@ LeakPoint simulate_leak(const calib::Problem& problem, const calib::ProblemCondi
       point.cost += 0.5 * error * error;
     }
   }
-  const SteadyPart part = steady_part(condition);
   const auto columns = static_cast<Eigen::Index>(outputs.size());
   const auto servo = steady_column(run, columns - 2, part);
   const auto leak = steady_column(run, columns - 1, part);

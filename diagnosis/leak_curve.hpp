@@ -25,7 +25,7 @@ struct LeakPoint {
 
 /// A leak in one condition whose other parameters are known; unknowns keep their start values.
 ///
-/// @throws NoResultError  the run fails, or moves no oil
+/// @throws NoResultError  the run fails, moves no oil, or has a single sample that counts
 LeakPoint simulate_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
                         double coefficient);
 
@@ -56,7 +56,7 @@ class LeakCurve {
 /// share passes `share_above` or no more flow can leak.
 ///
 /// @param condition    whose unknowns keep their start values
-/// @throws NoResultError  a run could not be simulated, or moves no oil
+/// @throws NoResultError  as simulate_leak()
 LeakCurve leak_curve(const calib::Problem& problem, const calib::ProblemCondition& condition,
                      double share_above);
 

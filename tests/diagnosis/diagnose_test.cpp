@@ -40,13 +40,18 @@ void set_true(Campaign& campaign, const char* key, double value) {
   campaign.synthetic_settings->parameters.emplace_back(row_of(campaign, key), value);
 }
 
-std::vector<datasets::RepeatRecords> records_of(const Campaign& campaign, std::uint64_t seed = 1) {
+std::vector<datasets::RepeatRecords> records_of(const Campaign& campaign, std::uint64_t seed = 1,
+                                                std::size_t most_samples = 1000) {
   const Campaign truth = datasets::true_campaign(campaign);
   std::vector<datasets::RepeatRecords> records;
   for (std::size_t i = 0; i < campaign.conditions.size(); ++i) {
     std::vector<datasets::Repeat> repeats;
-    for (auto& each : datasets::synthetic_repeats(truth, truth.conditions[i], nullptr, seed))
-      repeats.push_back(std::move(each.record));
+    for (auto& each : datasets::synthetic_repeats(truth, truth.conditions[i], nullptr, seed)) {
+      datasets::Repeat& repeat = repeats.emplace_back(std::move(each.record));
+      if (repeat.time_s.size() <= most_samples) continue;
+      repeat.time_s.resize(most_samples);
+      for (auto& [channel, values] : repeat.values) values.resize(most_samples);
+    }
     records.push_back(datasets::repeat_records(campaign, campaign.conditions[i], repeats));
   }
   return records;
@@ -158,4 +163,22 @@ TEST_CASE("diagnose: without a healthy record the interval says what is not in i
   CHECK(found.records.front().warnings.size() == 2);
   CHECK_FALSE(found.signals.front().smallest_leak);
   CHECK_FALSE(found.signals.front().reason.empty());
+}
+
+TEST_CASE("diagnose: a record of one sample is told to be too short", "[diagnosis]") {
+  Campaign campaign = small_campaign();
+  campaign.conditions.resize(1);
+  const Diagnosis found =
+      diagnosis::diagnose(campaign, records_of(campaign, 1, 1), known_rig(campaign), {});
+  CHECK_FALSE(found.usable());
+  REQUIRE(found.records.size() == 4);
+  for (const auto& record : found.records) {
+    CHECK_FALSE(record.fit.ok());
+    CHECK_THAT(record.fit.failure, Catch::Contains("one sample counts"));
+  }
+  // Two tell a flow over a time.
+  const Diagnosis two =
+      diagnosis::diagnose(campaign, records_of(campaign, 1, 2), known_rig(campaign), {});
+  for (const auto& record : two.records)
+    CHECK_THAT(record.fit.failure, !Catch::Contains("one sample counts"));
 }
