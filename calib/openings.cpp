@@ -16,14 +16,14 @@ constexpr std::size_t kShortestSamples = 4;
 constexpr double kGrowth = 4.0;
 /// A mean square residual so many times that of the opening before it was not foreseen.
 constexpr double kForeseen = 4.0;
-/// Iterations of one opening, and the share of all that openings may take: whole records decide.
+/// Iterations of one opening: the next one tells more.
 constexpr int kIterations = 30;
-constexpr int kShare = 2;
 
 double mean_square(const Problem& problem, const Evaluator& evaluator) {
   return evaluator.best().cost / problem.share_at(evaluator.effort());
 }
 
+/// How many unknowns no other record tells.
 std::size_t own_unknowns(const Problem& problem, std::size_t condition) {
   const std::vector<int>& acting = problem.map.acting(condition);
   return static_cast<std::size_t>(std::count_if(acting.begin(), acting.end(), [&](int j) {
@@ -62,6 +62,7 @@ int by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double
   const double begin_cost = evaluator.evaluate(z).cost;
   std::vector<double> before = z;
   double foreseen = std::numeric_limits<double>::infinity();
+  const int budget = iterations / 2;  // whole records decide: the other half is theirs
   int used = 0;
   FitOptions counting = options;  // one count of iterations through all
   if (options.progress) {
@@ -77,11 +78,11 @@ int by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double
       evaluator.evaluate(before);
     if (!evaluator.best().ok) break;
     z = before = evaluator.best().z;
-    const int most = std::min(kIterations, iterations / kShare - used);
+    const int most = std::min(kIterations, budget - used);
     used += descend(problem, evaluator, z, kFirstTrustRadius, most, start, counting).iterations;
     z = evaluator.best().z;
     foreseen = mean_square(problem, evaluator);
-    if (evaluator.aborted() || used >= iterations / kShare) break;
+    if (evaluator.aborted() || used >= budget) break;
   }
   evaluator.set_effort(evaluator.aborted() ? Effort::full : Effort::coarse);
   const Evaluation& all = evaluator.conclude(z);

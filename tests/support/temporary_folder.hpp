@@ -21,7 +21,9 @@ inline std::string text_of(const std::filesystem::path& file) {
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "rigcal-test-XXXXXX").string();
+    const std::string ending(6, 'X');  // which mkdtemp() replaces
+    std::string name =
+        (std::filesystem::temp_directory_path() / ("rigcal-test-" + ending)).string();
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder " + name);
     path_ = name;
   }
