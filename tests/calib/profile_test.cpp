@@ -17,7 +17,7 @@ using Catch::WithinRel;
 using datasets::Scope;
 using datasets::Waveform;
 
-Twin small_twin() {
+Twin twin_far_off() {
   Twin twin;
   twin.free("mass", 80.0, 10.0, 500.0);
   twin.free("valve_gain", 0.04e-3, 0.01e-3, 0.2e-3);
@@ -29,7 +29,7 @@ Twin small_twin() {
 
 TEST_CASE("profile: where the cost is all but quadratic it ends where the interval does",
           "[calib]") {
-  const Twin twin = small_twin();
+  const Twin twin = twin_far_off();
   FitOptions options;
   options.profiles = true;
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
@@ -46,7 +46,7 @@ TEST_CASE("profile: where the cost is all but quadratic it ends where the interv
 }
 
 TEST_CASE("profile: an open one makes a parameter not identifiable", "[calib]") {
-  Twin twin = small_twin();
+  Twin twin = twin_far_off();
   twin.free("bulk_modulus", 700e6, 300e6, 1500e6);
   twin.campaign.conditions[0].waveform = Waveform::sine;
   twin.campaign.conditions[0].frequency_hz = 0.5;
@@ -62,7 +62,7 @@ TEST_CASE("profile: an open one makes a parameter not identifiable", "[calib]") 
 
 TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
   // Along what the records do not tell at all the cost is as flat as simulations can be.
-  Twin twin = small_twin();
+  Twin twin = twin_far_off();
   twin.free("discharge_coefficient", 0.6, 0.1, 1.0);
   FitOptions options;
   options.profiles = true;
@@ -77,7 +77,7 @@ TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
 }
 
 TEST_CASE("intervals: which of them to believe", "[calib]") {
-  const Twin twin = small_twin();
+  const Twin twin = twin_far_off();
   const auto records = twin.records(250, 500.0, 3);
   const Problem problem =
       make_problem(twin.campaign, records, {&twin.campaign.conditions[0]}, false, nullptr);
@@ -109,7 +109,7 @@ TEST_CASE("intervals: which of them to believe", "[calib]") {
 
 TEST_CASE("bootstrap: its spread is that of the noise, the same for any number of threads",
           "[calib]") {
-  const Twin twin = small_twin();
+  const Twin twin = twin_far_off();
   const auto records = twin.records(250, 500.0, 3);
   FitOptions options;
   options.bootstrap = test::kSanitized ? 40 : 100;
@@ -138,7 +138,7 @@ TEST_CASE("bootstrap: blocks grow with the memory of the noise", "[calib]") {
 }
 
 TEST_CASE("cross-validation: each condition is predicted from the others", "[calib]") {
-  Twin twin = small_twin();
+  Twin twin = twin_far_off();
   twin.add("sine", Waveform::sine, 3.0, 0.01);
   twin.add("leaking", Waveform::square, 1.0, 0.01, "leak");
   twin.level_leakage = {{"leak", 0.5}};
