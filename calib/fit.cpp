@@ -40,8 +40,8 @@ using datasets::Use;
 using Clock = Evaluator::Clock;
 
 /// A later point may take this many times the steps of the start, at a coarse tolerance, before it
-/// is given up.
-constexpr long kStepsOverStart = 200;
+/// is given up: it may have to be simulated to its end where the start soon repeats itself.
+constexpr long kStepsOverStart = 1000;
 constexpr long kLeastSteps = 20'000;
 
 std::vector<const Condition*> conditions_of(const Campaign& campaign, std::vector<Use> uses) {

@@ -313,7 +313,7 @@ std::vector<std::size_t> samples_that_count(const Condition& condition, const Re
 }
 
 /// An error e of the simulation moves an estimate by up to e sqrt(n) / sd of its standard errors, n
-/// residuals: 0.3 keeps that below a tenth or so (the tolerance is an upper bound of e).
+/// residuals: 0.1 keeps that below a thirtieth or so (the tolerance is an upper bound of e).
 double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, bool estimated) {
   double least = std::numeric_limits<double>::infinity();
   std::size_t residuals = 0;
@@ -325,7 +325,7 @@ double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, boo
     }
   }
   if (!std::isfinite(least)) return kDefaultTolerance;
-  return std::clamp(0.3 * least / std::sqrt(static_cast<double>(residuals)), kLeastTolerance,
+  return std::clamp(0.1 * least / std::sqrt(static_cast<double>(residuals)), kLeastTolerance,
                     kDefaultTolerance);
 }
 

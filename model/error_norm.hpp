@@ -64,6 +64,16 @@ class ErrorNorm {
     return std::sqrt(worst / N) / sensitivity_tolerance_;
   }
 
+  /// Sum over the states of a b, each in units of the tolerance.
+  Active<P> inner(const X& a, const X& b) const {
+    Active<P> sum(0.0);
+    for (std::size_t i = 0; i < N; ++i) {
+      const double unit = tolerance_ * value_of(peak_[i]);
+      sum = sum + a[i] * b[i] * (1.0 / (unit * unit));
+    }
+    return sum;
+  }
+
  private:
   static constexpr double kSensitivityFloor = 1e-2;
 

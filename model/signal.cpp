@@ -195,6 +195,18 @@ double Signal::value(std::size_t segment, double t) const {
   return sample(segment, t).value;
 }
 
+std::optional<double> Signal::period_s() const {
+  switch (kind_) {
+    case Kind::constant:
+      return 0.0;
+    case Kind::sine:
+    case Kind::square:
+      return frequency_hz_ > 0.0 ? 1.0 / frequency_hz_ : 0.0;
+    default:
+      return std::nullopt;
+  }
+}
+
 double Signal::max_step() const {
   switch (kind_) {
     case Kind::sine:

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace rigcal::model {
@@ -42,6 +43,8 @@ class Signal {
   double value(std::size_t segment, double t) const;
   /// Value at t by the segment that holds there.
   double value(double t) const { return value(segment_at(t), t); }
+  /// Time after which it repeats itself; 0 for a constant, none if it does not.
+  std::optional<double> period_s() const;
   /// Longest step that cannot skip an oscillation; infinity if the segments are that.
   double max_step() const;
 

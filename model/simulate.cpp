@@ -9,6 +9,7 @@
 
 #include "model/layout.hpp"
 #include "model/load_pressure.hpp"
+#include "model/sampled_period.hpp"
 #include "model/sensors.hpp"
 #include "model/simulate_sized.hpp"
 #include "model/subnormals.hpp"
@@ -190,7 +191,14 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   result.end_state.resize(layout.states);
   result.state_floor.resize(layout.states);
   result.end_sensitivities.resize(layout.states, columns);
-  dispatch({layout, rig.initial, state, parameters, free, inputs, at_s, outputs, options, started},
+  std::optional<SampledPeriod> period;
+  if (options.periodic_steady_state) {
+    const std::optional<double> tick_s =
+        layout.sampled() ? std::optional(parameters["sample_time"]) : std::nullopt;
+    period = sampled_period(inputs, at_s, tick_s);
+  }
+  dispatch({layout, rig.initial, state, parameters, free, inputs, at_s, outputs, options, period,
+            started},
            result);
   if (result.ok()) read_sensors(at, outputs, parameters, free, result);
   const bool finite =

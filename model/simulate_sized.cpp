@@ -82,7 +82,7 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
                                 ? state_to_go_on_from<N, P>(request, first, count)
                                 : system.initial(request.initial, 0.0);
   ThisRun run(std::move(system), scale, request.times_s, request.outputs, request.options,
-              request.started);
+              request.period, request.started);
   run(start, result, first, count);
 }
 

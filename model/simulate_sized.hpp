@@ -4,6 +4,7 @@
 #include <span>
 
 #include "model/layout.hpp"
+#include "model/sampled_period.hpp"
 #include "model/simulate.hpp"
 
 namespace rigcal::model {
@@ -24,6 +25,7 @@ struct SizedRequest {
   std::span<const double> times_s;
   std::span<const Output> outputs;
   const SimulationOptions& options;
+  std::optional<SampledPeriod> period;            ///< after which a steady state repeats itself
   std::chrono::steady_clock::time_point started;  ///< from when max_seconds counts
 };
 

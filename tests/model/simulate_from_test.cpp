@@ -30,7 +30,7 @@ std::vector<Case> cases() {
   std::vector<Case> result{{"loop with lag and delay", loop}, {"two chambers", open}};
   for (Case& each : result) {
     each.experiment.times_s = grid(0.0, 0.4, 81);
-    each.experiment.options.tolerance = 1e-9;
+    each.experiment.options.tolerance = 3e-10;
     for (const char* key : {"mass", "bulk_modulus", "valve_gain", "supply_pressure", "damping"})
       each.experiment.free.push_back(parameter_index(each.experiment.rig.plant, key));
   }

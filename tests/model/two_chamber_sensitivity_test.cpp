@@ -6,7 +6,7 @@ using namespace rigcal::model;
 namespace {
 
 /// Every combination of terms that changes the layout, every parameter of the plant once.
-std::vector<std::pair<Scenario, Experiment>> scenarios() {
+std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
   const NamedValues edges{
       {"gain_supply_to_a", 1.1},    {"gain_a_to_tank", 0.9},      {"gain_supply_to_b", 0.8},
       {"gain_b_to_tank", 1.2},      {"overlap_supply_to_a", 0.2}, {"overlap_a_to_tank", -0.1},
@@ -91,7 +91,7 @@ std::vector<std::pair<Scenario, Experiment>> scenarios() {
 TEST_CASE("two_chamber: sensitivities are exact against differences, every parameter and term",
           "[model]") {
   std::set<int> seen;
-  for (const auto& [scenario, rig] : scenarios()) {
+  for (const auto& [scenario, rig] : two_chamber_scenarios()) {
     CAPTURE(scenario.name);
     Experiment e = experiment(scenario, rig);
     if (scenario.recorded_loads) {

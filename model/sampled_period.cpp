@@ -1,0 +1,41 @@
+#include "model/sampled_period.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/same_instant.hpp"
+
+namespace rigcal::model {
+namespace {
+
+/// 3 Hz repeat at the samples of 1 kHz after three periods; longer than this is not looked for.
+constexpr int kMostPeriods = 20;
+
+bool constant(const std::optional<Signal>& signal) { return !signal || signal->period_s() == 0.0; }
+
+}  // namespace
+
+std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
+                                            std::span<const double> times_s,
+                                            std::optional<double> tick_s) {
+  const std::optional<double> period_s = inputs.drive.period_s();
+  if (!period_s || *period_s == 0.0 || !constant(inputs.external_force_n) ||
+      !constant(inputs.supply_pressure_pa) || !constant(inputs.tank_pressure_pa))
+    return std::nullopt;
+  const double same_s = same_instant_s(times_s);
+  for (int periods = 1; periods <= kMostPeriods; ++periods) {
+    const double duration_s = periods * *period_s;
+    const auto next =
+        std::lower_bound(times_s.begin(), times_s.end(), times_s.front() + duration_s - same_s);
+    if (next == times_s.end()) return std::nullopt;
+    if (tick_s && std::abs(std::remainder(duration_s, *tick_s)) > same_s) continue;
+    const auto samples = next - times_s.begin();
+    const bool repeats = std::equal(next, times_s.end(), times_s.begin(), [&](double b, double a) {
+      return std::abs(b - a - duration_s) <= same_s;
+    });
+    if (repeats) return SampledPeriod{duration_s, static_cast<std::size_t>(samples)};
+  }
+  return std::nullopt;
+}
+
+}  // namespace rigcal::model
