@@ -11,6 +11,7 @@
 
 #include "model/dormand_prince.hpp"
 #include "model/error_norm.hpp"
+#include "model/known_periods.hpp"
 #include "model/repeated_steps.hpp"
 #include "model/rosenbrock.hpp"
 #include "model/same_instant.hpp"
@@ -318,44 +319,36 @@ class Run {
   }
 
   /// The rest of the run, from what it did in the last two periods.
-  void go_on_as_foreseen() {
+  [[gnu::cold]] void go_on_as_foreseen() {
+    const KnownPeriods known{next_sample_, steady_state_.samples()};
+    const std::size_t to_come = (times_s_.size() - next_sample_ - 1) / known.samples + 1;
+    std::vector<double> share(to_come, 0.0);
+    std::array<std::vector<double>, static_cast<std::size_t>(P)> slope;
+    slope.fill(share);
+    for (std::size_t i = 0; i < to_come && !steady_state_.reached(); ++i) {
+      const C growth = steady_state_.growth(static_cast<long>(i) + 1);
+      share[i] = value_of(growth);
+      if constexpr (P > 0) {
+        for (std::size_t j = 0; j < P; ++j) slope[j][i] = growth.derivative[j];
+      }
+    }
     for (std::size_t k = 0; k < outputs_.size(); ++k) {
-      // The sensitivities first: they follow from the values too.
-      for (int j = 0; j < columns_; ++j) foresee(k, j);
-      if (first_column_ == 0) foresee(k, -1);
+      const std::span values = column(result_->outputs, static_cast<int>(k));
+      // The sensitivities first: they follow from the values, of which all but the last periods
+      // change.
+      for (int j = 0; j < columns_; ++j) {
+        const std::span by = column(result_->sensitivities[k], first_column_ + j);
+        continue_periods(known, share, by);
+        add_changes(known, slope[static_cast<std::size_t>(j)], values, by);
+      }
+      if (first_column_ == 0) continue_periods(known, share, values);
     }
     next_sample_ = times_s_.size();
     x_ = steady_state_.at_end();
   }
 
-  /// The samples to come of an output, or of one column of its sensitivities.
-  void foresee(std::size_t output, int column) {
-    double* values = result_->outputs.col(static_cast<Eigen::Index>(output)).data();
-    double* y =
-        column < 0 ? values : result_->sensitivities[output].col(first_column_ + column).data();
-    const std::size_t samples = steady_state_.samples();
-    const double* last = y + (next_sample_ - samples);
-    for (std::size_t begin = next_sample_; begin < times_s_.size(); begin += samples) {
-      const std::size_t count = std::min(samples, times_s_.size() - begin);
-      if (steady_state_.reached()) {
-        std::copy_n(last, count, y + begin);
-        continue;
-      }
-      const double* before = last - samples;
-      const C growth =
-          steady_state_.growth(static_cast<long>((begin - next_sample_) / samples) + 1);
-      const double share = value_of(growth);
-      for (std::size_t i = 0; i < count; ++i)
-        y[begin + i] = last[i] + (last[i] - before[i]) * share;
-      if constexpr (P > 0) {
-        if (column < 0) continue;
-        const double slope = growth.derivative[static_cast<std::size_t>(column)];
-        const double* value = values + (next_sample_ - samples);
-        const double* before_values = value - samples;
-        for (std::size_t i = 0; i < count; ++i)
-          y[begin + i] += (value[i] - before_values[i]) * slope;
-      }
-    }
+  static std::span<double> column(Eigen::MatrixXd& m, int j) {
+    return {m.col(j).data(), static_cast<std::size_t>(m.rows())};
   }
 
   bool within_budget() {

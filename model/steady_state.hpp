@@ -42,7 +42,7 @@ class SteadyState {
   /// Looks at the state at that instant.
   ///
   /// @return  whether the rest of the run is known
-  bool look(const X& x, const ErrorNorm<N, P>& norm) {
+  [[gnu::cold]] bool look(const X& x, const ErrorNorm<N, P>& norm) {
     const auto phase = static_cast<std::size_t>(looks_left_ % kLooks);
     periods_left_ = static_cast<double>(looks_left_) / kLooks;
     --looks_left_;
@@ -62,14 +62,14 @@ class SteadyState {
   /// Whether it is in its steady state; else it comes nearer by a fixed share in each period.
   bool reached() const { return reached_; }
   /// What the next `periods` add, in shares of what the last one added.
-  C growth(long periods) const {
+  [[gnu::cold]] C growth(long periods) const {
     C sum(0.0);
     for (long k = 0; k < periods; ++k) sum = ratio_ * (sum + 1.0);
     return sum;
   }
   std::size_t samples() const { return samples_; }  ///< of one period
   /// State at the end of the run, once the rest of it is known.
-  X at_end() const {
+  [[gnu::cold]] X at_end() const {
     X x = seen_[0];
     if (reached_) return x;
     const C share = growth(std::lround(periods_left_));
@@ -93,7 +93,8 @@ class SteadyState {
   /// Whether all changes of a period are the same share of those of the period before.
   ///
   /// @param ends  whether the period does; only then it is told
-  bool follows(const X& change, const X& before, const ErrorNorm<N, P>& norm, bool ends) {
+  [[gnu::cold]] bool follows(const X& change, const X& before, const ErrorNorm<N, P>& norm,
+                             bool ends) {
     // So many times the present change is still to come.
     const double to_come = std::min(periods_left_, 1.0 / std::max(1.0 - value_of(ratio_), 1e-3));
     X missed = change;
