@@ -5,8 +5,8 @@
 
 namespace rigcal::model {
 
-/// Samples of a periodic run of which all before `end` are known, at least the last period,
-/// `samples` long.
+/// Samples of a periodic run of which all before `end` are known: the last period, `samples` long,
+/// and the one before it where shares are not zero.
 struct KnownPeriods {
   std::size_t end;
   std::size_t samples;

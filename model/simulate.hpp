@@ -67,7 +67,8 @@ struct SimulationOptions {
   /// How many times that the local error of a sensitivity may be: a fit needs derivatives to a part
   /// in a thousand.
   double sensitivity_looseness = 50.0;
-  /// Whether a run that has come into its periodic steady state is read from its last period.
+  /// Whether the rest of a run is read from its last periods once it is in its periodic steady
+  /// state, or comes nearer to it in a way that is known. Else every period is simulated.
   bool periodic_steady_state = true;
   long max_steps = 5'000'000;                 ///< accepted and rejected
   double max_seconds = 120.0;                 ///< wall time of one simulation

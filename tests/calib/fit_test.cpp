@@ -304,8 +304,8 @@ TEST_CASE("fit: unknown noise is estimated and said so", "[calib]") {
 TEST_CASE("fit: records without noise converge to the truth", "[calib]") {
   Twin twin = small_twin();
   twin.noise_sd_m = 0.0;
-  const auto records = twin.records(250, 500.0, 3, model::InitialState::rest, false);
-  double tolerance = 1e-8;  // the least: a noise of 1e-6, as good as none, asks for less
+  const auto records = twin.records(64, 128.0, 3, model::InitialState::rest, false);
+  double tolerance = 0.1e-6 / std::sqrt(64.0);  // what a noise of 1e-6 asks for
   SECTION("the tolerance follows the noise") {}
   SECTION("the campaign fixes the tolerance") {
     tolerance = 1e-6;
