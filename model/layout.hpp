@@ -16,6 +16,7 @@ struct PresentTerms {
   bool orifice_leak = false;    ///< the leakage coefficient is not zero, or free
   bool laminar_leak = false;    ///< likewise
   bool null_leak = false;       ///< likewise, across the null of the valve
+  bool valve_offset = false;    ///< null shift: not zero, or free
   bool spool_shape = false;     ///< null shift or overlap: not zero, or free
   bool external_force = false;  ///< recorded, or not zero, or free
   bool null_opening = false;    ///< covered edges leak through an orifice
@@ -86,7 +87,8 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.laminar_leak = acts("laminar_leakage");
   layout.terms.null_leak = acts("valve_null_leakage");
   layout.terms.external_force = force_recorded || acts("external_force");
-  layout.terms.spool_shape = acts("valve_offset") || acts("valve_dead_band");
+  layout.terms.valve_offset = acts("valve_offset");
+  layout.terms.spool_shape = layout.terms.valve_offset || acts("valve_dead_band");
   layout.terms.external_leak = acts("external_leakage_a") || acts("external_leakage_b");
   layout.terms.null_opening = given("valve_null_opening");
   layout.terms.line_loss = given("valve_line_opening");

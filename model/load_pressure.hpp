@@ -58,6 +58,13 @@ struct LoadPressurePlant {
     }
   }
 
+  /// Whether reversed inputs reverse the states and an output: all terms are odd functions but for
+  /// what acts in one direction; the chamber pressures trade places.
+  static bool reversible(Output output, const PresentTerms& terms) {
+    return !terms.external_force && !terms.valve_offset && output != Output::pressure_a &&
+           output != Output::pressure_b;
+  }
+
   /// Spool travel [m], eq. 6: x_v = k_sv u, after null shift and overlap.
   template <typename X, typename C>
   static X spool(const PlantInput<X>& in, const Coefficients<C>& p, const PresentTerms& terms) {

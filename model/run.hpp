@@ -320,7 +320,7 @@ class Run {
 
   /// The rest of the run, from what it did in the last two periods.
   [[gnu::cold]] void go_on_as_foreseen() {
-    const KnownPeriods known{next_sample_, steady_state_.samples()};
+    const KnownPeriods known{next_sample_, steady_state_.samples(), steady_state_.sign()};
     const std::size_t to_come = (times_s_.size() - next_sample_ - 1) / known.samples + 1;
     std::vector<double> share(to_come, 0.0);
     std::array<std::vector<double>, static_cast<std::size_t>(P)> slope;

@@ -16,15 +16,16 @@ bool constant(const std::optional<Signal>& signal) { return !signal || signal->p
 }  // namespace
 
 std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
-                                            std::span<const double> times_s,
+                                            std::span<const double> times_s, bool reversible,
                                             std::optional<double> tick_s) {
   const std::optional<double> period_s = inputs.drive.period_s();
   if (!period_s || *period_s == 0.0 || !constant(inputs.external_force_n) ||
       !constant(inputs.supply_pressure_pa) || !constant(inputs.tank_pressure_pa))
     return std::nullopt;
   const double same_s = same_instant_s(times_s);
-  for (int periods = 1; periods <= kMostPeriods; ++periods) {
-    const double duration_s = periods * *period_s;
+  const bool by_halves = reversible && inputs.drive.reverses();
+  for (int halves = by_halves ? 1 : 2; halves <= 2 * kMostPeriods; halves += by_halves ? 1 : 2) {
+    const double duration_s = 0.5 * halves * *period_s;
     const auto next =
         std::lower_bound(times_s.begin(), times_s.end(), times_s.front() + duration_s - same_s);
     if (next == times_s.end()) return std::nullopt;
@@ -33,7 +34,8 @@ std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
     const bool repeats = std::equal(next, times_s.end(), times_s.begin(), [&](double b, double a) {
       return std::abs(b - a - duration_s) <= same_s;
     });
-    if (repeats) return SampledPeriod{duration_s, static_cast<std::size_t>(samples)};
+    if (repeats)
+      return SampledPeriod{duration_s, static_cast<std::size_t>(samples), halves % 2 == 1};
   }
   return std::nullopt;
 }

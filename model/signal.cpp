@@ -207,6 +207,10 @@ std::optional<double> Signal::period_s() const {
   }
 }
 
+bool Signal::reverses() const {
+  return (kind_ == Kind::sine || kind_ == Kind::square) && offset_ == 0.0;
+}
+
 double Signal::max_step() const {
   switch (kind_) {
     case Kind::sine:

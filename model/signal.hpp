@@ -45,6 +45,8 @@ class Signal {
   double value(double t) const { return value(segment_at(t), t); }
   /// Time after which it repeats itself; 0 for a constant, none if it does not.
   std::optional<double> period_s() const;
+  /// Whether half a period later it is what it was with the other sign.
+  bool reverses() const;
   /// Longest step that cannot skip an oscillation; infinity if the segments are that.
   double max_step() const;
 

@@ -63,6 +63,14 @@ int plant_states(PlantKind plant) {
   return plant == PlantKind::two_chamber ? TwoChamberPlant::kStates : LoadPressurePlant::kStates;
 }
 
+/// Whether reversed inputs reverse all that is asked for. The chambers of the other plant differ.
+bool reversible(PlantKind plant, const PresentTerms& terms, std::span<const Output> outputs) {
+  return plant == PlantKind::load_pressure &&
+         std::all_of(outputs.begin(), outputs.end(), [&terms](Output output) {
+           return LoadPressurePlant::reversible(output, terms);
+         });
+}
+
 template <typename Plant, int N>
 void run_sized(const SizedRequest& request, Simulation& result) {
 #ifdef RIGCAL_AVX2
@@ -156,9 +164,9 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   require(!times_s.empty(), "no sample times");
   require(std::isfinite(times_s.front()) && std::isfinite(times_s.back()),
           "sample times must be finite");
-  for (std::size_t i = 1; i < times_s.size(); ++i) {
-    require(times_s[i] > times_s[i - 1], "sample times must increase");
-  }
+  const auto late = std::adjacent_find(times_s.begin(), times_s.end(),
+                                       [](double t, double next) { return !(next > t); });
+  require(late == times_s.end(), "sample times must increase");
   for (const int index : free) {
     require(index >= 0 && index < static_cast<int>(table.size()), "free: no such parameter");
     require(table[static_cast<std::size_t>(index)].can_be_fitted, "free: cannot be fitted");
@@ -195,7 +203,7 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   if (options.periodic_steady_state) {
     const std::optional<double> tick_s =
         layout.sampled() ? std::optional(parameters["sample_time"]) : std::nullopt;
-    period = sampled_period(inputs, at_s, tick_s);
+    period = sampled_period(inputs, at_s, reversible(rig.plant, layout.terms, outputs), tick_s);
   }
   dispatch({layout, rig.initial, state, parameters, free, inputs, at_s, outputs, options, period,
             started},

@@ -10,7 +10,14 @@ namespace {
 
 std::optional<SampledPeriod> period_of(const Signal& drive, const std::vector<double>& times_s,
                                        std::optional<double> tick_s = {}) {
-  return sampled_period({drive, {}, {}}, times_s, tick_s);
+  return sampled_period({drive, {}, {}}, times_s, false, tick_s);
+}
+
+/// Of a rig that reversed inputs reverse.
+std::optional<SampledPeriod> reversible_period_of(const Signal& drive,
+                                                  const std::vector<double>& times_s,
+                                                  std::optional<double> tick_s = {}) {
+  return sampled_period({drive, {}, {}}, times_s, true, tick_s);
 }
 
 }  // namespace
@@ -45,9 +52,36 @@ TEST_CASE("sampled_period: none where inputs or samples do not repeat themselves
   CHECK_FALSE(period_of(sine, shaken));
   SimulationInputs inputs{sine, {}, {}};
   inputs.supply_pressure_pa = Signal::ripple(6e6, 1e5, 50.0, 0.0);
-  CHECK_FALSE(sampled_period(inputs, times_s, {}));
+  CHECK_FALSE(sampled_period(inputs, times_s, false, {}));
   inputs.supply_pressure_pa = Signal::constant(6e6);
-  CHECK(sampled_period(inputs, times_s, {}));
+  CHECK(sampled_period(inputs, times_s, false, {}));
+}
+
+TEST_CASE("sampled_period: half periods of a reversible rig", "[model]") {
+  const auto times_s = grid(0.0, 3.0, 3001);
+  for (const Signal& drive : {Signal::sine(0.01, 10.0), Signal::square(0.01, 10.0)}) {
+    const auto half = reversible_period_of(drive, times_s);
+    REQUIRE(half);
+    CHECK(half->reversed);
+    CHECK(half->sign() == -1.0);
+    CHECK(half->duration_s == Approx(0.05).epsilon(1e-15));
+    CHECK(half->samples == 50);
+    CHECK_FALSE(period_of(drive, times_s)->reversed);
+  }
+  const auto three_halves = reversible_period_of(Signal::square(0.01, 3.0), times_s);
+  REQUIRE(three_halves);  // 166 2/3 samples each
+  CHECK(three_halves->reversed);
+  CHECK(three_halves->samples == 500);
+  const auto odd = reversible_period_of(Signal::sine(0.01, 8.0), grid(0.0, 3.0, 601));
+  REQUIRE(odd);  // 12 1/2 samples
+  CHECK_FALSE(odd->reversed);
+  CHECK(odd->samples == 25);
+  const auto raised = reversible_period_of(Signal::ripple(0.1, 0.01, 10.0, 0.0), times_s);
+  REQUIRE(raised);  // not the negative of itself half a period later
+  CHECK_FALSE(raised->reversed);
+  CHECK(raised->samples == 100);
+  CHECK(reversible_period_of(Signal::sine(0.01, 10.0), times_s, 2e-3)->samples == 50);
+  CHECK(reversible_period_of(Signal::sine(0.01, 10.0), times_s, 4e-3)->samples == 100);
 }
 
 TEST_CASE("sampled_period: the ticks of a controller repeat themselves too", "[model]") {
