@@ -15,7 +15,7 @@ set(rigcal_less_optimised $<$<CONFIG:Release>:-O1>)
 set(rigcal_light diagnosis report)
 
 # rigcal_library(name SOURCES ... LIGHT ... LINKS ...): one layer as a static library, alias rigcal::name.
-# LIGHT: its sources that compute little, where the others do: not optimised under the sanitizers.
+# LIGHT: its sources that compute little, where the others do.
 function(rigcal_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIGHT;LINKS;PRIVATE_LINKS" ${ARGN})
   add_library(rigcal_${name} STATIC ${ARG_SOURCES})
@@ -29,9 +29,9 @@ function(rigcal_library name)
   foreach(part IN LISTS parts)
     target_compile_features(${part} PUBLIC cxx_std_20)
     target_include_directories(${part} PUBLIC ${PROJECT_SOURCE_DIR})
-    if(name IN_LIST rigcal_light)
+    if(name IN_LIST rigcal_light OR part MATCHES "_light$")
       target_compile_options(${part} PRIVATE ${rigcal_less_optimised})
-    elseif(NOT part MATCHES "_light$")
+    else()
       target_compile_options(${part} PRIVATE ${rigcal_optimised})
       set_property(GLOBAL APPEND PROPERTY RIGCAL_OPTIMISED_${name} $<TARGET_OBJECTS:${part}>)
     endif()

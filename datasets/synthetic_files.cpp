@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -147,17 +146,15 @@ std::string synthetic_column(const Campaign& campaign, Channel channel) {
 
 std::string synthetic_csv(const Campaign& campaign, const Repeat& repeat, std::uint64_t seed) {
   const char separator = campaign.separator == 0 ? ',' : campaign.separator;
-  fmt::memory_buffer text;
-  const auto out = std::back_inserter(text);
+  std::string text = label(seed);
   const auto put_name = [&](const std::string& name) {
     if (name.find(separator) != std::string::npos)
       throw InputError({campaign.file.string()},
                        fmt::format("column '{}' holds the separator '{}' of the records; expected "
                                    "another name or separator",
                                    name, separator));
-    fmt::format_to(out, "{}", name);
+    text += name;
   };
-  text.append(label(seed));
   put_name(campaign.time_column);
   for (const auto& [channel, values] : repeat.values) {
     text.push_back(separator);
@@ -165,13 +162,13 @@ std::string synthetic_csv(const Campaign& campaign, const Repeat& repeat, std::u
   }
   text.push_back('\n');
   for (std::size_t i = 0; i < repeat.time_s.size(); ++i) {
-    fmt::format_to(out, "{:.12g}", in_file_unit(repeat.time_s[i], campaign.time_to_s));
+    text += fmt::format("{:.12g}", in_file_unit(repeat.time_s[i], campaign.time_to_s));
     for (const auto& [channel, values] : repeat.values)
-      fmt::format_to(out, "{}{:.10g}", separator,
-                     in_file_unit(values[i], campaign.channels.at(channel).to_si));
+      text += fmt::format("{}{:.10g}", separator,
+                          in_file_unit(values[i], campaign.channels.at(channel).to_si));
     text.push_back('\n');
   }
-  return fmt::to_string(text);
+  return text;
 }
 
 std::string synthetic_campaign_text(const Campaign& campaign, std::uint64_t seed) {

@@ -2,14 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "calib/problem.hpp"
 #include "calib/solve.hpp"
+#include "calib/triangle.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
@@ -97,8 +96,35 @@ std::vector<int> clusters_of(const calib::ProblemCondition& condition) {
   return clusters;
 }
 
+/// What the triangle R of [J r] (calib/triangle.hpp) tells of the unknowns of J.
+struct Solved {
+  Eigen::MatrixXd root;  ///< inverse of J's part of R: root root^T is the inverse of J^T J
+  Eigen::VectorXd step;  ///< to the least squares; not finite where a column of J is nothing
+};
+
+Solved least_squares(const Linear& linear) {
+  const Eigen::Index p = linear.jacobian.cols();
+  Eigen::MatrixXd rows(linear.jacobian.rows(), p + 1);
+  rows.leftCols(p) = linear.jacobian;
+  rows.col(p) = linear.residual;
+  calib::Triangle triangle(p + 1);
+  triangle.add(std::move(rows));
+  const Eigen::MatrixXd& r = triangle.get();
+  Solved solved{Eigen::MatrixXd::Zero(p, p), {}};
+  for (Eigen::Index j = 0; j < p; ++j) {
+    auto column = solved.root.col(j);
+    column(j) = 1.0 / r(j, j);
+    for (Eigen::Index i = j - 1; i >= 0; --i)
+      column(i) = -r.row(i).segment(i + 1, j - i).dot(column.segment(i + 1, j - i)) / r(i, i);
+  }
+  solved.step = -solved.root * r.col(p).head(p);
+  return solved;
+}
+
 /// Sandwich covariance of the unknowns, and its degrees of freedom.
-std::pair<Eigen::MatrixXd, int> cluster_sandwich(const Linear& linear,
+///
+/// @param bread  inverse of J^T J
+std::pair<Eigen::MatrixXd, int> cluster_sandwich(const Linear& linear, const Eigen::MatrixXd& bread,
                                                  const Eigen::VectorXd& residual,
                                                  const std::vector<int>& clusters) {
   const auto samples = static_cast<Eigen::Index>(clusters.size());
@@ -112,16 +138,9 @@ std::pair<Eigen::MatrixXd, int> cluster_sandwich(const Linear& linear,
       static_cast<int>(std::count_if(scores.rowwise().begin(), scores.rowwise().end(),
                                      [](const auto& row) { return row.squaredNorm() > 0.0; }));
   const int freedom = std::max(1, used - static_cast<int>(p));
-  const Eigen::MatrixXd bread =
-      (linear.jacobian.transpose() * linear.jacobian).ldlt().solve(Eigen::MatrixXd::Identity(p, p));
   const double factor = static_cast<double>(used) / freedom;
-  return {factor * bread * (scores.transpose() * scores) * bread, freedom};
-}
-
-/// Standard error of one unknown if the weighted residuals were white noise of variance 1.
-double white_error(const Eigen::MatrixXd& jacobian, Eigen::Index column) {
-  const Eigen::VectorXd unit = Eigen::VectorXd::Unit(jacobian.cols(), column);
-  return std::sqrt((jacobian.transpose() * jacobian).ldlt().solve(unit)(column));
+  const Eigen::MatrixXd moves = bread.lazyProduct(scores.transpose());
+  return {factor * moves.lazyProduct(moves.transpose()), freedom};
 }
 
 /// Share over the steady part and its derivatives by every free parameter.
@@ -222,21 +241,21 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, bo
   }
   const Linear linear = linearise(condition, run, condition.free.size());
   const auto leak = static_cast<Eigen::Index>(column_of(condition.free, leak_row));
-  const Eigen::HouseholderQR<Eigen::MatrixXd> solver(linear.jacobian);
-  const Eigen::VectorXd step = -solver.solve(linear.residual);
+  const auto [root, step] = least_squares(linear);
   if (!step.allFinite()) {
     fit.failure = "nothing that was recorded responds to a leak";
     return;
   }
   fit.coefficient = values[kLeak] + step(leak);
-  const auto [covariance, freedom] =
-      cluster_sandwich(linear, linear.residual + linear.jacobian * step, clusters_of(condition));
+  const Eigen::MatrixXd bread = root.lazyProduct(root.transpose());
+  const auto [covariance, freedom] = cluster_sandwich(
+      linear, bread, linear.residual + linear.jacobian * step, clusters_of(condition));
   fit.scatter_se = std::sqrt(covariance(leak, leak));
   fit.scatter_freedom = freedom;
   // Whether the optimiser is content does not matter: the last step is taken here, by linear
   // continuation, which a long one would overstretch. The scatter may be nothing where the record
   // is its own reference, so the error that white noise alone gives is granted too.
-  const double error = std::max(fit.scatter_se, white_error(linear.jacobian, leak));
+  const double error = std::max(fit.scatter_se, root.row(leak).norm());
   if (values[kLeak] > 0.0 && std::abs(step(leak)) > error + 1e-3 * values[kLeak]) {
     fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
                               std::abs(step(leak)) / error);
@@ -250,7 +269,8 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, bo
     Eigen::MatrixXd rig_jacobian = linear.rig_jacobian;
     if (corrected)
       rig_jacobian -= linearise(condition, healthy, condition.free.size()).rig_jacobian;
-    const Eigen::VectorXd moves = -solver.solve(rig_jacobian).row(leak).transpose();
+    const Eigen::VectorXd weight = linear.jacobian * bread.col(leak);
+    const Eigen::VectorXd moves = -(rig_jacobian.transpose() * weight);
     const Eigen::VectorXd share_moves = share.gradient.tail(moves.size()) + fit.share_slope * moves;
     const Eigen::MatrixXd spread = rig.covariance(rig_columns, rig_columns);
     fit.rig_se = std::sqrt(std::max(0.0, moves.dot(spread * moves)));

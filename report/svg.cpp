@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <iterator>
 
 #include "report/escape.hpp"
 #include "report/plot_scene.hpp"
@@ -13,15 +12,14 @@ namespace {
 
 /// One decimal of a pixel tells more than a screen shows.
 void put_path(std::string& out, const Shape& shape, const char* css, const char* end) {
-  fmt::format_to(std::back_inserter(out), "<path class=\"{}{}\" d=\"", css, shape.style);
+  out += fmt::format("<path class=\"{}{}\" d=\"", css, shape.style);
   bool pen_down = false;
   for (const Point& point : shape.points) {
     if (std::isnan(point.x)) {
       pen_down = false;
       continue;
     }
-    fmt::format_to(std::back_inserter(out), "{}{:.1f} {:.1f}", pen_down ? 'L' : 'M', point.x,
-                   point.y);
+    out += fmt::format("{}{:.1f} {:.1f}", pen_down ? 'L' : 'M', point.x, point.y);
     pen_down = true;
   }
   out += end;
@@ -33,8 +31,8 @@ void put_text(std::string& out, const Shape& shape) {
                                                              : "";
   const std::string css =
       shape.style.empty() ? std::string() : fmt::format(" class=\"{}\"", shape.style);
-  fmt::format_to(std::back_inserter(out), "<text{} x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>", css,
-                 shape.points.front().x, shape.points.front().y, anchor, escaped(shape.text));
+  out += fmt::format("<text{} x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>", css, shape.points.front().x,
+                     shape.points.front().y, anchor, escaped(shape.text));
 }
 
 }  // namespace
@@ -55,9 +53,8 @@ std::string svg(const Plot& plot, const std::string& style_sheet) {
         break;
       case Shape::Kind::dots:
         for (const Point& point : shape.points) {
-          fmt::format_to(std::back_inserter(out),
-                         "<circle class=\"point {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>",
-                         shape.style, point.x, point.y, kDotRadius);
+          out += fmt::format("<circle class=\"point {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>",
+                             shape.style, point.x, point.y, kDotRadius);
         }
         break;
       case Shape::Kind::text:

@@ -10,7 +10,7 @@ namespace {
 /// Largest element of A A^-1 - 1.
 template <int N>
 double residual(const Eigen::Matrix<double, N, N>& matrix) {
-  return (matrix * inverse_of(matrix) - Eigen::Matrix<double, N, N>::Identity())
+  return (matrix.lazyProduct(inverse_of(matrix)) - Eigen::Matrix<double, N, N>::Identity())
       .cwiseAbs()
       .maxCoeff();
 }
