@@ -98,9 +98,8 @@ model::ParameterValues six_signal_truth() {
 }
 
 std::vector<double> sample_times(const Reference& reference) {
-  std::vector<double> times;
-  const auto samples = static_cast<long>(reference.duration_s * 1000.0 + 0.5);
-  for (long k = 0; k <= samples; ++k) times.push_back(static_cast<double>(k) / 1000.0);
+  std::vector<double> times(static_cast<std::size_t>(reference.duration_s * 1000.0 + 1.5));
+  for (std::size_t k = 0; k < times.size(); ++k) times[k] = static_cast<double>(k) / 1000.0;
   return times;
 }
 

@@ -19,9 +19,7 @@ struct Dual {
 
   /// The independent variable of direction `index`.
   static Dual variable(double v, int index) {
-    Dual result(v);
-    result.derivative.set(static_cast<std::size_t>(index), 1.0);
-    return result;
+    return {v, Pack<N>::unit(static_cast<std::size_t>(index))};
   }
 
   Dual& operator+=(const Dual& b) { return *this = *this + b; }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <utility>
 
 namespace rigcal::model {
 
@@ -20,8 +21,22 @@ struct Pack {
   using Register __attribute__((vector_size(kLanes * sizeof(double)))) = double;
   std::array<Register, kParts> part;
 
+  /// One at `index`, else zero; built in registers, where set() would write to memory.
+  static Pack unit(std::size_t index) {
+    Pack r;
+    for (std::size_t k = 0; k < kParts; ++k)
+      r.part[k] = one_at(index - k * kLanes, std::make_index_sequence<kLanes>{});
+    return r;
+  }
+
   double operator[](std::size_t i) const { return part[i / kLanes][i % kLanes]; }
   void set(std::size_t i, double x) { part[i / kLanes][i % kLanes] = x; }
+
+ private:
+  template <std::size_t... Lane>
+  static Register one_at(std::size_t lane, std::index_sequence<Lane...> /*all*/) {
+    return Register{(Lane == lane ? 1.0 : 0.0)...};
+  }
 };
 
 /// Replaces one block of a pack, which holds a whole number of them.

@@ -277,9 +277,9 @@ class System {
   /// The states as independent variables, or as numbers without derivatives by the parameters.
   static Numbers<ByStates> lifted(const Values<N>& x) {
     Numbers<ByStates> result;
-    for (int i = 0; i < N; ++i) {
-      const auto row = static_cast<std::size_t>(i);
-      result[row] = Number<ByStates>::variable(x[row], i);
+    for (std::size_t i = 0; i < N; ++i) {
+      result[i].value = x[i];
+      result[i].derivative = Pack<N + 1>::unit(i);
     }
     return result;
   }
