@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rigcal::report {
 namespace {
@@ -38,7 +39,10 @@ void widen(Axis& axis, const std::vector<double>& values, bool& any) {
 
 void leave_room(Axis& axis, double share) {
   const double span = axis.high - axis.low;
-  const double size = std::max(std::abs(axis.high), std::abs(axis.low));
+  // On a logarithmic axis the value 1 lies at zero: what differs by rounding alone is constant
+  // there too.
+  const double size =
+      std::max({std::abs(axis.high), std::abs(axis.low), axis.logarithmic ? 1.0 : 0.0});
   // A constant still needs an axis around it.
   const double room = span > 1e-12 * size ? share * span : (size > 0.0 ? 0.1 * size : 1.0);
   axis.low -= room;
@@ -236,7 +240,10 @@ void add_legend(const Plot& plot, std::vector<Shape>& shapes) {
 std::vector<double> round_ticks(double low, double high, int count) {
   std::vector<double> ticks;
   const double raw = (high - low) / std::max(1, count);
-  if (!(raw > 0.0) || !std::isfinite(raw)) return ticks;
+  // Ticks closer than numbers of this size can tell would never reach the end.
+  constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+  if (!(raw > kRounding * std::max(std::abs(low), std::abs(high))) || !std::isfinite(raw))
+    return ticks;
   const double power = std::pow(10.0, std::floor(std::log10(raw)));
   // The nearest of 1, 2, 5 and 10 on a scale of ratios: bounds are the geometric means.
   const double step = power * (raw <= std::sqrt(2.0) * power    ? 1.0

@@ -50,6 +50,23 @@ TEST_CASE("svg: a logarithmic axis leaves out what has no logarithm", "[report]"
 TEST_CASE("svg: ticks are round and within their range", "[report]") {
   CHECK(round_ticks(0.0, 10.0, 5) == std::vector<double>{0.0, 2.0, 4.0, 6.0, 8.0, 10.0});
   CHECK(round_ticks(1.0, 1.0, 5).empty());
+  // A step that is lost in rounding would never reach the end.
+  const double next = std::nextafter(1.0, 2.0);
+  CHECK(round_ticks(1.0, next, 5).empty());
+  CHECK(round_ticks(-next, -1.0, 5).empty());
+}
+
+TEST_CASE("svg: what differs by rounding alone has an axis", "[report]") {
+  for (const double value : {1.0, 1e-3, 7e8}) {
+    CAPTURE(value);
+    Plot plot;
+    const std::vector<double> nearly{value, std::nextafter(value, 0.0)};
+    plot.traces = {{"", "model", Trace::Kind::points, {1.0, 2.0}, nearly, {}}};
+    for (const bool logarithmic : {true, false}) {
+      plot.log_y = logarithmic;
+      CHECK_THAT(svg(plot), Contains("<circle") && !Contains("nan"));
+    }
+  }
 }
 
 TEST_CASE("render: escapes, repeats and asks", "[report]") {
