@@ -85,7 +85,8 @@ class SteadyState {
   }
 
  private:
-  static constexpr long kLooks = 8;  ///< a whole period
+  /// A whole period: four for half of one, so that a step is cut short as often.
+  static constexpr long kLooks = 8;
   // By how many tolerances of a step the rest of the run may be off, if it is taken for the steady
   // state, and if it is foreseen; sensitivities are off by more than the states in any run.
   static constexpr double kSteady = 1.0;
@@ -130,7 +131,7 @@ class SteadyState {
 
   std::array<X, static_cast<std::size_t>(kLooks)> seen_{};    ///< next() of each phase
   std::array<X, static_cast<std::size_t>(kLooks)> change_{};  ///< next() of that since a period ago
-  C ratio_{0.0};  ///< of the changes in the last whole period to those in the one before it
+  C ratio_{0.0};  ///< of the changes in the last complete period to those in the one before it
   C along_{0.0};  ///< sums of this period, for the next one
   C square_{0.0};
   bool follows_ = false;
