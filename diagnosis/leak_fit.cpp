@@ -110,13 +110,9 @@ Solved least_squares(const Linear& linear) {
   calib::Triangle triangle(p + 1);
   triangle.add(std::move(rows));
   const Eigen::MatrixXd& r = triangle.get();
-  Solved solved{Eigen::MatrixXd::Zero(p, p), {}};
-  for (Eigen::Index j = 0; j < p; ++j) {
-    auto column = solved.root.col(j);
-    column(j) = 1.0 / r(j, j);
-    for (Eigen::Index i = j - 1; i >= 0; --i)
-      column(i) = -r.row(i).segment(i + 1, j - i).dot(column.segment(i + 1, j - i)) / r(i, i);
-  }
+  Solved solved{Eigen::MatrixXd::Identity(p, p), {}};
+  const auto upper = r.topLeftCorner(p, p).triangularView<Eigen::Upper>();
+  for (auto column : solved.root.colwise()) upper.solveInPlace(column);
   solved.step = -solved.root * r.col(p).head(p);
   return solved;
 }
