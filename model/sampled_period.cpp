@@ -1,7 +1,9 @@
 #include "model/sampled_period.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "model/same_instant.hpp"
 
@@ -31,10 +33,9 @@ std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
     if (next == times_s.end()) return std::nullopt;
     if (tick_s && std::abs(std::remainder(duration_s, *tick_s)) > same_s) continue;
     const auto samples = next - times_s.begin();
-    const bool repeats = std::equal(next, times_s.end(), times_s.begin(), [&](double b, double a) {
-      return std::abs(b - a - duration_s) <= same_s;
-    });
-    if (repeats)
+    const Eigen::Map<const Eigen::ArrayXd> times(times_s.data(), std::ssize(times_s));
+    const Eigen::Index later = times.size() - samples;
+    if ((times.tail(later) - times.head(later) - duration_s).abs().maxCoeff() <= same_s)
       return SampledPeriod{duration_s, static_cast<std::size_t>(samples), halves % 2 == 1};
   }
   return std::nullopt;
