@@ -11,17 +11,21 @@ namespace rigcal::model {
 /// since velocity and pressure differ by 1e7; each sensitivity against its running peak too, but no
 /// finer than a small part of what the parameter's own size would move the state by. Both are in
 /// the step control: without the sensitivities they diverge where the states do not (paper.md).
+/// States that a rig does not have, where N has room for more, count for nothing.
 template <int N, int P>
 class ErrorNorm {
  public:
   using X = State<N, P>;
 
+  /// @param states           that the rig has, at most N; the others must stay zero
   /// @param floor            shape (N): below it a state counts as zero
   /// @param parameter_scale  shape (P): typical size of each parameter, > 0
-  ErrorNorm(const std::array<double, static_cast<std::size_t>(N)>& floor,
+  ErrorNorm(int states, const std::array<double, static_cast<std::size_t>(N)>& floor,
             const std::array<double, static_cast<std::size_t>(P)>& parameter_scale,
             double tolerance, double sensitivity_looseness)
-      : tolerance_(tolerance), sensitivity_tolerance_(sensitivity_looseness * tolerance) {
+      : states_(states),
+        tolerance_(tolerance),
+        sensitivity_tolerance_(sensitivity_looseness * tolerance) {
     for (std::size_t i = 0; i < N; ++i) peak_[i] = Active<P>(floor[i]);
     if constexpr (P > 0) {
       for (std::size_t j = 0; j < P; ++j)
@@ -41,7 +45,7 @@ class ErrorNorm {
       const double e = value_of(error[i]) / (tolerance_ * peak);
       sum += e * e;
     }
-    return std::sqrt(sum / N);
+    return std::sqrt(sum / states_);
   }
 
   /// Root mean square over the states of one sensitivity, the largest of them; not finite if an
@@ -61,7 +65,7 @@ class ErrorNorm {
         if (!(column <= worst)) worst = column;  // nor is what is not a number
       }
     }
-    return std::sqrt(worst / N) / sensitivity_tolerance_;
+    return std::sqrt(worst / states_) / sensitivity_tolerance_;
   }
 
   /// Sum over the states of a b, each in units of the tolerance.
@@ -89,6 +93,7 @@ class ErrorNorm {
 
   X peak_;
   Pack<P> sensitivity_floor_{};
+  double states_;
   double tolerance_;
   double sensitivity_tolerance_;
 };

@@ -39,7 +39,7 @@ class Run {
       const SimulationOptions& options, const std::optional<SampledPeriod>& period,
       std::chrono::steady_clock::time_point started)
       : system_(std::move(system)),
-        norm_(floors(system_.layout()), parameter_scale, options.tolerance,
+        norm_(system_.layout().states, floors(system_.layout()), parameter_scale, options.tolerance,
               options.sensitivity_looseness),
         times_s_(times_s),
         outputs_(outputs),

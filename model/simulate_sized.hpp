@@ -9,10 +9,6 @@
 
 namespace rigcal::model {
 
-/// Whether the solver is compiled for AVX2 too, as CMakeLists.txt has it.
-template <typename Plant, int N>
-constexpr bool kHasAvx2 = Plant::kStates == 3 ? N <= 4 : N == 5;
-
 /// Everything that one simulation needs, its plant and number of states fixed at compile time in
 /// simulate_sized.cpp (compiled once per plant and number, so that the parts build side by side).
 struct SizedRequest {

@@ -21,7 +21,7 @@ X state(double x, double x_p, double y, double y_p) {
   return s;
 }
 const X kZero = state(0.0, 0.0, 0.0, 0.0);
-Norm norm() { return {{1e-6, 100.0}, {2.0}, kTolerance, 50.0}; }
+Norm norm(int states = 2) { return {states, {1e-6, 100.0}, {2.0}, kTolerance, 50.0}; }
 
 double worst(const Norm& n, const X& error, const X& x_new) {
   return std::max(n.of_states(error, x_new), n.of_sensitivities(error, x_new));
@@ -46,6 +46,14 @@ TEST_CASE("error_norm: each state against its own running peak", "[model]") {
 TEST_CASE("error_norm: a state at rest counts from its floor", "[model]") {
   CHECK_THAT(worst(norm(), state(1e-6 * kTolerance, 0.0, 0.0, 0.0), kZero),
              WithinRel(std::sqrt(0.5), 1e-14));
+}
+
+TEST_CASE("error_norm: a state that the rig does not have counts for nothing", "[model]") {
+  Norm n = norm(1);
+  n.see(state(1.0, 3.0, 0.0, 0.0));
+  CHECK_THAT(n.of_states(state(kTolerance, 0.0, 0.0, 0.0), kZero), WithinRel(1.0, 1e-14));
+  CHECK_THAT(n.of_sensitivities(state(0.0, 150.0 * kTolerance, 0.0, 0.0), kZero),
+             WithinRel(1.0, 1e-14));
 }
 
 TEST_CASE("error_norm: the worst of state and sensitivities rules", "[model]") {

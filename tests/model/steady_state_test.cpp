@@ -31,7 +31,7 @@ Foreseen watch(const Value& value, double sign = 1.0) {
   constexpr double kPeriod = 0.1;
   const double end_s = kPeriods * kPeriod;
   SteadyState<1, 1> state(SampledPeriod{kPeriod, 100, sign < 0.0}, end_s);
-  ErrorNorm<1, 1> norm({1e-3}, {1.0}, kStepTolerance, 50.0);
+  ErrorNorm<1, 1> norm(1, {1e-3}, {1.0}, kStepTolerance, 50.0);
   while (state.next_look_s() < end_s) {
     const double period = state.next_look_s() / kPeriod;
     const double whole = std::floor(period + 1e-9);
