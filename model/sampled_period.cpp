@@ -25,6 +25,7 @@ std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
       !constant(inputs.supply_pressure_pa) || !constant(inputs.tank_pressure_pa))
     return std::nullopt;
   const double same_s = same_instant_s(times_s);
+  const Eigen::Map<const Eigen::ArrayXd> times(times_s.data(), std::ssize(times_s));
   const bool by_halves = reversible && inputs.drive.reverses();
   for (int halves = by_halves ? 1 : 2; halves <= 2 * kMostPeriods; halves += by_halves ? 1 : 2) {
     const double duration_s = 0.5 * halves * *period_s;
@@ -33,9 +34,10 @@ std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
     if (next == times_s.end()) return std::nullopt;
     if (tick_s && std::abs(std::remainder(duration_s, *tick_s)) > same_s) continue;
     const auto samples = next - times_s.begin();
-    const Eigen::Map<const Eigen::ArrayXd> times(times_s.data(), std::ssize(times_s));
     const Eigen::Index later = times.size() - samples;
-    if ((times.tail(later) - times.head(later) - duration_s).abs().maxCoeff() <= same_s)
+    const auto excess = (times.tail(later) - times.head(later) - duration_s).abs();
+    // The last one first: it mostly tells.
+    if (excess(later - 1) <= same_s && excess.maxCoeff() <= same_s)
       return SampledPeriod{duration_s, static_cast<std::size_t>(samples), halves % 2 == 1};
   }
   return std::nullopt;

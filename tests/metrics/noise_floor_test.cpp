@@ -29,26 +29,23 @@ Values sine(double amplitude) {
   return values;
 }
 
-/// Mean of `repeats` recordings of `truth`, each with noise of `sd`.
-Values recorded(const Values& truth, double sd, int repeats, std::mt19937_64& generator) {
-  std::normal_distribution<double> noise(0.0, sd);
+/// Mean of repeated recordings of `truth`: noise of `sd_of_mean` is left of theirs.
+Values recorded(const Values& truth, double sd_of_mean, std::mt19937_64& generator) {
+  std::normal_distribution<double> noise(0.0, sd_of_mean);
   Values mean = truth;
-  for (double& value : mean)
-    for (int k = 0; k < repeats; ++k) value += noise(generator) / repeats;
+  for (double& value : mean) value += noise(generator);
   return mean;
 }
 
 }  // namespace
 
 TEST_CASE("noise_floor: is what the truth scores against noisy means of repeats", "[metrics]") {
-  const double sd = GENERATE(0.02, 0.3, 1.0, 3.0);
-  constexpr int kRepeats = 5;
-  const double sd_of_mean = sd / std::sqrt(5.0);
+  const double sd_of_mean = GENERATE(0.01, 0.13, 0.45, 1.3);
   const Values truth = sine(1.0);
   std::mt19937_64 generator(11);
   NoiseFloor floor, scored;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const Values measured = recorded(truth, sd, kRepeats, generator);
+    const Values measured = recorded(truth, sd_of_mean, generator);
     const NoiseFloor predicted = noise_floor(measured, sd_of_mean);
     floor.rho2 += predicted.rho2 / kDraws;
     floor.ccc += predicted.ccc / kDraws;
@@ -58,7 +55,7 @@ TEST_CASE("noise_floor: is what the truth scores against noisy means of repeats"
     scored.ccc += all.ccc / kDraws;
     scored.absolute_error_percent += all.absolute_error_percent / kDraws;
   }
-  CAPTURE(sd, floor.rho2, floor.ccc);
+  CAPTURE(sd_of_mean, floor.rho2, floor.ccc);
   // var(n) scatters by sqrt(2 / 2000) = 3 % per draw, 0.16 % in the mean of 400; 1 / 2000 is the
   // term that the formulas leave out. The mean of |n| scatters by half of that.
   CHECK_THAT(1.0 - scored.rho2, WithinRel(1.0 - floor.rho2, 0.01));
@@ -74,7 +71,7 @@ TEST_CASE("noise_floor: models that are not the truth stay below it", "[metrics]
   for (double& value : model) value = 3.0 + gain * (value - 3.0);
   double rho2_excess = 0.0;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const Values measured = recorded(truth, 0.3, 1, generator);
+    const Values measured = recorded(truth, 0.3, generator);
     rho2_excess += rho2(measured, model) - noise_floor(measured, 0.3).rho2;
   }
   CHECK(rho2_excess < 0.0);
@@ -90,7 +87,7 @@ TEST_CASE("noise_floor: a raised gain beats the truth's concordance by x^2 / 8 a
   std::mt19937_64 generator(13);
   double excess = 0.0;
   for (int draw = 0; draw < kDraws; ++draw) {
-    const Values measured = recorded(truth, sd_of_mean, 1, generator);
+    const Values measured = recorded(truth, sd_of_mean, generator);
     excess += (concordance(measured, model) - concordance(measured, truth)) / kDraws;
   }
   CHECK(excess > 0.0);
