@@ -184,12 +184,15 @@ std::vector<Reason> praise(const Json& result) {
     }
   }
   if (!where.empty()) {
-    reasons.push_back(
-        {3.0,
-         fmt::format("all {} conditions keep the limits; the nearest to one, {}, uses "
-                     "{:.2g} % of what it allows",
-                     result.at("conditions").size(), where, 100.0 * nearest),
-         anchor(where)});
+    const std::size_t all = result.at("conditions").size();
+    const std::string text =
+        all == 1 ? fmt::format("{} keeps the limits and uses {:.2g} % of what the nearest allows",
+                               where, 100.0 * nearest)
+                 : fmt::format(
+                       "all {} conditions keep the limits; the nearest to one, {}, uses "
+                       "{:.2g} % of what it allows",
+                       all, where, 100.0 * nearest);
+    reasons.push_back({3.0, text, anchor(where)});
   }
   int fitted = 0;
   int identified = 0;
@@ -261,18 +264,20 @@ Json headline_of(const Json& result) {
   if (verdict == "FAIL") {
     return make_headline(
         "FAIL", "✕", "bad",
-        fmt::format("{} of {} conditions are outside the campaign's limits: the model is not "
+        fmt::format("{} of {} conditions {} outside the campaign's limits: the model is not "
                     "validated.",
-                    failed, all));
+                    failed, all, failed == 1 ? "is" : "are"));
   }
   if (verdict == "WARN") {
-    return make_headline(
-        "WARN", "!", "warn",
-        fmt::format("{} of {} conditions keep the limits only just: use with care.", warned, all));
+    return make_headline("WARN", "!", "warn",
+                         fmt::format("{} of {} conditions {} the limits only just: use with care.",
+                                     warned, all, warned == 1 ? "keeps" : "keep"));
   }
   if (verdict == "PASS") {
-    return make_headline("PASS", "✓", "good",
-                         fmt::format("All {} conditions are within the campaign's limits.", all));
+    return make_headline(
+        "PASS", "✓", "good",
+        all == 1 ? "The condition is within the campaign's limits."
+                 : fmt::format("All {} conditions are within the campaign's limits.", all));
   }
   if (is_poor(result)) {
     return make_headline(

@@ -158,6 +158,16 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
   }
 }
 
+TEST_CASE("page: one condition is not called all of them", "[report]") {
+  Json json = stored_result();
+  while (json["conditions"].size() > 1) json["conditions"].erase(1);
+  CHECK_THAT(page(json), Contains("The condition is within the campaign&apos;s limits."));
+  Json second = json["conditions"][0];
+  second["id"] = "again";
+  json["conditions"].push_back(second);
+  CHECK_THAT(page(json), Contains("All 2 conditions are within the campaign&apos;s limits."));
+}
+
 TEST_CASE("page: says which parameter is not identified, and why", "[report]") {
   Json json = stored_result();
   json["parameters"][0]["identifiability"] = "not_identifiable";
