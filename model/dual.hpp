@@ -16,8 +16,8 @@ struct Dual {
   Dual() = default;
   Dual(double v) : value(v), derivative{} {}  // NOLINT(google-explicit-constructor): a constant
   Dual(double v, const Pack<N>& d) : value(v), derivative(d) {}
-  // Part by part: read as a whole, as by default, a value that was just written is waited for,
-  // which takes a twentieth of a simulation with sensitivities.
+  // Part by part: read as a whole, as by default, a value that was just written is waited for
+  // (docs/decisions/0004).
   Dual(const Dual& b) : value(b.value), derivative(b.derivative) {}
   Dual& operator=(const Dual& b) {
     value = b.value;
