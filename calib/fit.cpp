@@ -144,11 +144,12 @@ void rate_model(const Uncertainty& spread, Fit& fit) {
 }
 
 /// What the residuals say of the noise, and of the intervals that rest on it.
-void judge_residuals(const Problem& problem, const Uncertainty& spread, Fit& fit) {
+void judge_residuals(const Problem& problem, const OptimumCheck& check, const Uncertainty& spread,
+                     Fit& fit) {
   fit.effective_samples = spread.effective_samples;
   fit.lack_of_fit = lack_of_fit(problem, spread);
   fit.misfit = misfit(fit.lack_of_fit);
-  fit.interval_advice = interval_advice(problem, spread, fit.lack_of_fit);
+  fit.interval_advice = interval_advice(problem, check, spread, fit.lack_of_fit);
   if (!spread.known.names.empty()) {
     fit.interval_advice += fmt::format("; the errors hold those of known values: {}",
                                        fmt::join(spread.known.names, ", "));
@@ -242,7 +243,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   fit.basins = basins(fit.starts, fit.parameters, variance);
   fit.agreement = agreement_of(fit.starts, fit.basins, variance);
   judge_identifiability(problem, found.optimum, spread, options.threads, fit);
-  judge_residuals(problem, spread, fit);
+  judge_residuals(problem, found.result.check, spread, fit);
   add_correlation(problem, spread, fit);
   warn_of_noise(problem, spread, fit);
   warn_of_parameters(problem, fit.parameters, fit);

@@ -62,8 +62,14 @@ std::string other_interval(const FittedParameter& parameter) {
 
 }  // namespace
 
-std::string interval_advice(const Problem& problem, const Uncertainty& found,
-                            const std::vector<LackOfFit>& tests) {
+std::string interval_advice(const Problem& problem, const OptimumCheck& check,
+                            const Uncertainty& found, const std::vector<LackOfFit>& tests) {
+  if (!check.nearly_stationary()) {
+    return fmt::format(
+        "believe none: the fit ended at no minimum, {:.2g} standard errors from the nearest as the "
+        "derivatives there see it; the intervals lie about that point, not about what fits best",
+        check.relative_offset);
+  }
   if (found.scatter.empty()) {
     return "only the plain standard errors exist: too few residuals to tell their correlation, or "
            "a record that could not be simulated again";

@@ -4,15 +4,16 @@
 #include <vector>
 
 #include "calib/fit.hpp"
+#include "calib/optimum.hpp"
 #include "calib/problem.hpp"
 #include "calib/uncertainty.hpp"
 
 namespace rigcal::calib {
 
-/// Which errors to believe, and why, in words: how far residuals are correlated, whether the model
-/// leaves more than noise, which uncertain known values are carried.
-std::string interval_advice(const Problem& problem, const Uncertainty& found,
-                            const std::vector<LackOfFit>& tests);
+/// Which errors to believe, and why, in words: none where the fit ended at no minimum; how far
+/// residuals are correlated, whether the model leaves more than noise.
+std::string interval_advice(const Problem& problem, const OptimumCheck& check,
+                            const Uncertainty& found, const std::vector<LackOfFit>& tests);
 
 /// Where bootstrap or profile say otherwise than `ci95`, and which of them is right; what is not
 /// identifiable has no interval to believe. Empty where neither was asked for.

@@ -56,14 +56,15 @@ std::vector<double> opening_lengths_s(const Problem& problem) {
   return result;
 }
 
-int by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double>& z,
-                int iterations, int start, const FitOptions& options) {
+Openings by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double>& z,
+                     int iterations, int start, const FitOptions& options) {
   const std::vector<double> begin = z;
   const double begin_cost = evaluator.evaluate(z).cost;
   std::vector<double> before = z;
   double foreseen = std::numeric_limits<double>::infinity();
   const int budget = iterations / 2;  // whole records decide: the other half is theirs
-  int used = 0;
+  Openings result;
+  int& used = result.iterations;
   FitOptions counting = options;  // one count of iterations through all
   if (options.progress) {
     counting.progress = [&](int number, int iteration, double cost, double change, double seconds) {
@@ -81,16 +82,18 @@ int by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double
     const int most = std::min(kIterations, budget - used);
     used += descend(problem, evaluator, z, kFirstTrustRadius, most, start, counting).iterations;
     z = evaluator.best().z;
+    result.ends.push_back(z);
     foreseen = mean_square(problem, evaluator);
-    if (evaluator.aborted() || used >= budget) break;
+    if (evaluator.aborted()) return result;
+    if (used >= budget) break;
   }
-  evaluator.set_effort(evaluator.aborted() ? Effort::full : Effort::coarse);
-  const Evaluation& all = evaluator.conclude(z);
-  if (all.ok && all.cost <= begin_cost) return used;
+  evaluator.set_effort(Effort::coarse);
+  const Evaluation& all = evaluator.evaluate(z);
+  if (all.ok && all.cost <= begin_cost) return result;
   z = begin;
   evaluator.forget();
-  evaluator.conclude(z);
-  return used;
+  evaluator.evaluate(z);
+  return result;
 }
 
 }  // namespace rigcal::calib

@@ -10,19 +10,23 @@ namespace rigcal::calib {
 /// intervals up to the longest first period.
 std::vector<double> opening_lengths_s(const Problem& problem);
 
+struct Openings {
+  int iterations = 0;                     ///< that they took
+  std::vector<std::vector<double>> ends;  ///< where each of them led, the longest last
+};
+
 /// Solves with coarse simulations of longer and longer openings of the records. What rings is
 /// fitted while it has not yet rung once: where all of it is fitted at once, a frequency that is
 /// off by more than a cycle in the record leads into a valley of slow valves and stiff oil. What
 /// later samples repeat is not worth its time yet either.
 ///
-/// Leaves the evaluator at Effort::coarse, or at full where the fit is stopped, its best point
-/// where it ended, all samples looked at.
+/// Leaves the evaluator at Effort::coarse, its best point where it ended, all samples looked at;
+/// where the fit is stopped, at the opening it has come to.
 ///
 /// @param z           in: a point that can be simulated; out: where to go on from, the same point
 ///                    where all samples together speak against what was found
 /// @param iterations  budget of the whole start; openings take half of it at most
-/// @return            iterations that it took
-int by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double>& z,
-                int iterations, int start, const FitOptions& options);
+Openings by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double>& z,
+                     int iterations, int start, const FitOptions& options);
 
 }  // namespace rigcal::calib

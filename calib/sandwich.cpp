@@ -154,6 +154,8 @@ std::vector<std::vector<Autoregression>> noise_models(const std::vector<ScoreRow
       // More than half taken away: the fit has left too little to tell the noise by.
       if (!(removed.front() < 0.5 * (gamma.front() + removed.front()))) continue;
       for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
+      // Far from an optimum residuals are not the noise that the correction supposes.
+      if (!metrics::is_autocovariance(gamma)) continue;
       each.noise = metrics::fit_autoregression(gamma, static_cast<double>(each.rows.samples()));
     }
   }
@@ -258,16 +260,17 @@ RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const M
   RobustVariance result;
   const VectorXd c = combinations.row(combination).transpose();
   result.variance = c.dot(priors * c);
-  double squares = 0.0;
   for (const ScoreScatter& each : scatter) {
-    const double variance = c.dot(each.covariance * c);
-    const double freedom = each.freedom(combination);
-    result.variance += variance;
-    if (freedom > 0.0) squares += variance * variance / freedom;
+    result.variance += c.dot(each.covariance * c);
     if (each.own.size() > combination) result.own += each.own(combination);
   }
-  result.freedom = squares > 0.0 ? result.variance * result.variance / squares
-                                 : std::numeric_limits<double>::infinity();
+  double squares = 0.0;
+  for (const ScoreScatter& each : scatter) {
+    const double share = c.dot(each.covariance * c) / result.variance;
+    const double freedom = each.freedom(combination);
+    if (freedom > 0.0 && share > 0.0) squares += share * share / freedom;
+  }
+  result.freedom = squares > 0.0 ? 1.0 / squares : std::numeric_limits<double>::infinity();
   return result;
 }
 

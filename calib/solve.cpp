@@ -118,6 +118,18 @@ std::vector<double> end_coarse(const Problem& problem, Evaluator& evaluator) {
   return evaluator.evaluate(next).ok ? next : coarse.z;
 }
 
+/// A start that was stopped before simulations at the problem's tolerance: the best of all points
+/// that a stage of it ended at, judged by whole records.
+SolveResult stopped_at(const Problem& problem, Evaluator& evaluator,
+                       std::vector<std::vector<double>> ends, int used, int iterations) {
+  if (evaluator.best().ok) ends.push_back(evaluator.best().z);
+  evaluator.set_effort(Effort::full);
+  for (const std::vector<double>& each : ends) evaluator.conclude(each);
+  SolveResult stopped{FitStatus::stopped, stop_reason(evaluator, iterations), used, {}};
+  if (evaluator.best().ok) stopped.check = check_optimum(problem, evaluator.best());
+  return stopped;
+}
+
 }  // namespace
 
 SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
@@ -134,10 +146,14 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
     used = shoot(problem, evaluator, z, *interval_s, iterations, start, options);
   const Evaluation first = evaluator.evaluate(z);
   if (!first.ok) return no_start(problem, evaluator, first);
+  std::vector<std::vector<double>> ends{z};
   bool near = false;
   if (problem.repeats_itself()) {
-    used += by_openings(problem, evaluator, z, iterations - used, start, counting);
-    near = evaluator.best().ok &&
+    const Openings openings =
+        by_openings(problem, evaluator, z, iterations - used, start, counting);
+    used += openings.iterations;
+    ends.insert(ends.end(), openings.ends.begin(), openings.ends.end());
+    near = evaluator.best().ok && !evaluator.aborted() &&
            check_optimum(problem, evaluator.best()).relative_offset <= kFullStepOffset;
   }
   if (!near && !evaluator.aborted()) {
@@ -145,15 +161,15 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
     used += descend(problem, evaluator, z, kFirstTrustRadius, iterations - used, start, counting)
                 .iterations;
   }
-  if (evaluator.aborted()) {
-    SolveResult stopped{FitStatus::stopped, stop_reason(evaluator, iterations), used, {}};
-    if (evaluator.best().ok) stopped.check = check_optimum(problem, evaluator.best());
-    return stopped;
-  }
+  if (evaluator.aborted()) return stopped_at(problem, evaluator, ends, used, iterations);
   if (!evaluator.best().ok) return no_start(problem, evaluator, evaluator.evaluate(z));
 
-  SolveResult result = refine(problem, evaluator, end_coarse(problem, evaluator), iterations - used,
-                              start, counting);
+  const std::vector<double> next = end_coarse(problem, evaluator);
+  if (evaluator.aborted() && !evaluator.best().ok) {
+    ends.push_back(next);
+    return stopped_at(problem, evaluator, ends, used, iterations);
+  }
+  SolveResult result = refine(problem, evaluator, next, iterations - used, start, counting);
   result.iterations += used;
   if (result.status == FitStatus::converged) result.message = converged_after(result.iterations);
   if (result.status == FitStatus::stopped) result.message = stop_reason(evaluator, iterations);

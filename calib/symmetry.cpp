@@ -167,17 +167,20 @@ std::string describe(const Problem& problem, const ScalingSymmetry& symmetry) {
     (scaling_exponent(problem.spec(j).key) > 0.0 ? grow : fall).push_back(problem.name(j));
   const bool pressure_free = takes_part(problem, symmetry, kSupply) && grow.size() > 1;
   if (!symmetry.holds() && !(pressure_free && !symmetry.known.empty())) return {};
-  std::string text = fmt::format(
-      "scaling symmetry: positions stay as they are where {} grow by a factor s{}",
-      fmt::join(grow, ", "),
-      fall.empty() ? "" : fmt::format(" and {} fall by its square root", fmt::join(fall, ", ")));
+  std::string text =
+      fmt::format("scaling symmetry: positions stay as they are where {} {} by a factor s{}",
+                  fmt::join(grow, ", "), grow.size() == 1 ? "grows" : "grow",
+                  fall.empty() ? ""
+                               : fmt::format(" and {} {} by its square root", fmt::join(fall, ", "),
+                                             fall.size() == 1 ? "falls" : "fall"));
   if (symmetry.holds()) {
     return text +
            "; one of them must be known (mass or supply pressure, say), or a pressure or force "
            "recorded";
   }
-  return text + fmt::format("; only the known {} tell s: an error of 1 % there is one of 1 % here",
-                            fmt::join(symmetry.known, ", "));
+  return text + fmt::format("; only the known {} {} s: an error of 1 % there is one of 1 % here",
+                            fmt::join(symmetry.known, ", "),
+                            symmetry.known.size() == 1 ? "tells" : "tell");
 }
 
 void grade_symmetric(const ScalingSymmetry& symmetry, std::vector<FittedParameter>& parameters) {

@@ -15,6 +15,19 @@ std::vector<double> extended(const std::vector<double>& phi, double partial) {
   return next;
 }
 
+/// The partial autocorrelation that follows on a model of the first autocovariances.
+double next_partial(const Autoregression& model, std::span<const double> gamma) {
+  const std::size_t m = model.phi.size();
+  double unexplained = gamma[m + 1];
+  for (std::size_t k = 0; k < m; ++k) unexplained -= model.phi[k] * gamma[m - k];
+  return unexplained / model.variance;
+}
+
+void extend(Autoregression& model, double partial) {
+  model.phi = extended(model.phi, partial);
+  model.variance *= 1.0 - partial * partial;
+}
+
 /// Partial autocorrelations of a model, by the recursion run backwards.
 std::vector<double> partials(std::vector<double> phi) {
   std::vector<double> result(phi.size());
@@ -72,6 +85,17 @@ std::vector<double> autocovariance(const Autoregression& model, int lags) {
   return gamma;
 }
 
+bool is_autocovariance(std::span<const double> gamma) {
+  if (gamma.empty() || !(gamma.front() > 0.0)) return false;
+  Autoregression model{{}, gamma.front()};
+  while (model.phi.size() + 1 < gamma.size()) {
+    const double partial = next_partial(model, gamma);
+    if (!(std::abs(partial) < 1.0)) return false;
+    extend(model, partial);
+  }
+  return true;
+}
+
 Autoregression fit_autoregression(std::span<const double> gamma, double samples) {
   constexpr double kMemory = 10.0;
   if (gamma.empty() || !(gamma.front() > 0.0)) return {};
@@ -79,14 +103,15 @@ Autoregression fit_autoregression(std::span<const double> gamma, double samples)
   Autoregression model{{}, gamma.front()};
   Autoregression best = model;
   double least = samples * std::log(model.variance);
-  for (std::size_t m = 0; m + 1 < gamma.size(); ++m) {
-    double unexplained = gamma[m + 1];
-    for (std::size_t k = 0; k < m; ++k) unexplained -= model.phi[k] * gamma[m - k];
-    const double partial = std::clamp(unexplained / model.variance, -most, most);
-    model.phi = extended(model.phi, partial);
-    model.variance *= 1.0 - partial * partial;
-    const double criterion =
-        samples * std::log(model.variance) + static_cast<double>(m + 1) * std::log(samples);
+  while (model.phi.size() + 1 < gamma.size()) {
+    const double partial = next_partial(model, gamma);
+    // No series leaves this after the model so far: after a cut, of one that repeats itself
+    // exactly. What follows would only be cut again and again, to a model whose response grows
+    // beyond all numbers.
+    if (!model.phi.empty() && !(std::abs(partial) < 1.0)) break;
+    extend(model, std::clamp(partial, -most, most));
+    const double criterion = samples * std::log(model.variance) +
+                             static_cast<double>(model.phi.size()) * std::log(samples);
     if (criterion < least) {
       least = criterion;
       best = model;

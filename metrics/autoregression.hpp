@@ -18,13 +18,18 @@ struct Autoregression {
 /// Autocovariances about zero, sum_t x[t] x[t + h] / n for h = 0..lags (0 beyond the series).
 std::vector<double> autocovariance(std::span<const double> series, int lags);
 
+/// Whether a series can have these autocovariances from lag 0 on: gamma[0] > 0 and all partial
+/// autocorrelations within (-1, 1). Those of a series of zeros are none.
+bool is_autocovariance(std::span<const double> gamma);
+
 /// Autocovariances of the model itself for lags 0..lags.
 std::vector<double> autocovariance(const Autoregression& model, int lags);
 
 /// The model of the order up to gamma.size() - 1 with the least Bayesian information criterion
 /// n ln(variance) + order ln(n), by the recursion of Levinson and Durbin (Brockwell and Davis, Time
 /// Series, 1991, 5.2 and 9.2). Partial autocorrelations are cut at 1 - 10 / n, so that no model
-/// remembers more than the series can tell.
+/// remembers more than the series can tell; the first that is 1 or more after such a cut ends the
+/// recursion.
 ///
 /// @param gamma    autocovariances from lag 0, gamma[0] >= 0; white of variance 0 if it is 0
 /// @param samples  n, length of the series, >= 1

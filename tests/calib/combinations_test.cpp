@@ -59,7 +59,7 @@ TEST_CASE("combinations: the scaling symmetry is named, with mass and supply pre
   twin.setting("stiffness").fit = false;
   twin.setting("stiffness").value = 2e4;
   const Fit resting = fit(twin.campaign, records, {});
-  CHECK(mentions(resting.combinations, "only the known stiffness_n_per_m tell s", "mass_kg"));
+  CHECK(mentions(resting.combinations, "only the known stiffness_n_per_m tells s", "mass_kg"));
   // With a known supply pressure there is no symmetry left.
   twin.setting("supply_pressure").fit = false;
   twin.setting("supply_pressure").value = 6.2e6;

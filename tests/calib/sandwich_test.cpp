@@ -200,4 +200,33 @@ TEST_CASE("sandwich: residuals of zero and records of few samples stay finite", 
   CHECK(drift[0].effective_samples >= 1.0);
 }
 
+TEST_CASE("sandwich: far from an optimum, one record much further than the other, it stays finite",
+          "[calib]") {
+  // The model lacks most of the first record, whose errors are then said to be in what is left of
+  // the second. Less all that, these autocovariances are of no series.
+  constexpr Index kSamples = 1000;
+  const MatrixXd slow = slow_model(kSamples) / std::sqrt(2.0);
+  MatrixXd fast(kSamples, 3);
+  VectorXd far(kSamples);
+  VectorXd near(kSamples);
+  for (Index t = 0; t < kSamples; ++t) {
+    const double turn = 2.0 * std::acos(-1.0) * static_cast<double>(t);
+    // Orthonormal but for the root of 2 that it shares with `slow`.
+    fast.row(t) << std::sin(turn / 20.0), std::cos(turn / 20.0), std::sin(turn / 25.0);
+    far(t) = 1.4 * std::cos(turn / 800.0);
+    near(t) = std::sin(turn / 200.0) + 0.1 * std::sin(turn / 70.0);
+  }
+  fast /= std::sqrt(static_cast<double>(kSamples));
+  const MatrixXd none = MatrixXd::Zero(3, 3);
+  const MatrixXd each = MatrixXd::Identity(3, 3);
+  const auto scatter = score_scatter({{slow, far, 1}, {fast, near, 1}}, none, each);
+  for (Index j = 0; j < 3; ++j) {
+    const RobustVariance robust = robust_variance(scatter, none, each, j);
+    // No more than were all samples of the two in step: n times the sum of their squares.
+    CHECK(robust.variance > 0.0);
+    CHECK(robust.variance < kSamples * (far.squaredNorm() + near.squaredNorm()));
+    CHECK(std::isfinite(robust.quantile()));
+  }
+}
+
 }  // namespace rigcal::calib

@@ -1,6 +1,7 @@
 #include "calib/settle.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
 
 #include "tests/calib/twin.hpp"
 
@@ -82,6 +83,31 @@ TEST_CASE("settle: where there is no time left to make it good, it is not called
   CHECK(found.result.status == FitStatus::stopped);
   CHECK_THAT(found.result.message, Contains("evaluations"));
   CHECK(found.optimum.simulated());
+}
+
+TEST_CASE(
+    "fit: stopped after any number of evaluations it gives intervals that it says not to believe",
+    "[calib]") {
+  const Twin twin = two_signals();
+  const auto records = twin.records(1000, 1000.0, 1);
+  FitOptions options;
+  long& most = options.max_evaluations.emplace(1);
+  Fit found = fit(twin.campaign, records, options);
+  for (; found.status != FitStatus::converged && most < 100;
+       found = fit(twin.campaign, records, options)) {
+    CAPTURE(most);
+    CHECK(found.status == FitStatus::stopped);
+    CHECK_THAT(found.interval_advice, Contains("believe none"));
+    REQUIRE(found.parameters.size() >= 2);
+    for (const FittedParameter& each : {found.parameters[0], found.parameters[1]}) {
+      REQUIRE(each.ci95);
+      CHECK(std::isfinite(each.ci95->first));
+      CHECK(std::isfinite(each.ci95->second));
+    }
+    ++most;
+  }
+  CHECK(most > 5);
+  CHECK_THAT(found.interval_advice, !Contains("believe none"));
 }
 
 TEST_CASE("fit: its cost is that of simulations at the values it gives", "[calib]") {

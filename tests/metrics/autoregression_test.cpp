@@ -70,4 +70,38 @@ TEST_CASE("autoregression: constant, empty and short series give a white model",
   CHECK(constant.effective_samples(100.0) >= 1.0);
 }
 
+TEST_CASE("autoregression: of a series that repeats itself the model stays within bounds",
+          "[metrics]") {
+  // Two partial autocorrelations tell a sine; the rest is rounding over what is all but zero.
+  std::vector<double> sine(3001);
+  for (std::size_t t = 0; t < sine.size(); ++t)
+    sine[t] = std::sin(2.0 * 3.14159265358979 * static_cast<double>(t) / 10.0);
+  const Autoregression found = fit_autoregression(autocovariance(sine, 20), 3001.0);
+  REQUIRE(found.phi.size() >= 2);
+  std::vector<double> response{1.0};
+  double largest = 0.0;
+  for (std::size_t t = 1; t < sine.size(); ++t) {
+    double next = 0.0;
+    for (std::size_t k = 0; k < found.phi.size() && k < t; ++k)
+      next += found.phi[k] * response[t - 1 - k];
+    response.push_back(next);
+    largest = std::max(largest, std::abs(next));
+  }
+  CHECK(largest < 100.0);  // 1.7e7 with every partial autocorrelation cut and used
+  CHECK(found.variance > 0.0);
+}
+
+TEST_CASE("autoregression: which sequences are autocovariances", "[metrics]") {
+  CHECK(is_autocovariance(std::vector{1.0, 0.9, 0.8}));
+  CHECK(is_autocovariance(autocovariance(Autoregression{{0.5, -0.3}, 1.0}, 10)));
+  CHECK(is_autocovariance(autocovariance(series({0.95}, 500, 3), 20)));
+  CHECK_FALSE(is_autocovariance(std::vector{1.0, 1.01}));
+  // Each lag alone would do: cos(acos(0.9) + acos(0.9)) = 0.62 is the least after 0.9.
+  CHECK(is_autocovariance(std::vector{1.0, 0.9, 0.63}));
+  CHECK_FALSE(is_autocovariance(std::vector{1.0, 0.9, 0.61}));
+  CHECK_FALSE(is_autocovariance(std::vector{0.0, 0.0}));
+  CHECK_FALSE(is_autocovariance(std::vector{-1.0, 0.5}));
+  CHECK_FALSE(is_autocovariance(std::vector<double>{}));
+}
+
 }  // namespace rigcal::metrics
