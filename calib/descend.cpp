@@ -16,6 +16,10 @@ namespace {
 constexpr int kMaxCalls = 4;
 /// Standard errors that may be left of a step with coarse simulations: their own errors leave more.
 constexpr double kCoarseOffset = 1.0;
+/// Share of the cost that may be left to gain in an opening, the model then errs by a fraction of
+/// what it leaves anyway; and standard errors, which few parameters of many may hide in.
+constexpr double kOpeningLeaves = 0.05;
+constexpr double kOpeningOffset = 10.0;
 /// Relative change of the cost below which coarse simulations tell no more.
 constexpr double kCoarseChange = 1e-4;
 
@@ -27,8 +31,19 @@ bool lets_go(const std::vector<bool>& held, const std::vector<bool>& now) {
   return false;
 }
 
-bool near_enough(const Evaluator& evaluator, const OptimumCheck& check) {
-  return evaluator.effort().exact ? check.stationary() : check.relative_offset <= kCoarseOffset;
+/// Whether an opening tells no more: the next one, a few times as long, tells much better.
+bool opening_is_told(const Problem& problem, const Evaluator& evaluator,
+                     const OptimumCheck& check) {
+  const double residuals =
+      static_cast<double>(problem.residual_count()) * problem.share_at(evaluator.effort());
+  const bool noise = !problem.has_estimated_sd() && 2.0 * evaluator.best().cost <= residuals;
+  return noise || (check.reducible <= kOpeningLeaves && check.relative_offset <= kOpeningOffset);
+}
+
+bool near_enough(const Problem& problem, const Evaluator& evaluator, const OptimumCheck& check) {
+  if (evaluator.effort().exact) return check.stationary();
+  return check.relative_offset <= kCoarseOffset ||
+         (!evaluator.effort().whole() && opening_is_told(problem, evaluator, check));
 }
 
 /// Tells of each iteration, and ends the call at a stationary point, when the set of parameters to
@@ -54,7 +69,7 @@ class Watcher final : public ceres::IterationCallback {
                           summary.cumulative_time_in_seconds);
       }
       const OptimumCheck check = check_optimum(problem_, evaluator_.best());
-      stationary_ = near_enough(evaluator_, check);
+      stationary_ = near_enough(problem_, evaluator_, check);
       other_bounds_ = check.held == held_ ? 0 : other_bounds_ + 1;
       if (lets_go(held_, check.held)) other_bounds_ = kPatience;
     } catch (...) {
@@ -192,7 +207,7 @@ SolveResult descend(const Problem& problem, Evaluator& evaluator, std::vector<do
     const bool agreed = summary.termination_type == ceres::CONVERGENCE;
     const bool nearly = evaluator.effort().exact ? result.check.nearly_stationary()
                                                  : !lets_go(held, result.check.held);
-    if (near_enough(evaluator, result.check) || (agreed && nearly)) {
+    if (near_enough(problem, evaluator, result.check) || (agreed && nearly)) {
       result.status = FitStatus::converged;
       result.message = converged_after(result.iterations);
       return result;

@@ -17,7 +17,7 @@ constexpr double kGrowth = 4.0;
 /// A mean square residual so many times that of the opening before it was not foreseen.
 constexpr double kForeseen = 4.0;
 /// Iterations of one opening: the next one tells more.
-constexpr int kIterations = 30;
+constexpr int kIterations = 10;
 
 double mean_square(const Problem& problem, const Evaluator& evaluator) {
   return evaluator.best().cost / problem.share_at(evaluator.effort());

@@ -55,6 +55,8 @@ OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation)
   const double offset =
       explained.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(rank, 1)));
   check.relative_offset = offset / noise;
+  if (const double all = system.residual.squaredNorm(); all > 0.0)
+    check.reducible = explained.squaredNorm() / all;
   return check;
 }
 

@@ -25,6 +25,7 @@ struct OptimumCheck {
   /// (relative offset of Bates and Watts, Technometrics 23, 1981). 0.01: the step that is left is a
   /// hundredth of what the noise leaves uncertain.
   double relative_offset = 0.0;
+  double reducible = 0.0;   ///< share of the cost that this step is predicted to take away
   bool stationary() const;  ///< at most 0.01
   /// At most 0.05: what rounding of the simulations may leave where the optimiser's own tolerances
   /// say that nothing is to be gained.

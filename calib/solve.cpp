@@ -17,6 +17,10 @@ constexpr double kFullStepEnd = 0.003;
 /// Standard errors of a step after which nothing is simulated again: what it leaves is of the
 /// second order.
 constexpr double kLastStep = 0.3;
+/// The same where the model leaves noise alone: what it lacks makes a step leave a share of itself.
+constexpr double kLastStepOfNoise = 1.0;
+/// Mean square of the weighted residuals up to which they count as noise.
+constexpr double kNoise = 1.5;
 
 /// Where a full Gauss-Newton step leads, parameters that are held left where they are.
 std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evaluation,
@@ -51,11 +55,14 @@ std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evalu
 std::pair<int, OptimumCheck> full_steps(const Problem& problem, Evaluator& evaluator, int most,
                                         LastStep last) {
   OptimumCheck check = check_optimum(problem, evaluator.best());
+  const double residuals = static_cast<double>(problem.residual_count());
+  const bool noise = 2.0 * evaluator.best().cost <= kNoise * residuals;
+  const double last_step = noise ? kLastStepOfNoise : kLastStep;
   int steps = 0;
   while (steps < most && check.relative_offset <= kFullStepOffset &&
          check.relative_offset > kFullStepEnd) {
     const std::vector<double> next = gauss_newton(problem, evaluator.best(), check.held);
-    if (last == LastStep::predicted && check.relative_offset <= kLastStep) {
+    if (last == LastStep::predicted && check.relative_offset <= last_step) {
       Evaluation predicted = predict(problem, evaluator.best(), next);
       const OptimumCheck left = check_optimum(problem, predicted);
       if (left.relative_offset <= kFullStepEnd) {
