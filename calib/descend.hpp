@@ -23,7 +23,8 @@ inline constexpr double kFirstTrustRadius = 10.0;
 inline constexpr double kNearTrustRadius = 1e8;
 
 /// Calls Ceres until the point is near enough to a minimum, with simulations of the evaluator's
-/// effort: stationary where they are exact, else to about a standard error. Where Ceres stops
+/// effort: stationary where they are exact, else to about a standard error, or as far as an opening
+/// tells. Where Ceres stops
 /// elsewhere it is called again from the best point with a fresh trust region, up to three times.
 ///
 /// Parameters at a bound that the cost pushes outwards are held there in the next call, because a

@@ -71,8 +71,9 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
 struct Evaluation {
   std::vector<double> z;
   std::vector<ConditionEvaluation> conditions;
-  double cost = 0.0;  ///< half the sum of squares, priors included
-  bool ok = false;    ///< every condition could be simulated
+  double cost = 0.0;   ///< half the sum of squares, priors included
+  bool ok = false;     ///< every condition could be simulated
+  double share = 1.0;  ///< of the samples that count, those looked at
   /// The point that was simulated, where the residuals are what its derivatives predict at z.
   std::vector<double> predicted_from;
 

@@ -44,6 +44,7 @@ Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int th
   evaluation.ok = std::all_of(evaluation.conditions.begin(), evaluation.conditions.end(),
                               [](const ConditionEvaluation& each) { return each.ok(); });
   if (!evaluation.ok) return evaluation;
+  evaluation.share = problem.share_at(options.effort);
   evaluation.cost = prior_cost(problem, z);
   for (const ConditionEvaluation& each : evaluation.conditions) evaluation.cost += each.cost();
   return evaluation;

@@ -122,4 +122,13 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
   return result;
 }
 
+void report_best(const Problem& problem, MultiStart& found) {
+  StartReport& report = found.starts[static_cast<std::size_t>(found.best) - 1];
+  report.status = found.result.status;
+  report.message = found.result.message;
+  report.iterations = found.result.iterations;
+  report.final_cost = found.optimum.cost;
+  report.end_values = problem.to_physical(found.optimum.z);
+}
+
 }  // namespace rigcal::calib

@@ -28,4 +28,7 @@ struct MultiStart {
 /// the lowest cost of all.
 MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options);
 
+/// Takes over what the best start ended at into its report.
+void report_best(const Problem& problem, MultiStart& found);
+
 }  // namespace rigcal::calib

@@ -20,8 +20,8 @@ struct Openings {
 /// off by more than a cycle in the record leads into a valley of slow valves and stiff oil. What
 /// later samples repeat is not worth its time yet either.
 ///
-/// Leaves the evaluator at Effort::coarse, its best point where it ended, all samples looked at;
-/// where the fit is stopped, at the opening it has come to.
+/// Leaves the evaluator at Effort::coarse, its best point where it ended, all samples looked at.
+/// Where the fit is stopped its effort and best point are those that it has come to.
 ///
 /// @param z           in: a point that can be simulated; out: where to go on from, the same point
 ///                    where all samples together speak against what was found

@@ -48,7 +48,8 @@ OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation)
   svd.setThreshold(rank_threshold(problem.tolerance));
   const Eigen::Index rank = svd.rank();
   const Eigen::VectorXd explained = svd.matrixU().leftCols(rank).transpose() * system.residual;
-  const double freedom = std::max(1.0, static_cast<double>(problem.residual_count() - rank));
+  const double residuals = evaluation.share * static_cast<double>(problem.residual_count());
+  const double freedom = std::max(1.0, residuals - static_cast<double>(rank));
   const double unexplained =
       std::sqrt(std::max(0.0, system.residual.squaredNorm() - explained.squaredNorm()));
   const double noise = std::max(problem.least_noise(), unexplained / std::sqrt(freedom));

@@ -16,7 +16,9 @@ void solve_on(const Problem& problem, Evaluator& evaluator, const FitOptions& op
   found.result.iterations += before;
   if (found.result.status == FitStatus::converged)
     found.result.message = fmt::format("converged after {} iterations", found.result.iterations);
-  if (evaluator.best().ok) found.optimum = evaluator.best();
+  if (!evaluator.best().ok) return;
+  found.optimum = evaluator.best();
+  report_best(problem, found);
 }
 
 /// Simulates the optimum, or the point that it was predicted from where that is all there is.
@@ -40,7 +42,7 @@ std::vector<ConditionRows> simulate(const Problem& problem, Evaluator& evaluator
 std::vector<ConditionRows> settle(const Problem& problem, Evaluator& evaluator,
                                   const FitOptions& options, MultiStart& found) {
   if (!found.optimum.ok) return {};
-  const bool claimed = !found.optimum.simulated() && found.result.status == FitStatus::converged;
+  const bool claimed = found.result.status == FitStatus::converged;
   auto rows = simulate(problem, evaluator, options.threads, found.optimum);
   if (found.optimum.ok && claimed && !check_optimum(problem, found.optimum).nearly_stationary()) {
     solve_on(problem, evaluator, options, found);

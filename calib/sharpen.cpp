@@ -31,12 +31,7 @@ bool sharpen(Problem& problem, Evaluator& evaluator, const FitOptions& options, 
       result.message = fmt::format("converged after {} iterations", result.iterations);
     found.result = result;
     found.optimum = evaluator.best();
-    StartReport& report = found.starts[static_cast<std::size_t>(found.best) - 1];
-    report.status = result.status;
-    report.message = result.message;
-    report.iterations = result.iterations;
-    report.final_cost = found.optimum.cost;
-    report.end_values = problem.to_physical(found.optimum.z);
+    report_best(problem, found);
   }
   return true;
 }

@@ -1,6 +1,7 @@
 #include "calib/solve.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "calib/multiple_shooting.hpp"
 #include "calib/openings.hpp"
@@ -17,7 +18,8 @@ constexpr double kFullStepEnd = 0.003;
 /// Standard errors of a step after which nothing is simulated again: what it leaves is of the
 /// second order.
 constexpr double kLastStep = 0.3;
-/// The same where the model leaves noise alone: what it lacks makes a step leave a share of itself.
+/// The same where the model leaves known noise alone: what it lacks makes a step leave a share of
+/// itself.
 constexpr double kLastStepOfNoise = 1.0;
 /// Mean square of the weighted residuals up to which they count as noise.
 constexpr double kNoise = 1.5;
@@ -46,6 +48,16 @@ std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evalu
   return z;
 }
 
+/// Standard errors of the longest step that need not be simulated.
+double longest_prediction(const Problem& problem, const Evaluation& from, LastStep last) {
+  if (last == LastStep::simulated) return 0.0;
+  const bool weighed =
+      !problem.has_estimated_sd() && problem.campaign->fit.loss == datasets::Loss::squared;
+  const double residuals = static_cast<double>(problem.residual_count());
+  const bool noise = weighed && 2.0 * from.cost <= kNoise * residuals;
+  return last == LastStep::judged && noise ? kLastStepOfNoise : kLastStep;
+}
+
 /// Full Gauss-Newton steps from the evaluator's best point while they come nearer to a stationary
 /// one; near it the cost itself tells nothing, because errors of the simulation move it by more
 /// than is left to gain. Where it ends is the evaluator's best point; a last short step is
@@ -55,14 +67,11 @@ std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evalu
 std::pair<int, OptimumCheck> full_steps(const Problem& problem, Evaluator& evaluator, int most,
                                         LastStep last) {
   OptimumCheck check = check_optimum(problem, evaluator.best());
-  const double residuals = static_cast<double>(problem.residual_count());
-  const bool noise = 2.0 * evaluator.best().cost <= kNoise * residuals;
-  const double last_step = noise ? kLastStepOfNoise : kLastStep;
   int steps = 0;
   while (steps < most && check.relative_offset <= kFullStepOffset &&
          check.relative_offset > kFullStepEnd) {
     const std::vector<double> next = gauss_newton(problem, evaluator.best(), check.held);
-    if (last == LastStep::predicted && check.relative_offset <= last_step) {
+    if (check.relative_offset <= longest_prediction(problem, evaluator.best(), last)) {
       Evaluation predicted = predict(problem, evaluator.best(), next);
       const OptimumCheck left = check_optimum(problem, predicted);
       if (left.relative_offset <= kFullStepEnd) {
@@ -102,15 +111,15 @@ namespace {
 /// Replaces a start by where multiple shooting leads, if a simulation of whole records from there
 /// is the better one; half of the iterations at most.
 ///
-/// @return  iterations that it took
-int shoot(const Problem& problem, Evaluator& evaluator, std::vector<double>& z, double interval_s,
-          int iterations, int start, const FitOptions& options) {
+/// @return  what it found
+ShootingResult shoot(const Problem& problem, Evaluator& evaluator, std::vector<double>& z,
+                     double interval_s, int iterations, int start, const FitOptions& options) {
   const Evaluation first = evaluator.evaluate(z);
-  const ShootingResult found =
+  ShootingResult found =
       multiple_shooting(problem, evaluator, z, interval_s, iterations / 2, start, options);
   const Evaluation& there = evaluator.evaluate(found.z);
   if (there.ok && (!first.ok || there.cost < first.cost)) z = found.z;
-  return found.iterations;
+  return found;
 }
 
 /// From coarse simulations to those of the problem's tolerance.
@@ -125,13 +134,23 @@ std::vector<double> end_coarse(const Problem& problem, Evaluator& evaluator) {
   return evaluator.evaluate(next).ok ? next : coarse.z;
 }
 
-/// A start that was stopped before simulations at the problem's tolerance: the best of all points
-/// that a stage of it ended at, judged by whole records.
+/// A start that was stopped before any simulation at the problem's tolerance: the best of the
+/// points that its stages ended at. Whole records decide, coarsely simulated; the best alone once
+/// more at that tolerance.
 SolveResult stopped_at(const Problem& problem, Evaluator& evaluator,
                        std::vector<std::vector<double>> ends, int used, int iterations) {
   if (evaluator.best().ok) ends.push_back(evaluator.best().z);
+  const std::vector<double>* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& each : ends) {
+    const Evaluation there =
+        evaluate_at(problem, each, evaluator.options().threads, {Effort::cost, nullptr, nullptr});
+    if (!there.ok || there.cost >= least) continue;
+    best = &each;
+    least = there.cost;
+  }
   evaluator.set_effort(Effort::full);
-  for (const std::vector<double>& each : ends) evaluator.conclude(each);
+  if (best != nullptr) evaluator.conclude(*best);
   SolveResult stopped{FitStatus::stopped, stop_reason(evaluator, iterations), used, {}};
   if (evaluator.best().ok) stopped.check = check_optimum(problem, evaluator.best());
   return stopped;
@@ -149,11 +168,16 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
       options.progress(number, used + iteration, cost, change, seconds);
     };
   }
-  if (const auto interval_s = problem.campaign->fit.shooting_interval_s)
-    used = shoot(problem, evaluator, z, *interval_s, iterations, start, options);
+  std::vector<std::vector<double>> ends{z};  // of stages
+  if (const auto interval_s = problem.campaign->fit.shooting_interval_s) {
+    const ShootingResult shot =
+        shoot(problem, evaluator, z, *interval_s, iterations, start, options);
+    used = shot.iterations;
+    ends.push_back(shot.z);
+    if (evaluator.aborted()) return stopped_at(problem, evaluator, ends, used, iterations);
+  }
   const Evaluation first = evaluator.evaluate(z);
   if (!first.ok) return no_start(problem, evaluator, first);
-  std::vector<std::vector<double>> ends{z};
   bool near = false;
   if (problem.repeats_itself()) {
     const Openings openings =
@@ -172,12 +196,13 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
   if (!evaluator.best().ok) return no_start(problem, evaluator, evaluator.evaluate(z));
 
   const std::vector<double> next = end_coarse(problem, evaluator);
+  SolveResult result =
+      refine(problem, evaluator, next, iterations - used, start, counting, LastStep::judged);
+  result.iterations += used;
   if (evaluator.aborted() && !evaluator.best().ok) {
     ends.push_back(next);
-    return stopped_at(problem, evaluator, ends, used, iterations);
+    return stopped_at(problem, evaluator, ends, result.iterations, iterations);
   }
-  SolveResult result = refine(problem, evaluator, next, iterations - used, start, counting);
-  result.iterations += used;
   if (result.status == FitStatus::converged) result.message = converged_after(result.iterations);
   if (result.status == FitStatus::stopped) result.message = stop_reason(evaluator, iterations);
   return result;

@@ -147,6 +147,46 @@ TEST_CASE("solve: openings that mislead are not believed", "[calib]") {
   const std::vector<double> values = problem.to_physical(evaluator.best().z);
   CHECK_THAT(values[0], WithinRel(85.0, 0.05));
   CHECK_THAT(values[1], WithinRel(0.0406e-3, 0.02));
+  // Wherever it is stopped among them it ends no worse than it began.
+  const double at_start = evaluate_at(problem, problem.start(), 1).cost;
+  for (long most = 1; most <= 20; ++most) {
+    Evaluator::Options limited;
+    limited.max_evaluations = most;
+    Evaluator stopped(problem, limited);
+    solve(problem, stopped, problem.start(), 100, 1, {});
+    REQUIRE(stopped.best().ok);
+    CHECK(stopped.best().cost <= at_start);
+  }
+}
+
+TEST_CASE("solve: a step of half a standard error is predicted where residuals are known noise",
+          "[calib]") {
+  const auto evaluations = [](bool tell_sd, double lean_m, LastStep last) {
+    const Twin twin = three_signals();
+    auto records = twin.records(2000, 1000.0, 1, model::InitialState::rest, tell_sd);
+    for (std::size_t i = 0; i < 500; ++i)
+      records[0].channels.at(datasets::Channel::position).mean[i] += lean_m;
+    const Problem problem = problem_of(twin, records);
+    Evaluator evaluator(problem, {});
+    REQUIRE(refine(problem, evaluator, problem.start(), 100, 1, {}, LastStep::simulated).status ==
+            FitStatus::converged);
+    // Along the first unknown until half a standard error is left.
+    std::vector<double> z = evaluator.best().z;
+    const auto offset = [&] {
+      return check_optimum(problem, evaluate_at(problem, z, 1)).relative_offset;
+    };
+    double step = 1e-6;
+    for (; offset() < 0.5; step *= 1.2) z[0] += step;
+    REQUIRE(offset() < 1.0);
+    Evaluator again(problem, {});
+    const auto found = refine(problem, again, z, 100, 1, {}, last);
+    CHECK(found.status == FitStatus::converged);
+    return again.ledger().evaluations;
+  };
+  CHECK(evaluations(true, 0.0, LastStep::judged) == 1);
+  CHECK(evaluations(true, 0.0, LastStep::predicted) > 1);
+  CHECK(evaluations(true, 0.001, LastStep::judged) > 1);  // the model lacks what leant on the rig
+  CHECK(evaluations(false, 0.0, LastStep::judged) > 1);
 }
 
 TEST_CASE("solve: more records of the same take no more evaluations", "[calib]") {
