@@ -10,6 +10,8 @@ namespace {
 
 constexpr double kSamePoint = 0.1;
 constexpr double kSameCost = 0.02;
+/// Share of the cost by which simulations of one point may differ.
+constexpr double kSimulated = 2e-6;
 
 bool same_point(const std::vector<double>& a, const std::vector<double>& b,
                 const std::vector<FittedParameter>& parameters) {
@@ -34,7 +36,8 @@ std::vector<Basin> basins(const std::vector<StartReport>& starts,
   std::vector<Basin> result;
   for (const StartReport* start : converged) {
     const auto home = std::find_if(result.begin(), result.end(), [&](const Basin& basin) {
-      return start->final_cost - basin.cost <= kSameCost * std::max(variance, basin.cost * 1e-6) &&
+      return start->final_cost - basin.cost <=
+                 std::max(kSameCost * variance, kSimulated * basin.cost) &&
              same_point(start->end_values, basin.values, parameters);
     });
     if (home != result.end()) {

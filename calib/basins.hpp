@@ -9,7 +9,8 @@ namespace rigcal::calib {
 
 /// Gathers converged starts that ended at one point: no parameter farther than a tenth of its
 /// interval from that of the basin's best, parameters without an interval left out, and the cost
-/// higher by no more than 0.02 variances of the residuals (0.2 standard errors). Ordered by cost,
+/// higher by no more than 0.02 variances of the residuals (0.2 standard errors), or than two
+/// millionths of itself, which errors of the simulations leave. Ordered by cost,
 /// then by start.
 ///
 /// @param parameters  of the fit, in the order of the starts' values

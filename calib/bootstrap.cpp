@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "calib/solve.hpp"
@@ -224,6 +225,7 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   quiet.progress = nullptr;
   const auto replicates = static_cast<std::size_t>(options.bootstrap);
   std::vector<std::vector<double>> values(replicates);  // empty: did not converge
+  std::atomic<std::size_t> made = 0;
   parallel_for(replicates, options.threads, [&](std::size_t b) {
     if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) return;
     Problem drawn = problem;
@@ -237,6 +239,7 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
     Evaluator evaluator(drawn, {1, options.cancel, {}, {}});
     const auto solved =
         refine(drawn, evaluator, optimum.z, options.max_iterations, static_cast<int>(b) + 1, quiet);
+    if (solved.status != FitStatus::stopped || !evaluator.cancelled()) ++made;
     if (solved.status == FitStatus::converged) values[b] = drawn.to_physical(evaluator.best().z);
   });
   values.erase(
@@ -244,7 +247,9 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
       values.end());
   fit.bootstrap_replicates = static_cast<int>(values.size());
   fit.bootstrap_message =
-      fmt::format("{} of {} replicates converged", values.size(), replicates) + drawn_from(sources);
+      fmt::format("{} of {} replicates converged", values.size(), made.load()) +
+      (made == replicates ? "" : fmt::format(", {} were asked for", replicates)) +
+      drawn_from(sources);
   if (values.size() < kLeastReplicates) {
     fit.bootstrap_message +=
         fmt::format("; too few to tell an interval, expected at least {}", kLeastReplicates);

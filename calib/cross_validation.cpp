@@ -102,6 +102,11 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
   once.max_iterations = options.max_iterations;
   once.cancel = options.cancel;
   std::vector<HeldOut> result(ids.size());
+  if (ids.size() == 1) {
+    result[0].condition = ids[0];
+    result[0].problem = "it is the only condition of the fit: expected two at least";
+    return result;
+  }
   parallel_for(ids.size(), options.threads, [&](std::size_t i) {
     result[i] = leave_out(campaign, records, ids[i], whole, once);
   });

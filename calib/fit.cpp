@@ -101,6 +101,32 @@ void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
   }
 }
 
+/// A prior that the records contradict pulls the fit off both.
+void warn_of_priors(const Problem& problem, const std::vector<FittedParameter>& parameters,
+                    Fit& fit) {
+  constexpr double kFar = 3.0;
+  const auto warn = [&](const std::string& name, double value, const datasets::Prior& prior,
+                        std::string_view unit, const char* what) {
+    const double pull = std::abs(value - prior.mean) / prior.sd;
+    if (pull <= kFar) return;
+    fit.warnings.push_back(
+        fmt::format("{}: {} {:.4g} {}, {:.2g} standard deviations of its prior from {:.4g} {}",
+                    name, what, value, unit, pull, prior.mean, unit));
+  };
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    if (const auto& prior = problem.map.unknowns()[j].prior) {
+      warn(problem.name(j), parameters[j].value, *prior, problem.spec(j).unit,
+           "records and prior disagree: the fit ends at");
+    }
+  }
+  const auto table = model::parameter_table(problem.campaign->rig.plant);
+  for (const auto& setting : problem.campaign->parameters) {
+    if (!setting.prior || setting.fit) continue;
+    const auto& spec = table[static_cast<std::size_t>(setting.index)];
+    warn(std::string(spec.key), setting.value, *setting.prior, spec.unit, "known, and taken to be");
+  }
+}
+
 /// Names in words what is not to be trusted about the parameters.
 void warn_of_parameters(const Problem& problem, const std::vector<FittedParameter>& parameters,
                         Fit& fit) {
@@ -176,8 +202,10 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
 }
 
 /// What is fixed where single parameters are not, and what would tell them.
-void judge_identifiability(const Problem& problem, const Evaluation& optimum,
-                           const Uncertainty& spread, int threads, Fit& fit) {
+///
+/// @return  the unknowns that a scaling symmetry leaves open
+std::vector<std::size_t> judge_identifiability(const Problem& problem, const Evaluation& optimum,
+                                               const Uncertainty& spread, int threads, Fit& fit) {
   const double sigma = std::sqrt(std::max(1.0, spread.reduced_chi_square));
   const auto symmetry =
       scaling_symmetry(problem, optimum.z, linearise(problem, optimum).jacobian, sigma, threads);
@@ -189,15 +217,16 @@ void judge_identifiability(const Problem& problem, const Evaluation& optimum,
     fit.combinations.insert(fit.combinations.begin(), symmetric);
     fit.warnings.push_back(symmetric);
   }
-  const bool open = symmetry && symmetry->holds();
-  add_remedies(problem, optimum, open ? symmetry->unknowns : std::vector<std::size_t>(),
-               fit.parameters);
+  const auto open = symmetry && symmetry->holds() ? symmetry->unknowns : std::vector<std::size_t>();
+  add_remedies(problem, optimum, open, fit.parameters);
+  return open;
 }
 
 /// What every later look at a fit needs; the optimum is not ok where there is none.
 struct Solved {
   Evaluation optimum;
   Uncertainty spread;
+  std::vector<std::size_t> open;  ///< unknowns that a scaling symmetry leaves open
 };
 
 /// Solves a problem and describes what was found, all but the scores.
@@ -242,12 +271,13 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   const double variance = std::max(1.0, fit.reduced_chi_square);
   fit.basins = basins(fit.starts, fit.parameters, variance);
   fit.agreement = agreement_of(fit.starts, fit.basins, variance);
-  judge_identifiability(problem, found.optimum, spread, options.threads, fit);
+  auto open = judge_identifiability(problem, found.optimum, spread, options.threads, fit);
   judge_residuals(problem, found.result.check, spread, fit);
   add_correlation(problem, spread, fit);
   warn_of_noise(problem, spread, fit);
   warn_of_parameters(problem, fit.parameters, fit);
-  return {std::move(found.optimum), std::move(spread)};
+  warn_of_priors(problem, fit.parameters, fit);
+  return {std::move(found.optimum), std::move(spread), std::move(open)};
 }
 
 /// Solves a problem; where its only start ends at no minimum, goes on with further starts as a
@@ -277,6 +307,10 @@ Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOption
   return solve_problem(problem, evaluator, more, fit);
 }
 
+bool asks_for_more(const FitOptions& options) {
+  return options.bootstrap > 0 || options.profiles || options.cross_validate;
+}
+
 /// What was asked for beside the fit: bootstrap, profiles, cross-validation.
 void look_again(const Problem& problem, const Campaign& campaign,
                 const std::vector<Record>& records, const Solved& solved, const FitOptions& options,
@@ -284,7 +318,12 @@ void look_again(const Problem& problem, const Campaign& campaign,
   if (options.bootstrap > 0)
     bootstrap(problem, solved.optimum, solved.spread, fit.conditions, options, fit);
   if (options.profiles) profiles(problem, records, solved.optimum, options, fit);
-  const std::string compared = compare_intervals(problem, fit.parameters);
+  for (const std::size_t j : solved.open) {  // the smoothing of roots would bound them, no record
+    fit.parameters[j].bootstrap.reset();
+    fit.parameters[j].profile.reset();
+  }
+  const std::string compared = compare_intervals(problem, fit.parameters, solved.spread.known.names,
+                                                 fit.misfit.value_or(false));
   if (!compared.empty()) fit.interval_advice += "; " + compared;
   if (options.cross_validate) {
     fit.cross_validation = cross_validate(campaign, records, fit, options);
@@ -292,10 +331,9 @@ void look_again(const Problem& problem, const Campaign& campaign,
     const auto words = cross_validation_words(fit.cross_validation);
     fit.warnings.insert(fit.warnings.end(), words.begin(), words.end());
   }
-  const bool asked = options.bootstrap > 0 || options.profiles || options.cross_validate;
   const bool cancelled =
       options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
-  if (!asked || !cancelled) return;
+  if (!asks_for_more(options) || !cancelled) return;
   fit.status = FitStatus::stopped;
   fit.message += "; stopped on request before all that was asked for was done";
 }
@@ -347,7 +385,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
     if (optimum.ok) z = optimum.z;
     fit.message = "nuisance parameters: " + fit.message;
   }
-  const auto known = describe_known(problem);
+  const auto known = describe_known(problem, values);
   fit.parameters.insert(fit.parameters.end(), known.begin(), known.end());
   fit.conditions = score_conditions(problem, z, options.threads);
   if (problem.map.unknowns().empty() &&
@@ -474,8 +512,12 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
   const Solved solved = solve_from_starts(problem, evaluator, options, result);
   if (solved.optimum.ok) {
     result.conditions = score_conditions(problem, solved.optimum.z, options.threads);
-    if (result.status == FitStatus::converged)
+    if (result.status == FitStatus::converged) {
       look_again(problem, campaign, records, solved, options, result);
+    } else if (asks_for_more(options)) {
+      result.message +=
+          "; bootstrap, profiles and cross-validation are made of what converged only";
+    }
     const auto values = values_of(result.parameters);
     if (!validated.empty()) {
       FitOptions quiet = options;

@@ -60,8 +60,9 @@ std::string_view to_string(IntervalSource source);
 
 /// One end of a profile: where the cost has risen by what a 95 % interval allows.
 struct ProfileEnd {
-  std::optional<double> value;  ///< absent: the cost stays below up to the bound, an open profile
+  std::optional<double> value;  ///< absent: the cost stays below up to `reached`
   double reached = 0.0;         ///< value up to which the profile was followed
+  bool lost = false;  ///< followed no further: no fit there, or the job was stopped; else open
 };
 
 /// Profile likelihood of one unknown: least cost of all others at fixed values of this one.

@@ -17,6 +17,7 @@ constexpr double kSuspiciouslySmall = 0.5;
 constexpr double kLeastFreedom = 3.0;
 constexpr double kStrongCorrelation = 0.9;
 
+using datasets::FittedValue;
 using datasets::Scope;
 using model::ParameterKind;
 using model::ParameterSpec;
@@ -123,6 +124,18 @@ void describe_bound(const Problem& problem, const OptimumCheck& check, std::size
   parameter.reason = parameter.reason.empty() ? text : text + "; " + parameter.reason;
 }
 
+/// Whether a value of an earlier fit is that of one of the problem's conditions at least.
+bool holds_somewhere(const Problem& problem, const FittedValue& value) {
+  return std::any_of(
+      problem.conditions.begin(), problem.conditions.end(), [&](const ProblemCondition& each) {
+        const datasets::Condition& condition = *each.condition;
+        if (known_in(*problem.campaign, condition, value.index)) return false;
+        if (value.scope == Scope::rig) return true;
+        return value.level ==
+               (value.scope == Scope::condition ? condition.id : condition.leak_level.value_or(""));
+      });
+}
+
 FittedParameter known(int index, Scope scope, std::string level, double value) {
   FittedParameter parameter;
   parameter.index = index;
@@ -170,15 +183,22 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
   return result;
 }
 
-std::vector<FittedParameter> describe_known(const Problem& problem) {
+std::vector<FittedParameter> describe_known(const Problem& problem,
+                                            const std::vector<FittedValue>* values) {
   const datasets::Campaign& campaign = *problem.campaign;
   std::vector<FittedParameter> result;
   for (const auto& setting : campaign.parameters) {
+    const auto of_setting = [&](const auto& each) { return each.index == setting.index; };
     const auto& unknowns = problem.map.unknowns();
-    const bool fitted = std::any_of(unknowns.begin(), unknowns.end(), [&](const Unknown& unknown) {
-      return unknown.index == setting.index;
-    });
-    if (!fitted) result.push_back(known(setting.index, Scope::rig, {}, setting.value));
+    if (std::any_of(unknowns.begin(), unknowns.end(), of_setting)) continue;
+    if (values == nullptr || std::none_of(values->begin(), values->end(), of_setting)) {
+      result.push_back(known(setting.index, Scope::rig, {}, setting.value));
+      continue;
+    }
+    for (const FittedValue& each : *values) {
+      if (of_setting(each) && holds_somewhere(problem, each))
+        result.push_back(known(each.index, each.scope, each.level, each.value));
+    }
   }
   std::set<std::string> levels;
   for (const ProblemCondition& each : problem.conditions) {

@@ -24,6 +24,9 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
                                                const Uncertainty& uncertainty);
 
 /// What the campaign knows: its other settings, and values of leak levels and conditions.
-std::vector<FittedParameter> describe_known(const Problem& problem);
+///
+/// @param values  of an earlier fit, which stand in for those of the campaign; null: none
+std::vector<FittedParameter> describe_known(
+    const Problem& problem, const std::vector<datasets::FittedValue>* values = nullptr);
 
 }  // namespace rigcal::calib

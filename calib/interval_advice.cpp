@@ -35,7 +35,7 @@ std::string ends_text(const std::pair<double, double>& interval) {
 }
 
 /// Where profile or bootstrap of a parameter say otherwise than `ci95`, and what to believe.
-std::string other_interval(const FittedParameter& parameter) {
+std::string other_interval(const FittedParameter& parameter, bool misfit) {
   if (parameter.profile && parameter.profile->low.value && parameter.profile->high.value) {
     const std::pair ends{*parameter.profile->low.value, *parameter.profile->high.value};
     if (skewness(parameter.value, ends) > kAgrees) {
@@ -51,11 +51,11 @@ std::string other_interval(const FittedParameter& parameter) {
   }
   if (skewness(parameter.value, drawn) > 2.0 * kAgrees)
     return fmt::format("believe the bootstrap, {}, which is skewed", ends_text(drawn));
-  if (ratio * kAgrees < 1.0) {
-    return fmt::format(
-        "the bootstrap is {:.2g} times as wide; believe `ci95`, which counts what the model lacks "
-        "too",
-        ratio);
+  // Few repeats know their own scatter badly: a variance of f degrees of freedom to sqrt(2 / f).
+  const double chance = 2.0 / std::sqrt(2.0 * std::max(1.0, parameter.bootstrap->freedom));
+  if (ratio * (kAgrees + chance) < 1.0) {
+    return fmt::format("the bootstrap is {:.2g} times as wide; believe `ci95`{}", ratio,
+                       misfit ? ", which counts what the model lacks too" : "");
   }
   return {};
 }
@@ -107,10 +107,12 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
 }
 
 std::string compare_intervals(const Problem& problem,
-                              const std::vector<FittedParameter>& parameters) {
+                              const std::vector<FittedParameter>& parameters,
+                              const std::vector<std::string>& carried, bool misfit) {
   std::vector<std::string> words;
   std::vector<std::string> open;
-  bool compared = false;
+  bool drawn = false;
+  bool followed = false;
   for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
     const FittedParameter& each = parameters[j];
     if (each.nuisance || (!each.bootstrap && !each.profile)) continue;
@@ -119,13 +121,24 @@ std::string compare_intervals(const Problem& problem,
       continue;
     }
     if (!each.ci95 || !(width(*each.ci95) > 0.0)) continue;
-    compared = true;
-    const std::string advice = other_interval(each);
+    drawn = drawn || each.bootstrap;
+    followed = followed || (each.profile && !each.profile->low.lost && !each.profile->high.lost);
+    if (!carried.empty()) continue;
+    const std::string advice = other_interval(each, misfit);
     if (!advice.empty()) words.push_back(problem.name(j) + ": " + advice);
   }
-  if (words.empty() && compared)
-    words.push_back(open.empty() ? "bootstrap and profiles agree with `ci95`"
-                                 : "elsewhere bootstrap and profiles agree with `ci95`");
+  const std::string made = drawn && followed ? "bootstrap and profiles"
+                           : drawn           ? "the bootstrap"
+                                             : "profiles";
+  const char* const s = drawn && !followed ? "s" : "";
+  if (!carried.empty() && (drawn || followed)) {
+    words.push_back(
+        fmt::format("{} leave{} out what is uncertain of {}: believe `ci95`, which holds it", made,
+                    s, fmt::join(carried, ", ")));
+  } else if (words.empty() && (drawn || followed)) {
+    words.push_back(
+        fmt::format("{}{} agree{} with `ci95`", open.empty() ? "" : "elsewhere ", made, s));
+  }
   if (!open.empty()) {
     words.insert(words.begin(), fmt::format("believe no interval of what is not identifiable: {}",
                                             fmt::join(open, ", ")));

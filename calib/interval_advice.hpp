@@ -19,7 +19,10 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
 /// identifiable has no interval to believe. Empty where neither was asked for.
 ///
 /// @param parameters  of the problem's unknowns
+/// @param carried     known values whose uncertainty only `ci95` holds
+/// @param misfit      whether the model is known to leave more than noise
 std::string compare_intervals(const Problem& problem,
-                              const std::vector<FittedParameter>& parameters);
+                              const std::vector<FittedParameter>& parameters,
+                              const std::vector<std::string>& carried = {}, bool misfit = false);
 
 }  // namespace rigcal::calib

@@ -21,6 +21,8 @@ using datasets::Condition;
 using datasets::Record;
 
 constexpr double kPlannedWeak = 0.2;
+const std::string kSymmetryRemedy =
+    "a prior on mass or supply pressure, or a recorded pressure or force";
 
 bool takes_part(const Condition& condition) {
   return condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
@@ -121,6 +123,16 @@ Eigen::MatrixXd jacobian_of(const Problem& problem, const Evaluation& at,
   return total.get();
 }
 
+/// The smoothing of the orifice roots alone tells what a scaling symmetry leaves open: no physics.
+void leave_open(std::size_t unknown, Plan& plan) {
+  plan.recorded[unknown].reset();
+  plan.all[unknown].reset();
+  for (PlannedRecord& record : plan.records) {
+    if (!record.alone.empty()) record.alone[unknown].reset();
+    if (!record.without.empty()) record.without[unknown].reset();
+  }
+}
+
 std::string words_of(const Problem& problem, const Plan& plan, std::size_t unknown) {
   const FittedParameter& parameter = plan.parameters[unknown];
   const auto half = relative_half_width(plan.all[unknown], parameter.value);
@@ -197,11 +209,28 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
   const auto symmetry = at.ok ? scaling_symmetry(problem, z, all, 1.0, threads) : std::nullopt;
   const std::string symmetric = symmetry ? describe(problem, *symmetry) : "";
   if (!symmetric.empty()) result.messages.push_back(symmetric);
+  std::vector<bool> open(z.size(), false);
+  if (symmetry && symmetry->holds()) {
+    for (const std::size_t j : symmetry->unknowns) {
+      open[j] = true;
+      leave_open(j, result);
+    }
+  }
+  for (const auto& setting : campaign.parameters) {
+    if (!setting.prior || setting.fit) continue;
+    const auto& spec =
+        model::parameter_table(campaign.rig.plant)[static_cast<std::size_t>(setting.index)];
+    result.messages.push_back(fmt::format(
+        "the uncertainty of {} is not in these figures: a fit adds what it does to them",
+        spec.key));
+  }
   for (std::size_t j = 0; j < z.size(); ++j) {
     const auto half = relative_half_width(result.all[j], result.parameters[j].value);
     const bool wanting = !problem.map.unknowns()[j].nuisance && (!half || *half > kPlannedWeak);
     result.remedies.push_back(
-        wanting ? fmt::format("{}", fmt::join(remedies(problem, z, all, j), ", or ")) : "");
+        open[j]   ? kSymmetryRemedy
+        : wanting ? fmt::format("{}", fmt::join(remedies(problem, z, all, j), ", or "))
+                  : "");
     if (!wanting) continue;
     const std::string text = words_of(problem, result, j);
     if (!text.empty()) result.messages.push_back(text);

@@ -18,6 +18,9 @@ constexpr double kFirstStep = 0.05;
 constexpr double kLeastStep = 1e-6;
 constexpr int kMostDoublings = 12;
 constexpr int kMostRefinements = 8;
+/// How often a step is made shorter where there is no fit, and by what.
+constexpr int kMostShortened = 4;
+constexpr double kShorter = 8.0;
 constexpr double kCrossing = 0.02;
 /// A rise below minus this share of the threshold, about one standard error: the fit was not at its
 /// minimum. Less may be the error of simulations, which differs from point to point.
@@ -80,6 +83,10 @@ class Follower {
     return found;
   }
 
+  bool cancelled() const {
+    return options_.cancel != nullptr && options_.cancel->load(std::memory_order_relaxed);
+  }
+
   Profile table() const {
     Profile profile;
     for (const auto& [z, point] : points_) {
@@ -135,7 +142,17 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
   for (int i = 0; i < kMostDoublings && inside != bound; ++i) {
     outside = std::clamp(inside + side * step, 0.0, 1.0);
     outside_rise = follower.rise(outside);
-    if (!outside_rise) return end;
+    // Too far for a fit from the point before, as where the interval holds more than the records
+    // say.
+    for (int k = 0; k < kMostShortened && !outside_rise && !follower.cancelled(); ++k) {
+      step /= kShorter;
+      outside = std::clamp(inside + side * step, 0.0, 1.0);
+      outside_rise = follower.rise(outside);
+    }
+    if (!outside_rise) {
+      end.lost = true;
+      return end;
+    }
     end.reached = value(outside);
     if (*outside_rise >= 1.0) break;
     inside = outside;
@@ -231,18 +248,33 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     };
     if (profile.lower_cost_found)
       say("its profile finds a lower cost: the fit is not at the minimum, make more starts");
+    if (profile.low.lost || profile.high.lost) {
+      const bool stopped =
+          options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
+      say(fmt::format("its profile was not made {}: {}",
+                      profile.low.lost && profile.high.lost ? "on either side"
+                      : profile.low.lost                    ? "below"
+                                                            : "above",
+                      stopped ? "stopped on request" : "no fit there converged"));
+    }
     if (profile.low.value && profile.high.value) continue;
     const model::ParameterSpec& spec = model::parameter_table(
         problem.campaign->rig.plant)[static_cast<std::size_t>(unknowns[j].index)];
     // Up to a limit of the parameter itself, such as no leakage at all, nothing is left open.
-    const bool below = !profile.low.value && unknowns[j].lower > spec.lower;
-    const bool above = !profile.high.value && unknowns[j].upper < spec.upper;
+    const bool below = !profile.low.value && !profile.low.lost && unknowns[j].lower > spec.lower;
+    const bool above = !profile.high.value && !profile.high.lost && unknowns[j].upper < spec.upper;
     if (!below && !above) continue;
     say(fmt::format("its profile is open {}: followed from {:.4g} to {:.4g}",
                     below && above ? "on both sides" : (above ? "above" : "below"),
                     profile.low.value.value_or(profile.low.reached),
                     profile.high.value.value_or(profile.high.reached)));
-    parameter.identifiability = Identifiability::not_identifiable;
+    // A bound within `ci95` cuts off what the records tell; beyond it they tell less than it says.
+    const double half_width = parameter.ci95 ? std::max(parameter.ci95->second - parameter.value,
+                                                        parameter.value - parameter.ci95->first)
+                                             : 0.0;
+    if ((below && parameter.value - unknowns[j].lower >= half_width) ||
+        (above && unknowns[j].upper - parameter.value >= half_width))
+      parameter.identifiability = Identifiability::not_identifiable;
   }
 }
 

@@ -18,8 +18,9 @@ Problem with_known(const Problem& problem, const std::vector<datasets::Record>& 
 /// fitted anew at each fixed value, until 2 cost has risen by (h / standard error)^2 sigma^2, h the
 /// half width of `ci95` and sigma^2 as in uncertainty(): a quadratic cost gives `ci95` again, so
 /// that correlated residuals widen a profile as they widen the robust error. The crossing is
-/// found to 2 % of the distance. An end that meets the bound first is open, and the parameter then
-/// not identifiable.
+/// found to 2 % of the distance. An end that meets a bound outside `ci95` first is open, and the
+/// parameter then not identifiable. One where no fit converged is lost, which says nothing of the
+/// parameter.
 ///
 /// @param fit  with parameters of the problem's unknowns; receives the profiles
 void profiles(const Problem& problem, const std::vector<datasets::Record>& records,

@@ -151,6 +151,9 @@ Json empty_choice(const std::string& reason) {
   return json;
 }
 
+/// A model that contains another fits no worse, but for what simulations differ by.
+constexpr double kWorse = 2.0;
+
 Json choice_json(const Compared& first, const Compared& other) {
   if (const std::string why = obstacle(first, other); !why.empty()) return empty_choice(why);
   const Candidate a = candidate_of(first);
@@ -169,6 +172,14 @@ Json choice_json(const Compared& first, const Compared& other) {
   const Compared& larger = first_smaller ? other : first;
   if (const std::string why = not_contained(smaller.result, larger.result); !why.empty()) {
     json["reason"] = fmt::format("{} does not contain {}: {}", larger.name, smaller.name, why);
+    return json;
+  }
+  const double worse = first_smaller ? b.deviance() - a.deviance() : a.deviance() - b.deviance();
+  if (worse > kWorse) {
+    json["reason"] = fmt::format(
+        "{} has more free parameters and fits worse: its bounds leave {} out, or its fit is no "
+        "minimum",
+        larger.name, smaller.name);
     return json;
   }
   const calib::ModelChoice choice = first_smaller ? calib::choose(a, b) : calib::choose(b, a);

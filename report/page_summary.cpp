@@ -286,6 +286,7 @@ Json headline_of(const Json& result) {
                     "{}: the model does not describe the records.",
                     kPoorRho2));
   }
+  if (all == 0) return make_headline("NOT JUDGED", "○", "none", "No condition was scored.");
   return make_headline(
       "NOT JUDGED", "○", "none",
       "The campaign gives no limits: whether this is good enough is for you to say.");

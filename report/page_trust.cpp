@@ -24,6 +24,8 @@ std::string end_words(const Json& end, const RowUnit& unit, const char* which) {
   if (const auto value = number_of(end, "value"))
     return fmt::format("{} end {}", which, text(*value));
   const auto reached = number_of(end, "reached");
+  if (end.value("lost", false))
+    return fmt::format("not followed to its {} end: stopped, or no fit there", which);
   return fmt::format(
       "open at its {} end{}", which,
       reached ? fmt::format(": followed to {} without leaving the interval", text(*reached))

@@ -235,8 +235,9 @@ std::string verdict_text(const Result& result, const Style& style) {
     for (const std::string& reason : condition.reasons)
       say(fmt::format("  {}: {}", condition.id, reason), 4);
   }
-  say(fit.verdict ? "verdict: " + coloured(*fit.verdict, style)
-                  : std::string("verdict: none (the campaign has no [acceptance])"),
+  say(fit.verdict              ? "verdict: " + coloured(*fit.verdict, style)
+      : fit.conditions.empty() ? std::string("verdict: none (no condition was scored)")
+                               : std::string("verdict: none (the campaign has no [acceptance])"),
       2);
   if (!fit.agreement.empty()) say("starts: " + fit.agreement, 2);
   if (!fit.bootstrap_message.empty()) say("bootstrap: " + fit.bootstrap_message, 2);

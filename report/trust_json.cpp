@@ -38,6 +38,7 @@ Json profile_end(const calib::ProfileEnd& end) {
   Json json;
   json["value"] = number(end.value);
   json["reached"] = number(end.reached);
+  json["lost"] = end.lost;
   return json;
 }
 

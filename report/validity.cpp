@@ -38,14 +38,14 @@ std::optional<Range> range_of(const Record* record, Channel channel) {
   return range;
 }
 
-/// Value that holds in a condition after the fit; the narrower scope wins.
+/// Value that holds in a condition, fitted or known; the narrower scope wins.
 double value_in(const Campaign& campaign, const Condition& condition, const calib::Fit& fit,
                 std::string_view key) {
   const int index = model::parameter_index(campaign.rig.plant, key);
   double value = datasets::values_in(campaign, condition)[key];
   auto narrowest = datasets::Scope::rig;
   for (const calib::FittedParameter& p : fit.parameters) {
-    if (p.index != index || !p.fitted || p.scope < narrowest) continue;
+    if (p.index != index || p.scope < narrowest) continue;
     if (p.scope == datasets::Scope::leak_level && p.level != condition.leak_level) continue;
     if (p.scope == datasets::Scope::condition && p.level != condition.id) continue;
     narrowest = p.scope;

@@ -36,6 +36,10 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
                                        start(2, 4e6 + 9.0, 1.0, FitStatus::converged)};
   CHECK(basins(rough, {parameter}, 1.0).size() == 2);
   CHECK(basins(rough, {parameter}, 8000.0).size() == 1);
+  // Nor do differences that are errors of the simulations.
+  const std::vector<StartReport> even{start(1, 42865.883, 1.0, FitStatus::converged),
+                                      start(2, 42865.915, 1.00001, FitStatus::converged)};
+  CHECK(basins(even, {parameter}, 1.0).size() == 1);
   CHECK_THAT(agreement_of({starts[3], starts[3]}, {}, 1.0), Contains("none of 2"));
 }
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "calib/plan.hpp"
 #include "calib/symmetry.hpp"
 #include "tests/calib/twin.hpp"
 
@@ -55,6 +56,17 @@ TEST_CASE("combinations: the scaling symmetry is named, with mass and supply pre
     CHECK_FALSE(parameter(found, key).standard_error);
     CHECK_FALSE(parameter(found, key).ci95);
   }
+  datasets::Campaign recorded = twin.campaign;
+  for (auto& condition : recorded.conditions) condition.averaged = condition.id + ".csv";
+  const Plan planned = plan(recorded, records, nullptr, 1);
+  for (const auto& sd : planned.all) CHECK_FALSE(sd);
+  CHECK_THAT(planned.remedies.at(0), Contains("a prior on mass or supply pressure"));
+  FitOptions more;
+  more.profiles = true;
+  more.bootstrap = 20;
+  const Fit followed = fit(twin.campaign, records, more);
+  CHECK_FALSE(parameter(followed, "mass").profile);
+  CHECK_FALSE(parameter(followed, "mass").bootstrap);
   // A known stiffness tells the scale, and the scale rests on it.
   twin.setting("stiffness").fit = false;
   twin.setting("stiffness").value = 2e4;

@@ -1,5 +1,7 @@
 #include "calib/profile.hpp"
 
+#include <algorithm>
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -60,6 +62,37 @@ TEST_CASE("profile: an open one makes a parameter not identifiable", "[calib]") 
   CHECK_THAT(bulk.reason, Contains("profile is open"));
 }
 
+TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of the parameter",
+          "[calib]") {
+  Twin twin = twin_far_off();
+  const auto records = twin.records(250, 500.0, 3);
+  const Problem problem = problem_of(twin, records);
+  Fit found = fit(twin.campaign, records, {});
+  std::vector<double> z;
+  for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j)
+    z.push_back(problem.map.to_unit(static_cast<int>(j), found.parameters[j].value));
+  const Evaluation optimum = evaluate_at(problem, z, 1);
+  const std::atomic<bool> cancel{true};
+  FitOptions options;
+  options.cancel = &cancel;
+  profiles(problem, records, optimum, options, found);
+  const FittedParameter& mass = parameter(found, "mass");
+  REQUIRE(mass.profile.has_value());
+  CHECK(mass.profile->low.lost);
+  CHECK(mass.identifiability == Identifiability::identified);
+  CHECK_THAT(mass.reason, Contains("not made on either side: stopped on request"));
+
+  twin.setting("mass").upper = mass.value + 0.2 * (mass.ci95->second - mass.value);
+  options.cancel = nullptr;
+  options.profiles = true;
+  const Fit bounded = fit(twin.campaign, records, options);
+  const FittedParameter& cut = parameter(bounded, "mass");
+  REQUIRE(cut.profile.has_value());
+  CHECK_FALSE(cut.profile->high.value);
+  CHECK(cut.identifiability == Identifiability::identified);
+  CHECK_THAT(cut.reason, Contains("profile is open above"));
+}
+
 TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
   // Along what the records do not tell at all the cost is as flat as simulations can be.
   Twin twin = twin_far_off();
@@ -89,7 +122,18 @@ TEST_CASE("intervals: which of them to believe", "[calib]") {
   CHECK(compare_intervals(problem, parameters).empty());
   BootstrapSpread drawn{3e-5, 0.0, 9.0, {84.9999, 85.0001}};
   parameters[0].bootstrap = drawn;
-  CHECK(compare_intervals(problem, parameters) == "bootstrap and profiles agree with `ci95`");
+  CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95`");
+  CHECK_THAT(compare_intervals(problem, parameters, {"supply_pressure_pa"}),
+             Contains("the bootstrap leaves out what is uncertain of supply_pressure_pa"));
+  drawn.ci95 = {84.99994, 85.00006};  // 0.6 times as wide: nine degrees of freedom may
+  parameters[0].bootstrap = drawn;
+  CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95`");
+  drawn.ci95 = {84.99996, 85.00004};
+  parameters[0].bootstrap = drawn;
+  CHECK_THAT(compare_intervals(problem, parameters),
+             Contains("0.4 times as wide") && !Contains("lacks"));
+  CHECK_THAT(compare_intervals(problem, parameters, {}, true),
+             Contains("which counts what the model lacks"));
   drawn.ci95 = {84.99995, 85.00015};
   parameters[0].bootstrap = drawn;
   CHECK_THAT(compare_intervals(problem, parameters),
@@ -135,6 +179,34 @@ TEST_CASE("bootstrap: blocks grow with the memory of the noise", "[calib]") {
   CHECK(slow > block_length({{0.5}, 1.0}, 1000));
   CHECK(slow < 200);
   CHECK(block_length({{0.99}, 1.0}, 5) <= 5);
+}
+
+TEST_CASE("fit: records that contradict a prior are told of", "[calib]") {
+  Twin twin = twin_far_off();
+  twin.setting("mass").prior = datasets::Prior{60.0, 1.0};
+  twin.setting("damping").prior = datasets::Prior{2.0 * twin.setting("damping").value, 10.0};
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), {});
+  const auto told = [&](const char* first, const char* second) {
+    return std::any_of(found.warnings.begin(), found.warnings.end(), [&](const std::string& each) {
+      return each.find(first) == 0 && each.find(second) != std::string::npos;
+    });
+  };
+  CHECK(told("mass_kg: records and prior disagree", "of its prior from 60 kg"));
+  CHECK(told("damping: known, and taken to be", "standard deviations of its prior"));
+  twin.setting("mass").prior = datasets::Prior{85.0, 5.0};
+  twin.setting("damping").prior.reset();
+  const Fit agreed = fit(twin.campaign, twin.records(250, 500.0, 3), {});
+  for (const std::string& each : agreed.warnings) CHECK_THAT(each, !Contains("prior"));
+}
+
+TEST_CASE("cross-validation: of one condition there is none", "[calib]") {
+  Twin twin = twin_far_off();
+  REQUIRE(twin.campaign.conditions.size() == 1);
+  FitOptions options;
+  options.cross_validate = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  REQUIRE(found.cross_validation.size() == 1);
+  CHECK_THAT(found.cross_validation[0].problem, Contains("only condition"));
 }
 
 TEST_CASE("cross-validation: each condition is predicted from the others", "[calib]") {

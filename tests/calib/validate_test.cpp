@@ -81,6 +81,23 @@ TEST_CASE("validate: estimates nothing but nuisance parameters", "[calib]") {
   CHECK(std::abs(offset.value - 1e-3) < 3.5 * offset.standard_error.value());
 }
 
+TEST_CASE("validate: tells the values that it used, not those of the campaign", "[calib]") {
+  const Twin twin = two_days();
+  const auto values = truth();
+  const Fit found = validate(twin.campaign, twin.records(400, 500.0, 5), &values, {});
+  const auto of = [&](std::string_view key, const std::string& level) {
+    std::vector<double> told;
+    for (const FittedParameter& each : found.parameters) {
+      if (each.index == Twin::index(key) && each.level == level) told.push_back(each.value);
+    }
+    return told;
+  };
+  CHECK(of("valve_gain", "") == std::vector{0.0406e-3});
+  CHECK(of("leakage_coefficient", "").empty());
+  CHECK(of("leakage_coefficient", "low") == std::vector{0.2});
+  CHECK(of("leakage_coefficient", "high") == std::vector{0.6});
+}
+
 TEST_CASE("validate: without values, those of the campaign hold", "[calib]") {
   Twin twin = two_days();
   for (auto& each : twin.campaign.parameters) each.fit = false;

@@ -108,6 +108,12 @@ TEST_CASE("models: what is not nested is told by the criteria alone", "[report]"
   known.result["parameters"].push_back(friction);
   CHECK_THAT(models_json({known, bounded})[1]["reason"].get<std::string>(),
              Contains("coulomb_friction lies outside the bounds"));
+  // A term whose bounds leave its absence out, and a fit that is no minimum.
+  const Json worse = models_json({mass_alone("plain", 520.0), with_friction("friction", 900.0)});
+  CHECK_THAT(worse[1]["reason"].get<std::string>(),
+             Contains("friction has more free parameters and fits worse"));
+  CHECK(worse[1]["likelihood_ratio"].is_null());
+  CHECK_THAT(worse[1]["verdict"].get<std::string>(), Contains("plain is preferred"));
 }
 
 TEST_CASE("models: what cannot be compared at all, and why", "[report]") {
