@@ -17,6 +17,8 @@ using datasets::Use;
 /// A prediction this many times worse than the fit is worth a word, and a shift of so many errors.
 constexpr double kMuchWorse = 1.5;
 constexpr double kFarShift = 3.0;
+/// And one that is worse by less is none.
+constexpr double kNoWorse = 1.005;
 
 Campaign without(const Campaign& campaign, const std::string& id, const Fit& whole) {
   Campaign result = campaign;
@@ -128,10 +130,12 @@ std::string cross_validation_summary(const std::vector<HeldOut>& held_out) {
     }
   }
   if (where.empty()) return "cross-validation: no condition could be predicted from the others";
-  return fmt::format(
-      "cross-validation: {} of {} conditions predicted from the others, the error at most {:.3g} "
-      "times that of the fit ({})",
-      predicted, held_out.size(), worst, where);
+  const std::string error =
+      worst <= kNoWorse
+          ? "each with the error of the fit"
+          : fmt::format("the error at most {:.3g} times that of the fit ({})", worst, where);
+  return fmt::format("cross-validation: {} of {} conditions predicted from the others, {}",
+                     predicted, held_out.size(), error);
 }
 
 std::vector<std::string> cross_validation_words(const std::vector<HeldOut>& held_out) {

@@ -186,7 +186,7 @@ void judge_residuals(const Problem& problem, const OptimumCheck& check, const Un
 /// Says what would tell parameters that the records do not; the first few, since each is tried. Of
 /// those that a symmetry leaves open its own words tell.
 void add_remedies(const Problem& problem, const Evaluation& optimum,
-                  const std::vector<std::size_t>& symmetric,
+                  const std::vector<std::size_t>& symmetric, const Uncertainty& spread,
                   std::vector<FittedParameter>& parameters) {
   constexpr int kMostTried = 4;
   int tried = 0;
@@ -195,6 +195,13 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
     FittedParameter& each = parameters[j];
     if (each.nuisance || each.identifiability != Identifiability::not_identifiable) continue;
     if (std::find(symmetric.begin(), symmetric.end(), j) != symmetric.end()) continue;
+    if (rests_on_known(problem, spread, optimum.z, j)) {
+      each.reason += fmt::format(
+          "; most of that is what is uncertain of {}: with fit = true there, and its prior, the "
+          "records may tell more",
+          fmt::join(spread.known.names, ", "));
+      continue;
+    }
     ++tried;
     const auto words = remedies(problem, optimum.z, jacobian, j);
     if (!words.empty()) each.reason += fmt::format("; {} would tell it", fmt::join(words, ", or "));
@@ -218,7 +225,7 @@ std::vector<std::size_t> judge_identifiability(const Problem& problem, const Eva
     fit.warnings.push_back(symmetric);
   }
   const auto open = symmetry && symmetry->holds() ? symmetry->unknowns : std::vector<std::size_t>();
-  add_remedies(problem, optimum, open, fit.parameters);
+  add_remedies(problem, optimum, open, spread, fit.parameters);
   return open;
 }
 

@@ -183,6 +183,16 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
   return result;
 }
 
+bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
+                    const std::vector<double>& z, std::size_t unknown) {
+  constexpr double kMost = 0.7;  // of the error: half of the variance
+  const auto row = static_cast<Eigen::Index>(unknown);
+  const auto& error = uncertainty.standard_error[unknown];
+  if (!error || uncertainty.known.names.empty()) return false;
+  const double slope = problem.map.slope(static_cast<int>(unknown), z[unknown]);
+  return slope * uncertainty.known.response.row(row).norm() > kMost * *error;
+}
+
 std::vector<FittedParameter> describe_known(const Problem& problem,
                                             const std::vector<FittedValue>* values) {
   const datasets::Campaign& campaign = *problem.campaign;

@@ -23,6 +23,10 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
                                                const OptimumCheck& check,
                                                const Uncertainty& uncertainty);
 
+/// Whether most of a standard error is what known values leave uncertain, not what the records do.
+bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
+                    const std::vector<double>& z, std::size_t unknown);
+
 /// What the campaign knows: its other settings, and values of leak levels and conditions.
 ///
 /// @param values  of an earlier fit, which stand in for those of the campaign; null: none

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "calib/lack_of_fit.hpp"
 
@@ -27,30 +28,32 @@ double skewness(double value, const std::pair<double, double>& interval) {
 }
 
 /// Both ends with as many digits as tell them apart.
-std::string ends_text(const std::pair<double, double>& interval) {
+std::string ends_text(const std::pair<double, double>& interval, std::string_view unit) {
   const double size = std::max(std::abs(interval.first), std::abs(interval.second));
   const double share = width(interval) > 0.0 ? size / width(interval) : 1.0;
   const int digits = std::clamp(3 + static_cast<int>(std::ceil(std::log10(share))), 4, 12);
-  return fmt::format("{:.{}g} to {:.{}g}", interval.first, digits, interval.second, digits);
+  return fmt::format("{:.{}g} to {:.{}g}{}{}", interval.first, digits, interval.second, digits,
+                     unit == "1" ? "" : " ", unit == "1" ? "" : unit);
 }
 
 /// Where profile or bootstrap of a parameter say otherwise than `ci95`, and what to believe.
-std::string other_interval(const FittedParameter& parameter, bool misfit) {
+std::string other_interval(const FittedParameter& parameter, std::string_view unit, bool misfit) {
   if (parameter.profile && parameter.profile->low.value && parameter.profile->high.value) {
     const std::pair ends{*parameter.profile->low.value, *parameter.profile->high.value};
     if (skewness(parameter.value, ends) > kAgrees) {
       return fmt::format("believe the profile, {}; the cost is not quadratic there",
-                         ends_text(ends));
+                         ends_text(ends, unit));
     }
   }
   if (!parameter.bootstrap) return {};
   const std::pair<double, double>& drawn = parameter.bootstrap->ci95;
   const double ratio = width(drawn) / width(*parameter.ci95);
   if (ratio > kAgrees) {
-    return fmt::format("believe the bootstrap, {}, {:.2g} times as wide", ends_text(drawn), ratio);
+    return fmt::format("believe the bootstrap, {}, {:.2g} times as wide", ends_text(drawn, unit),
+                       ratio);
   }
   if (skewness(parameter.value, drawn) > 2.0 * kAgrees)
-    return fmt::format("believe the bootstrap, {}, which is skewed", ends_text(drawn));
+    return fmt::format("believe the bootstrap, {}, which is skewed", ends_text(drawn, unit));
   // Few repeats know their own scatter badly: a variance of f degrees of freedom to sqrt(2 / f).
   const double chance = 2.0 / std::sqrt(2.0 * std::max(1.0, parameter.bootstrap->freedom));
   if (ratio * (kAgrees + chance) < 1.0) {
@@ -124,7 +127,7 @@ std::string compare_intervals(const Problem& problem,
     drawn = drawn || each.bootstrap;
     followed = followed || (each.profile && !each.profile->low.lost && !each.profile->high.lost);
     if (!carried.empty()) continue;
-    const std::string advice = other_interval(each, misfit);
+    const std::string advice = other_interval(each, problem.spec(j).unit, misfit);
     if (!advice.empty()) words.push_back(problem.name(j) + ": " + advice);
   }
   const std::string made = drawn && followed ? "bootstrap and profiles"

@@ -264,10 +264,11 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     const bool below = !profile.low.value && !profile.low.lost && unknowns[j].lower > spec.lower;
     const bool above = !profile.high.value && !profile.high.lost && unknowns[j].upper < spec.upper;
     if (!below && !above) continue;
-    say(fmt::format("its profile is open {}: followed from {:.4g} to {:.4g}",
+    const std::string unit = spec.unit == "1" ? "" : fmt::format(" {}", spec.unit);
+    say(fmt::format("its profile is open {}: followed from {:.4g}{} to {:.4g}{}",
                     below && above ? "on both sides" : (above ? "above" : "below"),
-                    profile.low.value.value_or(profile.low.reached),
-                    profile.high.value.value_or(profile.high.reached)));
+                    profile.low.value.value_or(profile.low.reached), unit,
+                    profile.high.value.value_or(profile.high.reached), unit));
     // A bound within `ci95` cuts off what the records tell; beyond it they tell less than it says.
     const double half_width = parameter.ci95 ? std::max(parameter.ci95->second - parameter.value,
                                                         parameter.value - parameter.ci95->first)

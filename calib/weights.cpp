@@ -57,10 +57,19 @@ void warn(Problem& problem, const Evaluation& optimum, bool settled,
     if (channel.peak_to_peak > 0.0)
       share = std::max(share, problem.least_sd(channel) / channel.peak_to_peak);
   });
+  std::vector<std::string> where;
+  for (const ProblemCondition& each : problem.conditions) {
+    if (std::any_of(each.channels.begin(), each.channels.end(),
+                    [](const ProblemChannel& channel) { return !channel.sd_known; }))
+      where.push_back(fmt::format("\"{}\"", each.condition->id));
+  }
   warnings.push_back(fmt::format(
       "neither repeats nor `sd` tell the noise of {}: it was estimated from the residual of the "
-      "fit in each condition{}; errors of the model count as noise",
-      fmt::join(names, ", "), settled ? "" : " (and had not settled when the fit ended)"));
+      "fit in {}{}; errors of the model count as noise",
+      fmt::join(names, ", "),
+      where.size() == problem.conditions.size() ? std::string("each condition")
+                                                : fmt::format("{}", fmt::join(where, ", ")),
+      settled ? "" : " (and had not settled when the fit ended)"));
   if (unresolved == 0) return;
   warnings.push_back(fmt::format(
       "in {} of {} records the residual is smaller than simulations of tolerance {:.2g} resolve: "

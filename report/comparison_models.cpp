@@ -83,7 +83,7 @@ std::string obstacle(const Compared& a, const Compared& b) {
   if (hashes.empty() || hashes != hashes_of(b.result)) return "not fitted to the same records";
   if (!same_weights(a.result.at("weights"), b.result.at("weights")) ||
       a.result.at("residual_count") != b.result.at("residual_count"))
-    return "the records count differently: other channels, samples or standard deviations";
+    return "the records count differently: other channels, samples, priors or standard deviations";
   return {};
 }
 

@@ -56,7 +56,7 @@ Json cross_validation_json(const calib::Fit& fit) {
     json["problem"] = held.problem.empty() ? Json(nullptr) : Json(held.problem);
     json["rmse"] = rms_json(held.rms);
     json["fitted_rmse"] = rms_json(held.fitted_rms);
-    json["largest_shift"] = number(held.largest_shift);
+    json["largest_shift"] = held.problem.empty() ? number(held.largest_shift) : Json();
     json["shifted"] = held.shifted.empty() ? Json(nullptr) : Json(held.shifted);
     list.push_back(std::move(json));
   }

@@ -107,6 +107,12 @@ TEST_CASE("known values: their uncertainty is carried into the errors", "[calib]
   CHECK_THAT(gain.standard_error.value(), WithinRel(0.05 * gain.value, 0.2));
   CHECK_THAT(gain.robust_standard_error.value(), WithinRel(0.05 * gain.value, 0.2));
   CHECK_THAT(carried.interval_advice, Contains("supply_pressure_pa"));
+  // So uncertain that it decides: no record would help, an estimate of the supply pressure may.
+  twin.setting("supply_pressure").prior = datasets::Prior{6.2e6, 15e6};
+  const Fit open = fit(twin.campaign, records, {});
+  CHECK(parameter(open, "valve_gain").identifiability == Identifiability::not_identifiable);
+  CHECK_THAT(parameter(open, "valve_gain").reason,
+             Contains("what is uncertain of supply_pressure_pa: with fit = true there"));
 }
 
 TEST_CASE("known values: a sensor's gain or offset widens as it would if it were free", "[calib]") {

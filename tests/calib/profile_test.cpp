@@ -137,7 +137,7 @@ TEST_CASE("intervals: which of them to believe", "[calib]") {
   drawn.ci95 = {84.99995, 85.00015};
   parameters[0].bootstrap = drawn;
   CHECK_THAT(compare_intervals(problem, parameters),
-             Contains("84.99995 to 85.00015, which is skewed"));
+             Contains("84.99995 to 85.00015 kg, which is skewed"));
   drawn.ci95 = {84.9998, 85.0002};
   parameters[0].bootstrap = drawn;
   CHECK_THAT(compare_intervals(problem, parameters), Contains("2 times as wide"));
@@ -145,7 +145,7 @@ TEST_CASE("intervals: which of them to believe", "[calib]") {
   parameters[0].profile->low.value = 84.99999;
   parameters[0].profile->high.value = 85.0001;
   CHECK_THAT(compare_intervals(problem, parameters),
-             Contains("believe the profile, 84.99999 to 85.0001;"));
+             Contains("believe the profile, 84.99999 to 85.0001 kg;"));
   parameters[0].identifiability = Identifiability::not_identifiable;
   CHECK(compare_intervals(problem, parameters) ==
         "believe no interval of what is not identifiable: " + problem.name(0));
