@@ -16,9 +16,11 @@ namespace {
 constexpr int kMaxCalls = 4;
 /// Standard errors that may be left of a step with coarse simulations: their own errors leave more.
 constexpr double kCoarseOffset = 1.0;
-/// Share of the cost that may be left to gain in an opening, the model then errs by a fraction of
-/// what it leaves anyway; and standard errors, which few parameters of many may hide in.
+/// Share of the cost that may be left to gain in an opening: the model then errs by a fraction of
+/// what it leaves anyway.
 constexpr double kOpeningLeaves = 0.05;
+/// Standard errors that may be left with it: in many samples a parameter that is far off, but acts
+/// on few of them, is a small share of the cost.
 constexpr double kOpeningOffset = 10.0;
 /// Relative change of the cost below which coarse simulations tell no more.
 constexpr double kCoarseChange = 1e-4;
@@ -34,9 +36,9 @@ bool lets_go(const std::vector<bool>& held, const std::vector<bool>& now) {
 /// Whether an opening tells no more: the next one, a few times as long, tells much better.
 bool opening_is_told(const Problem& problem, const Evaluator& evaluator,
                      const OptimumCheck& check) {
-  const double residuals =
-      static_cast<double>(problem.residual_count()) * problem.share_at(evaluator.effort());
-  const bool noise = !problem.has_estimated_sd() && 2.0 * evaluator.best().cost <= residuals;
+  const Evaluation& best = evaluator.best();
+  const double residuals = best.share * static_cast<double>(problem.residual_count());
+  const bool noise = !problem.has_estimated_sd() && 2.0 * best.cost <= residuals;
   return noise || (check.reducible <= kOpeningLeaves && check.relative_offset <= kOpeningOffset);
 }
 

@@ -19,9 +19,8 @@ constexpr double kForeseen = 4.0;
 /// Iterations of one opening: the next one tells more.
 constexpr int kIterations = 10;
 
-double mean_square(const Problem& problem, const Evaluator& evaluator) {
-  return evaluator.best().cost / problem.share_at(evaluator.effort());
-}
+/// But for a factor that is the same for all openings.
+double mean_square(const Evaluation& evaluation) { return evaluation.cost / evaluation.share; }
 
 /// How many unknowns no other record tells.
 std::size_t own_unknowns(const Problem& problem, std::size_t condition) {
@@ -75,7 +74,7 @@ Openings by_openings(const Problem& problem, Evaluator& evaluator, std::vector<d
     evaluator.set_effort(Effort::opening(length_s));
     evaluator.evaluate(z);
     // What fits an opening and fails in the next one, worse than where it came from, is forgotten.
-    if (!evaluator.best().ok || mean_square(problem, evaluator) > kForeseen * foreseen)
+    if (!evaluator.best().ok || mean_square(evaluator.best()) > kForeseen * foreseen)
       evaluator.evaluate(before);
     if (!evaluator.best().ok) break;
     z = before = evaluator.best().z;
@@ -83,7 +82,7 @@ Openings by_openings(const Problem& problem, Evaluator& evaluator, std::vector<d
     used += descend(problem, evaluator, z, kFirstTrustRadius, most, start, counting).iterations;
     z = evaluator.best().z;
     result.ends.push_back(z);
-    foreseen = mean_square(problem, evaluator);
+    foreseen = mean_square(evaluator.best());
     if (evaluator.aborted()) return result;
     if (used >= budget) break;
   }

@@ -10,6 +10,7 @@ namespace rigcal::calib {
 /// intervals up to the longest first period.
 std::vector<double> opening_lengths_s(const Problem& problem);
 
+/// What the openings of a start came to.
 struct Openings {
   int iterations = 0;                     ///< that they took
   std::vector<std::vector<double>> ends;  ///< where each of them led, the longest last

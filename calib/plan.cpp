@@ -21,8 +21,6 @@ using datasets::Condition;
 using datasets::Record;
 
 constexpr double kPlannedWeak = 0.2;
-const std::string kSymmetryRemedy =
-    "a prior on mass or supply pressure, or a recorded pressure or force";
 
 bool takes_part(const Condition& condition) {
   return condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
@@ -228,7 +226,7 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
     const auto half = relative_half_width(result.all[j], result.parameters[j].value);
     const bool wanting = !problem.map.unknowns()[j].nuisance && (!half || *half > kPlannedWeak);
     result.remedies.push_back(
-        open[j]   ? kSymmetryRemedy
+        open[j]   ? std::string(kSymmetryRemedy)
         : wanting ? fmt::format("{}", fmt::join(remedies(problem, z, all, j), ", or "))
                   : "");
     if (!wanting) continue;

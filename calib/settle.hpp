@@ -6,9 +6,9 @@
 
 namespace rigcal::calib {
 
-/// Simulates the optimum with every row of it. Where the last step of the solver was predicted,
-/// also before a checkpoint, this tells whether it ends at a minimum; if not, solves on from there,
-/// every step simulated.
+/// Simulates the optimum with every row of it, which tells whether what claims to have converged is
+/// at a minimum: its last step may have been predicted, also that of a start that a checkpoint
+/// brought back. If it is not, solves on from there, every step simulated.
 ///
 /// @param found  its optimum becomes the simulated one, its result what that one is
 /// @return       rows per condition; empty if there is no optimum

@@ -195,10 +195,8 @@ void grade_symmetric(const ScalingSymmetry& symmetry, std::vector<FittedParamete
     each.robust_standard_error.reset();
     each.ci95.reset();
     each.interval = IntervalSource::none;
-    each.reason =
-        "left open by the scaling symmetry: a prior on mass or supply pressure, or a recorded "
-        "pressure or force, would tell it" +
-        known;
+    each.reason = fmt::format("left open by the scaling symmetry: {}, would tell it{}",
+                              kSymmetryRemedy, known);
   }
 }
 

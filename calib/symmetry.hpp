@@ -3,12 +3,17 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "calib/fit.hpp"
 #include "calib/problem.hpp"
 
 namespace rigcal::calib {
+
+/// What would tell parameters that a scaling symmetry leaves open.
+inline constexpr std::string_view kSymmetryRemedy =
+    "a prior on mass or supply pressure, or a recorded pressure or force";
 
 /// The scaling that leaves positions as they are: every force, pressure and stiffness times s, the
 /// flow gains of valve and leak divided by sqrt(s) (or s, where they are laminar). Exponent of s of
