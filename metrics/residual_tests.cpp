@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
+#include <utility>
 
 #include "metrics/distributions.hpp"
 
@@ -18,6 +19,11 @@ using Complex = std::complex<double>;
 constexpr double kLevel = 0.05;
 constexpr std::size_t kLeastSamples = 16;
 constexpr int kTestedLags = 25;
+
+/// 95 % of the autocorrelations of n samples of white noise lie within +-this.
+double white_band(double n) { return 1.96 / std::sqrt(n); }
+
+void conclude(Judged& test, Judged found) { test = std::move(found); }
 
 double two_sided_p(double z) { return std::erfc(std::abs(z) / std::sqrt(2.0)); }
 
@@ -68,7 +74,7 @@ Autocorrelation test_autocorrelation(const std::vector<double>& e, const std::ve
                                      double interval_s) {
   const auto n = static_cast<double>(e.size());
   Autocorrelation result;
-  result.band = 1.96 / std::sqrt(n);
+  result.band = white_band(n);
   const std::size_t lags = shown_lags(rho, result.band);
   result.values.assign(rho.begin(), rho.begin() + static_cast<std::ptrdiff_t>(lags) + 1);
   result.tested_lags = std::min<int>(kTestedLags, static_cast<int>(e.size() / 5));
@@ -85,21 +91,9 @@ Autocorrelation test_autocorrelation(const std::vector<double>& e, const std::ve
   std::size_t fall = 1;
   while (fall < e.size() && rho[fall] > result.band) ++fall;
   result.correlation_time_s = fall == 1 ? 0.0 : static_cast<double>(fall) * interval_s;
-  result.passed = result.p_value >= kLevel;
+  conclude(result, judge(result.p_value < kLevel,
+                         {n, result.band, kLargestUsefulBound, "an autocorrelation"}));
   return result;
-}
-
-/// n / (1 + 2 sum of rho) up to the first that is not positive (Geyer, Statistical Science 7,
-/// 1992, without his pairs).
-double effective_samples(const std::vector<double>& rho, double band) {
-  double sum = 0.0;
-  for (std::size_t k = 1; k < rho.size() && rho[k] > 0.0; ++k) {
-    // What white noise alone may show is no correlation.
-    if (k == 1 && rho[k] <= band) break;
-    sum += rho[k];
-  }
-  const auto n = static_cast<double>(rho.size());
-  return std::max(1.0, n / (1.0 + 2.0 * sum));
 }
 
 std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>& e,
@@ -111,7 +105,7 @@ std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>
   if (!(scale > 0.0) || !std::isfinite(scale)) return std::nullopt;
   const std::vector<double> products = lagged_products(padded_transform(e), padded_transform(u));
   CrossCorrelation result;
-  result.band = 1.96 / std::sqrt(effective);
+  result.band = white_band(effective);
   result.values.resize(2 * lags + 1);
   for (std::size_t i = 0; i < result.values.size(); ++i) {
     const std::size_t at = i >= lags ? i - lags : products.size() + i - lags;
@@ -123,7 +117,9 @@ std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>
   }
   const double tests = std::min(static_cast<double>(result.values.size()), effective);
   result.band_of_peak = normal_quantile(1.0 - 0.5 * kLevel / tests) / std::sqrt(effective);
-  result.passed = std::abs(result.peak) <= result.band_of_peak;
+  conclude(result, judge(std::abs(result.peak) > result.band_of_peak,
+                         {effective, result.band_of_peak, kLargestUsefulBound,
+                          "a correlation with the input"}));
   return result;
 }
 
@@ -165,7 +161,9 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
   }
   // Bartlett, An Introduction to Stochastic Processes, 1955: Kolmogorov and Smirnov's distance.
   result.limit = 1.358 / std::sqrt(std::max(1.0, lines - 1.0));
-  result.passed = result.distance <= result.limit;
+  conclude(result, judge(result.distance > result.limit,
+                         {static_cast<double>(e.size()), result.limit, kLargestUsefulBound,
+                          "a departure from a flat spectrum"}));
   const auto peak = static_cast<std::size_t>(
       std::distance(power.begin(), std::max_element(power.begin(), power.end())));
   result.peak_frequency_hz = static_cast<double>(peak + 1) * line_hz;
@@ -202,7 +200,10 @@ Normality test_normality(const std::vector<double>& e, double effective) {
       effective / 6.0 *
       (result.skewness * result.skewness + 0.25 * result.excess_kurtosis * result.excess_kurtosis);
   result.p_value = std::exp(-0.5 * result.jarque_bera);
-  result.passed = result.p_value >= kLevel;
+  // The statistic exceeds chi-square's 5 % point of two degrees by the kurtosis alone.
+  const double kurtosis = std::sqrt(-2.0 * std::log(kLevel) * 24.0 / effective);
+  conclude(result, judge(result.p_value < kLevel,
+                         {effective, kurtosis, kLargestUsefulKurtosis, "an excess kurtosis"}));
   std::vector<double> sorted = e;
   std::sort(sorted.begin(), sorted.end());
   // Equal steps of the normal quantile show the tails as well as the middle.
@@ -233,12 +234,25 @@ Drift test_drift(std::span<const double> residual, const std::vector<double>& e,
   const double error_of_mean = sd / std::sqrt(effective);
   result.mean_p_value = two_sided_p(result.mean / error_of_mean);
   result.slope_p_value = two_sided_p(slope * std::sqrt(variance_of_time) / error_of_mean);
-  // Two tests, so each at half the level.
-  result.passed = result.mean_p_value >= 0.5 * kLevel && result.slope_p_value >= 0.5 * kLevel;
+  // Two tests, so each at half the level. In units of the standard deviation both bounds are those
+  // of a correlation: with a constant, and with time.
+  const double level = 0.5 * kLevel;
+  conclude(result, judge(result.mean_p_value < level || result.slope_p_value < level,
+                         {effective, normal_quantile(1.0 - 0.5 * level) / std::sqrt(effective),
+                          kLargestUsefulBound, "an offset or trend, in standard deviations,"}));
   return result;
 }
 
 }  // namespace
+
+double effective_sample_size(std::span<const double> rho) {
+  const auto n = static_cast<double>(rho.size());
+  // What white noise alone may show is no correlation.
+  if (rho.size() < 2 || rho[1] <= white_band(n)) return n;
+  double sum = 0.0;
+  for (std::size_t k = 1; k < rho.size() && rho[k] > 0.0; ++k) sum += rho[k];
+  return std::max(1.0, n / (1.0 + 2.0 * sum));
+}
 
 ResidualTests residual_tests(std::span<const double> residual, std::span<const double> input,
                              double sample_interval_s) {
@@ -272,7 +286,7 @@ ResidualTests residual_tests(std::span<const double> residual, std::span<const d
   for (double& value : rho) value /= static_cast<double>(e.size()) * variance;
 
   result.autocorrelation = test_autocorrelation(e, rho, sample_interval_s);
-  result.effective_samples = effective_samples(rho, result.autocorrelation.band);
+  result.effective_samples = effective_sample_size(rho);
   if (!input.empty()) {
     result.cross_correlation =
         test_cross_correlation(e, centred(input), result.autocorrelation.values.size() - 1,

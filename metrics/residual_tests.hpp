@@ -4,15 +4,18 @@
 #include <span>
 #include <vector>
 
+#include "metrics/test_outcome.hpp"
+
 namespace rigcal::metrics {
 
 // Tests of the residual e of one record: what a model that explains everything leaves is white,
-// normal, without drift, and tells nothing of the input. Equidistant samples. Each test is at the
-// 5 % level; p values and bands use the effective number of samples where the samples are
-// correlated, and are approximate there.
+// normal, without drift, and uncorrelated with the input. Equidistant samples. Each test is at the
+// 5 % level and passed, failed, or not judged where it has no power (test_outcome.hpp). Tests of
+// whiteness count every sample, as white noise does; the others use the effective sample size where
+// the samples are correlated, and are approximate there.
 
-/// Correlation of the residual with itself.
-struct Autocorrelation {
+/// Correlation of the residual with itself: white noise has none.
+struct Autocorrelation : Judged {
   std::vector<double> values;  ///< shape (lags + 1), from lag 0; biased estimate, values[0] = 1
   double band = 0.0;           ///< 95 % of the values of white noise lie within +-band
   double ljung_box = 0.0;      ///< Ljung and Box, Biometrika 65, 1978, over `tested_lags`
@@ -20,21 +23,19 @@ struct Autocorrelation {
   double p_value = 0.0;
   double durbin_watson = 0.0;       ///< 2 for white noise, 0 for a residual that only creeps
   double correlation_time_s = 0.0;  ///< until the autocorrelation first falls within the band
-  bool passed = false;
 };
 
 /// Correlation of the residual with the input of the rig.
-struct CrossCorrelation {
+struct CrossCorrelation : Judged {
   std::vector<double> values;  ///< shape (2 lags + 1), from -lags: corr(e(t), u(t - lag))
-  double band = 0.0;           ///< 95 % for one lag, by the effective number of samples
+  double band = 0.0;           ///< 95 % for one lag, by the effective sample size
   double band_of_peak = 0.0;   ///< 95 % for the largest of all lags (Bonferroni)
   double peak = 0.0;           ///< of largest absolute value
   double peak_lag_s = 0.0;     ///< > 0: the residual follows the input
-  bool passed = false;
 };
 
 /// Where in frequency the residual has its power.
-struct Periodogram {
+struct Periodogram : Judged {
   std::vector<double> frequency_hz;  ///< shape (bins), logarithmic bins of the periodogram
   std::vector<double> density;       ///< mean one-sided power density, [unit^2/Hz]
   double median_frequency_hz = 0.0;  ///< half of the power lies below
@@ -42,33 +43,30 @@ struct Periodogram {
   double peak_share = 0.0;           ///< of the power in that line and its two neighbours
   double distance = 0.0;  ///< of the cumulative periodogram from a straight line (Bartlett)
   double limit = 0.0;     ///< 5 % critical distance of white noise
-  bool passed = false;
 };
 
 /// Distribution of the residual.
-struct Normality {
+struct Normality : Judged {
   std::vector<double> normal_quantile;    ///< shape (points), of the standard normal
   std::vector<double> residual_quantile;  ///< of (e - mean) / std
   double skewness = 0.0;
   double excess_kurtosis = 0.0;
   double jarque_bera = 0.0;  ///< Jarque and Bera, Economics Letters 6, 1980
   double p_value = 0.0;
-  bool passed = false;
 };
 
-/// Whether the residual has a mean or a trend.
-struct Drift {
+/// Whether the residual has a mean or a trend that differs from zero.
+struct Drift : Judged {
   double mean = 0.0;  ///< in the unit of e
   double mean_p_value = 0.0;
   double slope_per_s = 0.0;  ///< least squares, unit of e per second
   double slope_p_value = 0.0;
-  bool passed = false;  ///< neither differs from zero
 };
 
 struct ResidualTests {
   long samples = 0;
   double std = 0.0;                ///< of the residual
-  double effective_samples = 0.0;  ///< n / (1 + 2 sum of the first positive autocorrelations)
+  double effective_samples = 0.0;  ///< effective_sample_size()
   double sample_interval_s = 0.0;
   Autocorrelation autocorrelation;
   std::optional<CrossCorrelation> cross_correlation;  ///< absent where the input is constant
@@ -76,6 +74,15 @@ struct ResidualTests {
   Normality normality;
   Drift drift;
 };
+
+/// Effective sample size: as many independent samples would tell the mean as well as n correlated
+/// ones do, n / (1 + 2 sum of rho) with the autocorrelations up to the first that is not positive
+/// (Geyer, Statistical Science 7, 1992, without his pairs). n where the first is within the 95 %
+/// band of white noise. Negative autocorrelations beyond do not raise it: it is on the safe side.
+///
+/// @param rho  shape (n), n >= 1, from lag 0: rho[0] = 1
+/// @return     in [1, n]
+double effective_sample_size(std::span<const double> rho);
 
 /// @param residual           shape (n), n >= 16, any unit
 /// @param input              shape (n), or empty: reference or command

@@ -71,19 +71,19 @@ constexpr std::array kFormulas{
     Formula{"autocorrelation",
             "rho(k) = sum e(t) e(t-k) / sum e^2; band ± 1.96 / sqrt(n); test of Ljung and Box over "
             "25 lags"},
-    Formula{"effective samples", "n / (1 + 2 sum of rho) up to the first rho that is not positive"},
+    Formula{"effective sample size", "n / (1 + 2 sum of rho) up to the first rho that is not positive"},
     Formula{"cross-correlation",
             "sum e(t) u(t-lag) / (n std(e) std(u)), u the reference or command; band by the "
-            "effective samples, Bonferroni for the peak"},
+            "effective sample size, Bonferroni for the peak"},
     Formula{"periodogram",
             "power of each line of the Fourier transform, averaged over 30 bins a decade; test of "
             "the cumulative periodogram (Bartlett)"},
     Formula{"quantiles",
             "of (e - mean) / std over those of the normal distribution; test of Jarque and Bera "
-            "with the effective samples"},
+            "with the effective sample size"},
     Formula{"drift",
             "mean and least-squares slope of e, each against its standard error by the effective "
-            "samples"},
+            "sample size"},
     Formula{"share of the servo flow",
             "mean |Q_leak| / mean |Q_servo| of the model, over whole periods; a leak table looks "
             "for all coefficients at which it is the target"},

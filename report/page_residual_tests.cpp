@@ -95,6 +95,20 @@ constexpr std::array kTests{TestName{"autocorrelation", "Autocorrelation"},
                             TestName{"periodogram", "Periodogram"},
                             TestName{"normality", "Normality"}, TestName{"drift", "Drift"}};
 
+struct TestMark {
+  const char* mark;
+  const char* style;
+  const char* word;  ///< for who does not see the mark
+};
+
+const TestMark& mark_of(const Json& passed) {
+  static constexpr TestMark kPassed{"✓", "good", "passed"};
+  static constexpr TestMark kFailed{"!", "warn", "failed"};
+  static constexpr TestMark kNotJudged{"○", "none", "cannot be judged"};
+  if (!passed.is_boolean()) return kNotJudged;
+  return passed.get<bool>() ? kPassed : kFailed;
+}
+
 }  // namespace
 
 Json tests_view(const Json& condition, const Json& curves) {
@@ -109,10 +123,11 @@ Json tests_view(const Json& condition, const Json& curves) {
     for (const TestName& test : kTests) {
       const Json& found = tests.at(test.key);
       if (!found.is_object()) continue;
-      const bool passed = found.at("passed").get<bool>();
+      const TestMark& mark = mark_of(found.at("passed"));
       view["rows"].push_back({{"name", test.name},
-                              {"mark", passed ? "✓" : "!"},
-                              {"class", passed ? "good" : "warn"},
+                              {"mark", mark.mark},
+                              {"class", mark.style},
+                              {"word", mark.word},
                               {"verdict", text_of(found, "verdict")}});
     }
     if (curves.is_object() && curves.contains(channel) && curves.at(channel).is_object()) {

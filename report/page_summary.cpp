@@ -118,7 +118,7 @@ void add_misfit(const Json& result, std::vector<Reason>& reasons) {
   }
 }
 
-/// The residual that follows the input most: what a better model could still explain.
+/// The residual that the input explains most: what a better model could still take in.
 void add_driven_residual(const Json& result, std::vector<Reason>& reasons) {
   constexpr double kLeastShare = 0.1;  // of the variance; below it is hardly seen
   double largest = 0.0;
@@ -132,7 +132,7 @@ void add_driven_residual(const Json& result, std::vector<Reason>& reasons) {
       if (!found.is_object() || !found.at("cross_correlation").is_object()) continue;
       const Json& test = found.at("cross_correlation");
       const double peak = number_of(test, "peak").value_or(0.0);
-      if (test.at("passed").get<bool>() || peak * peak < kLeastShare) continue;
+      if (test.at("passed") != false || peak * peak < kLeastShare) continue;
       ++count;
       if (peak * peak <= largest) continue;
       largest = peak * peak;
@@ -141,13 +141,14 @@ void add_driven_residual(const Json& result, std::vector<Reason>& reasons) {
     }
   }
   if (count == 0) return;
-  const std::string others = count == 1   ? std::string()
-                             : count == 2 ? std::string(", and 1 other likewise")
-                                          : fmt::format(", and {} others likewise", count - 1);
+  const std::string others = count == 1 ? std::string()
+                             : count == 2
+                                 ? std::string(" (and 1 other channel likewise)")
+                                 : fmt::format(" (and {} other channels likewise)", count - 1);
   reasons.push_back(
       {kDriven,
-       fmt::format("{}: {:.0f} % of what is left of {} follows the input{}: dynamics that the "
-                   "model lacks, or a wrong parameter",
+       fmt::format("{}: {:.0f} % of the residual variance of {} is linearly explained by the "
+                   "input{}: unmodelled dynamics, or a wrong parameter",
                    condition_id, 100.0 * largest, channel_name, others),
        anchor(condition_id)});
 }

@@ -13,37 +13,41 @@ using metrics::ResidualTests;
 
 std::string hertz(double value) { return fmt::format("{:.3g} Hz", value); }
 
+std::string not_judged(const metrics::Judged& test) { return "cannot be judged: " + test.reason; }
+
 std::string autocorrelation_words(const ResidualTests& tests) {
   const auto& test = tests.autocorrelation;
-  if (test.passed)
-    return fmt::format("white: no sample tells of the next ({})", p_value_text(test.p_value));
+  const std::string p = p_value_text(test.p_value);
+  if (test.passed()) return fmt::format("no significant autocorrelation ({})", p);
+  if (!test.failed()) return not_judged(test);
   constexpr double kNoLoss = 0.99;
-  if (tests.effective_samples > kNoLoss * static_cast<double>(tests.samples)) {
-    return fmt::format("slightly coloured ({}): no sample weighs less for it",
-                       p_value_text(test.p_value));
-  }
+  if (tests.effective_samples > kNoLoss * static_cast<double>(tests.samples))
+    return fmt::format("weak but significant ({}): no loss of effective sample size", p);
   return fmt::format(
-      "coloured ({}): correlated for {}, so that {} samples weigh like {:.0f}; the model misses "
-      "something, or the noise is not white",
-      p_value_text(test.p_value), readable(test.correlation_time_s, "s", 2), tests.samples,
-      tests.effective_samples);
+      "significant ({}) up to a lag of {}: effective sample size {:.0f} of {}; unmodelled "
+      "dynamics, "
+      "or noise that is not white",
+      p, readable(test.correlation_time_s, "s", 2), std::floor(tests.effective_samples),
+      tests.samples);
 }
 
 std::string cross_correlation_words(const metrics::CrossCorrelation& test) {
-  if (test.passed) {
-    return fmt::format("independent of the input: at most {:.2g}, within {:.2g}",
-                       std::abs(test.peak), test.band_of_peak);
-  }
+  const std::string peak = fmt::format("largest correlation {:.2g}, 95 % bound {:.2g}",
+                                       std::abs(test.peak), test.band_of_peak);
+  if (test.passed()) return fmt::format("not significantly correlated with the input: {}", peak);
+  if (!test.failed()) return not_judged(test);
   return fmt::format(
-      "depends on the input: correlation {:.2g} at a lag of {}, which explains {:.0f} % of its "
-      "variance; dynamics that the model lacks, or a wrong parameter",
-      test.peak, readable(test.peak_lag_s, "s", 2), 100.0 * test.peak * test.peak);
+      "{:.0f} % of the residual variance is linearly explained by the input (correlation {:.2g} at "
+      "a lag of {}, 95 % bound {:.2g}): unmodelled dynamics, or a wrong parameter",
+      100.0 * test.peak * test.peak, test.peak, readable(test.peak_lag_s, "s", 2),
+      test.band_of_peak);
 }
 
 std::string periodogram_words(const metrics::Periodogram& test) {
-  if (test.passed) return "flat: no frequency stands out";
+  if (test.passed()) return "consistent with a flat spectrum (white noise)";
+  if (!test.failed()) return not_judged(test);
   std::string text =
-      fmt::format("not flat: half of its power lies below {}", hertz(test.median_frequency_hz));
+      fmt::format("not flat: half of the power lies below {}", hertz(test.median_frequency_hz));
   if (test.peak_share >= 0.1) {
     text += fmt::format(", {:.0f} % at {}", 100.0 * test.peak_share, hertz(test.peak_frequency_hz));
   }
@@ -51,23 +55,35 @@ std::string periodogram_words(const metrics::Periodogram& test) {
 }
 
 std::string normality_words(const metrics::Normality& test) {
-  if (test.passed) return fmt::format("normal ({})", p_value_text(test.p_value));
+  if (test.passed())
+    return fmt::format("consistent with a normal distribution ({})", p_value_text(test.p_value));
+  if (!test.failed()) return not_judged(test);
   std::string text = fmt::format("not normal ({})", p_value_text(test.p_value));
   if (test.excess_kurtosis > 0.5) text += ", heavy tails or rare bursts";
-  if (test.excess_kurtosis < -0.5) text += ", flatter than a bell, as a wave is";
+  if (test.excess_kurtosis < -0.5) text += ", light tails, as those of a sine wave";
   if (std::abs(test.skewness) > 0.3)
-    text += test.skewness > 0.0 ? ", skewed upwards" : ", skewed downwards";
+    text += test.skewness > 0.0 ? ", skewed to the right" : ", skewed to the left";
   return text;
 }
 
 std::string drift_words(const ResidualTests& tests, std::string_view unit) {
   const auto& test = tests.drift;
-  if (test.passed) return "none: neither offset nor trend";
+  if (test.passed()) return "no significant offset or trend";
+  if (!test.failed()) return not_judged(test);
   const double span =
       test.slope_per_s * tests.sample_interval_s * static_cast<double>(tests.samples);
   return fmt::format("offset {} ({}), trend {} over the record ({})", readable(test.mean, unit, 3),
                      p_value_text(test.mean_p_value), readable(span, unit, 3),
                      p_value_text(test.slope_p_value));
+}
+
+/// `passed` and `reason` are null where they do not apply.
+Json with_outcome(const metrics::Judged& test, Json json) {
+  const bool judged = test.outcome != metrics::TestOutcome::not_judged;
+  json["passed"] = judged ? Json(test.passed()) : Json(nullptr);
+  json["outcome"] = std::string(metrics::to_string(test.outcome));
+  json["reason"] = judged ? Json(nullptr) : Json(test.reason);
+  return json;
 }
 
 /// Every k-th value, so that at most about 200 are left.
@@ -121,43 +137,41 @@ Json residual_tests_json(const ResidualTests& tests, std::string_view unit) {
   json["std"] = number(tests.std);
   json["effective_samples"] = number(tests.effective_samples);
   const auto& rho = tests.autocorrelation;
-  json["autocorrelation"] = {{"passed", rho.passed},
-                             {"ljung_box", number(rho.ljung_box)},
-                             {"tested_lags", rho.tested_lags},
-                             {"p_value", number(rho.p_value)},
-                             {"durbin_watson", number(rho.durbin_watson)},
-                             {"correlation_time_s", number(rho.correlation_time_s)},
-                             {"verdict", autocorrelation_words(tests)}};
+  json["autocorrelation"] =
+      with_outcome(rho, {{"ljung_box", number(rho.ljung_box)},
+                         {"tested_lags", rho.tested_lags},
+                         {"p_value", number(rho.p_value)},
+                         {"durbin_watson", number(rho.durbin_watson)},
+                         {"correlation_time_s", number(rho.correlation_time_s)},
+                         {"verdict", autocorrelation_words(tests)}});
   json["cross_correlation"] = nullptr;
   if (const auto& cross = tests.cross_correlation) {
-    json["cross_correlation"] = {{"passed", cross->passed},
-                                 {"peak", number(cross->peak)},
-                                 {"peak_lag_s", number(cross->peak_lag_s)},
-                                 {"limit", number(cross->band_of_peak)},
-                                 {"verdict", cross_correlation_words(*cross)}};
+    json["cross_correlation"] =
+        with_outcome(*cross, {{"peak", number(cross->peak)},
+                              {"peak_lag_s", number(cross->peak_lag_s)},
+                              {"limit", number(cross->band_of_peak)},
+                              {"verdict", cross_correlation_words(*cross)}});
   }
   const auto& spectrum = tests.periodogram;
-  json["periodogram"] = {{"passed", spectrum.passed},
-                         {"distance", number(spectrum.distance)},
-                         {"limit", number(spectrum.limit)},
-                         {"median_frequency_hz", number(spectrum.median_frequency_hz)},
-                         {"peak_frequency_hz", number(spectrum.peak_frequency_hz)},
-                         {"peak_share", number(spectrum.peak_share)},
-                         {"verdict", periodogram_words(spectrum)}};
+  json["periodogram"] =
+      with_outcome(spectrum, {{"distance", number(spectrum.distance)},
+                              {"limit", number(spectrum.limit)},
+                              {"median_frequency_hz", number(spectrum.median_frequency_hz)},
+                              {"peak_frequency_hz", number(spectrum.peak_frequency_hz)},
+                              {"peak_share", number(spectrum.peak_share)},
+                              {"verdict", periodogram_words(spectrum)}});
   const auto& shape = tests.normality;
-  json["normality"] = {{"passed", shape.passed},
-                       {"skewness", number(shape.skewness)},
-                       {"excess_kurtosis", number(shape.excess_kurtosis)},
-                       {"jarque_bera", number(shape.jarque_bera)},
-                       {"p_value", number(shape.p_value)},
-                       {"verdict", normality_words(shape)}};
+  json["normality"] = with_outcome(shape, {{"skewness", number(shape.skewness)},
+                                           {"excess_kurtosis", number(shape.excess_kurtosis)},
+                                           {"jarque_bera", number(shape.jarque_bera)},
+                                           {"p_value", number(shape.p_value)},
+                                           {"verdict", normality_words(shape)}});
   const auto& drift = tests.drift;
-  json["drift"] = {{"passed", drift.passed},
-                   {"mean", number(drift.mean)},
-                   {"mean_p_value", number(drift.mean_p_value)},
-                   {"slope_per_s", number(drift.slope_per_s)},
-                   {"slope_p_value", number(drift.slope_p_value)},
-                   {"verdict", drift_words(tests, unit)}};
+  json["drift"] = with_outcome(drift, {{"mean", number(drift.mean)},
+                                       {"mean_p_value", number(drift.mean_p_value)},
+                                       {"slope_per_s", number(drift.slope_per_s)},
+                                       {"slope_p_value", number(drift.slope_p_value)},
+                                       {"verdict", drift_words(tests, unit)}});
   return json;
 }
 

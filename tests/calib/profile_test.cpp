@@ -7,6 +7,7 @@
 
 #include "calib/bootstrap.hpp"
 #include "calib/cross_validation.hpp"
+#include "calib/evaluator.hpp"
 #include "calib/interval_advice.hpp"
 #include "tests/calib/twin.hpp"
 #include "tests/support/sanitized.hpp"

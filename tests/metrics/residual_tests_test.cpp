@@ -42,11 +42,11 @@ TEST_CASE("residual_tests: each is passed by white noise about as often as its l
   constexpr int kDraws = 200;
   for (unsigned seed = 0; seed < kDraws; ++seed) {
     const ResidualTests tests = residual_tests(white(1000, seed + 1), input, 0.01);
-    colour += tests.autocorrelation.passed ? 0 : 1;
-    cross += tests.cross_correlation->passed ? 0 : 1;
-    spectrum += tests.periodogram.passed ? 0 : 1;
-    shape += tests.normality.passed ? 0 : 1;
-    drift += tests.drift.passed ? 0 : 1;
+    colour += tests.autocorrelation.passed() ? 0 : 1;
+    cross += tests.cross_correlation->passed() ? 0 : 1;
+    spectrum += tests.periodogram.passed() ? 0 : 1;
+    shape += tests.normality.passed() ? 0 : 1;
+    drift += tests.drift.passed() ? 0 : 1;
   }
   // 5 % of 200 is 10 with a standard deviation of 3.1; Bonferroni keeps the cross test below.
   CHECK(colour <= 22);
@@ -61,8 +61,8 @@ TEST_CASE("residual_tests: each is passed by white noise about as often as its l
 TEST_CASE("residual_tests: a first-order process has its known autocorrelation", "[metrics]") {
   const double phi = 0.95;
   const ResidualTests tests = residual_tests(first_order(white(20000, 7), phi), {}, 0.001);
-  CHECK_FALSE(tests.autocorrelation.passed);
-  CHECK_FALSE(tests.periodogram.passed);
+  CHECK_FALSE(tests.autocorrelation.passed());
+  CHECK_FALSE(tests.periodogram.passed());
   CHECK_FALSE(tests.cross_correlation.has_value());
   for (const std::size_t lag : {1U, 5U, 20U}) {
     // Bartlett's standard deviation at these lags is below 0.045.
@@ -80,7 +80,7 @@ TEST_CASE("residual_tests: what follows the input late is found at its lag", "[m
   for (std::size_t i = 7; i < residual.size(); ++i) residual[i] += 0.5 * input[i - 7];
   const ResidualTests tests = residual_tests(residual, input, 0.01);
   REQUIRE(tests.cross_correlation.has_value());
-  CHECK_FALSE(tests.cross_correlation->passed);
+  CHECK_FALSE(tests.cross_correlation->passed());
   CHECK_THAT(tests.cross_correlation->peak_lag_s, Catch::WithinAbs(0.07, 1e-12));
   CHECK_THAT(tests.cross_correlation->peak, Catch::WithinAbs(0.5 / std::sqrt(1.25), 0.05));
 }
@@ -90,7 +90,7 @@ TEST_CASE("residual_tests: the periodogram finds a line and keeps the power", "[
   const std::vector<double> line = sine(5000, 10.0, 0.001);
   for (std::size_t i = 0; i < line.size(); ++i) residual[i] += 2.0 * line[i];
   const ResidualTests tests = residual_tests(residual, {}, 0.001);
-  CHECK_FALSE(tests.periodogram.passed);
+  CHECK_FALSE(tests.periodogram.passed());
   CHECK_THAT(tests.periodogram.peak_frequency_hz, Catch::WithinAbs(10.0, 0.21));
   // 2 of 3 units of variance
   CHECK_THAT(tests.periodogram.peak_share, Catch::WithinAbs(2.0 / 3.0, 0.05));
@@ -103,16 +103,61 @@ TEST_CASE("residual_tests: heavy tails and trends are named", "[metrics]") {
   std::vector<double> cubed = white(2000, 8);
   for (double& value : cubed) value = value * value * value;
   const ResidualTests heavy = residual_tests(cubed, {}, 0.01);
-  CHECK_FALSE(heavy.normality.passed);
+  CHECK_FALSE(heavy.normality.passed());
   CHECK(heavy.normality.excess_kurtosis > 5.0);
   CHECK(heavy.normality.residual_quantile.back() > heavy.normality.normal_quantile.back());
 
   std::vector<double> trend = white(2000, 9);
   for (std::size_t i = 0; i < trend.size(); ++i) trend[i] += 0.02 * 0.01 * static_cast<double>(i);
   const ResidualTests drift = residual_tests(trend, {}, 0.01);
-  CHECK_FALSE(drift.drift.passed);
+  CHECK_FALSE(drift.drift.passed());
   // Standard error of the slope: 1 / (sqrt(2000) * 5.77 s) = 0.004 per s
   CHECK_THAT(drift.drift.slope_per_s, Catch::WithinAbs(0.02, 0.016));
+}
+
+TEST_CASE("residual_tests: a test without power is no pass", "[metrics]") {
+  // Half a wave fills the record: hardly an independent sample is left.
+  std::vector<double> slow = sine(2000, 0.25, 0.001);
+  const std::vector<double> noise = white(2000, 11);
+  for (std::size_t i = 0; i < slow.size(); ++i) slow[i] += 0.01 * noise[i];
+  const ResidualTests tests = residual_tests(slow, noise, 0.001);
+  CHECK(tests.effective_samples < 10.0);
+  REQUIRE(tests.cross_correlation.has_value());
+  using rigcal::metrics::TestOutcome;
+  CHECK(tests.cross_correlation->outcome == TestOutcome::not_judged);
+  CHECK(tests.normality.outcome == TestOutcome::not_judged);
+  CHECK(tests.drift.outcome == TestOutcome::not_judged);
+  CHECK_FALSE(tests.drift.reason.empty());
+  // All 2000 samples count against whiteness.
+  CHECK(tests.autocorrelation.outcome == TestOutcome::failed);
+  CHECK(tests.periodogram.outcome == TestOutcome::failed);
+
+  // 50 white samples tell offsets, trends and correlations of half a standard deviation, but not
+  // the tails of a distribution; 16 tell no spectrum either.
+  const ResidualTests some = residual_tests(white(50, 12), white(50, 13), 0.001);
+  CHECK(some.drift.outcome == TestOutcome::passed);
+  CHECK(some.cross_correlation->outcome == TestOutcome::passed);
+  CHECK(some.normality.outcome == TestOutcome::not_judged);
+  const ResidualTests few = residual_tests(white(16, 14), white(16, 15), 0.001);
+  CHECK(few.autocorrelation.outcome == TestOutcome::passed);
+  CHECK(few.cross_correlation->outcome == TestOutcome::not_judged);
+  CHECK(few.periodogram.outcome == TestOutcome::not_judged);
+}
+
+TEST_CASE("effective_sample_size: closed form of a geometric decay", "[metrics]") {
+  using rigcal::metrics::effective_sample_size;
+  std::vector<double> rho(1000, 0.0);
+  for (std::size_t k = 0; k < rho.size(); ++k) rho[k] = std::pow(0.5, static_cast<double>(k));
+  CHECK_THAT(effective_sample_size(rho), Catch::WithinRel(1000.0 / 3.0, 1e-12));
+  // Only what lies before the first that is not positive counts.
+  rho[2] = 0.0;
+  CHECK_THAT(effective_sample_size(rho), Catch::WithinRel(500.0, 1e-12));
+  // The first within 1.96 / sqrt(1000) = 0.06198: white.
+  rho[1] = 0.0619;
+  CHECK(effective_sample_size(rho) == 1000.0);
+  rho[1] = 0.0620;
+  CHECK(effective_sample_size(rho) < 900.0);
+  CHECK(effective_sample_size(std::vector<double>(1000, 1.0)) == 1.0);
 }
 
 TEST_CASE("residual_tests: does not depend on the unit", "[metrics]") {

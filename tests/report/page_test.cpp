@@ -115,10 +115,21 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     for (const char* key : {"autocorrelation", "periodogram", "normality", "drift"})
       tests[key] = nullptr;
     Json& test = tests["cross_correlation"];
-    test = {{"passed", false}, {"peak", -0.8}, {"verdict", "depends on the input"}};
-    CHECK_THAT(page(json), Contains("sine: 64 % of what is left of position follows the input"));
+    test = {{"passed", false}, {"peak", -0.8}, {"verdict", "explained by the input"}};
+    const std::string failed = page(json);
+    CHECK_THAT(failed, Contains("sine: 64 % of the residual variance of position is linearly"));
+    CHECK_THAT(failed, Contains("<span class=\"tag warn\" role=\"img\" aria-label=\"failed\">!"));
     test["peak"] = 0.2;
-    CHECK_THAT(page(json), !Contains("follows the input"));
+    CHECK_THAT(page(json), !Contains("64 %") && !Contains("linearly explained"));
+    test["peak"] = -0.8;
+    test["passed"] = nullptr;
+    test["verdict"] = "cannot be judged: effective sample size 3";
+    const std::string open = page(json);
+    CHECK_THAT(open, !Contains("linearly explained") && Contains("effective sample size 3"));
+    CHECK_THAT(open, Contains("aria-label=\"cannot be judged\">○") && !Contains("tag good\">✓"));
+    test["passed"] = true;
+    CHECK_THAT(page(json),
+               Contains("<span class=\"tag good\" role=\"img\" aria-label=\"passed\">✓"));
   }
   SECTION("outside the limits") {
     json["verdict"] = json["conditions"][0]["verdict"] = "FAIL";
