@@ -25,6 +25,9 @@ std::vector<double> holm(std::span<const double> p_values);
 /// @throws std::invalid_argument  a count is negative
 double sign_test_p_value(int better, int worse);
 
+/// Fewest pairs with which a sign test can reach the 5 % level: 2 / 2^6 = 0.031, 2 / 2^5 = 0.063.
+inline constexpr int kLeastSignPairs = 6;
+
 /// A straight line through estimates with standard errors, by weighted least squares.
 struct Trend {
   double slope = 0.0;  ///< unit of y per unit of x

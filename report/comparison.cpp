@@ -57,8 +57,8 @@ Json comparison_warnings(const std::vector<Compared>& results) {
   for (std::size_t i = 1; i < results.size(); ++i) {
     if (share_records(results[0].result, results[i].result)) {
       list.push_back(fmt::format(
-          "{} and {} share {}: their estimates are not independent, so that no significance "
-          "is given for differences between them",
+          "{} and {} share {}: their estimates are not independent, so differences between "
+          "them are not tested for significance",
           results[0].name, results[i].name,
           is_of_tables(results[i].result) ? "published numbers" : "records"));
     }
@@ -91,8 +91,9 @@ Json comparison_json(const std::vector<Compared>& results, const Provenance& pro
   for (const Compared& compared : results)
     json["results"].push_back(compared_result_json(compared));
   json["parameters"] = compared_parameters(results);
+  json["significance"] = tested_parameters(json["parameters"], results.size());
   json["conditions"] = compared_conditions(results);
-  json["metrics"] = compared_metrics(json["conditions"], results.size());
+  json["metrics"] = compared_metrics(json["conditions"], results);
   json["models"] = models_json(results);
   json["records"] = compared_records(results);
   json["leak_trends"] = leak_trends(results);

@@ -55,7 +55,7 @@ Json difference_json(const Json& first, const Json& other, bool same_records) {
   if (!a || !b) return reason("one has no value");
   const bool first_fitted = first.at("fitted").get<bool>();
   const bool other_fitted = other.at("fitted").get<bool>();
-  if (!first_fitted && !other_fitted) return reason("known in both");
+  if (!first_fitted && !other_fitted) return reason(kKnownInBoth);
   const auto error = [](const Json& estimate) -> std::optional<double> {
     if (!estimate.at("fitted").get<bool>()) return 0.0;
     return number_of(estimate, "standard_error");

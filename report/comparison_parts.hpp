@@ -15,6 +15,9 @@ namespace rigcal::report {
 
 inline constexpr double kSignificantLevel = 0.05;
 
+/// Reason of a difference between values that neither result estimates.
+inline constexpr const char* kKnownInBoth = "known in both";
+
 /// Converged or stopped: its numbers may be shown.
 bool is_usable(const Json& result);
 /// A fit to published tables; it has no records.
@@ -31,12 +34,32 @@ bool share_records(const Json& a, const Json& b);
 
 /// `parameters` of comparison.json: estimates side by side, differences from the first.
 Json compared_parameters(const std::vector<Compared>& results);
+/// `significance`: per result, null for the first, how many parameters that one of the two
+/// estimates were compared with the first, how many of these tested, and why the others were not,
+/// in words.
+///
+/// @param parameters  as compared_parameters() gives them, of `results` results
+Json tested_parameters(const Json& parameters, std::size_t results);
+
+/// A difference from the first result that a reader must see: significant, or not tested.
+struct Change {
+  std::string parameter, result;
+  double percent = 0.0;
+  std::optional<double> p;  ///< for all parameters together; absent where it was not tested
+  std::string reason;       ///< why not
+};
+/// The significant ones first, the surest before the others; then the others, the largest first.
+///
+/// @param comparison  with `results` and `parameters`
+std::vector<Change> changes_of(const Json& comparison);
+
 /// `conditions`: scores side by side.
 Json compared_conditions(const std::vector<Compared>& results);
-/// `metrics`: means over the conditions that the first and another result have, sign tests.
+/// `metrics`: means over the conditions that the first and another result have; a sign test where
+/// the records are not shared and enough conditions differ.
 ///
-/// @param conditions  as compared_conditions() gives them, of `count` results
-Json compared_metrics(const Json& conditions, std::size_t count);
+/// @param conditions  as compared_conditions() gives them, of `results`
+Json compared_metrics(const Json& conditions, const std::vector<Compared>& results);
 /// `records`: which file went into which result.
 Json compared_records(const std::vector<Compared>& results);
 /// `leak_trends`: leakage coefficients along dates and temperatures.

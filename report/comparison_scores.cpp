@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 
@@ -27,7 +29,7 @@ Json score_of(const Json* condition, const std::string& channel, bool usable) {
 
 /// Means over the conditions that both have, and in how many of them the other is the better.
 Json metric_against(const Json& conditions, const std::string& channel, const char* metric,
-                    std::size_t other) {
+                    std::size_t other, bool shared) {
   const bool higher_is_better = std::string_view(metric) != "absolute_error_percent";
   int better = 0;
   int worse = 0;
@@ -48,15 +50,24 @@ Json metric_against(const Json& conditions, const std::string& channel, const ch
     ++((*b > *a) == higher_is_better ? better : worse);
   }
   if (pairs == 0) return nullptr;
-  const double p = metrics::sign_test_p_value(better, worse);
   Json json;
   json["conditions"] = pairs;
   json["mean_of_first"] = number(first_sum / pairs);
   json["mean"] = number(other_sum / pairs);
   json["better"] = better;
   json["worse"] = worse;
-  json["p_value"] = number(p);
-  json["significant"] = p < kSignificantLevel;
+  json["p_value"] = json["significant"] = json["reason"] = nullptr;
+  const int untied = better + worse;
+  if (shared) {
+    json["reason"] = "not tested: the results share records, so their scores are not independent";
+  } else if (untied < metrics::kLeastSignPairs) {
+    json["reason"] = fmt::format("not tested: {} condition{}, and a sign test needs {}", untied,
+                                 untied == 1 ? "" : "s", metrics::kLeastSignPairs);
+  } else {
+    const double p = metrics::sign_test_p_value(better, worse);
+    json["p_value"] = number(p);
+    json["significant"] = p < kSignificantLevel;
+  }
   return json;
 }
 
@@ -92,7 +103,7 @@ Json compared_conditions(const std::vector<Compared>& results) {
   return list;
 }
 
-Json compared_metrics(const Json& conditions, std::size_t count) {
+Json compared_metrics(const Json& conditions, const std::vector<Compared>& results) {
   std::vector<std::string> channels;
   for (const Json& condition : conditions) {
     const std::string channel = text_of(condition, "channel");
@@ -103,8 +114,10 @@ Json compared_metrics(const Json& conditions, std::size_t count) {
   for (const std::string& channel : channels) {
     for (const char* metric : kComparedMetrics) {
       Json against = Json::array({nullptr});
-      for (std::size_t i = 1; i < count; ++i)
-        against.push_back(metric_against(conditions, channel, metric, i));
+      for (std::size_t i = 1; i < results.size(); ++i) {
+        against.push_back(metric_against(conditions, channel, metric, i,
+                                         share_records(results[0].result, results[i].result)));
+      }
       list.push_back({{"channel", channel}, {"metric", metric}, {"against_first", against}});
     }
   }

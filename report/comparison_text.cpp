@@ -20,7 +20,7 @@ std::string titled(const std::string& title, const std::string& body, const Styl
 std::string narrow_note(const TextTable& table, std::size_t columns) {
   const std::vector<std::string> left_out = table.left_out(columns);
   if (left_out.empty()) return {};
-  return wrapped(fmt::format("  for want of room without {}: they are in comparison.json",
+  return wrapped(fmt::format("  columns hidden (narrow terminal): {}; see comparison.json",
                              fmt::join(left_out, ", ")),
                  columns, 2) +
          "\n";
@@ -75,10 +75,10 @@ std::string difference_text(const Json& difference) {
   if (!percent) return "-";
   std::string text = fmt::format("{:+.3g} %", *percent);
   if (const auto p = number_of(difference, "p_value_of_all")) {
-    text += fmt::format(" ({}){}", p_value_text(*p),
-                        difference.at("significant").get<bool>() ? " *" : "");
+    return text + fmt::format(" ({}){}", p_value_text(*p),
+                              difference.at("significant").get<bool>() ? " *" : "");
   }
-  return text;
+  return difference.at("reason") == kKnownInBoth ? text : text + " (not tested)";
 }
 
 /// A column per result.
@@ -143,6 +143,12 @@ std::string metric_title(const std::string& metric) {
   return metric == "absolute_error_percent" ? "error %" : metric;
 }
 
+std::string sign_test_text(const Json& against) {
+  const auto p = number_of(against, "p_value");
+  if (!p) return "not tested";
+  return p_value_text(*p) + (against.at("significant").get<bool>() ? " *" : "");
+}
+
 std::string metrics_table(const Json& comparison, std::size_t columns) {
   TextTable table({{"channel"},
                    {"metric"},
@@ -158,17 +164,14 @@ std::string metrics_table(const Json& comparison, std::size_t columns) {
     for (std::size_t i = 1; i < against.size(); ++i) {
       if (!against[i].is_object()) continue;
       const auto mean_text = [&](const char* key) {
-        const auto value = number_of(against[i], key);
-        return value ? fmt::format("{:.6g}", *value) : std::string("-");
+        return text_of(shown_score(text_of(metric, "metric"), against[i].at(key)), "text");
       };
       table.add({text_of(metric, "channel"), metric_title(text_of(metric, "metric")),
                  text_of(comparison.at("results")[i], "name"),
                  fmt::format("{}", against[i].at("conditions").get<int>()),
                  mean_text("mean_of_first"), mean_text("mean"),
                  fmt::format("{}", against[i].at("better").get<int>()),
-                 fmt::format("{}", against[i].at("worse").get<int>()),
-                 p_value_text(against[i].at("p_value").get<double>()) +
-                     (against[i].at("significant").get<bool>() ? " *" : "")});
+                 fmt::format("{}", against[i].at("worse").get<int>()), sign_test_text(against[i])});
     }
   }
   return table.empty() ? std::string() : table.text(columns) + narrow_note(table, columns);
@@ -223,6 +226,13 @@ std::string comparison_text(const Json& comparison, const Style& style) {
       "Parameters with 95 % intervals; change from the first; * significant at 5 % for "
       "all parameters together (Holm)",
       estimates_table(comparison, columns), style);
+  for (std::size_t i = 1; i < comparison.at("significance").size(); ++i) {
+    text += wrapped(fmt::format("{}: {}", text_of(comparison.at("results")[i], "name"),
+                                text_of(comparison.at("significance")[i], "text")),
+                    columns, 2) +
+            "\n";
+  }
+  if (comparison.at("significance").size() > 1) text += "\n";
   text += titled(
       "Scores, mean over the conditions that both have, of the first and of the other; "
       "* significant at 5 %",

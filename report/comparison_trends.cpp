@@ -59,7 +59,8 @@ struct Along {
 constexpr std::array kAlong{Along{"day", "along_date", "slope_per_day"},
                             Along{"temperature_k", "along_temperature", "slope_per_k"}};
 
-Json trend_json(const Json& points, const Along& along) {
+/// @param shared  whether results of the series share records
+Json trend_json(const Json& points, const Along& along, bool shared) {
   std::vector<double> x, y, error;
   for (const Json& point : points) {
     const auto at = number_of(point, along.key);
@@ -77,10 +78,12 @@ Json trend_json(const Json& points, const Along& along) {
     json[key] = nullptr;
   json["reason"] = nullptr;
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  if (x.size() < 3 || *low == *high) {
+  if (x.size() < 3 || *low == *high || shared) {
     json["reason"] = x.empty()      ? "no estimate has it"
                      : x.size() < 3 ? "fewer than three estimates with an error"
-                                    : "all estimates are at the same place";
+                     : *low == *high
+                         ? "all estimates are at the same place"
+                         : "not tested: the results share records, so they are not independent";
     return json;
   }
   const metrics::Trend trend = metrics::weighted_trend(x, y, error);
@@ -94,10 +97,25 @@ Json trend_json(const Json& points, const Along& along) {
   return json;
 }
 
+bool any_share_records(const std::vector<const Json*>& results) {
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    for (std::size_t j = i + 1; j < results.size(); ++j) {
+      // Several levels of one fit are told apart by their own records.
+      if (results[i] != results[j] && share_records(*results[i], *results[j])) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 Json leak_trends(const std::vector<Compared>& results) {
-  std::vector<std::pair<std::string, Json>> series;
+  struct Series {
+    std::string name;
+    Json points = Json::array();
+    std::vector<const Json*> results;
+  };
+  std::vector<Series> series;
   for (const Compared& compared : results) {
     if (!is_usable(compared.result)) continue;
     for (const Json& parameter : compared.result.at("parameters")) {
@@ -105,8 +123,9 @@ Json leak_trends(const std::vector<Compared>& results) {
         continue;
       const std::string name = series_of(compared.result, parameter);
       auto found = std::find_if(series.begin(), series.end(),
-                                [&](const auto& each) { return each.first == name; });
-      if (found == series.end()) found = series.insert(series.end(), {name, Json::array()});
+                                [&](const auto& each) { return each.name == name; });
+      if (found == series.end())
+        found = series.insert(series.end(), Series{name, Json::array(), {}});
       Json point;
       point["result"] = compared.name;
       point["level"] = parameter.at("level");
@@ -120,13 +139,15 @@ Json leak_trends(const std::vector<Compared>& results) {
       point["value"] = parameter.at("value");
       point["standard_error"] = number(error_of(parameter));
       point["ci95"] = parameter.at("ci95");
-      found->second.push_back(std::move(point));
+      found->points.push_back(std::move(point));
+      found->results.push_back(&compared.result);
     }
   }
   Json list = Json::array();
-  for (const auto& [name, points] : series) {
-    Json json{{"of", name}, {"points", points}};
-    for (const Along& along : kAlong) json[along.trend] = trend_json(points, along);
+  for (const Series& each : series) {
+    Json json{{"of", each.name}, {"points", each.points}};
+    const bool shared = any_share_records(each.results);
+    for (const Along& along : kAlong) json[along.trend] = trend_json(each.points, along, shared);
     list.push_back(std::move(json));
   }
   return list;

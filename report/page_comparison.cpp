@@ -38,7 +38,9 @@ Json change_cell(const Json& difference) {
           {"class", !p            ? "none"
                     : significant ? "warn"
                                   : "good"},
-          {"word", significant ? "differs" : "not told apart"},
+          {"word", p ? significant ? "significant" : "not significant"
+                   : difference.at("reason") == kKnownInBoth ? "known in both"
+                                                             : "not tested"},
           {"reason", text_of(difference, "reason")}};
 }
 
@@ -177,7 +179,7 @@ Json trend_views(const Json& trends) {
             "{}: {:+.3g} {} ({:.3g} to {:.3g}), {}: {}.", text_of(series, "of"), *slope,
             axis.per_unit, trend.at("ci95")[0].get<double>(), trend.at("ci95")[1].get<double>(),
             p_value_text(p),
-            trend.at("significant").get<bool>() ? "the leak changes" : "no change can be told");
+            trend.at("significant").get<bool>() ? "significant trend" : "no significant trend");
       }
       list.push_back({{"svg_html", svg(trend_plot(series, axis))}, {"reading", reading}});
     }
@@ -214,16 +216,18 @@ Json metric_rows(const Json& comparison) {
     const Json& against = metric.at("against_first");
     for (std::size_t i = 1; i < against.size(); ++i) {
       if (!against[i].is_object()) continue;
-      rows.push_back({{"channel", text_of(metric, "channel")},
-                      {"metric", text_of(metric, "metric")},
-                      {"result", text_of(comparison.at("results")[i], "name")},
-                      {"conditions", fmt::format("{}", against[i].at("conditions").get<int>())},
-                      {"first", shown_in(against[i].at("mean_of_first"), 1.0, 7)},
-                      {"mean", shown_in(against[i].at("mean"), 1.0, 7)},
-                      {"better", fmt::format("{}", against[i].at("better").get<int>())},
-                      {"worse", fmt::format("{}", against[i].at("worse").get<int>())},
-                      {"p", p_value_text(against[i].at("p_value").get<double>())},
-                      {"significant", against[i].at("significant").get<bool>()}});
+      const auto p = number_of(against[i], "p_value");
+      rows.push_back(
+          {{"channel", text_of(metric, "channel")},
+           {"metric", text_of(metric, "metric")},
+           {"result", text_of(comparison.at("results")[i], "name")},
+           {"conditions", fmt::format("{}", against[i].at("conditions").get<int>())},
+           {"first", shown_score(text_of(metric, "metric"), against[i].at("mean_of_first"))},
+           {"mean", shown_score(text_of(metric, "metric"), against[i].at("mean"))},
+           {"better", fmt::format("{}", against[i].at("better").get<int>())},
+           {"worse", fmt::format("{}", against[i].at("worse").get<int>())},
+           {"p", p ? p_value_text(*p) : text_of(against[i], "reason")},
+           {"significant", against[i].at("significant") == true}});
     }
   }
   return rows;
@@ -285,23 +289,31 @@ Json model_rows(const Json& comparison) {
   return rows;
 }
 
-/// Changes that are significant for all parameters together, the surest first.
-std::vector<std::pair<double, std::string>> changes_of(const Json& comparison) {
-  std::vector<std::pair<double, std::string>> changes;
-  for (const Json& parameter : comparison.at("parameters")) {
-    for (std::size_t i = 1; i < parameter.at("differences").size(); ++i) {
-      const Json cell = change_cell(parameter.at("differences")[i]);
-      if (!cell.at("there").get<bool>() || cell.at("class") != "warn") continue;
-      changes.emplace_back(
-          parameter.at("differences")[i].at("p_value").get<double>(),
-          fmt::format("{} differs in {}: {} ({})", parameter_label(parameter),
-                      text_of(comparison.at("results")[i], "name"),
-                      cell.at("percent").get<std::string>(), cell.at("p").get<std::string>()));
-    }
+std::string change_text(const Change& change) {
+  const std::string text =
+      fmt::format("{} differs in {} by {:+.3g} %", change.parameter, change.result, change.percent);
+  return change.p ? fmt::format("{} ({})", text, p_value_text(*change.p))
+                  : fmt::format("{}, not tested: {}", text, change.reason);
+}
+
+/// What the tests found, and how many parameters they left out.
+std::string significance_sentence(const Json& comparison) {
+  int compared = 0;
+  int tested = 0;
+  int significant = 0;
+  for (const Json& each : comparison.at("significance")) {
+    if (!each.is_object()) continue;
+    compared += each.at("compared").get<int>();
+    tested += each.at("tested").get<int>();
+    significant += each.at("significant").get<int>();
   }
-  std::stable_sort(changes.begin(), changes.end(),
-                   [](const auto& a, const auto& b) { return a.first < b.first; });
-  return changes;
+  const std::string differences =
+      fmt::format("{} results, {} parameter difference{}", comparison.at("results").size(),
+                  compared, compared == 1 ? "" : "s");
+  if (compared == 0) return differences + ".";
+  if (tested == 0) return differences + "; none could be tested for significance.";
+  return fmt::format("{}: {} tested, {} significant, {} not tested.", differences, tested,
+                     significant, compared - tested);
 }
 
 }  // namespace
@@ -310,16 +322,13 @@ Json comparison_headline(const Json& comparison) {
   const Json& results = comparison.at("results");
   const auto changes = changes_of(comparison);
   const bool failed = text_of(comparison, "status") != "done";
-  Json view =
-      failed ? make_headline("FAILED", "✕", "bad",
-                             "Fewer than two results are usable: there is nothing to compare.")
-      : changes.empty()
-          ? make_headline(
-                "COMPARED", "○", "none",
-                fmt::format("{} results; no parameter differs significantly.", results.size()))
-          : make_headline("DIFFERENT", "!", "warn",
-                          fmt::format("{} results; estimates that differ significantly: {}.",
-                                      results.size(), changes.size()));
+  const bool different = !changes.empty() && changes.front().p.has_value();
+  Json view = failed
+                  ? make_headline("FAILED", "✕", "bad",
+                                  "Fewer than two results are usable: there is nothing to "
+                                  "compare.")
+                  : make_headline(different ? "DIFFERENT" : "COMPARED", different ? "!" : "○",
+                                  different ? "warn" : "none", significance_sentence(comparison));
   for (const Json& result : results) {
     if (text_of(result, "status") == "converged") continue;
     view["class"] = "bad";
@@ -328,7 +337,7 @@ Json comparison_headline(const Json& comparison) {
                            text_of(result, "message")),
                "results");
   }
-  for (const auto& change : changes) add_reason(view, change.second, "estimates");
+  for (const Change& change : changes) add_reason(view, change_text(change), "estimates");
   return view;
 }
 
@@ -347,6 +356,12 @@ std::vector<Figure> comparison_figures(const Json& comparison) {
 Json comparison_view(const Json& comparison) {
   Json view;
   view["results"] = result_rows(comparison.at("results"));
+  view["significance"] = Json::array();
+  for (std::size_t i = 1; i < comparison.at("significance").size(); ++i) {
+    view["significance"].push_back(fmt::format("{}: {}.",
+                                               text_of(comparison.at("results")[i], "name"),
+                                               text_of(comparison.at("significance")[i], "text")));
+  }
   view["parameters"] = parameter_rows(comparison.at("parameters"));
   view["plots"] = Json::array();
   for (const Figure& figure : parameter_figures(comparison.at("parameters")))

@@ -64,6 +64,10 @@ Json shown_agreement(const Json& value) {
   return {{"exact", fmt::format("{}", v)}, {"text", fmt::format("{:.{}f}", v, decimals)}};
 }
 
+Json shown_score(const std::string& metric, const Json& value) {
+  return metric == "absolute_error_percent" ? shown_in(value, 1.0, 4) : shown_agreement(value);
+}
+
 RowUnit row_unit(double value_si, const Json& parameter) {
   const std::string si_unit = text_of(parameter, "unit");
   const ReadableUnit unit = readable_unit(value_si, si_unit);

@@ -27,6 +27,8 @@ Json shown_in(const Json& value, double si_per_unit, int digits = 5);
 Json shown_interval(const Json& pair, double si_per_unit, int digits);
 /// Agreement near 1 with the digits that tell: 0.9999958.
 Json shown_agreement(const Json& value);
+/// A score by its metric: agreement as above, errors in percent to four digits.
+Json shown_score(const std::string& metric, const Json& value);
 
 /// The readable unit of a row of values, so that they can be compared at a glance; "1" has an empty
 /// name.

@@ -4,12 +4,14 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "report/page_parts.hpp"
 #include "report/text_table.hpp"
 #include "tests/report/stored_fixture.hpp"
 
 using Catch::Contains;
 using Catch::WithinRel;
 using rigcal::report::Compared;
+using rigcal::report::comparison_headline;
 using rigcal::report::comparison_json;
 using rigcal::report::comparison_text;
 using rigcal::report::Json;
@@ -141,8 +143,91 @@ TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
   CHECK(rho2["conditions"] == 1);
   CHECK(rho2["worse"] == 1);
   CHECK(rho2["mean"] == 0.9);
-  CHECK(rho2["p_value"] == 1.0);
+  // One condition tells nothing by its sign.
+  CHECK(rho2["p_value"].is_null());
+  CHECK(rho2["significant"].is_null());
+  CHECK(rho2["reason"] == "not tested: 1 condition, and a sign test needs 6");
+  CHECK_THAT(comparison_text(json, {}), Contains("not\n  tested") || Contains("not tested"));
   CHECK(json["conditions"][1]["scores"][0].is_null());
+}
+
+TEST_CASE("comparison: a sign test needs six conditions, of records of their own", "[report]") {
+  Compared good = compared_fit("good", 85.0, 0.3);
+  for (int i = 0; i < 5; ++i) {
+    Json extra = good.result["conditions"][0];
+    extra["id"] = "c" + std::to_string(i);
+    good.result["conditions"].push_back(extra);
+  }
+  Compared worse = good;
+  worse.name = "worse";
+  worse.result["provenance"]["inputs"][1]["sha256"] = "worse";
+  for (Json& condition : worse.result["conditions"]) condition["metrics"]["position"]["rho2"] = 0.9;
+  Json json = comparison_json({good, worse}, {});
+  Json rho2 = json["metrics"][0]["against_first"][1];
+  CHECK(rho2["p_value"] == 0.03125);  // 2 / 2^6
+  CHECK(rho2["significant"] == true);
+  CHECK(rho2["reason"].is_null());
+  worse.result["provenance"]["inputs"] = good.result["provenance"]["inputs"];
+  json = comparison_json({good, worse}, {});
+  rho2 = json["metrics"][0]["against_first"][1];
+  CHECK(rho2["worse"] == 6);
+  CHECK(rho2["p_value"].is_null());
+  CHECK_THAT(rho2["reason"].get<std::string>(), Contains("share records"));
+}
+
+TEST_CASE("comparison: what was not tested is not called insignificant", "[report]") {
+  Compared other = compared_fit("other", 90.0, 0.15);
+  other.result["provenance"]["inputs"][1]["sha256"] = "one";
+  const Json json = comparison_json({compared_fit("one", 85.0, 0.3), other}, {});
+  const Json& found = json["significance"][1];
+  CHECK(json["significance"][0].is_null());
+  CHECK(found["compared"] == 2);  // the third is known in both
+  CHECK(found["tested"] == 0);
+  CHECK(found["text"] ==
+        "2 parameters compared, 0 tested; not tested: mass, leakage_coefficient, because estimated "
+        "from the same data, so not independent of each other");
+  CHECK_THAT(comparison_text(json, {}), Contains("-50 % (not tested)"));
+  const Json headline = comparison_headline(json);
+  CHECK(headline["word"] == "COMPARED");
+  CHECK(headline["sentence"] ==
+        "2 results, 2 parameter differences; none could be tested for significance.");
+  // The largest first
+  CHECK_THAT(headline["reasons"][0]["text"].get<std::string>(),
+             Contains("leakage_coefficient differs in other by -50 %, not tested: estimated from"));
+  CHECK_THAT(headline["reasons"][1]["text"].get<std::string>(), Contains("mass differs in other"));
+}
+
+TEST_CASE("comparison: what was tested is counted", "[report]") {
+  Compared after = compared_fit("after", 85.1, 0.6);
+  const Json none =
+      comparison_json({compared_fit("before", 85.0, 0.3), compared_fit("after", 85.1, 0.3)}, {});
+  CHECK(none["significance"][1]["text"] ==
+        "2 parameters compared, 2 tested, no significant difference");
+  CHECK(comparison_headline(none)["reasons"].empty());
+  after.result["parameters"][0]["standard_error"] = nullptr;
+  after.result["parameters"][0]["robust_standard_error"] = nullptr;
+  const Json json = comparison_json({compared_fit("before", 85.0, 0.3), after}, {});
+  CHECK(json["significance"][1]["text"] ==
+        "2 parameters compared, 1 tested, 1 significant difference; not tested: mass, because an "
+        "estimate has no standard error");
+  const Json headline = comparison_headline(json);
+  CHECK(headline["word"] == "DIFFERENT");
+  CHECK(headline["sentence"] ==
+        "2 results, 2 parameter differences: 1 tested, 1 significant, 1 not tested.");
+  CHECK_THAT(headline["reasons"][0]["text"].get<std::string>(),
+             Contains("leakage_coefficient differs in after by +100 % (p"));
+  CHECK_THAT(headline["reasons"][1]["text"].get<std::string>(), Contains("not tested"));
+}
+
+TEST_CASE("comparison: a trend of results that share records is not tested", "[report]") {
+  std::vector<Compared> results{compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
+                                compared_fit("c", 85.0, 0.40, 10)};
+  CHECK(comparison_json(results, {})["leak_trends"][0]["along_date"]["reason"].is_null());
+  results[2].result["provenance"]["inputs"] = results[1].result["provenance"]["inputs"];
+  const Json json = comparison_json(results, {});
+  const Json& along = json["leak_trends"][0]["along_date"];
+  CHECK(along["p_value"].is_null());
+  CHECK_THAT(along["reason"].get<std::string>(), Contains("share records"));
 }
 
 TEST_CASE("comparison: fits to published tables, which have no records", "[report]") {
