@@ -204,7 +204,8 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
     }
     ++tried;
     const auto words = remedies(problem, optimum.z, jacobian, j);
-    if (!words.empty()) each.reason += fmt::format("; {} would tell it", fmt::join(words, ", or "));
+    if (!words.empty())
+      each.reason += fmt::format("; {} would make it identifiable", fmt::join(words, ", or "));
   }
 }
 
@@ -214,10 +215,9 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
 std::vector<std::size_t> judge_identifiability(const Problem& problem, const Evaluation& optimum,
                                                const Uncertainty& spread, int threads, Fit& fit) {
   const double sigma = std::sqrt(std::max(1.0, spread.reduced_chi_square));
-  const auto symmetry =
-      scaling_symmetry(problem, optimum.z, linearise(problem, optimum).jacobian, sigma, threads);
+  const auto symmetry = scaling_symmetry(problem, optimum.z, sigma, threads);
   const std::string symmetric = symmetry ? describe(problem, *symmetry) : "";
-  if (symmetry) grade_symmetric(*symmetry, fit.parameters);
+  if (symmetry) grade_symmetric(problem, *symmetry, fit.parameters);
   fit.combinations = name_combinations(problem, optimum.z, spread, fit.parameters);
   if (!symmetric.empty()) {
     // The other combinations are among the reasons of their parameters already.

@@ -139,7 +139,8 @@ std::string words_of(const Problem& problem, const Plan& plan, std::size_t unkno
       half ? fmt::format("known to {:.0f} % only", 100.0 * *half) : "not determined";
   const std::string& remedy = plan.remedies[unknown];
   return fmt::format("{}: {} by these records; {}", problem.name(unknown), state,
-                     remedy.empty() ? "nothing simple would tell it" : remedy + " would tell it");
+                     remedy.empty() ? "nothing simple would make it identifiable"
+                                    : remedy + " would make it identifiable");
 }
 
 }  // namespace
@@ -204,7 +205,7 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
         "these are figures at the campaign's start values; with --fit at those of a fit, which "
         "tell more where the starts are far off");
   }
-  const auto symmetry = at.ok ? scaling_symmetry(problem, z, all, 1.0, threads) : std::nullopt;
+  const auto symmetry = at.ok ? scaling_symmetry(problem, z, 1.0, threads) : std::nullopt;
   const std::string symmetric = symmetry ? describe(problem, *symmetry) : "";
   if (!symmetric.empty()) result.messages.push_back(symmetric);
   std::vector<bool> open(z.size(), false);
@@ -226,7 +227,7 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
     const auto half = relative_half_width(result.all[j], result.parameters[j].value);
     const bool wanting = !problem.map.unknowns()[j].nuisance && (!half || *half > kPlannedWeak);
     result.remedies.push_back(
-        open[j]   ? std::string(kSymmetryRemedy)
+        open[j]   ? symmetry_remedy(problem, *symmetry)
         : wanting ? fmt::format("{}", fmt::join(remedies(problem, z, all, j), ", or "))
                   : "");
     if (!wanting) continue;

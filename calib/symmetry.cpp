@@ -4,44 +4,19 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "common/parallel.hpp"
+#include "common/unit_product.hpp"
 
 namespace rigcal::calib {
 namespace {
 
 constexpr double kScaleKnown = 0.1;
-constexpr std::string_view kSmoothing = "leakage_smoothing";
+constexpr std::string_view kSmoothing = "leakage_smoothing";  // no physics: no exponent of its own
 constexpr std::string_view kSupply = "supply_pressure";
-
-struct Exponent {
-  std::string_view key;
-  double exponent;
-};
-
-/// m x'' = A P - b x' - k x - friction; P' = (4 beta / V) (Q - A x'); Q = k_sv u C w sqrt(P / rho).
-constexpr std::array kExponents{
-    Exponent{"mass", 1.0},
-    Exponent{"damping", 1.0},
-    Exponent{"stiffness", 1.0},
-    Exponent{"bulk_modulus", 1.0},
-    Exponent{kSupply, 1.0},
-    Exponent{"tank_pressure", 1.0},
-    Exponent{"coulomb_friction", 1.0},
-    Exponent{"stribeck_friction", 1.0},
-    Exponent{"external_force", 1.0},
-    Exponent{"initial_load_pressure", 1.0},
-    Exponent{"initial_pressure_a", 1.0},
-    Exponent{"initial_pressure_b", 1.0},
-    Exponent{"valve_gain", -0.5},
-    Exponent{"leakage_coefficient", -0.5},
-    Exponent{"laminar_leakage", -1.0},
-    Exponent{"valve_null_leakage", -1.0},
-};
 
 bool positions_alone(const Problem& problem) {
   for (const ProblemCondition& condition : problem.conditions) {
@@ -60,11 +35,19 @@ std::vector<std::string> known_and_scaled(const Problem& problem) {
       const bool acts = condition.values.given[row] && condition.values.value[row] != 0.0;
       const bool free = std::find(condition.free.begin(), condition.free.end(),
                                   static_cast<int>(row)) != condition.free.end();
-      if (acts && !free && scaling_exponent(table[row].key) != 0.0) rows.insert(row);
+      if (acts && !free && scaling_exponent(table[row]) != 0.0) rows.insert(row);
     }
   }
   std::vector<std::string> names;
   for (const std::size_t row : rows) names.emplace_back(table[row].name);
+  // Air in the oil compares pressures with that of the atmosphere, which nobody scales.
+  const int air = model::parameter_index(problem.campaign->rig.plant, "air_fraction");
+  const bool holds_air =
+      air >= 0 && std::any_of(problem.conditions.begin(), problem.conditions.end(),
+                              [air](const ProblemCondition& condition) {
+                                return condition.values.value[static_cast<std::size_t>(air)] != 0.0;
+                              });
+  if (holds_air) names.emplace_back("pressure of the atmosphere (air_fraction)");
   return names;
 }
 
@@ -94,7 +77,7 @@ double felt_when_scaled(const Problem& problem, std::span<const double> z,
   double sum = 0.0;
   for (const std::size_t j : unknowns) {
     const double value = scaled[j];
-    scaled[j] *= std::pow(kScale, scaling_exponent(problem.spec(j).key));
+    scaled[j] *= std::pow(kScale, scaling_exponent(problem.spec(j)));
     const auto& prior = problem.map.unknowns()[j].prior;
     if (prior) sum += std::pow((scaled[j] - value) / prior->sd, 2);
   }
@@ -128,62 +111,73 @@ bool takes_part(const Problem& problem, const ScalingSymmetry& symmetry, std::st
 
 }  // namespace
 
-double scaling_exponent(std::string_view key) {
-  const auto found = std::find_if(kExponents.begin(), kExponents.end(),
-                                  [key](const Exponent& each) { return each.key == key; });
-  return found == kExponents.end() ? 0.0 : found->exponent;
+double scaling_exponent(const model::ParameterSpec& spec) {
+  using model::ParameterKind;
+  // Flows follow the root of pressure over density, and density stays: it is no force.
+  if (spec.key == "valve_gain" || spec.key == "leakage_coefficient") return -0.5;
+  if (spec.key == "density" || spec.key == kSmoothing) return 0.0;
+  if (spec.kind == ParameterKind::sensor || spec.kind == ParameterKind::controller) return 0.0;
+  return mass_exponent(spec.unit);
 }
 
 bool ScalingSymmetry::holds() const { return relative_sd > kScaleKnown; }
 
 std::optional<ScalingSymmetry> scaling_symmetry(const Problem& problem, std::span<const double> z,
-                                                const Eigen::MatrixXd& jacobian, double sigma,
-                                                int threads) {
+                                                double sigma, int threads) {
   if (!positions_alone(problem)) return std::nullopt;
   ScalingSymmetry result;
-  Eigen::VectorXd direction = Eigen::VectorXd::Zero(jacobian.cols());
   for (std::size_t j = 0; j < z.size(); ++j) {
     const int unknown = static_cast<int>(j);
-    const double exponent = scaling_exponent(problem.spec(j).key);
-    const double value = problem.map.to_physical(unknown, z[j]);
-    if (exponent == 0.0 || value == 0.0) continue;
-    direction(unknown) = exponent * value / problem.map.slope(unknown, z[j]);
+    if (scaling_exponent(problem.spec(j)) == 0.0 || problem.map.to_physical(unknown, z[j]) == 0.0)
+      continue;
     result.unknowns.push_back(j);
   }
-  if (result.unknowns.size() < 2) return std::nullopt;
+  // A known supply pressure fixes s through the orifices: what is open then, the Jacobian tells.
+  if (result.unknowns.size() < 2 || !takes_part(problem, result, kSupply)) return std::nullopt;
   result.known = known_and_scaled(problem);
-  // A known supply pressure tells s by itself: there is no need to look at the smoothing.
-  const double felt = takes_part(problem, result, kSupply)
-                          ? felt_when_scaled(problem, z, result.unknowns, threads)
-                          : (jacobian * direction).norm();
+  const double felt = felt_when_scaled(problem, z, result.unknowns, threads);
   result.relative_sd = felt > 0.0 ? sigma / felt : std::numeric_limits<double>::infinity();
   return result;
+}
+
+std::string symmetry_remedy(const Problem& problem, const ScalingSymmetry& symmetry) {
+  return fmt::format("a prior on {}supply pressure, or a recorded pressure or force",
+                     takes_part(problem, symmetry, "mass") ? "mass or " : "");
 }
 
 std::string describe(const Problem& problem, const ScalingSymmetry& symmetry) {
   std::vector<std::string> grow;
   std::vector<std::string> fall;
-  for (const std::size_t j : symmetry.unknowns)
-    (scaling_exponent(problem.spec(j).key) > 0.0 ? grow : fall).push_back(problem.name(j));
-  const bool pressure_free = takes_part(problem, symmetry, kSupply) && grow.size() > 1;
-  if (!symmetry.holds() && !(pressure_free && !symmetry.known.empty())) return {};
-  std::string text =
-      fmt::format("scaling symmetry: positions stay as they are where {} {} by a factor s{}",
-                  fmt::join(grow, ", "), grow.size() == 1 ? "grows" : "grow",
-                  fall.empty() ? ""
-                               : fmt::format(" and {} {} by its square root", fmt::join(fall, ", "),
-                                             fall.size() == 1 ? "falls" : "fall"));
-  if (symmetry.holds()) {
-    return text +
-           "; one of them must be known (mass or supply pressure, say), or a pressure or force "
-           "recorded";
+  for (const std::size_t j : symmetry.unknowns) {
+    const double exponent = scaling_exponent(problem.spec(j));
+    if (exponent > 0.0) grow.push_back(problem.name(j));
+    if (exponent < 0.0) fall.push_back(problem.name(j) + (exponent == -0.5 ? " (by sqrt(s))" : ""));
   }
-  return text + fmt::format("; only the known {} {} s: an error of 1 % there is one of 1 % here",
-                            fmt::join(symmetry.known, ", "),
-                            symmetry.known.size() == 1 ? "tells" : "tell");
+  if (!symmetry.holds() && (symmetry.known.empty() || grow.size() < 2)) return {};
+  const std::string scaling =
+      fmt::format("multiplying {} by a factor s{}", fmt::join(grow, ", "),
+                  fall.empty() ? "" : fmt::format(" and dividing {} by it", fmt::join(fall, ", ")));
+  if (symmetry.known.empty()) {
+    return fmt::format(
+        "scaling symmetry: {} leaves all positions unchanged; not determined without {}", scaling,
+        symmetry_remedy(problem, symmetry));
+  }
+  const std::string known = fmt::format("{}", fmt::join(symmetry.known, ", "));
+  if (symmetry.holds()) {
+    return fmt::format(
+        "scaling symmetry, nearly: {} changes positions only through the fixed {}, which {} s to "
+        "no better than {:.2g} % (standard error); it takes {} to determine it",
+        scaling, known, symmetry.known.size() == 1 ? "determines" : "determine",
+        100.0 * symmetry.relative_sd, symmetry_remedy(problem, symmetry));
+  }
+  return fmt::format(
+      "scaling symmetry: {} changes positions only through the fixed {}: an error of 1 % there is "
+      "one of 1 % here",
+      scaling, known);
 }
 
-void grade_symmetric(const ScalingSymmetry& symmetry, std::vector<FittedParameter>& parameters) {
+void grade_symmetric(const Problem& problem, const ScalingSymmetry& symmetry,
+                     std::vector<FittedParameter>& parameters) {
   if (!symmetry.holds()) return;
   for (const std::size_t j : symmetry.unknowns) {
     FittedParameter& each = parameters[j];
@@ -195,8 +189,9 @@ void grade_symmetric(const ScalingSymmetry& symmetry, std::vector<FittedParamete
     each.robust_standard_error.reset();
     each.ci95.reset();
     each.interval = IntervalSource::none;
-    each.reason = fmt::format("left open by the scaling symmetry: {}, would tell it{}",
-                              kSymmetryRemedy, known);
+    each.reason = fmt::format(
+        "not determined because of the scaling symmetry: {}, would make it identifiable{}",
+        symmetry_remedy(problem, symmetry), known);
   }
 }
 

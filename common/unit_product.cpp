@@ -76,4 +76,7 @@ std::string unit_product(std::string_view a, std::string_view b, double power) {
   return fmt::format("{}/{}", above.empty() ? "1" : above, several ? "(" + below + ")" : below);
 }
 
+static_assert(kBase.front() == "kg");
+double mass_exponent(std::string_view unit) { return exponents_of(unit).front(); }
+
 }  // namespace rigcal

@@ -12,4 +12,9 @@ namespace rigcal {
 /// @throws std::invalid_argument  another unit
 std::string unit_product(std::string_view a, std::string_view b, double power);
 
+/// Power of kg in a unit: 1 of "N s/m", -1 of "m3/(s Pa)".
+///
+/// @throws std::invalid_argument  a unit that unit_product() does not know
+double mass_exponent(std::string_view unit);
+
 }  // namespace rigcal

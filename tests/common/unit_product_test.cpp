@@ -14,4 +14,13 @@ TEST_CASE("unit_product: quotients and roots in base units", "[common]") {
   CHECK_THROWS_AS(unit_product("furlong", "1", 1.0), std::invalid_argument);
 }
 
+TEST_CASE("mass_exponent: forces, pressures and what divides by them", "[common]") {
+  for (const char* unit : {"kg", "N", "Pa", "N s/m", "N/m", "Pa s/m3"})
+    CHECK(mass_exponent(unit) == 1.0);
+  for (const char* unit : {"m3/(s Pa)", "m3/Pa"}) CHECK(mass_exponent(unit) == -1.0);
+  for (const char* unit : {"1", "m/V", "s", "s/m", "m/s2", "V/(m s)"})
+    CHECK(mass_exponent(unit) == 0.0);
+  CHECK_THROWS_AS(mass_exponent("furlong"), std::invalid_argument);
+}
+
 }  // namespace rigcal
