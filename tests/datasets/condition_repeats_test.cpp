@@ -86,3 +86,19 @@ TEST_CASE("condition_repeats: what cannot be decimated", "[datasets]") {
   CHECK_THROWS_WITH(with("decimate_to = \"0 Hz\""), Contains("decimate_to"));
   CHECK_THROWS_WITH(with("spikes = \"drop\""), Contains("exclude"));
 }
+
+TEST_CASE("condition_repeats: a command may jump for a sample", "[datasets]") {
+  std::vector<Repeat> repeats{recorded("a.csv")};
+  auto& position = repeats[0].values[Channel::position];
+  position[1501] -= 0.03;  // a spike of two samples now
+  for (const Channel channel : {Channel::reference, Channel::command})
+    repeats[0].values[channel] = std::vector<double>(2000, 0.0);
+  for (const Channel channel : {Channel::reference, Channel::command})
+    repeats[0].values[channel][700] = 5.0;
+  const Conditioning done = condition_repeats(with("spikes = \"exclude\""), repeats);
+  REQUIRE(done.warnings.size() == 1);
+  CHECK_THAT(done.warnings[0], Contains("position: 2 spikes in 1 repeat"));
+  CHECK_THAT(done.notes.at(0), Contains("3 samples replaced"));
+  CHECK(repeats[0].values[Channel::command][700] == 5.0);
+  CHECK(repeats[0].values[Channel::reference][700] == 5.0);
+}

@@ -102,3 +102,13 @@ TEST_CASE("decimation_factor: whole factors of even sampling only", "[datasets]"
   CHECK_THROWS_WITH(decimation_factor(uneven, 1000.0),
                     Contains("not equidistant (sample 50 at 0.00505 s)"));
 }
+
+TEST_CASE("decimation_factor: whole to a hundredth", "[datasets]") {
+  CHECK(decimation_factor(sampled(1e-3 / 5.04, 100), 1000.0) == 5);
+  CHECK_THROWS_WITH(decimation_factor(sampled(1e-3 / 5.06, 100), 1000.0), Contains("whole factor"));
+}
+
+TEST_CASE("decimated_hold: a constant stays what it is to the last bit", "[datasets]") {
+  // 0.1 + 0.1 + 0.1 is more than 0.3.
+  CHECK(decimated_hold({0.1, 0.1, 0.1}, 3) == std::vector<double>{0.1});
+}

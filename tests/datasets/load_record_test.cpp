@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "datasets/decimate.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace rigcal::datasets;
@@ -251,4 +252,20 @@ TEST_CASE("load_record: the moving windows of a real step test", "[datasets]") {
   CHECK_THAT(record.windows[0].end_s, WithinAbs(1.05, 0.03));
   CHECK_THAT(record.windows[1].start_s, WithinAbs(5.10045, 1e-9));
   CHECK_THAT(record.windows[1].end_s, WithinAbs(6.45, 0.05));
+}
+
+TEST_CASE("load_record: decimation takes from a known sd what it takes from the noise",
+          "[datasets]") {
+  const TemporaryFolder files;
+  std::string text = "t,x\n";
+  for (int i = 0; i < 400; ++i)
+    text += std::to_string(i) + "," + std::to_string(std::sin(0.01 * i)) + "\n";
+  files.write("a.csv", text);
+  Campaign campaign = campaign_in(files);
+  campaign.channels[Channel::position].sd = 2e-5;
+  campaign.decimate_to_hz = 250.0;
+  const Record record = load_record(campaign, condition_of("a", "a.csv"));
+  REQUIRE(record.time_s.size() == 100);
+  CHECK_THAT(record.channels.at(Channel::position).sd_of_mean,
+             WithinRel(2e-5 * anti_alias_filter(4).noise_gain(), 1e-12));
 }

@@ -69,3 +69,30 @@ TEST_CASE("shifted: a linear shift does not overshoot an edge", "[datasets]") {
   CHECK_THAT(y[2], WithinAbs(0.25, 1e-15));
   CHECK(y[3] == 1.0);
 }
+
+TEST_CASE("shifted: an impulse becomes a sinc in a Hann window, of unit sum", "[datasets]") {
+  std::vector<double> impulse(101, 0.0);
+  impulse[50] = 1.0;
+  const auto weight = [](double z) {
+    const double angle = std::numbers::pi * z;
+    return std::sin(angle) / angle * 0.5 * (1.0 + std::cos(angle / 16.0));
+  };
+  for (const double fraction : {0.05, 0.3, 0.5}) {
+    const auto y = shifted(impulse, fraction, 101, Interpolator::band_limited);
+    double sum = 0.0;
+    for (int j = -15; j <= 16; ++j) sum += weight(fraction - j);
+    for (int k = 20; k < 80; ++k) {
+      const bool reached = k >= 34 && k <= 65;
+      const double expected = reached ? weight(k + fraction - 50.0) / sum : 0.0;
+      CHECK_THAT(y[static_cast<std::size_t>(k)], WithinAbs(expected, 1e-12));
+    }
+  }
+}
+
+TEST_CASE("shifted: between two samples a linear shift weighs them by their nearness",
+          "[datasets]") {
+  const auto y = shifted({1.0, 2.0, 5.0}, 0.05, 3, Interpolator::linear);
+  CHECK_THAT(y[0], WithinAbs(1.05, 1e-15));
+  CHECK_THAT(y[1], WithinAbs(2.15, 1e-15));
+  CHECK(std::isnan(y[2]));
+}

@@ -76,3 +76,65 @@ TEST_CASE("without_spikes: a line takes their place, all else stays", "[datasets
   CHECK_THAT(repaired[2501],
              WithinAbs(clean[2499] + 2.0 / 3.0 * (clean[2502] - clean[2499]), 1e-12));
 }
+
+namespace {
+
+/// 1, -1, -1, 1, over and over: each second sample lies 2 off the line between its neighbours, the
+/// others 0, or all of them 1 in the median of both.
+std::vector<double> pattern_of(std::size_t samples, double size) {
+  std::vector<double> x;
+  for (std::size_t i = 0; i < samples; ++i) x.push_back(i % 2 == 0 ? size : -size);
+  return x;
+}
+
+}  // namespace
+
+TEST_CASE("find_spikes: beyond ten deviations of the noise", "[datasets]") {
+  // +1, -1, ... lies 2 off the line between neighbours, whose median over 0.6745 is the sd.
+  const double limit = 10.0 * 2.0 / 0.6745;
+  for (const double off : {limit - 0.5, limit + 0.5}) {
+    auto x = pattern_of(1000, 1.0);
+    x[500] = -1.0 + off;  // both neighbours are -1
+    const auto spikes = find_spikes(x);
+    CAPTURE(off);
+    REQUIRE(spikes.size() == (off > limit ? 1U : 0U));
+    if (off > limit) CHECK_THAT(spikes[0].height, WithinAbs(off, 1e-12));
+  }
+}
+
+TEST_CASE("find_spikes: beyond four steps of a coarse converter", "[datasets]") {
+  for (const double steps : {3.9, 4.1}) {
+    std::vector<double> x(1000, 0.0);
+    for (std::size_t i = 0; i < 400; i += 7) x[i] = 1.0;
+    x[700] = steps;
+    CHECK(find_spikes(x).size() == (steps > 4.0 ? 1U : 0U));
+  }
+}
+
+TEST_CASE("find_spikes: beyond three times what the neighbours differ by", "[datasets]") {
+  for (const double off : {2.9, 3.1}) {
+    auto x = pattern_of(1000, 1e-3);
+    for (std::size_t i = 495; i <= 505; ++i) x[i] = i < 500 ? 0.0 : 1.0;
+    x[500] = 0.5 + off;  // between 0 and 1
+    CHECK(find_spikes(x).size() == (off > 3.0 ? 1U : 0U));
+  }
+}
+
+TEST_CASE("find_spikes: one sample up and the next one down are no spike of two", "[datasets]") {
+  std::vector<double> x(200, 0.0);
+  x[100] = 1.0;
+  x[101] = -1.0;
+  CHECK(find_spikes(pattern_of(0, 1.0)).empty());
+  auto noisy = pattern_of(200, 1e-3);
+  noisy[100] += 1.0;
+  noisy[101] -= 1.0;
+  CHECK(find_spikes(noisy).empty());
+}
+
+TEST_CASE("find_spikes: sixteen samples are enough to tell the noise", "[datasets]") {
+  for (const std::size_t samples : {15U, 16U}) {
+    auto x = pattern_of(samples, 1e-3);
+    x[7] += 1.0;
+    CHECK(find_spikes(x).size() == (samples == 16 ? 1U : 0U));
+  }
+}

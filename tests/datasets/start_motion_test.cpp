@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "datasets/noise.hpp"
+
 using Catch::WithinRel;
 using rigcal::datasets::motion_at_start;
 
@@ -43,4 +45,28 @@ TEST_CASE("start_motion: a record that begins in the middle of its motion", "[da
 TEST_CASE("start_motion: a window of too few samples tells nothing", "[datasets]") {
   const std::vector<double> time_s{0.0, 0.02, 0.04, 0.06, 0.08, 0.1, 0.12};
   CHECK_FALSE(motion_at_start(time_s, time_s, kWindow_s).has_value());
+}
+
+TEST_CASE("start_motion: motion is what exceeds four errors of its own", "[datasets]") {
+  // Quarters of 25 samples of white noise of 1: their means differ with an sd of sqrt(2 / 25).
+  const double error = std::sqrt(2.0 / 25.0);
+  const auto told = [&](double errors) {
+    int count = 0;
+    for (std::uint64_t draw = 0; draw < 200; ++draw) {
+      auto stream = rigcal::datasets::random_stream(draw, {"start"});
+      std::vector<double> time_s;
+      std::vector<double> values;
+      for (int i = 0; i < 100; ++i) {
+        time_s.push_back(1e-3 * i);
+        // Two levels, so that the quarters' means are apart by just that.
+        values.push_back(rigcal::datasets::normal(stream, 1.0) + (i < 50 ? 0.0 : errors * error));
+      }
+      count += motion_at_start(time_s, values, kWindow_s) ? 1 : 0;
+    }
+    return count;
+  };
+  // The differences that tell the noise are 0.3 errors wide at 4; 2 and 6 are beyond their scatter.
+  CHECK(told(0.0) == 0);
+  CHECK(told(2.0) < 20);
+  CHECK(told(6.0) > 180);
 }
