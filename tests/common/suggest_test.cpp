@@ -54,3 +54,9 @@ TEST_CASE("unknown_name_message: cuts long lists short, but searches them all", 
   const std::string message = unknown_name_message("column", "presure", many);
   CHECK_THAT(message, Contains("'pressure'?") && EndsWith("column_29 and 71 more)"));
 }
+
+TEST_CASE("nearest_name: a third of the letters may be wrong", "[common]") {
+  const std::vector<std::string> known{"abcdefghi"};
+  CHECK(nearest_name("abcdefxyz", known) == "abcdefghi");
+  CHECK(nearest_name("abcdewxyz", known).empty());
+}

@@ -91,10 +91,12 @@ TEST_CASE("condition_repeats: a command may jump for a sample", "[datasets]") {
   std::vector<Repeat> repeats{recorded("a.csv")};
   auto& position = repeats[0].values[Channel::position];
   position[1501] -= 0.03;  // a spike of two samples now
-  for (const Channel channel : {Channel::reference, Channel::command})
-    repeats[0].values[channel] = std::vector<double>(2000, 0.0);
-  for (const Channel channel : {Channel::reference, Channel::command})
-    repeats[0].values[channel][700] = 5.0;
+  for (const Channel channel : {Channel::reference, Channel::command}) {
+    auto& values = repeats[0].values[channel];
+    values.clear();
+    for (int i = 0; i < 2000; ++i) values.push_back(i % 2 == 0 ? 1e-3 : -1e-3);
+    values[700] = 5.0;
+  }
   const Conditioning done = condition_repeats(with("spikes = \"exclude\""), repeats);
   REQUIRE(done.warnings.size() == 1);
   CHECK_THAT(done.warnings[0], Contains("position: 2 spikes in 1 repeat"));

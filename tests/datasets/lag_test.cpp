@@ -146,3 +146,26 @@ TEST_CASE("lag: 1e5 samples over 200 lags", "[datasets]") {
   const auto b = sampled(soft_square(100, 3), 100000, 3.3, 0.01, 2);
   CHECK_THAT(lag_in_samples(a, b, 200).value(), WithinAbs(3.3, 0.005));
 }
+
+TEST_CASE("lag: unrelated noise tells none", "[datasets]") {
+  const Shape nothing = [](double) { return 0.0; };
+  for (unsigned draw = 0; draw < 20; ++draw) {
+    CAPTURE(draw);
+    CHECK_FALSE(lag_in_samples(sampled(nothing, 500, 0.0, 1.0, 100 + 2 * draw),
+                               sampled(nothing, 500, 0.0, 1.0, 101 + 2 * draw), 20));
+  }
+}
+
+TEST_CASE("lag: its standard deviation to a tenth", "[datasets]") {
+  // The rms of 200 draws scatters by 5 %.
+  double squares = 0.0;
+  double variances = 0.0;
+  for (unsigned draw = 0; draw < 200; ++draw) {
+    const auto lag = find_lag(sampled(sine(0.02), 1000, 0.0, 0.05, 1000 + 2 * draw),
+                              sampled(sine(0.02), 1000, 1.3, 0.05, 1001 + 2 * draw), 20);
+    REQUIRE(lag.has_value());
+    squares += (lag->samples - 1.3) * (lag->samples - 1.3);
+    variances += lag->sd_samples * lag->sd_samples;
+  }
+  CHECK_THAT(std::sqrt(variances / squares), WithinAbs(1.0, 0.15));
+}

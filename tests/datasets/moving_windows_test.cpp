@@ -135,3 +135,19 @@ TEST_CASE("find_motions: a rise that takes some samples, and too short records",
   CHECK(find_motions(two, two, two, {}).empty());
   CHECK_THROWS_AS(find_motions(two, two, test.position_m, {}), std::invalid_argument);
 }
+
+TEST_CASE("find_motions: a step rises within a tenth of the time that it is held", "[datasets]") {
+  for (const int held : {400, 700}) {
+    StepTest test;
+    double x = 0.0;
+    for (int i = 0; i < 150 + held + 1500; ++i) {
+      // 0 V; a rise of 50 ms; `held` samples of 2 V; then at once -2 V.
+      const double u = i < 100 ? 0.0 : i < 150 ? 0.04 * (i - 100) : i < 150 + held ? 2.0 : -2.0;
+      x += 0.05 * u / kRate_hz;
+      test.time_s.push_back(i / kRate_hz);
+      test.command.push_back(u);
+      test.position_m.push_back(x);
+    }
+    CHECK(motions_of(test).size() == (held > 500 ? 2U : 1U));
+  }
+}

@@ -81,7 +81,9 @@ TEST_CASE("ar1_noise: its first sample already has the full standard deviation",
 
 TEST_CASE("quantised: the nearest step", "[datasets]") {
   CHECK_THAT(quantised(0.37, 0.25), WithinAbs(0.25, 1e-15));
+  CHECK_THAT(quantised(0.38, 0.25), WithinAbs(0.5, 1e-15));
   CHECK_THAT(quantised(-0.38, 0.25), WithinAbs(-0.5, 1e-15));
+  CHECK_THAT(quantised(-0.37, 0.25), WithinAbs(-0.25, 1e-15));
   CHECK(quantised(0.1, 0.25) == 0.0);
 }
 

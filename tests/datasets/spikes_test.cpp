@@ -138,3 +138,11 @@ TEST_CASE("find_spikes: sixteen samples are enough to tell the noise", "[dataset
     CHECK(find_spikes(x).size() == (samples == 16 ? 1U : 0U));
   }
 }
+
+TEST_CASE("find_spikes: a pulse of three samples is a pulse", "[datasets]") {
+  for (const std::size_t length : {1U, 2U, 3U}) {
+    auto x = pattern_of(200, 1e-3);
+    for (std::size_t i = 100; i < 100 + length; ++i) x[i] += 1.0;
+    CHECK(find_spikes(x).size() == (length < 3 ? 1U : 0U));
+  }
+}

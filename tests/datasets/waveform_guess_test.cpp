@@ -78,3 +78,25 @@ TEST_CASE("guess_waveform: chirps, steps, constants and noise", "[datasets]") {
   const auto noise = white_noise(stream, t.size(), 1.0);
   CHECK(guess_waveform(t, noise).waveform == Waveform::recorded);
 }
+
+TEST_CASE("guess_waveform: a few periods tell the frequency between the samples", "[datasets]") {
+  // 11.3 Hz at 500 Hz: a period is 44.2 samples, and three of them 133.
+  const auto t = times(0.4);
+  std::vector<double> x;
+  for (const double time_s : t) x.push_back(std::sin(2.0 * std::numbers::pi * 11.3 * time_s + 0.7));
+  CHECK_THAT(guess_waveform(t, x).frequency_hz.value(), WithinRel(11.3, 1e-3));
+}
+
+TEST_CASE("guess_waveform: a sine explains 98 % of its variance", "[datasets]") {
+  const auto t = times(8.0);
+  for (const double third : {0.1, 0.2}) {
+    std::vector<double> x;
+    for (const double time_s : t) {
+      const double angle = 2.0 * std::numbers::pi * time_s;
+      x.push_back(std::sin(angle) + third * std::sin(3.0 * angle));
+    }
+    // 1 / (1 + third^2): 99 % and 96 %.
+    const WaveformGuess guess = guess_waveform(t, x);
+    CHECK((guess.waveform == Waveform::sine) == (third == 0.1));
+  }
+}

@@ -225,3 +225,12 @@ TEST_CASE("controller: a PID of the whole loop against a Runge-Kutta of small st
   CHECK(worst_x < 1e-5 * 0.02);
   CHECK(worst_u < 1e-5 * 3.0);
 }
+
+TEST_CASE("controller: one tick pulls the integral back to the limit at the most", "[model]") {
+  // K_i T_s / K_p = 1.5: the pull alone would go half as far again as the excess.
+  const Gains gains{1.0, 15.0, 0.0, 50.0, 2.0, 0.1};
+  std::array<double, 2> state{6.0, 0.0};
+  controller_tick(0.0, state, gains, layout_with(0, -1, 1));
+  CHECK(state[1] == 2.0);
+  CHECK_THAT(state[0], WithinRel(2.0, 1e-14));
+}

@@ -108,3 +108,14 @@ TEST_CASE("sensors: at its limit a reading depends on nothing", "[model]") {
   CHECK(reached < free.outputs.rows());
   CHECK(limited.outputs.col(1) == free.outputs.col(1));  // the loop sees the position itself
 }
+
+TEST_CASE("sensors: the shortest lag is followed by eight times and more", "[model]") {
+  auto values = paper_rig();
+  values.set("position_lag", 0.1);
+  values.set("load_pressure_lag", 0.0021);
+  const std::vector outputs{Output::position, Output::load_pressure};
+  const auto at = sensor_times(outputs, values, grid(0.0, 0.1, 11));
+  REQUIRE(at);
+  // 10 ms between samples: 8 * 10 / 2.1 = 38.1 pieces of each.
+  CHECK(at->times_s.size() == 10 * 39 + 1);
+}

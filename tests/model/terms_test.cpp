@@ -155,3 +155,10 @@ TEST_CASE("terms: two orifices in series pass the flow of one", "[model]") {
           Approx(l * std::sqrt(between_pa)).epsilon(1e-12));
   }
 }
+
+TEST_CASE("absolute_pressure: from the atmosphere down to 1 kPa", "[model]") {
+  CHECK_THAT(absolute_pressure(2e5), WithinRel(301325.0, 1e-14));
+  CHECK_THAT(absolute_pressure(-1e5), WithinRel(1325.0, 1e-12));
+  CHECK(absolute_pressure(-1.01e5) == 1e3);
+  CHECK(absolute_pressure(-5e6) == 1e3);
+}
