@@ -105,14 +105,16 @@ struct FittedParameter {
 };
 
 /// Model error of one channel of one condition against its pure error (lack_of_fit.hpp).
-struct LackOfFit {
+struct LackOfFit : metrics::Judged {
   std::string condition;
   datasets::Channel channel = datasets::Channel::position;
   double ratio = 0.0;         ///< variance of the residual over that of the pure error
   double freedom = 0.0;       ///< effective degrees of freedom of the residual
   double pure_freedom = 0.0;  ///< and of the pure error; infinite where `sd` states it
   bool by_repeats = false;    ///< pure error from repeats; else from `sd`
-  double p = 1.0;             ///< probability of such a ratio, or a larger one, of noise alone
+  /// Probability of such a ratio, or a larger one, of noise alone. The outcome is that of all tests
+  /// together.
+  double p = 1.0;
 };
 
 /// One start of a multi-start fit.
@@ -200,7 +202,7 @@ struct Fit {
   double aic = 0.0, bic = 0.0;  ///< with the effective samples; to compare models of one campaign
   std::vector<FittedParameter> parameters;
   std::vector<LackOfFit> lack_of_fit;  ///< channels of known noise
-  std::optional<bool> misfit;          ///< the model leaves more than noise; absent: not known
+  std::optional<bool> misfit;          ///< significant lack of fit; absent: cannot be judged
   std::string interval_advice;         ///< which interval to believe, and why
   std::vector<std::string> correlation_names;
   std::vector<std::string> combinations;  ///< what is fixed where single parameters are not

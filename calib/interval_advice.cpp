@@ -77,19 +77,20 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
     return "only the plain standard errors exist: too few residuals to tell their correlation, or "
            "a record that could not be simulated again";
   }
-  const double residuals = static_cast<double>(problem.residual_count());
-  const double share = found.effective_samples / residuals;
+  const double share = found.effective_samples / static_cast<double>(problem.residual_count());
   std::string text =
       share < kCorrelated
-          ? fmt::format(
-                "residuals are correlated in time: {:.0f} of them count as {:.0f} "
-                "independent ones, so believe the robust errors; the plain ones are too "
-                "small",
-                residuals, found.effective_samples)
-          : std::string(
-                "residuals are all but uncorrelated in time: robust and plain errors agree "
-                "where the noise is even");
+          ? "residuals are autocorrelated: use the robust errors; the plain ones are too small"
+          : "residuals are hardly autocorrelated: robust and plain errors agree where the variance "
+            "of the noise is constant";
   const auto flagged = misfit(tests);
+  if (!flagged && !tests.empty()) {
+    const auto open = std::find_if(tests.begin(), tests.end(), [](const LackOfFit& test) {
+      return test.outcome == metrics::TestOutcome::not_judged;
+    });
+    return text + fmt::format("; lack of fit cannot be judged (condition \"{}\", {}: {})",
+                              open->condition, datasets::info(open->channel).key, open->reason);
+  }
   if (!flagged) {
     return text +
            "; neither repeats nor `sd` tell the noise, so errors of the model and noise "
@@ -99,14 +100,16 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
   const std::string against = test.by_repeats ? "the scatter of the repeats" : "the stated `sd`";
   if (*flagged) {
     return text + fmt::format(
-                      "; the model leaves more than noise (condition \"{}\", {}: variance {:.3g} "
+                      "; significant lack of fit (condition \"{}\", {}: residual variance {:.3g} "
                       "times that of {}, p = {:.2g}): intervals hold for the values that fit this "
                       "model best to these signals, and other signals may ask for others",
                       test.condition, datasets::info(test.channel).key, test.ratio, against,
                       test.p);
   }
-  return text + fmt::format("; what the model leaves is no more than {} (least p = {:.2g} of {})",
-                            against, test.p, tests.size());
+  return text + fmt::format(
+                    "; no lack of fit detected against {} (smallest p = {:.2g} of {} tests, 5 % "
+                    "level for all together)",
+                    against, test.p, tests.size());
 }
 
 std::string compare_intervals(const Problem& problem,

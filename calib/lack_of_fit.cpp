@@ -1,5 +1,7 @@
 #include "calib/lack_of_fit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +13,8 @@ namespace {
 
 constexpr double kMisfitLevel = 0.05;
 constexpr int kLongestMemory = 5000;
+/// A residual twice as large as the noise: what a test that passes must be able to tell.
+constexpr double kLargestUsefulRatio = 4.0;
 
 /// 1 + 2 sum rho_h^2: by how much correlation thins a sum of squares out.
 double square_inflation(const metrics::Autoregression& noise, double samples) {
@@ -23,11 +27,24 @@ double square_inflation(const metrics::Autoregression& noise, double samples) {
   return sum;
 }
 
-double exceedance(const LackOfFit& test) {
-  if (!(test.ratio > 0.0)) return 1.0;
+/// Probability that noise alone gives this ratio or a larger one.
+double exceedance(double ratio, const LackOfFit& test) {
+  if (!(ratio > 0.0)) return 1.0;
   if (std::isinf(test.pure_freedom))
-    return metrics::chi_squared_exceedance(test.ratio * test.freedom, test.freedom);
-  return metrics::fisher_f_exceedance(test.ratio, test.freedom, test.pure_freedom);
+    return metrics::chi_squared_exceedance(ratio * test.freedom, test.freedom);
+  return metrics::fisher_f_exceedance(ratio, test.freedom, test.pure_freedom);
+}
+
+/// F's level holds for few degrees of freedom too, so that a rejection counts always. A test passes
+/// only where it could have rejected kLargestUsefulRatio.
+metrics::Judged judged(const LackOfFit& test, double level) {
+  using metrics::TestOutcome;
+  if (test.p < level) return {TestOutcome::failed, {}};
+  if (exceedance(kLargestUsefulRatio, test) < level) return {TestOutcome::passed, {}};
+  return {TestOutcome::not_judged,
+          fmt::format("a residual variance of {:.0f} times the noise would not be detected "
+                      "({:.1f} effective degrees of freedom)",
+                      kLargestUsefulRatio, test.freedom)};
 }
 
 }  // namespace
@@ -56,17 +73,22 @@ std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& fo
       test.freedom = std::max(1.0, samples / square_inflation(noise, samples));
       test.pure_freedom = test.by_repeats ? (series.repeats - 1) * test.freedom
                                           : std::numeric_limits<double>::infinity();
-      test.p = exceedance(test);
+      test.p = exceedance(test.ratio, test);
       result.push_back(std::move(test));
     }
   }
+  const double level = kMisfitLevel / static_cast<double>(result.size());  // Bonferroni
+  for (LackOfFit& test : result) static_cast<metrics::Judged&>(test) = judged(test, level);
   return result;
 }
 
 std::optional<bool> misfit(const std::vector<LackOfFit>& tests) {
-  const LackOfFit* least = least_likely(tests);
-  if (least == nullptr) return std::nullopt;
-  return least->p * static_cast<double>(tests.size()) < kMisfitLevel;
+  bool all = !tests.empty();
+  for (const LackOfFit& test : tests) {
+    if (test.failed()) return true;
+    all = all && test.passed();
+  }
+  return all ? std::optional(false) : std::nullopt;
 }
 
 }  // namespace rigcal::calib

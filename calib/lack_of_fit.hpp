@@ -16,10 +16,13 @@ namespace rigcal::calib {
 /// repeats - 1 for the pure error; without end where the campaign's `sd` tells it. The variance of
 /// the residual is that of its noise model, corrected for what the fit has removed.
 ///
+/// A test has passed where a residual of twice the size of the noise would have failed it.
+///
 /// @param found  with scatter; without, there is no test
 std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& found);
 
-/// Whether the model leaves more than noise, at 5 % for all tests together (Bonferroni). Empty
+/// Whether there is a significant lack of fit, at 5 % for all tests together (Bonferroni): of one
+/// channel. Not where all have passed; empty where none has failed and one cannot be judged, or
 /// without a test.
 std::optional<bool> misfit(const std::vector<LackOfFit>& tests);
 

@@ -71,7 +71,8 @@ constexpr std::array kFormulas{
     Formula{"autocorrelation",
             "rho(k) = sum e(t) e(t-k) / sum e^2; band ± 1.96 / sqrt(n); test of Ljung and Box over "
             "25 lags"},
-    Formula{"effective sample size", "n / (1 + 2 sum of rho) up to the first rho that is not positive"},
+    Formula{"effective sample size",
+            "n / (1 + 2 sum of rho) up to the first rho that is not positive"},
     Formula{"cross-correlation",
             "sum e(t) u(t-lag) / (n std(e) std(u)), u the reference or command; band by the "
             "effective sample size, Bonferroni for the peak"},

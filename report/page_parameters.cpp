@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,9 +32,11 @@ std::string half_width_text(const Json& parameter) {
   const auto value = number_of(parameter, "value");
   if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number() || !value || *value == 0.0)
     return {};
-  const double half = 0.5 * (ci[1].get<double>() - ci[0].get<double>());
+  // The end that no limit of the parameter has cut, as the grade and its reason count.
+  const double half = std::max(ci[1].get<double>() - *value, *value - ci[0].get<double>());
   const double percent = 100.0 * half / std::abs(*value);
-  return percent > 1000.0 ? "over 1000 %" : fmt::format("± {:.2g} %", percent);
+  if (percent > 1000.0) return "over 1000 %";
+  return percent < 100.0 ? fmt::format("± {:.2g} %", percent) : fmt::format("± {:.0f} %", percent);
 }
 
 Json grade(const Json& parameter) {
@@ -175,6 +178,15 @@ std::string lift_common_reasons(Json& rows) {
   return joined_reason(common);
 }
 
+std::vector<std::string> not_identifiable(const Json& result) {
+  std::vector<std::string> names;
+  for (const Json& p : result.at("parameters")) {
+    if (p.at("fitted").get<bool>() && text_of(p, "identifiability") == "not_identifiable")
+      names.push_back(parameter_label(p));
+  }
+  return names;
+}
+
 }  // namespace
 
 Json parameters_view(const Json& result) {
@@ -213,16 +225,20 @@ Json identifiability_view(const Json& result) {
   const auto all = static_cast<int>(values.size());
   if (rank < all) {
     view["reading"] = fmt::format(
-        "Only {} of {} directions of the parameters are determined by the records: {} "
-        "combination{} "
-        "can be changed without any effect that the records show.",
+        "The Jacobian has rank {} of {}: {} combination{} of the parameters can be changed without "
+        "any effect on the records.",
         rank, all, all - rank, all - rank == 1 ? "" : "s");
   } else {
+    const std::vector<std::string> open = not_identifiable(result);
     view["reading"] = fmt::format(
-        "All {} directions of the parameters are determined; the best {:.3g} times as sharply as "
-        "the "
-        "worst.",
-        all, values.back() > 0.0 ? values.front() / values.back() : 0.0);
+        "The Jacobian has full rank ({} of {}): every combination of the parameters has an effect "
+        "on "
+        "the records, the strongest {:.3g} times that of the weakest. {}",
+        rank, all, values.back() > 0.0 ? values.front() / values.back() : 0.0,
+        open.empty()
+            ? "No parameter is graded not identifiable."
+            : fmt::format("For these it is too small against the noise to identify them: {}.",
+                          fmt::join(open, ", ")));
   }
   Plot plot = ranked_points("Singular values of the scaled Jacobian", "singular value", values);
   plot.x_label = "direction";

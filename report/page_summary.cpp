@@ -93,12 +93,18 @@ void add_parameters(const Json& result, std::vector<Reason>& reasons) {
   }
 }
 
-/// Whether the model leaves more than noise; null where nothing tells the noise.
+/// Whether there is a significant lack of fit; null where it cannot be judged.
 Json misfit_of(const Json& result) {
   const auto lack = result.find("lack_of_fit");
   if (lack == result.end() || !lack->is_object()) return nullptr;
   const auto misfit = lack->find("misfit");
   return misfit == lack->end() ? Json(nullptr) : *misfit;
+}
+
+/// Whether lack of fit was tested at all.
+bool has_lack_tests(const Json& result) {
+  const auto lack = result.find("lack_of_fit");
+  return lack != result.end() && lack->is_object() && !lack->value("tests", Json::array()).empty();
 }
 
 void add_misfit(const Json& result, std::vector<Reason>& reasons) {
@@ -113,8 +119,8 @@ void add_misfit(const Json& result, std::vector<Reason>& reasons) {
                      std::sqrt(*chi)),
          "conditions"});
   } else if (misfit_of(result) == true) {
-    reasons.push_back(
-        {kMisfit, "the model leaves more than noise (lack of fit)", "identifiability"});
+    reasons.push_back({kMisfit, "significant lack of fit: the residuals hold more than noise",
+                       "identifiability"});
   }
 }
 
@@ -158,7 +164,9 @@ Reason noise_reason(const Json& result, double chi_square) {
   if (!misfit_of(result).is_boolean()) {
     constexpr double kUnknownNoise = 2.5;  // before what speaks for the estimates
     return {kUnknownNoise,
-            "neither repeats nor sd tell the noise: whether the model leaves more is not known",
+            has_lack_tests(result)
+                ? "lack of fit cannot be judged: too few independent samples"
+                : "lack of fit cannot be judged: neither repeats nor sd tell the noise",
             "identifiability"};
   }
   constexpr double kSame = 0.005;

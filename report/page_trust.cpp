@@ -81,9 +81,12 @@ Json bootstrap_row(const Json& parameter) {
 Json lack_of_fit_view(const Json& lack) {
   Json view;
   const Json& misfit = optional_part(lack, "misfit");
-  view["sentence"] = !misfit.is_boolean() ? "Whether the model leaves more than noise is not known."
-                     : misfit.get<bool>() ? "The model leaves more than noise."
-                                          : "The model leaves no more than noise.";
+  const bool tested = !optional_part(lack, "tests").empty();
+  view["sentence"] = misfit == true    ? "Significant lack of fit."
+                     : misfit == false ? "No lack of fit detected."
+                     : tested          ? "Lack of fit cannot be judged: the records have too few "
+                                         "independent samples."
+                                       : "Lack of fit cannot be judged: the noise is not known.";
   view["class"] = misfit == true ? "warn" : misfit == false ? "good" : "none";
   view["rows"] = Json::array();
   for (const Json& test : optional_part(lack, "tests")) {
@@ -93,7 +96,10 @@ Json lack_of_fit_view(const Json& lack) {
                             {"against", text_of(test, "against")},
                             {"ratio", shown_in(test.at("ratio"), 1.0, 4)},
                             {"freedom", shown_in(test.at("freedom"), 1.0, 6)},
-                            {"p", p ? p_value_text(*p) : std::string("–")}});
+                            {"p", p ? p_value_text(*p) : std::string("–")},
+                            {"outcome", text_of(test, "outcome") == "not_judged"
+                                            ? "cannot be judged: " + text_of(test, "reason")
+                                            : text_of(test, "outcome")}});
   }
   view["known"] = lack.is_object();
   view["has_rows"] = !view["rows"].empty();

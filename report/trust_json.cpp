@@ -14,6 +14,8 @@ Json lack_of_fit_json(const calib::Fit& fit) {
     json["freedom"] = number(test.freedom);
     json["pure_error_freedom"] = number(test.pure_freedom);
     json["p"] = number(test.p);
+    json["outcome"] = std::string(metrics::to_string(test.outcome));
+    json["reason"] = test.reason.empty() ? Json(nullptr) : Json(test.reason);
     tests.push_back(std::move(json));
   }
   Json json;

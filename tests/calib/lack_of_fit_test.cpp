@@ -61,9 +61,10 @@ TEST_CASE("lack of fit: noise alone, white or not, is no misfit", "[calib]") {
     CHECK(test.by_repeats);
     CHECK(test.p > 0.001);  // a false alarm once in a thousand
     CHECK_FALSE(found.misfit.value());
+    CHECK(test.outcome == metrics::TestOutcome::passed);
     CHECK_THAT(test.pure_freedom, WithinRel(4.0 * test.freedom, 1e-12));
     CHECK((rho > 0.0) == (found.effective_samples < 400.0));
-    CHECK_THAT(found.interval_advice, Contains(rho > 0.0 ? "believe the robust" : "agree"));
+    CHECK_THAT(found.interval_advice, Contains(rho > 0.0 ? "use the robust errors" : "agree"));
   }
 }
 
@@ -77,7 +78,8 @@ TEST_CASE("lack of fit: unmodelled friction is a misfit, and the advice says so"
   REQUIRE(found.lack_of_fit.size() == 1);
   CHECK(found.lack_of_fit[0].ratio > 1.5);
   CHECK(found.misfit.value());
-  CHECK_THAT(found.interval_advice, Contains("more than noise") && Contains("square"));
+  CHECK(found.lack_of_fit[0].outcome == metrics::TestOutcome::failed);
+  CHECK_THAT(found.interval_advice, Contains("significant lack of fit") && Contains("square"));
 }
 
 TEST_CASE("lack of fit: without repeats the stated sd is compared, without it nothing", "[calib]") {
@@ -91,6 +93,35 @@ TEST_CASE("lack of fit: without repeats the stated sd is compared, without it no
   CHECK(unknown.lack_of_fit.empty());
   CHECK_FALSE(unknown.misfit.has_value());
   CHECK_THAT(unknown.interval_advice, Contains("cannot be told apart"));
+}
+
+TEST_CASE("lack of fit: one failure is a misfit, one that cannot be judged leaves it open",
+          "[calib]") {
+  using metrics::TestOutcome;
+  const auto tests = [](std::initializer_list<TestOutcome> outcomes) {
+    std::vector<LackOfFit> list;
+    for (const TestOutcome outcome : outcomes) list.emplace_back().outcome = outcome;
+    return list;
+  };
+  CHECK(misfit(tests({TestOutcome::passed, TestOutcome::passed})) == false);
+  CHECK(misfit(tests({TestOutcome::not_judged, TestOutcome::failed})) == true);
+  CHECK_FALSE(misfit(tests({TestOutcome::passed, TestOutcome::not_judged})).has_value());
+  CHECK_FALSE(misfit({}).has_value());
+}
+
+TEST_CASE("lack of fit: few independent samples cannot be judged", "[calib]") {
+  // Noise that hardly changes within the record: a freedom of one or two, against which four times
+  // the variance of the noise is no surprise.
+  const Twin twin = one_square();
+  const Fit found = fit(twin.campaign, repeated(twin, 0.999, 7), {});
+  REQUIRE(found.lack_of_fit.size() == 1);
+  const LackOfFit& test = found.lack_of_fit[0];
+  CAPTURE(test.ratio, test.freedom, test.p);
+  CHECK(test.freedom < 5.0);
+  CHECK(test.outcome == metrics::TestOutcome::not_judged);
+  CHECK_THAT(test.reason, Contains("4 times the noise would not be detected"));
+  CHECK_FALSE(found.misfit.has_value());
+  CHECK_THAT(found.interval_advice, Contains("lack of fit cannot be judged (condition"));
 }
 
 TEST_CASE("known values: their uncertainty is carried into the errors", "[calib]") {

@@ -104,10 +104,25 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
   SECTION("noise that nothing tells") {
     json["lack_of_fit"] = {{"misfit", nullptr}, {"tests", Json::array()}};
     CHECK_THAT(page(json), Contains("neither repeats nor sd tell the noise"));
+    json["lack_of_fit"]["tests"] = {{{"condition", "sine"},
+                                     {"channel", "position"},
+                                     {"against", "repeats"},
+                                     {"ratio", 1.0},
+                                     {"freedom", 2.0},
+                                     {"pure_error_freedom", 8.0},
+                                     {"p", 0.4},
+                                     {"outcome", "not_judged"},
+                                     {"reason", "few samples"}}};
+    const std::string few = page(json);
+    CHECK_THAT(few, Contains("Lack of fit cannot be judged: the records have too few"));
+    CHECK_THAT(few, Contains("cannot be judged: few samples"));
+    CHECK_THAT(few, !Contains("neither repeats nor sd tell the noise"));
+    CHECK_THAT(few, !Contains("No lack of fit detected"));
     json["lack_of_fit"]["misfit"] = false;
+    CHECK_THAT(page(json), Contains("No lack of fit detected."));
     CHECK_THAT(page(json), !Contains("neither repeats nor sd tell the noise"));
     json["lack_of_fit"]["misfit"] = true;
-    CHECK_THAT(page(json), Contains("leaves more than noise (lack of fit)"));
+    CHECK_THAT(page(json), Contains("significant lack of fit"));
   }
   SECTION("a residual that follows the input") {
     Json& tests = json["conditions"][0]["residual_tests"]["position"];
@@ -213,7 +228,7 @@ TEST_CASE("page: what a fit holds beyond is drawn, what it lacks is left out", "
   const std::string html = page(json);
   CHECK_THAT(html, Contains("mass: lower end 84.9 kg, open at its upper end: followed to 500 kg"));
   CHECK_THAT(html, Contains("only valve_gain / &lt;mass&gt; is fixed"));
-  CHECK_THAT(html, Contains("The model leaves more than noise."));
+  CHECK_THAT(html, Contains("Significant lack of fit."));
   CHECK_THAT(html, !Contains("is missing or holds no rows"));
   json["conditions"][0]["id"] = "lost";
   CHECK_THAT(page(json), Contains("residuals/lost.csv is missing or holds no rows"));
