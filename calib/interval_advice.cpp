@@ -106,10 +106,8 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
                       test.condition, datasets::info(test.channel).key, test.ratio, against,
                       test.p);
   }
-  return text + fmt::format(
-                    "; no lack of fit detected against {} (smallest p = {:.2g} of {} tests, 5 % "
-                    "level for all together)",
-                    against, test.p, tests.size());
+  return text + fmt::format("; no lack of fit detected against {} (smallest p = {:.2g}, {} test{})",
+                            against, test.p, tests.size(), tests.size() == 1 ? "" : "s");
 }
 
 std::string compare_intervals(const Problem& problem,

@@ -64,7 +64,7 @@ constexpr std::array kFormulas{
             "squares counts n / (1 + 2 sum rho^2) degrees of freedom; all tests together at 5 % "
             "(Bonferroni)"},
     Formula{"AIC, BIC",
-            "2 cost w + 2 rank, 2 cost w + rank ln(n_e); n_e effective samples of n residuals, w = "
+            "2 cost w + 2 rank, 2 cost w + rank ln(n_e); n_e of n residuals independent, w = "
             "min(1, n_e / n)"},
     Formula{"shift by a condition left out",
             "largest |value without it - value| over the standard error"},
