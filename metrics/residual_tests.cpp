@@ -123,8 +123,12 @@ std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>
   return result;
 }
 
-/// Power of each line, from the first above zero to half the sampling rate.
-std::vector<double> line_powers(const std::vector<double>& e) {
+struct Lines {
+  std::vector<double> power;  ///< from the first above zero to half the sampling rate
+  double spacing = 0.0;       ///< in cycles per sample
+};
+
+Lines line_powers(const std::vector<double>& e) {
   std::vector<double> values = e;
   // Few lengths are powers of two: the transform of Eigen takes any length of small primes, and a
   // few samples less do not change a spectrum.
@@ -140,13 +144,13 @@ std::vector<double> line_powers(const std::vector<double>& e) {
   fft.fwd(spectrum, values);
   std::vector<double> power(values.size() / 2);
   for (std::size_t k = 1; k <= power.size(); ++k) power[k - 1] = std::norm(spectrum[k]);
-  return power;
+  return {std::move(power), 1.0 / static_cast<double>(values.size())};
 }
 
 Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
-  const std::vector<double> power = line_powers(e);
+  const auto [power, spacing] = line_powers(e);
   const double lines = static_cast<double>(power.size());
-  const double line_hz = 0.5 / (interval_s * lines);
+  const double line_hz = spacing / interval_s;
   double total = 0.0;
   for (const double p : power) total += p;
   Periodogram result;
@@ -169,8 +173,8 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
   result.peak_frequency_hz = static_cast<double>(peak + 1) * line_hz;
   for (std::size_t k = peak > 0 ? peak - 1 : 0; k <= std::min(peak + 1, power.size() - 1); ++k)
     result.peak_share += power[k] / total;
-  // By Parseval the mean line stands for the mean square spread over half the sampling rate.
-  const double density = mean_square(e) * lines / total / (0.5 / interval_s);
+  // By Parseval all lines together stand for the mean square.
+  const double density = mean_square(e) / (total * line_hz);
   constexpr double kBinsPerDecade = 30.0;
   for (std::size_t k = 0; k < power.size();) {
     const double upper = static_cast<double>(k + 1) * std::pow(10.0, 1.0 / kBinsPerDecade);

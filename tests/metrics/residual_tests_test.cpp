@@ -115,6 +115,39 @@ TEST_CASE("residual_tests: heavy tails and trends are named", "[metrics]") {
   CHECK_THAT(drift.drift.slope_per_s, Catch::WithinAbs(0.02, 0.016));
 }
 
+TEST_CASE("residual_tests: offset and trend are tested at half the level each", "[metrics]") {
+  // White noise whose mean and trend are taken off; what is put on has the p that is wanted.
+  constexpr std::size_t kCount = 400;
+  std::vector<double> noise = white(kCount, 21);
+  std::vector<double> time(kCount);
+  double mean = 0.0, slope = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    time[i] = static_cast<double>(i) - 0.5 * (kCount - 1.0);
+    mean += noise[i] / kCount;
+  }
+  for (std::size_t i = 0; i < kCount; ++i) slope += noise[i] * time[i];
+  for (const double t : time) squares += t * t;
+  for (std::size_t i = 0; i < kCount; ++i) noise[i] -= mean + slope / squares * time[i];
+  const double sd = residual_tests(noise, {}, 0.01).std;
+  const auto outcome_of = [&](double offset_z, double trend_z) {
+    std::vector<double> residual = noise;
+    for (std::size_t i = 0; i < kCount; ++i) {
+      residual[i] += sd / std::sqrt(static_cast<double>(kCount)) *
+                     (offset_z + trend_z * time[i] / std::sqrt(squares / kCount));
+    }
+    return residual_tests(residual, {}, 0.01).drift.outcome;
+  };
+  // The normal quantile of 1.25 % is 2.2414; a trend that size adds 0.6 % to the variance.
+  using rigcal::metrics::TestOutcome;
+  CHECK(outcome_of(2.20, 0.0) == TestOutcome::passed);
+  CHECK(outcome_of(-2.20, 0.0) == TestOutcome::passed);
+  CHECK(outcome_of(2.28, 0.0) == TestOutcome::failed);
+  CHECK(outcome_of(-2.28, 0.0) == TestOutcome::failed);
+  CHECK(outcome_of(0.0, 2.20) == TestOutcome::passed);
+  CHECK(outcome_of(0.0, 2.30) == TestOutcome::failed);
+  CHECK(outcome_of(0.0, -2.30) == TestOutcome::failed);
+}
+
 TEST_CASE("residual_tests: a test without power is no pass", "[metrics]") {
   // Half a wave fills the record: hardly an independent sample is left.
   std::vector<double> slow = sine(2000, 0.25, 0.001);

@@ -1,0 +1,222 @@
+#!/usr/bin/env python3
+"""Writes statistics.txt beside this file: the statistics of metrics/ by SciPy and statsmodels.
+
+Debian: python3-scipy, python3-statsmodels; the tests themselves need neither. Run it again after
+changing a case:  /usr/bin/python3 make_statistics_golden.py
+
+Each line is a name and its numbers; of a function, its arguments and then its value. Series are rounded to six decimals, so that both sides read
+the same doubles.
+"""
+
+import pathlib
+
+import numpy
+from scipy import integrate, stats
+from scipy.signal import lfilter, periodogram
+from statsmodels.regression.linear_model import WLS
+from statsmodels.stats.diagnostic import acorr_ljungbox
+from statsmodels.stats.multitest import multipletests
+from statsmodels.stats.proportion import proportion_confint
+from statsmodels.stats.stattools import durbin_watson
+from statsmodels.tsa.arima_process import ArmaProcess
+from statsmodels.tsa.stattools import acf, acovf, levinson_durbin
+
+INTERVAL_S = 0.01
+
+
+def rounded(values):
+    return numpy.round(values, 6)
+
+
+def distributions():
+    for p in (0.001, 0.2, 0.975, 0.99999):
+        yield "normal_quantile", [p, stats.norm.ppf(p)]
+    for x in (-3.1, 0.4):
+        yield "normal_cdf", [x, stats.norm.cdf(x)]
+    for p, freedom in ((0.975, 1.5), (0.975, 4), (0.9, 37.3), (0.01, 1e4)):
+        yield "student_t_quantile", [p, freedom, stats.t.ppf(p, freedom)]
+    for t, freedom in ((-2.1, 3.7), (0.6, 12)):
+        yield "student_t_cdf", [t, freedom, stats.t.cdf(t, freedom)]
+    for x, freedom in ((0.3, 1), (30.1, 25), (9.9, 2.5)):
+        yield "chi_squared_exceedance", [x, freedom, stats.chi2.sf(x, freedom)]
+    for x, above, below in ((2.2, 7, 11), (1.3, 40.5, 162), (0.4, 3, 200)):
+        yield "fisher_f_exceedance", [x, above, below, stats.f.sf(x, above, below)]
+    for k, n, p in ((3, 11, 0.5), (0, 4, 0.1)):
+        yield "binomial_cdf", [k, n, p, stats.binom.cdf(k, n, p)]
+
+
+def effective_size(rho, n):
+    if rho[1] <= 1.96 / numpy.sqrt(n):
+        return float(n)
+    end = next(k for k in range(1, n) if rho[k] <= 0.0)
+    return n / (1.0 + 2.0 * sum(rho[1:end]))
+
+
+def residual_tests(name, e, u):
+    n = len(e)
+    c = e - e.mean()
+    rho = acf(e, nlags=n - 1, fft=False)
+    effective = effective_size(rho, n)
+    tested = min(25, n // 5)
+    ljung_box = acorr_ljungbox(c, lags=[tested])
+    yield f"{name}.residual", e
+    yield f"{name}.input", u
+    yield f"{name}.autocorrelation", rho[: tested + 1]
+    yield f"{name}.ljung_box", ljung_box["lb_stat"].iloc[0]
+    yield f"{name}.ljung_box_p", ljung_box["lb_pvalue"].iloc[0]
+    yield f"{name}.durbin_watson", durbin_watson(c)
+    yield f"{name}.effective_samples", effective
+
+    product = numpy.correlate(c, u - u.mean(), mode="full") / (n * c.std() * u.std())
+    lags = min(n // 2, max(50, 4 * next(k for k in range(1, n) if rho[k] <= 1.96 / numpy.sqrt(n))))
+    shown = product[n - 1 - lags : n + lags]
+    peak = numpy.argmax(abs(shown))
+    yield f"{name}.cross_correlation", shown[peak]
+    yield f"{name}.cross_lag_s", (peak - lags) * INTERVAL_S
+    tests = min(2 * lags + 1, effective)
+    yield f"{name}.cross_band", stats.norm.ppf(1 - 0.025 / tests) / numpy.sqrt(effective)
+
+    power = abs(numpy.fft.rfft(c)[1:]) ** 2
+    lines = len(power)
+    share = numpy.cumsum(power) / power.sum()
+    yield f"{name}.periodogram_distance", max(abs(share - numpy.arange(1, lines + 1) / lines))
+    # The 5 % point of Kolmogorov's distribution, which the source rounds to 1.358.
+    yield f"{name}.periodogram_limit", stats.kstwobign.ppf(0.95) / numpy.sqrt(lines - 1)
+    hz, density = periodogram(c, 1 / INTERVAL_S, detrend=False)
+    yield f"{name}.periodogram_lowest", [hz[1], density[1]]
+    yield f"{name}.periodogram_median_hz", hz[1 + next(k for k in range(lines) if share[k] >= 0.5)]
+    at = numpy.argmax(power)
+    yield f"{name}.periodogram_peak", [hz[1 + at], power[max(at - 1, 0) : at + 2].sum() / power.sum()]
+
+    # For correlated samples the statistic counts the effective ones.
+    skewness, kurtosis = stats.skew(e), stats.kurtosis(e)
+    bera = stats.jarque_bera(e).statistic * effective / n
+    yield f"{name}.skewness", skewness
+    yield f"{name}.excess_kurtosis", kurtosis
+    yield f"{name}.jarque_bera", bera
+    yield f"{name}.jarque_bera_p", stats.chi2.sf(bera, 2)
+
+    time_s = INTERVAL_S * numpy.arange(n)
+    slope = stats.linregress(time_s, e).slope
+    error = e.std() / numpy.sqrt(effective)
+    yield f"{name}.mean", e.mean()
+    yield f"{name}.mean_p", 2 * stats.norm.sf(abs(e.mean()) / error)
+    yield f"{name}.slope_per_s", slope
+    yield f"{name}.slope_p", 2 * stats.norm.sf(abs(slope) * time_s.std() / error)
+
+
+def autoregression(name, x, lags):
+    n = len(x)
+    gamma = acovf(x, demean=False, fft=False, nlag=lags)
+    fits = [(gamma[0], numpy.array([]))]
+    fits += [levinson_durbin(gamma, nlags=p, isacov=True)[:2] for p in range(1, lags + 1)]
+    variance, phi = min(fits, key=lambda fit: n * numpy.log(fit[0]) + len(fit[1]) * numpy.log(n))
+    process = ArmaProcess(numpy.r_[1, -phi])
+    yield f"{name}.series", x
+    yield f"{name}.autocovariance", gamma
+    yield f"{name}.phi", phi
+    yield f"{name}.variance", variance
+    yield f"{name}.model_autocovariance", variance * process.acovf(lags + 1)
+    # Long-run variance: 2 pi times the spectral density at frequency zero.
+    long_run = variance / (1 - phi.sum()) ** 2
+    yield f"{name}.effective_samples", n * variance * process.acovf(1)[0] / long_run
+
+
+def significance(generator):
+    p = rounded(generator.uniform(0, 0.2, 7))
+    yield "holm.p", p
+    yield "holm.adjusted", multipletests(p, method="holm")[1]
+    for better, worse in ((8, 2), (3, 9), (6, 6)):
+        yield "sign_test", [better, worse, stats.binomtest(better, better + worse).pvalue]
+    x = rounded(generator.uniform(0, 40, 8))
+    error = rounded(generator.uniform(0.5, 2, 8))
+    # Scatter larger than the errors widens the interval, smaller scatter does not narrow it.
+    for name, scatter in (("trend_wide", 3.0), ("trend_narrow", 0.3)):
+        y = rounded(1 + 0.07 * x + scatter * error * generator.standard_normal(8))
+        fit = WLS(y, numpy.c_[numpy.ones(8), x], weights=error**-2).fit()
+        sd = fit.bse[1] / min(1.0, numpy.sqrt(fit.scale))
+        half = stats.t.ppf(0.975, 6) * sd
+        yield f"{name}.x", x
+        yield f"{name}.y", y
+        yield f"{name}.error", error
+        yield f"{name}.line", [fit.params[1], fit.params[0], sd, fit.scale]
+        yield f"{name}.ci95", [fit.params[1] - half, fit.params[1] + half]
+        yield f"{name}.p_value", 2 * stats.t.sf(abs(fit.params[1]) / sd, 6)
+    for right, trials in ((5, 9), (0, 4), (12, 12)):
+        yield "wilson", [right, trials, *proportion_confint(right, trials, method="wilson")]
+
+
+def fundamental(generator):
+    n, hz = 230, 1.7
+    time_s = rounded(numpy.cumsum(generator.uniform(0.008, 0.012, n)))
+    measured = rounded(2 + 3 * numpy.sin(2 * numpy.pi * hz * time_s + 0.4) + 0.3 * generator.standard_normal(n))
+    simulated = rounded(2.4 * numpy.sin(2 * numpy.pi * hz * time_s - 0.3) + 0.3 * generator.standard_normal(n))
+    # Whole periods at the end; of three or more the first is left out as transient.
+    periods = numpy.floor((time_s[-1] - time_s[0]) * hz) - 1
+    counts = time_s > time_s[-1] - periods / hz
+    angle = 2 * numpy.pi * hz * time_s[counts]
+    design = numpy.c_[numpy.sin(angle), numpy.cos(angle), numpy.ones(counts.sum())]
+    both = [numpy.linalg.lstsq(design, y[counts], rcond=None)[0] for y in (measured, simulated)]
+    (gain_y, gain_s), (phase_y, phase_s) = zip(*((numpy.hypot(a, b), numpy.arctan2(b, a)) for a, b, _ in both))
+    yield "fundamental.time_s", time_s
+    yield "fundamental.measured", measured
+    yield "fundamental.simulated", simulated
+    yield "fundamental.measured_line", [gain_y, phase_y]
+    degrees = numpy.degrees(phase_s - phase_y)
+    yield "fundamental.comparison", [gain_s / gain_y, degrees, -degrees / 360 / hz]
+
+
+def leak_share(generator):
+    time_s = rounded(numpy.cumsum(generator.uniform(0.1, 1.0, 12)))
+    servo, leak = rounded(generator.standard_normal(12)), rounded(0.2 * generator.standard_normal(12))
+
+    def mean_absolute(y):
+        def line(t):
+            return abs(numpy.interp(t, time_s, y))
+
+        pieces = [integrate.quad(line, a, b, limit=400, epsabs=1e-13)[0] for a, b in zip(time_s, time_s[1:])]
+        return sum(pieces) / (time_s[-1] - time_s[0])
+
+    yield "leak.time_s", time_s
+    yield "leak.servo", servo
+    yield "leak.leak", leak
+    yield "leak.mean_absolute", mean_absolute(servo)
+    yield "leak.share", mean_absolute(leak) / mean_absolute(servo)
+
+
+def residual_features(generator):
+    e = rounded(generator.standard_normal(30) + 0.3)
+    yield "features.residual", e
+    yield "features.values", [abs(e).mean(), numpy.sqrt((e**2).mean()), abs(e).std()]
+
+
+def cases():
+    generator = numpy.random.default_rng(20260301)
+    yield from distributions()
+    # 120 and 125 samples: their transforms have no length to be cut to.
+    white = generator.standard_normal(120)
+    yield from residual_tests("white", rounded(white), rounded(generator.standard_normal(120)))
+    coloured = lfilter([1], [1, -0.7], generator.standard_normal(125))
+    late = 0.8 * coloured + 0.5 * generator.standard_normal(125)
+    yield from residual_tests("coloured", rounded(0.4 + coloured), rounded(numpy.roll(late, -3)))
+    skewed = generator.exponential(1.0, 120) + 0.004 * numpy.arange(120)
+    yield from residual_tests("skewed", rounded(skewed), rounded(generator.standard_normal(120)))
+    yield from autoregression("first_order", rounded(lfilter([1], [1, -0.8], generator.standard_normal(200))), 12)
+    yield from autoregression("ringing", rounded(lfilter([1], [1, -1.5, 0.8], generator.standard_normal(200))), 12)
+    yield from significance(generator)
+    yield from fundamental(generator)
+    yield from leak_share(generator)
+    yield from residual_features(generator)
+
+
+def main():
+    path = pathlib.Path(__file__).with_name("statistics.txt")
+    with path.open("w", encoding="ascii") as out:
+        out.write("# made by make_statistics_golden.py with SciPy and statsmodels\n")
+        for name, values in cases():
+            numbers = " ".join(f"{float(v):.15g}" for v in numpy.atleast_1d(values))
+            out.write(f"{name} {numbers}\n")
+
+
+if __name__ == "__main__":
+    main()
