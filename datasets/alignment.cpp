@@ -177,6 +177,15 @@ std::optional<Offsets> correlate_offsets(const std::vector<Repeat>& repeats) {
   return std::nullopt;
 }
 
+/// Repeats are shifted all or none: to shift a few of them would shift their mean.
+bool any_significant(const Offsets& offsets, double smallest_s) {
+  for (std::size_t r = 0; r < offsets.seconds.size(); ++r) {
+    if (std::abs(offsets.seconds[r]) > std::max(smallest_s, kSignificance * offsets.sd_s[r]))
+      return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate) {
@@ -187,6 +196,7 @@ AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate) {
 
   AlignedRepeats result;
   result.offset_s.assign(repeats.size(), 0.0);
+  result.shifted_s.assign(repeats.size(), 0.0);
   const double dt = interval(first);
   for (const Repeat& repeat : repeats) {
     const bool same = same_times(first, repeat);
@@ -205,10 +215,12 @@ AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate) {
     return result;
   }
   result.offset_s = offsets->seconds;
+  if (!any_significant(*offsets, kFewestSamples * dt)) return result;
   for (std::size_t r = 0; r < repeats.size(); ++r) {
     const double offset = offsets->seconds[r];
-    if (std::abs(offset) > std::max(kFewestSamples * dt, kSignificance * offsets->sd_s[r]))
-      result.shift[r] += offset / dt;
+    if (std::abs(offset) <= kFewestSamples * dt) continue;
+    result.shifted_s[r] = offset;
+    result.shift[r] += offset / dt;
   }
   return result;
 }

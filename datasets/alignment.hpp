@@ -10,7 +10,8 @@ namespace rigcal::datasets {
 
 /// How the repeats of one condition lie in time.
 struct AlignedRepeats {
-  std::vector<double> offset_s;  ///< by how much each repeat came later than the others
+  std::vector<double> offset_s;   ///< by how much each repeat came later than the others
+  std::vector<double> shifted_s;  ///< the same where it is corrected, else 0
   /// Where sample i of the common time base lies in each repeat: sample i + shift, fractional.
   std::vector<double> shift;
   std::vector<std::string> warnings;
@@ -29,8 +30,9 @@ struct AlignedRepeats {
 /// whose offset lies out of all proportion (ten times the median distance from the median, and more
 /// than a sample) are left out of that mean: one false start must not shift the others.
 ///
-/// An offset is reported always, but corrected only where it exceeds 0.02 samples and three times
-/// its own standard deviation, because interpolation is not free.
+/// Offsets are reported always, but corrected only where one of them exceeds 0.02 samples and three
+/// times its own standard deviation, because interpolation is not free; then all are that exceed
+/// 0.02 samples, because to correct some of them would shift the mean.
 ///
 /// @throws std::invalid_argument  no repeat, an empty or ragged one, or incompatible sampling: the
 ///                                message names the file and both rates or spans

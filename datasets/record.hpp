@@ -68,6 +68,7 @@ struct RepeatReport {
   /// rms distance from the mean of the others over the pooled sd; of its worst channel
   double deviation = 0.0;
   bool outlier = false;
+  double shifted_s = 0.0;  ///< offset_s where it was taken off to align the repeat, else 0
 };
 
 struct TimeWindow {
