@@ -18,7 +18,6 @@ using metrics::Autoregression;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 constexpr int kMostLags = 20;
-constexpr int kBiasRounds = 3;
 /// Integral of the squared Parzen kernel, both sides.
 constexpr double kParzenSquare = 0.539285;
 
@@ -93,8 +92,7 @@ MatrixXd expected(const ChannelRows& rows, const Autoregression& noise) {
   return noise.variance * filtered.transpose() * filtered;
 }
 
-/// u = L^-1 r of one channel, each enlarged by what the fit is expected to have taken from it: the
-/// diagonal of L^-1 (I - H) Sigma (I - H) L^-T over the variance.
+/// u = L^-1 r of one channel.
 struct Innovations {
   VectorXd u;
   RowMajor own;  ///< covariance with the error of each combination, over its standard error
@@ -102,7 +100,6 @@ struct Innovations {
 Innovations innovations(const ChannelRows& rows, const Autoregression& noise,
                         const RowMajor& filtered, const MatrixXd& total,
                         const MatrixXd& combinations) {
-  constexpr double kLeastLeft = 0.1;  // a sample that tells a parameter alone says nothing of noise
   const RowMajor residual = rows.residual;
   const RowMajor p = whitened(noise, rows.jacobian);
   const MatrixXd c = combinations.transpose();
@@ -111,13 +108,6 @@ Innovations innovations(const ChannelRows& rows, const Autoregression& noise,
                      noise.variance * filtered * c - p * (total * c)};
   for (Index j = 0; j < c.cols(); ++j)
     result.own.col(j) *= variance(j) > 0.0 ? 1.0 / std::sqrt(variance(j)) : 0.0;
-  for (Index t = 0; t < residual.rows() && noise.variance > 0.0; ++t) {
-    const double left = 1.0 - 2.0 * p.row(t).dot(filtered.row(t)) +
-                        (p.row(t) * total).dot(p.row(t)) / noise.variance;
-    const double scale = 1.0 / std::sqrt(std::clamp(left, kLeastLeft, 1.0));
-    result.u(t) *= scale;
-    result.own.row(t) *= scale;
-  }
   return result;
 }
 
@@ -144,20 +134,18 @@ std::vector<std::vector<Autoregression>> noise_models(const std::vector<ScoreRow
       each.order = each.noise.phi.size();
     }
   }
-  for (int round = 0; round < kBiasRounds; ++round) {
-    MatrixXd total = priors;
-    for (const ChannelNoise& each : channels) total += expected(each.rows, each.noise);
-    for (ChannelNoise& each : channels) {
-      std::vector<double> gamma(each.gamma.begin(),
-                                each.gamma.begin() + 1 + static_cast<std::ptrdiff_t>(each.order));
-      const auto removed = bias(each.rows, each.noise, total, static_cast<Index>(each.order));
-      // More than half taken away: the fit has left too little to tell the noise by.
-      if (!(removed.front() < 0.5 * (gamma.front() + removed.front()))) continue;
-      for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
-      // Far from an optimum residuals are not the noise that the correction supposes.
-      if (!metrics::is_autocovariance(gamma)) continue;
-      each.noise = metrics::fit_autoregression(gamma, static_cast<double>(each.rows.samples()));
-    }
+  MatrixXd total = priors;
+  for (const ChannelNoise& each : channels) total += expected(each.rows, each.noise);
+  for (ChannelNoise& each : channels) {
+    std::vector<double> gamma(each.gamma.begin(),
+                              each.gamma.begin() + 1 + static_cast<std::ptrdiff_t>(each.order));
+    const auto removed = bias(each.rows, each.noise, total, static_cast<Index>(each.order));
+    // More than half taken away: the fit has left too little to tell the noise by.
+    if (!(removed.front() < 0.5 * (gamma.front() + removed.front()))) continue;
+    for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
+    // Far from an optimum residuals are not the noise that the correction supposes.
+    if (!metrics::is_autocovariance(gamma)) continue;
+    each.noise = metrics::fit_autoregression(gamma, static_cast<double>(each.rows.samples()));
   }
   std::vector<std::vector<Autoregression>> result(rows.size());
   for (const ChannelNoise& each : channels) result[each.condition].push_back(each.noise);
@@ -182,8 +170,7 @@ double bandwidth(const RowMajor& scores) {
     below += std::pow(1.0 - rho * rho, 2.0) / std::pow(1.0 - rho, 4.0);
   }
   if (!(below > 0.0)) return 0.0;
-  const double samples = static_cast<double>(n);
-  return std::min(2.6614 * std::pow(above / below * samples, 0.2), samples / 4.0);
+  return 2.6614 * std::pow(above / below * static_cast<double>(n), 0.2);
 }
 
 double parzen(double x) {

@@ -40,9 +40,6 @@ struct ScoreScatter {
 /// autocovariances are corrected by the bias that (I - H) Sigma (I - H) has at the covariance
 /// Sigma found, H = J J^T.
 ///
-/// So are the squares of u_t, which are smaller where few samples tell a parameter (as HC2 corrects
-/// them where nothing is correlated; MacKinnon and White, Journal of Econometrics 29, 1985).
-///
 /// Degrees of freedom: Satterthwaite's, from the scatter of a sum of squares with the weights of
 /// each combination, and 4 / effective samples of a whitened long-run variance.
 ///
