@@ -130,16 +130,16 @@ def changed(mutant, text):
     front = next((i for i in range(least) if original[i] != mutated[i]), least)
     back = next((i for i in range(least - front) if original[-1 - i] != mutated[-1 - i]), least - front)
 
-    def prefix(characters, of):
-        """How long a prefix of a text has so many characters that are not white space."""
-        at = 0
-        while characters > 0:
+    def alike(part, of):
+        """How long a prefix of `of` has the characters of `part`, whatever its white space."""
+        at, characters = 0, len("".join(part.split()))
+        while characters > 0 or (part[-1:].isspace() and of[at:at + 1].isspace()):
             characters -= not of[at].isspace()
             at += 1
         return at
 
-    begin = prefix(len("".join(original[:front].split())), text)
-    end = len(text) - prefix(len("".join(original[len(original) - back:].split())), text[::-1])
+    begin = alike(original[:front], text)
+    end = len(text) - alike(original[len(original) - back:][::-1], text[::-1])
     return begin, max(begin, end), mutated[front:len(mutated) - back]
 
 
