@@ -109,3 +109,24 @@ TEST_CASE("align: samples within a quarter of an interval of their place are eve
     CHECK(align(repeats, true).warnings.size() == (off > 0.25 ? 1U : 0U));
   }
 }
+
+TEST_CASE("align: all repeats are shifted or none", "[datasets]") {
+  int shifted = 0;
+  int insignificant = 0;
+  for (int draw = 0; draw < 20; ++draw) {
+    std::vector<Repeat> repeats;
+    for (int r = 0; r < 6; ++r)
+      repeats.push_back(moved("s" + std::to_string(6 * draw + r), r == 0 ? 2.5 : 0.0, 0.5));
+    const auto aligned = align(repeats, true);
+    if (aligned.shift[0] == 0.0) continue;
+    ++shifted;
+    for (std::size_t r = 0; r < repeats.size(); ++r) {
+      const double offset = aligned.offset_s[r] / kClock_s;
+      insignificant += std::abs(offset) > 0.02 && std::abs(offset) < 0.8 ? 1 : 0;
+      CHECK_THAT(aligned.shift[r], WithinAbs(std::abs(offset) > 0.02 ? offset : 0.0, 1e-9));
+      CHECK_THAT(aligned.shifted_s[r] / kClock_s, WithinAbs(aligned.shift[r], 1e-9));
+    }
+  }
+  CHECK(shifted > 10);
+  CHECK(insignificant > 20);  // which alone would not have been made
+}
