@@ -127,6 +127,8 @@ TEST_CASE("load_campaign: types, units and limits of parameters", "[datasets]") 
       mass("{ lower = \"1 kg\" }", {"rig.parameters.mass.start", "missing"}),
       mass("{ start = \"60 kg\", lower = \"70 kg\", upper = \"80 kg\" }",
            {"mass.start", "outside"}),
+      mass("{ start = \"90 kg\", lower = \"70 kg\", upper = \"80 kg\" }",
+           {"mass.start", "outside"}),
       mass("{ start = \"60 kg\", lower = \"80 kg\", upper = \"80 kg\" }",
            {"mass.lower", "not below"}),
       mass("{ start = \"60 kg\", upper = \"1e9 kg\" }", {"mass.upper", "makes no sense"}),
