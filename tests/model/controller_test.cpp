@@ -234,3 +234,19 @@ TEST_CASE("controller: one tick pulls the integral back to the limit at the most
   CHECK(state[1] == 2.0);
   CHECK_THAT(state[0], WithinRel(2.0, 1e-14));
 }
+
+TEST_CASE("controller: a sampled output is that of the last tick", "[model]") {
+  // The plant cannot move; the error is the reference, a ramp of 0.1 m/s.
+  Experiment e;
+  e.inputs.drive = Signal::linear({0.0, 1.0}, {0.0, 0.1});
+  e.set("mass", 1e6).set("valve_gain", 1e-12).set("kp", 50.0).set("sample_time", 0.02);
+  e.times_s = grid(0.005, 0.195, 20);
+  e.times_s.insert(e.times_s.begin(), 0.0);
+  e.outputs = {Output::command};
+  const Simulation run = e();
+  REQUIRE(run.ok());
+  for (std::size_t i = 0; i < e.times_s.size(); ++i) {
+    const double tick_s = 0.02 * std::floor(e.times_s[i] / 0.02);
+    CHECK_THAT(run.outputs(static_cast<Eigen::Index>(i), 0), WithinAbs(50.0 * 0.1 * tick_s, 1e-8));
+  }
+}

@@ -656,3 +656,20 @@ TEST_CASE("output_name: each has its own name, with a unit", "[model]") {
     names.push_back(name);
   }
 }
+
+TEST_CASE("simulate: eight steps a period of the input, even where it moves nothing", "[model]") {
+  Experiment e = open_loop(Signal::sine(0.5, 10.0), 5.0);
+  e.set("valve_dead_band", 0.6);
+  e.options.periodic_steady_state = false;
+  CHECK(ok(e).steps >= 8 * 10 * 5);
+}
+
+TEST_CASE("simulate: an output that is not finite is a failure, if it is the only sample too",
+          "[model]") {
+  Experiment e = open_loop(Signal::constant(kNaN));
+  e.times_s = {0.0};
+  e.outputs = {Output::command};
+  const Simulation run = e();
+  CHECK(run.status == SimulationStatus::not_finite);
+  CHECK(run.outputs.size() == 0);
+}
