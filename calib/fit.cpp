@@ -176,6 +176,10 @@ void judge_residuals(const Problem& problem, const OptimumCheck& check, const Un
   fit.lack_of_fit = lack_of_fit(problem, spread);
   fit.misfit = misfit(fit.lack_of_fit);
   fit.interval_advice = interval_advice(problem, check, spread, fit.lack_of_fit);
+  fit.between_repeats = between_repeats(problem, spread);
+  if (fit.between_repeats && fit.between_repeats->differ)
+    fit.warnings.push_back(between_repeats_warning(*fit.between_repeats));
+  if (spread.noiseless > 0) fit.warnings.push_back(noiseless_warning(problem, spread));
   if (!spread.known.names.empty()) {
     fit.interval_advice += fmt::format("; the errors hold those of known values: {}",
                                        fmt::join(spread.known.names, ", "));

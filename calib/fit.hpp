@@ -117,6 +117,17 @@ struct LackOfFit : metrics::Judged {
   double p = 1.0;
 };
 
+/// How the repeats of the fitted conditions differ from one another (between_repeats.hpp).
+struct BetweenRepeats {
+  bool differ = false;  ///< by more than the residuals of their mean tell, at 5 %
+  double p = 1.0;       ///< of the parameter that shows it most, times the number of parameters
+  double ratio = 0.0;   ///< largest of error by the repeats over error by the residuals
+  std::vector<std::string> parameters;  ///< whose interval rests on the repeats
+  std::string cause;      ///< that would explain it: key of a parameter, or "start"; empty: none
+  double cause_sd = 0.0;  ///< of the cause between repeats: relative, of the start in s
+  double cause_explains = 0.0;  ///< share of how the repeats differ, 0 to 1
+};
+
 /// One start of a multi-start fit.
 struct StartReport {
   int number = 1;
@@ -203,7 +214,8 @@ struct Fit {
   std::vector<FittedParameter> parameters;
   std::vector<LackOfFit> lack_of_fit;  ///< channels of known noise
   std::optional<bool> misfit;          ///< significant lack of fit; absent: cannot be judged
-  std::string interval_advice;         ///< which interval to believe, and why
+  std::optional<BetweenRepeats> between_repeats;  ///< absent: no single repeats
+  std::string interval_advice;                    ///< which interval to believe, and why
   std::vector<std::string> correlation_names;
   std::vector<std::string> combinations;  ///< what is fixed where single parameters are not
   Eigen::MatrixXd correlation;            ///< shape (unknowns that have a standard error)^2

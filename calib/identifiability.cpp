@@ -99,8 +99,10 @@ double choose_interval(const Problem& problem, const Uncertainty& found, std::si
   parameter.interval = IntervalSource::robust_standard_error;
   if (robust > kRobustMatters * plain) {
     add_reason(parameter,
-               fmt::format("residuals are correlated in time: the robust error, on which the "
+               fmt::format("{}: the robust error, on which the "
                            "interval rests, is {:.2g} times the plain one",
+                           found.from_repeats[unknown] ? "repeats differ from one another"
+                                                       : "residuals are correlated in time",
                            robust / plain));
   }
   return found.robust_quantile[unknown] * robust;

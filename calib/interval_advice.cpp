@@ -110,6 +110,57 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
                             against, test.p, tests.size(), tests.size() == 1 ? "" : "s");
 }
 
+std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Uncertainty& found) {
+  BetweenRepeats result;
+  for (std::size_t j = 0; j < found.repeats_ratio.size(); ++j) {
+    result.ratio = std::max(result.ratio, found.repeats_ratio[j]);
+    result.p = std::min(result.p, found.repeats_p[j]);
+    if (found.from_repeats[j]) result.parameters.push_back(problem.name(j));
+  }
+  if (!(result.ratio > 0.0)) return std::nullopt;
+  result.p = std::min(1.0, result.p * static_cast<double>(found.repeats_p.size()));
+  result.differ = found.repeats_differ();
+  if (found.difference) {
+    result.cause = found.difference->cause;
+    result.cause_sd = found.difference->sd;
+    result.cause_explains = found.difference->explained;
+  }
+  return result;
+}
+
+std::string between_repeats_warning(const BetweenRepeats& repeats) {
+  if (!repeats.differ) return {};
+  std::string text = fmt::format(
+      "repeats differ from one another by more than their noise: errors by their spread are up to "
+      "{:.2g} times those by the residuals of their mean (p = {:.2g}), and the intervals of {} "
+      "rest "
+      "on the spread",
+      repeats.ratio, repeats.p, fmt::join(repeats.parameters, ", "));
+  if (repeats.cause.empty()) return text;
+  if (repeats.cause == "start") {
+    return text + fmt::format(
+                      "; they differ as if each had begun at another time (standard deviation "
+                      "{:.2g} ms), so how late their mean began is not known either: record what "
+                      "drives the rig, or use a common trigger",
+                      1e3 * repeats.cause_sd);
+  }
+  text += fmt::format("; they differ as if {} varied by {:.2g} % from repeat to repeat",
+                      repeats.cause, 100.0 * repeats.cause_sd);
+  if (repeats.cause == "supply_pressure")
+    text += ": a recorded supply pressure (channel `supply_pressure`) would account for it";
+  return text;
+}
+
+std::string noiseless_warning(const Problem& problem, const Uncertainty& found) {
+  std::size_t all = 0;
+  for (const ProblemCondition& condition : problem.conditions) all += condition.channels.size();
+  return fmt::format(
+      "in {} of {} records the residual is too small to be noise: it holds errors of the model and "
+      "of its solver, which do not average out. Standard errors there count every condition as one "
+      "observation; they tell how far such errors may move a value, not how it scatters",
+      found.noiseless, all);
+}
+
 std::string compare_intervals(const Problem& problem,
                               const std::vector<FittedParameter>& parameters,
                               const std::vector<std::string>& carried, bool misfit) {

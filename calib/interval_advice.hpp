@@ -15,6 +15,16 @@ namespace rigcal::calib {
 std::string interval_advice(const Problem& problem, const OptimumCheck& check,
                             const Uncertainty& found, const std::vector<LackOfFit>& tests);
 
+/// How the repeats differ from one another; empty where no condition has single repeats.
+std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Uncertainty& found);
+
+/// That in words, with what it does to the intervals and what would help; empty where repeats
+/// differ by no more than their noise.
+std::string between_repeats_warning(const BetweenRepeats& repeats);
+
+/// What the errors rest on where residuals hold no noise, in words.
+std::string noiseless_warning(const Problem& problem, const Uncertainty& found);
+
 /// Where bootstrap or profile say otherwise than `ci95`, and which of them is right; what is not
 /// identifiable has no interval to believe. Empty where neither was asked for.
 ///

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/coherent_error.hpp"
 #include "calib/optimum.hpp"
+#include "calib/repeat_inputs.hpp"
 #include "calib/svd.hpp"
+#include "common/parallel.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -27,6 +30,18 @@ std::vector<ScoreRows> score_rows(const Problem& problem, std::vector<ConditionR
     rows[i].jacobian.resize(0, 0);
     result[i].channels = static_cast<Eigen::Index>(problem.conditions[i].channels.size());
   }
+  return result;
+}
+
+/// Scores of the single repeats of every condition.
+std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span<const double> z,
+                                               const std::vector<ScoreRows>& rows, int threads) {
+  std::vector<Eigen::MatrixXd> result(rows.size());
+  parallel_for(rows.size(), threads, [&](std::size_t i) {
+    const Eigen::MatrixXd deviations =
+        repeat_deviations(problem.conditions[i], explained_by_inputs(problem, i, z));
+    result[i] = repeat_scores(rows[i].jacobian, deviations);
+  });
   return result;
 }
 
@@ -57,6 +72,12 @@ std::string null_reason(const Problem& problem, const std::vector<std::size_t>& 
 }
 
 }  // namespace
+
+bool Uncertainty::repeats_differ() const {
+  constexpr double kLevel = 0.05;
+  const auto least = std::min_element(repeats_p.begin(), repeats_p.end());
+  return least != repeats_p.end() && *least * static_cast<double>(repeats_p.size()) < kLevel;
+}
 
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
                         std::vector<ConditionRows> rows, int threads) {
@@ -90,8 +111,17 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   result.root = root;
   result.known = known_uncertainty(problem, optimum.z, root, threads);
   const Eigen::MatrixXd priors = prior_information(problem, optimum.z, root);
+  std::vector<ScoreRows> scores;
+  std::vector<Eigen::MatrixXd> repeats;
+  Eigen::VectorXd coherent = Eigen::VectorXd::Zero(n);
   if (rank > 0 && freedom > 0.0) {
-    result.scatter = score_scatter(score_rows(problem, std::move(rows), root), priors, root);
+    scores = score_rows(problem, std::move(rows), root);
+    result.scatter = score_scatter(scores, priors, root);
+    repeats = scores_of_repeats(problem, optimum.z, scores, threads);
+    const auto noiseless = noiseless_channels(problem, optimum);
+    for (const auto& channels : noiseless)
+      result.noiseless += static_cast<int>(std::count(channels.begin(), channels.end(), true));
+    if (result.noiseless > 0) coherent = coherent_errors(scores, noiseless, root);
     for (const ScoreScatter& each : result.scatter)
       result.effective_samples += each.effective_samples;
   }
@@ -110,6 +140,9 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   result.robust_standard_error.resize(optimum.z.size());
   result.robust_freedom.resize(optimum.z.size(), 0.0);
   result.robust_quantile.resize(optimum.z.size(), 0.0);
+  result.from_repeats.resize(optimum.z.size(), false);
+  result.repeats_ratio.resize(optimum.z.size(), 0.0);
+  result.repeats_p.resize(optimum.z.size(), 1.0);
   result.reason.resize(optimum.z.size());
   result.correlation = Eigen::MatrixXd::Identity(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
@@ -129,13 +162,21 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
     const double slope = problem.map.slope(static_cast<int>(j), optimum.z[u]);
     const bool exact = result.known.names.empty();
     const double carried = exact ? 0.0 : result.known.response.row(j).norm();
-    result.standard_error[u] = slope * std::hypot(sigma * std::sqrt(inverse(j, j)), carried);
+    const double plain = std::max(sigma * std::sqrt(inverse(j, j)), coherent(j));
+    result.standard_error[u] = slope * std::hypot(plain, carried);
     if (!result.scatter.empty()) {
       const RobustVariance robust = robust_variance(result.scatter, priors, root, j);
-      result.robust_standard_error[u] =
-          slope * std::hypot(std::sqrt(std::max(0.0, robust.variance)), carried);
-      result.robust_freedom[u] = robust.freedom;
-      result.robust_quantile[u] = robust.quantile();
+      const RepeatVariance spread = repeat_variance(repeats, result.scatter, priors, root, j);
+      if (spread.freedom > 0.0 && robust.variance > 0.0) {
+        result.repeats_ratio[u] = std::sqrt(spread.variance / robust.variance);
+        result.repeats_p[u] = exceedance(spread, robust);
+        result.from_repeats[u] = rests_on_repeats(spread, robust);
+      }
+      const bool repeated = result.from_repeats[u];
+      const double error = std::sqrt(std::max(0.0, repeated ? spread.variance : robust.variance));
+      result.robust_standard_error[u] = slope * std::hypot(std::max(error, coherent(j)), carried);
+      result.robust_freedom[u] = repeated ? spread.freedom : robust.freedom;
+      result.robust_quantile[u] = repeated ? student_t(spread.freedom) : robust.quantile();
     }
     for (Eigen::Index k = 0; k < n; ++k) {
       const double scale = std::sqrt(inverse(j, j) * inverse(k, k));
@@ -143,6 +184,8 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
         result.correlation(j, k) = std::clamp(inverse(j, k) / scale, -1.0, 1.0);
     }
   }
+  if (result.repeats_differ())
+    result.difference = likely_difference(problem, optimum.z, scores, repeats);
   return result;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/between_repeats.hpp"
 #include "calib/evaluation.hpp"
 #include "calib/known_uncertainty.hpp"
 #include "calib/sandwich.hpp"
@@ -19,6 +20,13 @@ struct Uncertainty {
   /// known, and the half width of its 95 % interval in units of it.
   std::vector<std::optional<double>> robust_standard_error;
   std::vector<double> robust_freedom, robust_quantile;
+  /// Whether the robust error of an unknown is that of the spread of the repeats, which exceeds by
+  /// this factor what the residuals tell (0: not known), and the probability of such a factor where
+  /// repeats differ by their noise alone.
+  std::vector<bool> from_repeats;
+  std::vector<double> repeats_ratio, repeats_p;
+  std::optional<LikelyDifference> difference;  ///< where they differ by more than their noise
+  int noiseless = 0;  ///< channels of conditions whose residual is no noise, see coherent_error.hpp
   std::vector<std::string> reason;  ///< in words, where there is no standard error
   Eigen::MatrixXd correlation;      ///< shape (unknowns)^2; meaningful where there are errors
   int rank = 0;
@@ -34,6 +42,10 @@ struct Uncertainty {
   KnownUncertainty known;             ///< is in all errors
   std::vector<ScoreScatter> scatter;  ///< per condition; empty: no robust errors
   double effective_samples = 0.0;     ///< of all conditions and channels
+
+  /// Whether repeats differ by more than the residuals tell, at 5 % for all unknowns together
+  /// (Bonferroni).
+  bool repeats_differ() const;
 };
 
 /// Standard errors from the Gauss-Newton matrix, sigma^2 (J^T J)^-1, at all unknowns, those at a
@@ -42,7 +54,10 @@ struct Uncertainty {
 ///
 /// The robust ones are the sandwich (J^T J)^-1 (covariance of J^T r) (J^T J)^-1 of score_scatter():
 /// residuals that are correlated in time, as model errors are, carry less information than their
-/// number says. Absent without a residual to spare.
+/// number says. Absent without a residual to spare. Where repeats differ from one another by more
+/// than the residuals of their mean tell, the spread of their scores takes the place of the
+/// covariance (between_repeats.hpp). Where residuals hold no noise neither error is less than that
+/// of errors of model and solver (coherent_error.hpp).
 ///
 /// @param optimum  an evaluation that is ok
 /// @param rows     all its rows, per condition; no longer needed by the caller

@@ -73,7 +73,7 @@ void warn(Problem& problem, const Evaluation& optimum, bool settled,
   if (unresolved == 0) return;
   warnings.push_back(fmt::format(
       "in {} of {} records the residual is smaller than simulations of tolerance {:.2g} resolve: "
-      "their noise was taken as {:.2g} of the peak-to-peak, so standard errors are upper bounds",
+      "their standard deviation was taken as {:.2g} of the peak-to-peak",
       unresolved, estimated, problem.tolerance, share));
 }
 

@@ -24,6 +24,19 @@ Json lack_of_fit_json(const calib::Fit& fit) {
   return json;
 }
 
+Json between_repeats_json(const std::optional<calib::BetweenRepeats>& repeats) {
+  if (!repeats) return nullptr;
+  Json json;
+  json["differ"] = repeats->differ;
+  json["p"] = number(repeats->p);
+  json["ratio"] = number(repeats->ratio);
+  json["parameters"] = repeats->parameters;
+  json["cause"] = repeats->cause.empty() ? Json(nullptr) : Json(repeats->cause);
+  json["cause_sd"] = repeats->cause.empty() ? Json(nullptr) : number(repeats->cause_sd);
+  json["cause_explains"] = repeats->cause.empty() ? Json(nullptr) : number(repeats->cause_explains);
+  return json;
+}
+
 Json basins_json(const calib::Fit& fit) {
   Json list = Json::array();
   for (const calib::Basin& basin : fit.basins) {
@@ -92,6 +105,7 @@ void add_trust(const calib::Fit& fit, Json& json) {
   json["interval_advice"] = fit.interval_advice;
   json["combinations"] = fit.combinations;
   json["lack_of_fit"] = lack_of_fit_json(fit);
+  json["between_repeats"] = between_repeats_json(fit.between_repeats);
   json["basins"] = basins_json(fit);
   json["agreement"] = fit.agreement;
   if (!fit.bootstrap_message.empty()) {

@@ -49,7 +49,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
   const auto records =
       datasets::load_records(campaign, {datasets::Use::fit, datasets::Use::validate},
-                             options.common.threads, options.bootstrap > 0);
+                             options.common.threads, true);
   calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
   settings.starts = options.starts.value_or(settings.starts);
   if (!options.starts) settings.further_starts = kFurtherStarts;
