@@ -1,9 +1,11 @@
 #include "calib/lack_of_fit.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
 #include "datasets/noise.hpp"
+#include "metrics/distributions.hpp"
 #include "tests/calib/twin.hpp"
 
 namespace rigcal::calib {
@@ -50,6 +52,77 @@ std::vector<datasets::Record> repeated(Twin twin, double rho, std::uint64_t seed
 }
 
 }  // namespace
+
+TEST_CASE("lack of fit: closed forms of a first-order process", "[calib]") {
+  Twin twin = one_square();
+  twin.add("second", Waveform::square, 2.0, 0.02);
+  auto records = twin.records(800, 1000.0, 1);
+  datasets::Series& series = records[1].channels[Channel::position];
+  series.repeats = 5;
+  series.sd.assign(series.mean.size(), 1e-5);
+  const Problem problem = problem_of(twin, records);
+  constexpr double kPhi = 0.8;
+  const auto tests_of = [&](double first_ratio, double second_ratio) {
+    Uncertainty found;
+    for (const double ratio : {first_ratio, second_ratio}) {
+      ScoreScatter& each = found.scatter.emplace_back();
+      each.noise.push_back({{kPhi}, ratio * (1.0 - kPhi * kPhi)});
+    }
+    return lack_of_fit(problem, found);
+  };
+  const auto tests = tests_of(1.2, 1.3);
+  REQUIRE(tests.size() == 2);
+  // 1 + 2 sum phi^2h = (1 + phi^2) / (1 - phi^2); the sum ends after 799 lags, at 0.8^1600.
+  const double freedom = 800.0 * (1.0 - kPhi * kPhi) / (1.0 + kPhi * kPhi);
+  CHECK_THAT(tests[0].ratio, WithinRel(1.2, 1e-9));
+  CHECK_THAT(tests[0].freedom, WithinRel(freedom, 1e-9));
+  CHECK(std::isinf(tests[0].pure_freedom));
+  CHECK_THAT(tests[0].p, WithinRel(metrics::chi_squared_exceedance(1.2 * freedom, freedom), 1e-6));
+  CHECK_THAT(tests[1].freedom, WithinRel(freedom, 1e-9));
+  CHECK_THAT(tests[1].pure_freedom, WithinRel(4.0 * freedom, 1e-9));
+  CHECK_THAT(tests[1].p,
+             WithinRel(metrics::fisher_f_exceedance(1.3, freedom, 4.0 * freedom), 1e-6));
+  REQUIRE(least_likely(tests) != nullptr);
+  CHECK(least_likely(tests)->p == std::min(tests[0].p, tests[1].p));
+  CHECK(least_likely({}) == nullptr);
+
+  // Each of two tests at half the level: a p of 4 % is no misfit, one of 2 % is.
+  const auto ratio_of = [&](double p) {
+    double low = 1.0, high = 2.0;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (metrics::chi_squared_exceedance(middle * freedom, freedom) > p ? low : high) = middle;
+    }
+    return low;
+  };
+  CHECK_FALSE(misfit(tests_of(ratio_of(0.04), 1.0)).value());
+  CHECK(misfit(tests_of(ratio_of(0.02), 1.0)).value());
+  // The larger the residual, the less likely; at no size does the test pass again.
+  double last = 1.0;
+  for (const double ratio : {0.5, 0.9, 1.1, 1.5, 3.0}) {
+    const double p = tests_of(ratio, 1.0)[0].p;
+    CHECK(p < last);
+    last = p;
+  }
+}
+
+TEST_CASE("lack of fit: hardly a degree of freedom is no pass", "[calib]") {
+  const Twin twin = one_square();
+  auto records = twin.records(100, 500.0, 1);
+  datasets::Series& series = records[0].channels[Channel::position];
+  series.repeats = 2;
+  series.sd.assign(series.mean.size(), 1e-5);
+  const Problem problem = problem_of(twin, records);
+  Uncertainty found;
+  // Half of the autocorrelation is left after 70 of 100 samples.
+  found.scatter.emplace_back().noise.push_back({{0.99}, 1.0 - 0.99 * 0.99});
+  const auto tests = lack_of_fit(problem, found);
+  REQUIRE(tests.size() == 1);
+  CHECK(tests[0].freedom < 3.0);
+  CHECK_FALSE(tests[0].failed());
+  CHECK_FALSE(tests[0].passed());
+  CHECK_FALSE(misfit(tests).has_value());
+}
 
 TEST_CASE("lack of fit: noise alone, white or not, is no misfit", "[calib]") {
   const Twin twin = one_square();

@@ -1,6 +1,9 @@
 #include "diagnosis/accuracy.hpp"
 
 #include <catch2/catch.hpp>
+#include <vector>
+
+#include "tests/support/golden.hpp"
 
 using namespace rigcal::diagnosis;
 using Catch::WithinAbs;
@@ -31,6 +34,26 @@ TEST_CASE("accuracy_of: undecided is wrong, and repeats are no trials", "[diagno
   CHECK(found.confusion[0][5] == 1);
   CHECK(found.confusion[2][0] == 1);
   CHECK(found.ci95 == wilson_interval(0.7, 2.0));
+}
+
+TEST_CASE("wilson_interval: golden values of statsmodels", "[diagnosis]") {
+  for (const std::vector<double>& line : rigcal::test::golden_lines("wilson")) {
+    CAPTURE(line);
+    const auto [low, high] = wilson_interval(line[0] / line[1], line[1]);
+    CHECK_THAT(low, WithinAbs(line[2], 1e-9));
+    CHECK_THAT(high, WithinAbs(line[3], 1e-9));
+  }
+}
+
+TEST_CASE("accuracy_of: one class beside is near, two are not", "[diagnosis]") {
+  const auto off_by_two = [](LeakClass truth, LeakClass found) {
+    return accuracy_of({{"a", truth, found}}).off_by_two;
+  };
+  CHECK(off_by_two(LeakClass::normal, LeakClass::slight) == 0);
+  CHECK(off_by_two(LeakClass::slight, LeakClass::normal) == 0);
+  CHECK(off_by_two(LeakClass::normal, LeakClass::medium) == 1);
+  CHECK(off_by_two(LeakClass::critical, LeakClass::slight) == 1);
+  CHECK(off_by_two(LeakClass::supercritical, LeakClass::normal) == 1);
 }
 
 TEST_CASE("accuracy_of: nothing judged says nothing", "[diagnosis]") {

@@ -100,6 +100,57 @@ TEST_CASE("estimate_leak: every source of error is in the interval", "[diagnosis
   CHECK(single.freedom < 100.0);
 }
 
+TEST_CASE("estimate_leak: a reference adds its own scatter and takes the model's off",
+          "[diagnosis]") {
+  SignalErrors errors;
+  errors.repeat_m = 0.12e-3;  // 0.12 of the coefficient
+  errors.repeat_freedom = 16;
+  errors.healthy_m = 0.05e-3;
+  const LeakFit fit = fit_of(1.5, 0.03);
+  const auto corrected = estimate_leak(fit, straight(), errors, 1, 3, kSettings);
+  CHECK_THAT(corrected.standard_error,
+             WithinRel(std::sqrt(0.03 * 0.03 + 0.12 * 0.12 * (1.0 + 1.0 / 3.0)), 1e-9));
+  // Welch and Satterthwaite: what the repeats tell has 16 degrees of freedom, the scatter 1e6.
+  const double repeats = 0.12 * 0.12 * (1.0 + 1.0 / 3.0);
+  CHECK_THAT(corrected.freedom, WithinRel(std::pow(0.03 * 0.03 + repeats, 2) /
+                                              (repeats * repeats / 16.0 + std::pow(0.03, 4) / 1e6),
+                                          1e-9));
+}
+
+TEST_CASE("estimate_leak: a leak is detected from the level of false alarms on", "[diagnosis]") {
+  // The normal quantile of 1 % false alarms is 2.3263.
+  REQUIRE(kSettings.false_alarms == 0.01);
+  CHECK_FALSE(estimate_leak(fit_of(0.232, 0.1), straight(), {}, 1, 0, kSettings).leak_detected);
+  CHECK(estimate_leak(fit_of(0.233, 0.1), straight(), {}, 1, 0, kSettings).leak_detected);
+  CHECK_THAT(estimate_leak(fit_of(0.233, 0.1), straight(), {}, 1, 0, kSettings).leak_score,
+             WithinRel(2.33, 1e-12));
+}
+
+TEST_CASE("estimate_leak: the rig's error blurs the share", "[diagnosis]") {
+  LeakFit fit = fit_of(1.5, 1e-9);
+  fit.share_rig_se = 0.01;
+  const auto found = estimate_leak(fit, straight(), {}, 1, 0, kSettings);
+  // 1.96 standard errors; the search stops at 1e-15 of the range.
+  CHECK_THAT(found.share_ci95.first, WithinAbs(0.15 - 0.0195996, 1e-6));
+  CHECK_THAT(found.share_ci95.second, WithinAbs(0.15 + 0.0195996, 1e-6));
+}
+
+TEST_CASE("LeakCurve: a cubic between points is exact where its slopes are", "[diagnosis]") {
+  // Beyond the last point it goes on straight, with the last secant.
+  const LeakCurve curve(
+      {{0.0, 0.0, 0.0, 0.0}, {1.0, 0.1, 1e-6, 0.0}, {3.0, 0.5, 3e-6, 0.0}, {4.0, 0.6, 4e-6, 0.0}});
+  CHECK_THAT(curve.share(6.0), WithinRel(0.8, 1e-12));
+  CHECK_THAT(curve.leak_flow_m3_per_s(2.2), WithinRel(2.2e-6, 1e-12));
+  // Slopes of Fritsch and Butland: (a + b) / (a / 0.1 + b / 0.2) with a = 2 2 + 1, b = 2 + 2 1 at
+  // 1, likewise with 0.2 and 0.1 at 3; Hermite's middle is the mean plus (left - right) width / 8.
+  const double left = 9.0 / (5.0 / 0.1 + 4.0 / 0.2);
+  const double right = 9.0 / (4.0 / 0.2 + 5.0 / 0.1);
+  CHECK_THAT(curve.share(2.0), WithinRel(0.3 + (left - right) * 2.0 / 8.0, 1e-12));
+  const double first = 0.1;
+  CHECK_THAT(curve.share(0.5), WithinRel(0.05 + (first - left) / 8.0, 1e-12));
+  CHECK(curve.share(-1e-3) == 0.0);
+}
+
 TEST_CASE("detection_limit: Currie's sum of both quantiles", "[diagnosis]") {
   const auto healthy = estimate_leak(fit_of(0.0, 0.01), straight(), {}, 1, 0, kSettings);
   const auto limit = detection_limit(healthy, straight(), kSettings);

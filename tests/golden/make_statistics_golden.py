@@ -105,12 +105,16 @@ def residual_tests(name, e, u):
     yield f"{name}.slope_p", 2 * stats.norm.sf(abs(slope) * time_s.std() / error)
 
 
+def fitted_autoregression(gamma, n):
+    fits = [(gamma[0], numpy.array([]))]
+    fits += [levinson_durbin(gamma, nlags=p, isacov=True)[:2] for p in range(1, len(gamma))]
+    return min(fits, key=lambda fit: n * numpy.log(fit[0]) + len(fit[1]) * numpy.log(n))
+
+
 def autoregression(name, x, lags):
     n = len(x)
     gamma = acovf(x, demean=False, fft=False, nlag=lags)
-    fits = [(gamma[0], numpy.array([]))]
-    fits += [levinson_durbin(gamma, nlags=p, isacov=True)[:2] for p in range(1, lags + 1)]
-    variance, phi = min(fits, key=lambda fit: n * numpy.log(fit[0]) + len(fit[1]) * numpy.log(n))
+    variance, phi = fitted_autoregression(gamma, n)
     process = ArmaProcess(numpy.r_[1, -phi])
     yield f"{name}.series", x
     yield f"{name}.autocovariance", gamma
@@ -190,6 +194,60 @@ def residual_features(generator):
     yield "features.values", [abs(e).mean(), numpy.sqrt((e**2).mean()), abs(e).std()]
 
 
+def parzen(x):
+    x = abs(x)
+    return numpy.where(x <= 0.5, 1 - 6 * x**2 + 6 * x**3, 2 * numpy.clip(1 - x, 0, None) ** 3)
+
+
+def score_scatter(generator):
+    """calib/sandwich.hpp of one channel, by dense matrices of the samples."""
+    n = 150
+    phase = numpy.linspace(0, 9, n)
+    J = rounded(numpy.linalg.qr(numpy.c_[numpy.sin(phase), numpy.exp(-0.5 * phase)])[0])
+    J = J @ numpy.linalg.inv(numpy.linalg.cholesky(J.T @ J)).T  # orthonormal but for what is rounded below
+    J = numpy.round(J, 12)
+    noise = lfilter([1], [1, -0.7], generator.standard_normal(n))
+    r = numpy.round(noise - J @ (J.T @ noise), 12)
+
+    def root(phi):
+        """L of r = L u."""
+        inverse = numpy.eye(n) - sum(c * numpy.eye(n, k=-1 - k) for k, c in enumerate(phi))
+        return numpy.linalg.inv(inverse)
+
+    gamma = acovf(r, demean=False, fft=False, nlag=n // 10)
+    variance, phi = fitted_autoregression(gamma, n)
+    # The fit has left (I - H) Sigma (I - H) of Sigma.
+    sigma = variance * root(phi) @ root(phi).T
+    left = (numpy.eye(n) - J @ J.T) @ sigma @ (numpy.eye(n) - J @ J.T)
+    gamma = gamma[: len(phi) + 1] + [numpy.trace(sigma - left, offset=h) / n for h in range(len(phi) + 1)]
+    variance, phi = fitted_autoregression(gamma, n)
+
+    L = root(phi)
+    sigma = variance * L @ L.T
+    total = J.T @ sigma @ J
+    filtered = L.T @ J
+    scores = numpy.linalg.solve(L, r)[:, None] * filtered
+    # Andrews, Econometrica 59, 1991, (6.2) and (6.4), for AR(1) components of variance one.
+    rho = numpy.array([(s[1:] @ s[:-1]) / (s[:-1] @ s[:-1]) for s in scores.T])
+    above = (4 * rho**2 * (1 - rho**2) ** 2 / (1 - rho) ** 8).sum()
+    width = 2.6614 * (above / ((1 - rho**2) ** 2 / (1 - rho) ** 4).sum() * n) ** 0.2
+    kernel = parzen((numpy.arange(n)[:, None] - numpy.arange(n)) / width)
+    with_error = numpy.linalg.solve(L, (numpy.eye(n) - J @ J.T) @ sigma @ J) / numpy.sqrt(numpy.diag(total))
+    own = with_error * filtered
+    effective = n * ArmaProcess(numpy.r_[1, -phi]).acovf(1)[0] * (1 - phi.sum()) ** 2
+    weights = filtered**2
+    terms = weights.sum(0) ** 2 / (weights**2).sum(0)
+    square = integrate.quad(lambda x: float(parzen(x)) ** 2, -1, 1, points=[-0.5, 0.5])[0]
+    yield "sandwich.jacobian", J.T.ravel()
+    yield "sandwich.residual", r
+    yield "sandwich.noise", [variance, *phi]
+    yield "sandwich.width", width
+    yield "sandwich.covariance", (scores.T @ kernel @ scores).ravel()
+    yield "sandwich.own", numpy.diag(own.T @ kernel @ own) / numpy.diag(total)
+    yield "sandwich.effective_samples", effective
+    yield "sandwich.freedom", 1 / (max(1.0, square * width) / terms + 2 / effective)
+
+
 def cases():
     generator = numpy.random.default_rng(20260301)
     yield from distributions()
@@ -207,6 +265,7 @@ def cases():
     yield from fundamental(generator)
     yield from leak_share(generator)
     yield from residual_features(generator)
+    yield from score_scatter(generator)
 
 
 def main():
