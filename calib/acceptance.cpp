@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "metrics/metric_table.hpp"
@@ -27,22 +28,30 @@ std::optional<double> floor_of(const ChannelScore& score, std::string_view name)
   return std::nullopt;
 }
 
-void lower_verdict(ConditionScore& score, Verdict verdict, std::string reason) {
-  score.verdict = std::max(score.verdict.value_or(Verdict::pass), verdict);
-  score.reasons.push_back(std::move(reason));
+/// Distance of a value from the ideal over that of a bound; infinite beyond a bound that is ideal.
+double used_of(const metrics::MetricSpec& spec, double value, double bound) {
+  const double distance = std::abs(value - metrics::ideal(spec));
+  const double allowed = std::abs(bound - metrics::ideal(spec));
+  if (distance == 0.0) return 0.0;
+  return distance / allowed;
 }
 
-void judge_metric(const datasets::AcceptanceLimit& limit, const ChannelScore& channel,
-                  ConditionScore& score) {
+LimitCheck check(const datasets::AcceptanceLimit& limit, const ChannelScore& channel) {
+  LimitCheck result;
+  result.channel = channel.channel;
+  result.metric = limit.metric;
+  result.limit = limit.limit;
+  result.warn = limit.warn;
   const auto key = datasets::info(channel.channel).key;
-  if (!score.verdict) score.verdict = Verdict::pass;
   if (!channel.agreement) {
-    lower_verdict(score, Verdict::warn,
-                  fmt::format("{}: {} does not exist ({})", key, limit.metric, channel.problem));
-    return;
+    result.verdict = Verdict::fail;
+    result.words = fmt::format("{}: {} does not exist, so that its limit cannot be evaluated ({})",
+                               key, limit.metric, channel.problem);
+    return result;
   }
   const metrics::MetricSpec& spec = metric(limit.metric);
   const double value = (*channel.agreement).*spec.value;
+  result.value = value;
   const auto beyond = [&](const std::optional<double>& bound) {
     return bound && !(spec.higher_is_better ? value >= *bound : value <= *bound);
   };
@@ -55,10 +64,15 @@ void judge_metric(const datasets::AcceptanceLimit& limit, const ChannelScore& ch
                        spec.higher_is_better ? "below" : "above", bound, note);
   };
   if (beyond(limit.limit)) {
-    lower_verdict(score, Verdict::fail, text(*limit.limit));
+    result.verdict = Verdict::fail;
+    result.words = text(*limit.limit);
   } else if (beyond(limit.warn)) {
-    lower_verdict(score, Verdict::warn, text(*limit.warn));
+    result.verdict = Verdict::warn;
+    result.words = text(*limit.warn);
   }
+  if (const auto bound = limit.limit ? limit.limit : limit.warn)
+    result.used = used_of(spec, value, *bound);
+  return result;
 }
 
 }  // namespace
@@ -66,22 +80,19 @@ void judge_metric(const datasets::AcceptanceLimit& limit, const ChannelScore& ch
 void judge(const std::vector<datasets::AcceptanceLimit>& limits, ConditionScore& score) {
   if (limits.empty()) return;
   if (!score.failure.empty()) {
-    lower_verdict(score, Verdict::fail, "could not be simulated: " + score.failure);
+    score.verdict = Verdict::fail;
+    score.reasons.push_back("could not be simulated: " + score.failure);
     return;
   }
   for (const datasets::AcceptanceLimit& limit : limits) {
     for (const ChannelScore& channel : score.channels) {
-      if (channel.channel == limit.channel) judge_metric(limit, channel, score);
+      if (channel.channel != limit.channel) continue;
+      score.checks.push_back(check(limit, channel));
+      const LimitCheck& made = score.checks.back();
+      score.verdict = std::max(score.verdict.value_or(Verdict::pass), made.verdict);
+      if (!made.words.empty()) score.reasons.push_back(made.words);
     }
   }
-}
-
-std::optional<Verdict> worst(const std::vector<ConditionScore>& scores) {
-  std::optional<Verdict> result;
-  for (const ConditionScore& score : scores) {
-    if (score.verdict) result = std::max(result.value_or(Verdict::pass), *score.verdict);
-  }
-  return result;
 }
 
 }  // namespace rigcal::calib

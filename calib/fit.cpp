@@ -8,7 +8,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "calib/acceptance.hpp"
+#include "calib/assessment.hpp"
 #include "calib/basins.hpp"
 #include "calib/bootstrap.hpp"
 #include "calib/checkpoint.hpp"
@@ -349,12 +349,43 @@ void look_again(const Problem& problem, const Campaign& campaign,
   fit.message += "; stopped on request before all that was asked for was done";
 }
 
+/// The lack of fit of every scored condition that is not among those fitted to.
+void add_predictions(Fit& fit) {
+  std::vector<LackOfFit> predictions;
+  for (const ConditionScore& score : fit.conditions) {
+    for (const ChannelScore& channel : score.channels) {
+      const bool there =
+          std::any_of(fit.lack_of_fit.begin(), fit.lack_of_fit.end(), [&](const LackOfFit& test) {
+            return test.condition == score.id && test.channel == channel.channel;
+          });
+      if (channel.lack_of_fit && !there) predictions.push_back(*channel.lack_of_fit);
+    }
+  }
+  judge_together(predictions);
+  fit.lack_of_fit.insert(fit.lack_of_fit.end(), predictions.begin(), predictions.end());
+}
+
+/// Conditions that the values of a campaign are taken to be estimated from.
+std::set<std::string> fitted_conditions(const Campaign& campaign) {
+  std::set<std::string> ids;
+  for (const Condition& condition : campaign.conditions) {
+    if (condition.use == Use::fit) ids.insert(condition.id);
+  }
+  return ids;
+}
+
 /// Puts scores in the order of the campaign and judges them together.
-void finish(const Campaign& campaign, Clock::time_point began, Fit& fit) {
+///
+/// @param origin  of the values where they are an earlier fit's
+void finish(const Campaign& campaign, Clock::time_point began, const Origin* origin, Fit& fit) {
   std::stable_sort(fit.conditions.begin(), fit.conditions.end(), [&](const auto& a, const auto& b) {
     return campaign.find(a.id) < campaign.find(b.id);
   });
-  fit.verdict = worst(fit.conditions);
+  add_predictions(fit);
+  fit.assessment = assess(campaign, fit,
+                          origin != nullptr ? origin->estimated_from : fitted_conditions(campaign),
+                          origin != nullptr ? &origin->parameters : nullptr);
+  fit.verdict = verdict_of(fit.assessment);
   const auto words = overfitting_warnings(fit.conditions);
   fit.warnings.insert(fit.warnings.end(), words.begin(), words.end());
   for (const ConditionScore& score : fit.conditions) {
@@ -538,12 +569,13 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
   }
   const auto known = describe_known(problem);
   result.parameters.insert(result.parameters.end(), known.begin(), known.end());
-  finish(campaign, began, result);
+  finish(campaign, began, nullptr, result);
   return result;
 }
 
 Fit validate(const Campaign& campaign, const std::vector<Record>& records,
-             const std::vector<FittedValue>* values, const FitOptions& options) {
+             const std::vector<FittedValue>* values, const FitOptions& options,
+             const Origin* origin) {
   options.validate();
   const auto began = Clock::now();
   const auto conditions = conditions_of(campaign, {Use::fit, Use::validate});
@@ -552,7 +584,7 @@ Fit validate(const Campaign& campaign, const std::vector<Record>& records,
                      "no condition has use = \"fit\" or \"validate\": expected at least one");
   }
   Fit result = score_at(campaign, records, conditions, values, options, began);
-  finish(campaign, began, result);
+  finish(campaign, began, origin, result);
   return result;
 }
 

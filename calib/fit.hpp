@@ -6,9 +6,11 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "calib/aspect.hpp"
 #include "calib/parameter_map.hpp"
 #include "datasets/campaign.hpp"
 #include "datasets/record.hpp"
@@ -19,6 +21,12 @@
 namespace rigcal::calib {
 
 struct Checkpoint;  // checkpoint.hpp
+
+/// What an earlier fit, whose values are validated, tells of itself.
+struct Origin {
+  std::set<std::string> estimated_from;  ///< conditions whose records it was fitted to
+  Aspect parameters;                     ///< as it judged them
+};
 
 /// What a fit needs beside the campaign and its records.
 struct FitOptions {
@@ -51,7 +59,12 @@ enum class FitStatus {
 };
 std::string_view to_string(FitStatus status);
 
-enum class Identifiability { identified, weak, not_identifiable };
+enum class Identifiability {
+  identified,
+  weak,              ///< half width of the 95 % interval above 20 % of the value
+  bounded,           ///< cannot be told from zero: the interval is all that is known
+  not_identifiable,  ///< half width above 100 %, no interval, or an open profile
+};
 std::string_view to_string(Identifiability identifiability);
 
 /// What an interval rests on.
@@ -176,17 +189,30 @@ struct ChannelScore {
   /// Of measured minus simulated, over the longest stretch that counts; absent where it is too
   /// short, or constant.
   std::optional<metrics::ResidualTests> residual_tests;
+  std::optional<LackOfFit> lack_of_fit;  ///< of a prediction; absent where the noise is unknown
 };
 
 enum class Verdict { pass, warn, fail };
 std::string_view to_string(Verdict verdict);
+
+/// One metric of one channel of a condition against its limit.
+struct LimitCheck {
+  datasets::Channel channel = datasets::Channel::position;
+  std::string metric;
+  std::optional<double> value;  ///< absent: it does not exist, see `words`
+  std::optional<double> limit, warn;
+  Verdict verdict = Verdict::pass;
+  double used = 0.0;  ///< distance of the value from the ideal over that of the limit
+  std::string words;  ///< why WARN or FAIL; empty for PASS
+};
 
 /// Score of one condition, and the series it was computed from.
 struct ConditionScore {
   std::string id;
   datasets::Use use = datasets::Use::fit;
   std::vector<ChannelScore> channels;
-  std::optional<Verdict> verdict;    ///< absent without [acceptance]
+  std::vector<LimitCheck> checks;    ///< of every limit that holds for a channel of it
+  std::optional<Verdict> verdict;    ///< worst of the checks; absent without limits
   std::vector<std::string> reasons;  ///< of WARN and FAIL, in words
   std::string failure;               ///< why it could not be simulated; empty if it could
   long samples = 0;                  ///< that count (inside the windows)
@@ -232,7 +258,8 @@ struct Fit {
   long failure_count = 0;
   std::vector<std::string> warnings;
   std::vector<ConditionScore> conditions;  ///< fit and validate conditions, campaign order
-  std::optional<Verdict> verdict;          ///< worst of the conditions
+  Assessment assessment;
+  std::optional<Verdict> verdict;  ///< follows from the assessment
 
   /// A result that may be used: converged, every parameter finite.
   bool usable() const;
@@ -250,8 +277,11 @@ Fit fit(const datasets::Campaign& campaign, const std::vector<datasets::Record>&
 /// parameters (by the same machinery as fit()).
 ///
 /// @param values  of an earlier fit, or empty: the campaign's own values
+/// @param origin  of `values`; null: the campaign's `fit` conditions are taken for those that its
+///                values were estimated from
 /// @throws InputError  a leak level (or condition) that needs a value which `values` does not have
 Fit validate(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
-             const std::vector<datasets::FittedValue>* values, const FitOptions& options);
+             const std::vector<datasets::FittedValue>* values, const FitOptions& options,
+             const Origin* origin = nullptr);
 
 }  // namespace rigcal::calib

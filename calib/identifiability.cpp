@@ -59,29 +59,36 @@ void add_reason(FittedParameter& parameter, const std::string& text) {
   parameter.reason += parameter.reason.empty() ? text : "; " + text;
 }
 
-/// Grade and reason of a parameter that has an interval of this half width.
+/// Grade and reason of a parameter that has an interval of this half width: by nothing but the
+/// interval and the value, so that wider bounds change neither.
 void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown, double half_width,
            FittedParameter& parameter) {
   const Unknown& u = problem.map.unknowns()[unknown];
   const ParameterSpec& spec = spec_of(problem, u.index);
-  const bool arbitrary = zero_is_arbitrary(spec, u);
-  const bool absent = may_be_absent(spec) && parameter.value - half_width <= 0.0;
-  const double scale = arbitrary || absent ? u.upper - u.lower : std::abs(parameter.value);
-  const double share = scale > 0.0 ? half_width / scale : kNotIdentifiable * 2.0;
+  const bool holds_zero = std::abs(parameter.value) <= half_width;
+  if (holds_zero && may_be_absent(spec)) {
+    parameter.identifiability = Identifiability::bounded;
+    add_reason(parameter, fmt::format("not significantly different from zero: at most {} (95 %)",
+                                      number(spec, parameter.value + half_width)));
+    return;
+  }
+  if (holds_zero && zero_is_arbitrary(spec, u)) {
+    parameter.identifiability = Identifiability::bounded;
+    add_reason(parameter, fmt::format("not significantly different from zero: {} to {} (95 %)",
+                                      number(spec, parameter.value - half_width),
+                                      number(spec, parameter.value + half_width)));
+    return;
+  }
+  const double share =
+      parameter.value != 0.0 ? half_width / std::abs(parameter.value) : kNotIdentifiable * 2.0;
   if (share > kNotIdentifiable) {
     parameter.identifiability = Identifiability::not_identifiable;
   } else if (share > kWeak) {
     parameter.identifiability = Identifiability::weak;
   }
-  if (absent) {
-    add_reason(parameter, fmt::format("cannot be told from 0: at most {} (95 %)",
-                                      number(spec, parameter.value + half_width)));
-  }
   if (parameter.identifiability == Identifiability::identified) return;
-  add_reason(parameter,
-             fmt::format("half width of the 95 % interval is {:.0f} % of {}{}", 100.0 * share,
-                         arbitrary || absent ? "the width of its bounds" : "the value",
-                         partner(problem, found, unknown)));
+  add_reason(parameter, fmt::format("half width of the 95 % interval is {:.0f} % of the value{}",
+                                    100.0 * share, partner(problem, found, unknown)));
 }
 
 /// Half width of the interval to believe, and on what it rests.

@@ -16,9 +16,10 @@ namespace rigcal::calib {
 /// Interval: value +- t SE, cut at the limits beyond which the parameter makes no sense; with the
 /// robust error, and with the plain one where residuals are below half of what the noise is known
 /// to be, or too few to tell their own correlation. Half width above 20 % of the value: weak; above
-/// 100 %, or no standard error: not identifiable. Where zero is arbitrary (offsets, initial states,
-/// bounds of both signs) or the effect may be absent (leakage, friction, optional terms
-/// whose interval reaches 0) the half width is judged against the width of the bounds instead.
+/// 100 %, or no standard error: not identifiable. Where the value may be zero (leakage, friction,
+/// optional terms; offsets, initial states and bounds of both signs) an interval that holds zero
+/// makes it bounded instead: it is not significantly different from zero, and the interval is what
+/// is known. None of this depends on the bounds.
 std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Evaluation& optimum,
                                                const OptimumCheck& check,
                                                const Uncertainty& uncertainty);

@@ -15,6 +15,8 @@ constexpr double kMisfitLevel = 0.05;
 constexpr int kLongestMemory = 5000;
 /// A residual twice as large as the noise: what a test that passes must be able to tell.
 constexpr double kLargestUsefulRatio = 4.0;
+/// Highest order of the noise model of a prediction's residual, as in sandwich.cpp.
+constexpr int kMostLags = 20;
 
 /// 1 + 2 sum rho_h^2: by how much correlation thins a sum of squares out.
 double square_inflation(const metrics::Autoregression& noise, double samples) {
@@ -47,12 +49,46 @@ metrics::Judged judged(const LackOfFit& test, double level) {
                       kLargestUsefulRatio, test.freedom)};
 }
 
+/// @param noise  model of the weighted residual, whose variance is the ratio
+LackOfFit make_test(const ProblemCondition& condition, const ProblemChannel& channel,
+                    const metrics::Autoregression& noise, double samples) {
+  const datasets::Series& series = condition.record->channels.at(channel.channel);
+  LackOfFit test;
+  test.condition = condition.condition->id;
+  test.channel = channel.channel;
+  test.by_repeats = series.repeats > 1 && !series.sd.empty();
+  test.ratio = metrics::autocovariance(noise, 0).front();
+  test.freedom = std::max(1.0, samples / square_inflation(noise, samples));
+  test.pure_freedom = test.by_repeats ? (series.repeats - 1) * test.freedom
+                                      : std::numeric_limits<double>::infinity();
+  test.p = exceedance(test.ratio, test);
+  return test;
+}
+
 }  // namespace
 
 const LackOfFit* least_likely(const std::vector<LackOfFit>& tests) {
   const auto found = std::min_element(tests.begin(), tests.end(),
                                       [](const auto& a, const auto& b) { return a.p < b.p; });
   return found == tests.end() ? nullptr : &*found;
+}
+
+void judge_together(std::vector<LackOfFit>& tests) {
+  const double level = kMisfitLevel / static_cast<double>(tests.size());  // Bonferroni
+  for (LackOfFit& test : tests) static_cast<metrics::Judged&>(test) = judged(test, level);
+}
+
+std::optional<LackOfFit> lack_of_prediction(const ProblemCondition& condition,
+                                            const ProblemChannel& channel,
+                                            std::span<const double> residual) {
+  if (!channel.sd_known) return std::nullopt;
+  std::vector<double> weighted;
+  for (const double each : residual) weighted.push_back(each / channel.sd);
+  const auto samples = static_cast<double>(weighted.size());
+  const int lags = std::min<int>(kMostLags, static_cast<int>(weighted.size() / 10));
+  const auto gamma = metrics::autocovariance(weighted, lags);
+  if (!(gamma.front() > 0.0)) return std::nullopt;
+  return make_test(condition, channel, metrics::fit_autoregression(gamma, samples), samples);
 }
 
 std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& found) {
@@ -62,23 +98,11 @@ std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& fo
     for (std::size_t k = 0; k < condition.channels.size(); ++k) {
       const ProblemChannel& channel = condition.channels[k];
       if (!channel.sd_known) continue;
-      const metrics::Autoregression& noise = found.scatter[i].noise[k];
-      const auto samples = static_cast<double>(condition.rows.size());
-      const datasets::Series& series = condition.record->channels.at(channel.channel);
-      LackOfFit test;
-      test.condition = condition.condition->id;
-      test.channel = channel.channel;
-      test.by_repeats = series.repeats > 1 && !series.sd.empty();
-      test.ratio = metrics::autocovariance(noise, 0).front();
-      test.freedom = std::max(1.0, samples / square_inflation(noise, samples));
-      test.pure_freedom = test.by_repeats ? (series.repeats - 1) * test.freedom
-                                          : std::numeric_limits<double>::infinity();
-      test.p = exceedance(test.ratio, test);
-      result.push_back(std::move(test));
+      result.push_back(make_test(condition, channel, found.scatter[i].noise[k],
+                                 static_cast<double>(condition.rows.size())));
     }
   }
-  const double level = kMisfitLevel / static_cast<double>(result.size());  // Bonferroni
-  for (LackOfFit& test : result) static_cast<metrics::Judged&>(test) = judged(test, level);
+  judge_together(result);
   return result;
 }
 

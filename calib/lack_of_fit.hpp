@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "calib/fit.hpp"
@@ -20,6 +21,19 @@ namespace rigcal::calib {
 ///
 /// @param found  with scatter; without, there is no test
 std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& found);
+
+/// The same test of a prediction, from which no parameter was estimated: mean square of the
+/// residual over the variance of the mean of the repeats.
+///
+/// @param residual  shape (samples that count), measured - simulated, SI
+/// @return  not judged yet; empty where nothing tells the noise of the channel, or the residual is
+///          zero
+std::optional<LackOfFit> lack_of_prediction(const ProblemCondition& condition,
+                                            const ProblemChannel& channel,
+                                            std::span<const double> residual);
+
+/// Sets the outcome of tests that are made together: each at 5 % over their number (Bonferroni).
+void judge_together(std::vector<LackOfFit>& tests);
 
 /// Whether there is a significant lack of fit, at 5 % for all tests together (Bonferroni): of one
 /// channel. Not where all have passed; empty where none has failed and one cannot be judged, or

@@ -50,6 +50,19 @@ void check(const Unknown& unknown, std::string_view key, const Location& where) 
 
 }  // namespace
 
+std::string parameter_name(const model::ParameterSpec& spec, datasets::Scope scope,
+                           const std::string& level) {
+  switch (scope) {
+    case datasets::Scope::rig:
+      break;
+    case datasets::Scope::leak_level:
+      return fmt::format("{} (leak level {})", spec.name, level);
+    case datasets::Scope::condition:
+      return fmt::format("{} (condition {})", spec.name, level);
+  }
+  return std::string(spec.name);
+}
+
 bool known_in(const Campaign& campaign, const Condition& condition, int index) {
   if (contains(condition.overrides, index)) return true;
   if (!condition.leak_level) return false;

@@ -265,16 +265,7 @@ const model::ParameterSpec& Problem::spec(std::size_t unknown) const {
 
 std::string Problem::name(std::size_t unknown) const {
   const Unknown& u = map.unknowns()[unknown];
-  const auto name = spec(unknown).name;
-  switch (u.scope) {
-    case datasets::Scope::rig:
-      break;
-    case datasets::Scope::leak_level:
-      return fmt::format("{} (leak level {})", name, u.level);
-    case datasets::Scope::condition:
-      return fmt::format("{} (condition {})", name, u.level);
-  }
-  return std::string(name);
+  return parameter_name(spec(unknown), u.scope, u.level);
 }
 
 std::vector<Channel> output_channels(const Campaign& campaign, const Record& record) {

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "calib/acceptance.hpp"
+#include "calib/lack_of_fit.hpp"
 #include "common/parallel.hpp"
 #include "metrics/fundamental.hpp"
 #include "metrics/metric_table.hpp"
@@ -89,6 +90,10 @@ ChannelScore score_channel(const ProblemCondition& condition, const ProblemChann
   }
   compare_at_fundamental(condition, channel.measured, simulated, score);
   score.residual_tests = test_residual(condition, channel.measured, simulated, drive);
+  std::vector<double> residual;
+  for (std::size_t i = 0; i < simulated.size(); ++i)
+    residual.push_back(channel.measured[i] - simulated[i]);
+  score.lack_of_fit = lack_of_prediction(condition, channel, residual);
   return score;
 }
 

@@ -82,6 +82,14 @@ struct AcceptanceLimit {
   std::optional<double> warn;
 };
 
+/// What a result must be, beside the limits of its metrics, to be accepted without reservation.
+struct AcceptanceBounds {
+  /// Standard deviation of the model's error over that of the noise of a record's mean.
+  double model_error_to_noise = 0.5;
+  /// Parameters of which an estimate that cannot be told from zero does not matter up to here, SI.
+  std::map<int, double> negligible;
+};
+
 struct Condition {
   std::string id;
   Waveform waveform = Waveform::recorded;
@@ -171,6 +179,7 @@ struct Campaign {
   std::map<Channel, ChannelSetting> channels;
   Alignment alignment = Alignment::correlate;
   std::vector<AcceptanceLimit> acceptance;
+  AcceptanceBounds acceptance_bounds;
   FitSettings fit;
   SimulationSettings simulation;
   DiagnosisSettings diagnosis;

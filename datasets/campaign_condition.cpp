@@ -286,7 +286,7 @@ Condition read_condition(const TomlNode& unnamed, const Campaign& campaign) {
   read_records(node, campaign, condition);
   read_time(node, condition);
   if (const auto limits = node.find("acceptance")) {
-    condition.acceptance = read_acceptance(*limits, campaign);
+    condition.acceptance = read_limits(*limits, campaign);
   }
   if (const auto temperature = node.find("temperature")) {
     condition.temperature_k = temperature->non_negative_quantity("K");

@@ -135,9 +135,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   if (const auto node = root.find("leak_level")) read_leak_levels(*node, campaign);
   if (const auto node = root.find("recording")) read_recording(*node, campaign);
   if (const auto node = root.find("averaging")) campaign.alignment = read_alignment(*node);
-  if (const auto node = root.find("acceptance")) {
-    campaign.acceptance = read_acceptance(*node, campaign);
-  }
+  if (const auto node = root.find("acceptance")) read_acceptance(*node, campaign);
   if (const auto node = root.find("fit")) campaign.fit = read_fit(*node, campaign);
   if (const auto node = root.find("simulation")) campaign.simulation = read_simulation(*node);
   if (const auto node = root.find("diagnosis")) campaign.diagnosis = read_diagnosis(*node);

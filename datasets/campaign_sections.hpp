@@ -13,8 +13,11 @@ namespace rigcal::datasets {
 /// [recording] into the campaign, whose controller is known already.
 void read_recording(const TomlNode& node, Campaign& campaign);
 
-/// [acceptance] of a campaign or of a condition; needs the channels.
-std::vector<AcceptanceLimit> read_acceptance(const TomlNode& node, const Campaign& campaign);
+/// The limits in an `acceptance` of a condition; needs the channels.
+std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& campaign);
+
+/// [acceptance] into the campaign: limits, and what is asked beside them; needs rig and channels.
+void read_acceptance(const TomlNode& node, Campaign& campaign);
 
 /// [fit]; needs the channels.
 FitSettings read_fit(const TomlNode& node, const Campaign& campaign);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "datasets/campaign_parameters.hpp"
 #include "datasets/campaign_sections.hpp"
@@ -10,6 +11,8 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr std::string_view kWarnPrefix = "warn_";
+constexpr const char* kModelError = "model_error_to_noise";
+constexpr const char* kNegligible = "negligible";
 
 /// A metric that may be limited. The unit is the channel's where `in_channel_unit`.
 struct MetricRow {
@@ -117,15 +120,15 @@ std::map<std::string, Overrides> read_true_levels(const TomlNode& table, model::
   return levels;
 }
 
-}  // namespace
-
-std::vector<AcceptanceLimit> read_acceptance(const TomlNode& node, const Campaign& campaign) {
+/// Limits of an `acceptance`, whose keys in `others` are none.
+Limits limits_but(const TomlNode& node, const Campaign& campaign,
+                  const std::vector<std::string_view>& others) {
   std::vector<Channel> outputs = output_channels(campaign);
   const bool has_position = outputs.empty() || std::find(outputs.begin(), outputs.end(),
                                                          Channel::position) != outputs.end();
   const std::vector<Channel> general =
       has_position ? std::vector<Channel>{Channel::position} : outputs;
-  const std::vector<std::string> names = known_limits();
+  std::vector<std::string> names = known_limits();
   const auto is_limit = [&](const std::string& key) {
     return std::find(names.begin(), names.end(), key) != names.end();
   };
@@ -135,8 +138,11 @@ std::vector<AcceptanceLimit> read_acceptance(const TomlNode& node, const Campaig
     for (const Channel channel : general) read_limit_into(limits, entry, key, channel);
   }
   for (const auto& [key, entry] : node.entries()) {
-    if (is_limit(key)) continue;
-    if (!entry.is_table()) node.fail_unknown(key, "metric", names);
+    if (is_limit(key) || std::find(others.begin(), others.end(), key) != others.end()) continue;
+    if (!entry.is_table()) {
+      names.insert(names.end(), others.begin(), others.end());
+      node.fail_unknown(key, "metric", names);
+    }
     const Channel channel = read_channel_key(node, key);
     if (std::find(outputs.begin(), outputs.end(), channel) == outputs.end()) {
       entry.fail("is no output channel: expected one of those in [recording.channels]");
@@ -156,6 +162,25 @@ std::vector<AcceptanceLimit> read_acceptance(const TomlNode& node, const Campaig
     }
   }
   return limits;
+}
+
+}  // namespace
+
+std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& campaign) {
+  return limits_but(node, campaign, {});
+}
+
+void read_acceptance(const TomlNode& node, Campaign& campaign) {
+  campaign.acceptance = limits_but(node, campaign, {kModelError, kNegligible});
+  if (const auto ratio = node.find(kModelError)) {
+    campaign.acceptance_bounds.model_error_to_noise = ratio->number();
+    if (!(ratio->number() > 0.0)) ratio->fail_type("a number above zero");
+  }
+  if (const auto table = node.find(kNegligible)) {
+    for (const auto& [index, value] :
+         read_overrides(*table, campaign.rig.plant, ParameterGroup::any))
+      campaign.acceptance_bounds.negligible.emplace(index, std::abs(value));
+  }
 }
 
 FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {

@@ -33,4 +33,10 @@ inline constexpr std::array kMetrics{
                false},
 };
 
+/// The value of a metric where simulation and measurement are the same.
+constexpr double ideal(const MetricSpec& metric) {
+  if (!metric.higher_is_better) return 0.0;
+  return metric.unit == "%" ? 100.0 : 1.0;
+}
+
 }  // namespace rigcal::metrics

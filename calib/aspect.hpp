@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace rigcal::calib {
+
+/// What one aspect of a result, or one reason, amounts to.
+enum class AspectState {
+  pass,
+  reservation,   ///< nothing failed, but whoever signs must know
+  fail,          ///< a limit is broken, or cannot be evaluated
+  not_assessed,  ///< there was nothing to judge by
+};
+std::string_view to_string(AspectState state);
+
+/// One reason: a code for scripts, the numbers behind it, and the same in words for people.
+struct Reason {
+  AspectState state = AspectState::pass;  ///< what it speaks for
+  std::string code;                       ///< "limit_broken", "lack_of_fit", ...; docs/report.md
+  std::string subject;                    ///< condition or parameter; empty: the whole result
+  std::vector<std::pair<std::string, double>> numbers;
+  std::string words;
+};
+
+/// One aspect with everything that speaks for and against it.
+struct Aspect {
+  AspectState state = AspectState::not_assessed;
+  std::vector<Reason> reasons;  ///< the gravest first
+};
+
+/// The four things that are judged apart. A verdict follows from them (verdict_of).
+struct Assessment {
+  Aspect agreement;   ///< every scored condition against the limits of the campaign
+  Aspect validation;  ///< the conditions that no estimate rests on, against the same limits
+  Aspect adequacy;    ///< of the model: what it leaves, against the noise of the records
+  Aspect parameters;  ///< whether the records determine what was estimated
+};
+
+}  // namespace rigcal::calib
