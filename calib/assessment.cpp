@@ -319,7 +319,7 @@ void judge_driven(const std::vector<Unknown>& signals, std::vector<Reason>& reas
   std::size_t count = 0;
   for (const Unknown& each : signals) {
     const auto& tests = each.channel->residual_tests;
-    if (!tests || !tests->cross_correlation || tests->cross_correlation->passed) continue;
+    if (!tests || !tests->cross_correlation || !tests->cross_correlation->failed()) continue;
     const double share = tests->cross_correlation->peak * tests->cross_correlation->peak;
     if (share < kLeastDriven) continue;
     ++count;
@@ -332,7 +332,7 @@ void judge_driven(const std::vector<Unknown>& signals, std::vector<Reason>& reas
   reasons.push_back(reason(
       AspectState::reservation, "residual_depends_on_input",
       fmt::format("{:.0f} % of the residual variance of {} is linearly explained by the input{}: "
-                  "dynamics that the model lacks, or a wrong parameter",
+                  "unmodelled dynamics, or a wrong parameter",
                   100.0 * largest, signal,
                   count > 1 ? fmt::format(", likewise in {} other signal{}", count - 1,
                                           count == 2 ? "" : "s")
@@ -348,8 +348,9 @@ void judge_residuals(const std::vector<Unknown>& signals, std::vector<Reason>& r
   std::size_t judged = 0;
   for (const Unknown& each : signals) {
     if (!each.channel->residual_tests) continue;
-    ++judged;
-    if (!each.channel->residual_tests->autocorrelation.passed) ++coloured;
+    const metrics::Autocorrelation& test = each.channel->residual_tests->autocorrelation;
+    if (test.passed() || test.failed()) ++judged;
+    if (test.failed()) ++coloured;
   }
   const std::vector<std::pair<std::string, double>> numbers{
       {"signals", static_cast<double>(signals.size())},
@@ -358,7 +359,7 @@ void judge_residuals(const std::vector<Unknown>& signals, std::vector<Reason>& r
                                           signals.size(), signals.size() == 1 ? "" : "s");
   if (judged == 0) {
     reasons.push_back(reason(AspectState::not_assessed, "noise_unknown",
-                             unknown + ", and their residuals are too short to be tested", {},
+                             unknown + ", and their residuals are too few to be tested", {},
                              numbers));
   } else if (coloured > 0) {
     reasons.push_back(reason(

@@ -98,7 +98,10 @@ std::vector<std::string> name_combinations(const Problem& problem, std::span<con
   std::vector<std::string> words;
   std::vector<bool> named(n, false);
   for (std::size_t j = 0; j < n; ++j) {
-    if (!counts[j] || parameters[j].identifiability == Identifiability::identified) continue;
+    const Identifiability grade = parameters[j].identifiability;
+    const bool determined =
+        grade == Identifiability::identified || grade == Identifiability::bounded;
+    if (!counts[j] || determined) continue;
     const auto best = best_partner(log_spread, counts, j);
     if (!best) continue;
     const std::string text = text_of(problem, z, *best);

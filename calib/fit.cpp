@@ -489,6 +489,8 @@ std::string_view to_string(Identifiability identifiability) {
       return "identified";
     case Identifiability::weak:
       return "weak";
+    case Identifiability::bounded:
+      return "bounded";
     case Identifiability::not_identifiable:
       return "not_identifiable";
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "datasets/repeatability.hpp"
 #include "metrics/metric_table.hpp"
@@ -139,6 +140,59 @@ Json acceptance_json(const std::vector<datasets::AcceptanceLimit>& limits) {
   return list;
 }
 
+Json checks_json(const calib::ConditionScore& score) {
+  Json list = Json::array();
+  for (const calib::LimitCheck& check : score.checks) {
+    Json json;
+    json["channel"] = std::string(info(check.channel).key);
+    json["metric"] = check.metric;
+    json["value"] = number(check.value);
+    json["limit"] = number(check.limit);
+    json["warn"] = number(check.warn);
+    json["tolerance_used"] = check.value ? number(check.used) : Json(nullptr);
+    json["verdict"] = std::string(to_string(check.verdict));
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
+/// The worst of the checks of every channel that has some.
+Json channel_verdicts_json(const calib::ConditionScore& score) {
+  std::map<datasets::Channel, calib::Verdict> worst;
+  for (const calib::LimitCheck& check : score.checks)
+    worst[check.channel] = std::max(worst[check.channel], check.verdict);
+  Json json = Json::object();
+  for (const auto& [channel, verdict] : worst)
+    json[std::string(info(channel).key)] = std::string(to_string(verdict));
+  return json;
+}
+
+Json aspect_json(const calib::Aspect& aspect) {
+  Json json;
+  json["state"] = std::string(to_string(aspect.state));
+  json["reasons"] = Json::array();
+  for (const calib::Reason& reason : aspect.reasons) {
+    Json entry;
+    entry["code"] = reason.code;
+    entry["state"] = std::string(to_string(reason.state));
+    entry["subject"] = reason.subject.empty() ? Json(nullptr) : Json(reason.subject);
+    entry["numbers"] = Json::object();
+    for (const auto& [name, value] : reason.numbers) entry["numbers"][name] = number(value);
+    entry["words"] = reason.words;
+    json["reasons"].push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json assessment_json(const calib::Assessment& assessment) {
+  Json json;
+  json["agreement"] = aspect_json(assessment.agreement);
+  json["validation"] = aspect_json(assessment.validation);
+  json["adequacy"] = aspect_json(assessment.adequacy);
+  json["parameters"] = aspect_json(assessment.parameters);
+  return json;
+}
+
 Json condition_json(const Result& result, const calib::ConditionScore& score) {
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
   const datasets::Condition* condition = result.campaign.find(score.id);
@@ -179,6 +233,8 @@ Json condition_json(const Result& result, const calib::ConditionScore& score) {
     json["metrics"][key] = score_json(channel);
     json["noise_floor"][key] = noise_floor_json(channel.noise_floor);
   }
+  json["limit_checks"] = checks_json(score);
+  json["channel_verdicts"] = channel_verdicts_json(score);
   json["verdict"] = text_or_null(score.verdict);
   json["reasons"] = score.reasons;
   return json;
@@ -286,6 +342,7 @@ Json result_json(const Result& result) {
   json["status"] = std::string(to_string(status_of(fit)));
   json["schema"] = result.kind == ResultKind::fit ? kFitSchema : kValidationSchema;
   json["verdict"] = text_or_null(fit.verdict);
+  json["assessment"] = assessment_json(fit.assessment);
   json["message"] = fit.message;
   json["campaign"] = result.campaign.name;
   json["synthetic"] = result.campaign.synthetic;

@@ -51,6 +51,9 @@ struct EarlierFit {
   std::string message;
   std::vector<datasets::FittedValue> values;  ///< of the fitted parameters, without nuisance
   std::vector<datasets::FittedValue> known;   ///< of the others, scope rig
+  std::vector<std::pair<std::string, datasets::Use>> conditions;  ///< id and use of each scored
+  std::vector<std::string> input_hashes;                          ///< SHA-256
+  calib::Aspect parameters;  ///< as the fit judged them; not assessed where it says nothing
   Validity validity;
   std::vector<int> indices;  ///< table rows of the fitted values of scope rig that have an error
   /// Of these, SI, shape (indices)^2: the larger of standard and robust error, and the correlation.

@@ -41,8 +41,8 @@ Json condition_views(const Calibration& stored, int threads) {
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
     const std::string id = text_of(conditions[i], "id");
     const bool found = all != stored.curves.end() && all->contains(id);
-    sections[i] = condition_view(stored.result, conditions[i], stored.series[i],
-                                 found ? all->at(id) : none, points);
+    sections[i] =
+        condition_view(conditions[i], stored.series[i], found ? all->at(id) : none, points);
   });
   return sections;
 }

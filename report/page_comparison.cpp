@@ -16,13 +16,13 @@ Json estimate_cell(const Json& estimate, const RowUnit& unit) {
   const Json interval = shown_interval(estimate.at("ci95"), unit.si, 5);
   const std::string grade = text_of(estimate, "identifiability");
   return {{"there", true},
-          {"value", shown_in(estimate.at("value"), unit.si, 6)},
+          {"value", shown_matched(estimate.at("value"), estimate.at("ci95"), unit.si, 6)},
           {"fitted", estimate.at("fitted")},
           {"interval", interval.at("known")},
           {"low", interval.at("low")},
           {"high", interval.at("high")},
-          {"doubtful", grade == "weak" || grade == "not_identifiable"},
-          {"grade", grade == "weak" ? "weak" : "not identifiable"}};
+          {"doubtful", !grade.empty() && grade != "identified"},
+          {"grade", grade == "not_identifiable" ? "not identifiable" : grade}};
 }
 
 Json change_cell(const Json& difference) {

@@ -7,17 +7,14 @@
 namespace rigcal::report {
 namespace {
 
-Json score_rows(const Json& result, const Json& condition) {
+Json score_rows(const Json& condition) {
   Json rows = Json::array();
   for (const auto& [channel, scores] : condition.at("metrics").items()) {
     const std::string_view unit = channel_unit(channel);
-    const Judgement judgement = judge_channel(limits_of(result, condition), condition, channel);
-    Json verdict = nullptr;
-    if (judgement.verdict) verdict = *judgement.verdict;
     const auto floors = condition.at("noise_floor").find(channel);
     const bool floor = floors != condition.at("noise_floor").end() && floors->is_object();
     rows.push_back({{"channel", channel},
-                    {"badge", badge(verdict)},
+                    {"badge", badge(channel_verdict(condition, channel))},
                     {"rho2", shown_agreement(scores.at("rho2"))},
                     {"r", shown_agreement(scores.at("r"))},
                     {"ccc", shown_agreement(scores.at("ccc"))},
@@ -26,9 +23,9 @@ Json score_rows(const Json& result, const Json& condition) {
                     {"rmse", shown(scores.at("rmse"), unit, 4)},
                     {"maximum", shown(scores.at("maximum_error"), unit, 4)},
                     {"floor", shown_agreement(floor ? floors->at("rho2") : Json())},
-                    {"gain", shown_in(scores.at("gain_ratio"), 1.0, 6)},
-                    {"phase", shown_in(scores.at("phase_deg"), 1.0, 4)},
-                    {"delay", shown(scores.at("delay_s"), "s", 4)},
+                    {"gain", shown_in(scores.at("gain_ratio"), 1.0, 5)},
+                    {"phase", shown_in(scores.at("phase_deg"), 1.0, 2)},
+                    {"delay", shown(scores.at("delay_s"), "s", 2)},
                     {"problem", text_of(scores, "problem")},
                     {"has_problem", !text_of(scores, "problem").empty()}});
   }
@@ -66,8 +63,8 @@ std::vector<Figure> condition_figures(const Json& condition, const Table& series
   return figures;
 }
 
-Json condition_view(const Json& result, const Json& condition, const Table& series,
-                    const Json& curves, std::size_t points) {
+Json condition_view(const Json& condition, const Table& series, const Json& curves,
+                    std::size_t points) {
   const std::string id = text_of(condition, "id");
   Json view;
   view["id"] = id;
@@ -79,7 +76,7 @@ Json condition_view(const Json& result, const Json& condition, const Table& seri
   view["reasons"] = Json::array();
   for (const Json& reason : condition.at("reasons")) view["reasons"].push_back({{"text", reason}});
   view["has_reasons"] = !condition.at("reasons").empty();
-  view["scores"] = score_rows(result, condition);
+  view["scores"] = score_rows(condition);
   view["has_scores"] = !view["scores"].empty();
   view["plots"] = Json::array();
   view["has_plots"] = false;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "report/page_parts.hpp"
+#include "report/readable.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -45,7 +46,7 @@ Json grade(const Json& parameter) {
   Json view{{"word", text == "not_identifiable" ? "not identifiable" : text},
             {"mark", "✓"},
             {"class", "good"}};
-  if (text == "weak" || bound) {
+  if (text == "weak" || text == "bounded" || bound) {
     view["mark"] = "!";
     view["class"] = "warn";
   }
@@ -53,7 +54,8 @@ Json grade(const Json& parameter) {
     view["mark"] = "✕";
     view["class"] = "bad";
   }
-  if (bound) view["word"] = view["word"].get<std::string>() + ", at a bound";
+  if (text == "bounded") view["word"] = "bounded: not different from zero";
+  if (bound && text != "bounded") view["word"] = view["word"].get<std::string>() + ", at a bound";
   return view;
 }
 
@@ -65,12 +67,12 @@ Json fitted_row(const Json& p) {
   const std::string level = text_of(p, "level");
   row["whose"] = level.empty() ? std::string("rig") : level;
   row["nuisance"] = p.at("nuisance").get<bool>();
-  row["value"] = shown_in(p.at("value"), unit.si, 6);
+  row["value"] = shown_matched(p.at("value"), p.at("ci95"), unit.si, 6);
   row["unit"] = unit.name;
   row["interval"] = shown_interval(p.at("ci95"), unit.si, kDigits);
   row["half_width"] = half_width_text(p);
   for (const char* key : {"standard_error", "robust_standard_error"}) {
-    row[key] = shown_in(p.at(key), unit.si, 3);
+    row[key] = shown_in(p.at(key), unit.si, 2);
     row[key]["interval"] = interval_by(p, key, unit);
   }
   row["start"] = shown_in(p.at("start"), unit.si, 5);

@@ -11,22 +11,6 @@
 #include "report/readable.hpp"
 
 namespace rigcal::report {
-namespace {
-
-/// Where a metric is perfect.
-double ideal_of(const metrics::MetricSpec& metric) {
-  if (!metric.higher_is_better) return 0.0;
-  return metric.unit == "%" ? 100.0 : 1.0;
-}
-
-const metrics::MetricSpec* metric_named(const std::string& name) {
-  const auto found = std::find_if(metrics::kMetrics.begin(), metrics::kMetrics.end(),
-                                  [&](const auto& spec) { return spec.name == name; });
-  return found == metrics::kMetrics.end() ? nullptr : &*found;
-}
-
-}  // namespace
-
 Json shown_in(const Json& value, double si_per_unit, int digits) {
   if (!value.is_number()) return {{"exact", ""}, {"text", "–"}};
   return {{"exact", fmt::format("{}", value.get<double>())},
@@ -57,6 +41,12 @@ Json shown(const Json& value, std::string_view si_unit, int digits) {
 
 Json shown_agreement(const Json& value) {
   if (!value.is_number()) return shown_in(value, 1.0);
+  return {{"exact", fmt::format("{}", value.get<double>())},
+          {"text", agreement_text(value.get<double>())}};
+}
+
+Json shown_score(const std::string& metric, const Json& value) {
+  if (metric == "absolute_error_percent" || !value.is_number()) return shown_in(value, 1.0, 4);
   const double v = value.get<double>();
   const double missing = std::abs(1.0 - v);
   const int decimals =
@@ -64,8 +54,12 @@ Json shown_agreement(const Json& value) {
   return {{"exact", fmt::format("{}", v)}, {"text", fmt::format("{:.{}f}", v, decimals)}};
 }
 
-Json shown_score(const std::string& metric, const Json& value) {
-  return metric == "absolute_error_percent" ? shown_in(value, 1.0, 4) : shown_agreement(value);
+Json shown_matched(const Json& value, const Json& interval, double si_per_unit, int digits) {
+  const bool known = interval.is_array() && interval[0].is_number() && interval[1].is_number();
+  if (!value.is_number() || !known) return shown_in(value, si_per_unit, digits);
+  const double half = 0.5 * (interval[1].get<double>() - interval[0].get<double>());
+  return {{"exact", fmt::format("{}", value.get<double>())},
+          {"text", matched(value.get<double>() / si_per_unit, half / si_per_unit)}};
 }
 
 RowUnit row_unit(double value_si, const Json& parameter) {
@@ -153,52 +147,12 @@ std::string_view channel_unit(std::string_view channel) {
   return known ? datasets::info(*known).unit : std::string_view("1");
 }
 
-const Json& limits_of(const Json& result, const Json& condition) {
-  const auto own = condition.find("acceptance");
-  return own != condition.end() ? *own : result.at("acceptance");
-}
-
-Judgement judge_channel(const Json& limits, const Json& condition, const std::string& channel) {
-  Judgement result;
-  const auto worse = [&](const char* verdict) {
-    constexpr std::array<std::string_view, 3> kOrder{"PASS", "WARN", "FAIL"};
-    const auto rank = [&](std::string_view v) {
-      return std::find(kOrder.begin(), kOrder.end(), v) - kOrder.begin();
-    };
-    if (!result.verdict || rank(verdict) > rank(*result.verdict)) result.verdict = verdict;
-  };
-  for (const Json& limit : limits) {
-    if (text_of(limit, "channel") != channel) continue;
-    worse("PASS");
-    if (!text_of(condition, "failure").empty()) {
-      worse("FAIL");
-      continue;
-    }
-    const std::string name = text_of(limit, "metric");
-    const metrics::MetricSpec* metric = metric_named(name);
-    const auto value = number_of(condition.at("metrics").at(channel), name);
-    if (metric == nullptr || !value) {
-      worse("WARN");
-      continue;
-    }
-    const double ideal = ideal_of(*metric);
-    const auto excess = [&](double bound) {
-      return std::abs(*value - ideal) / std::max(std::abs(bound - ideal), 1e-12);
-    };
-    const auto fail = number_of(limit, "limit");
-    const auto warn = number_of(limit, "warn");
-    const auto beyond = [&](const std::optional<double>& bound) {
-      return bound && !(metric->higher_is_better ? *value >= *bound : *value <= *bound);
-    };
-    if (beyond(fail)) {
-      worse("FAIL");
-    } else if (beyond(warn)) {
-      worse("WARN");
-    }
-    const auto bound = fail ? fail : warn;
-    if (bound) result.excess = std::max(result.excess, excess(*bound));
-  }
-  return result;
+Json channel_verdict(const Json& condition, const std::string& channel) {
+  if (!text_of(condition, "failure").empty()) return condition.at("verdict");
+  const auto verdicts = condition.find("channel_verdicts");
+  if (verdicts == condition.end()) return nullptr;
+  const auto found = verdicts->find(channel);
+  return found == verdicts->end() ? Json(nullptr) : *found;
 }
 
 }  // namespace rigcal::report

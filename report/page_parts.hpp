@@ -25,8 +25,10 @@ Json shown_in(const Json& value, double si_per_unit, int digits = 5);
 /// Both ends of an interval, with two digits of its width where these are more than `digits`;
 /// `known` false where an end is missing.
 Json shown_interval(const Json& pair, double si_per_unit, int digits);
-/// Agreement near 1 with the digits that tell: 0.9999958.
+/// rho2, R or CCC: "0.9996", "> 0.9999".
 Json shown_agreement(const Json& value);
+/// An estimate with no more digits than its 95 % interval supports; `digits` where it has none.
+Json shown_matched(const Json& value, const Json& interval, double si_per_unit, int digits);
 /// A score by its metric: agreement as above, errors in percent to four digits.
 Json shown_score(const std::string& metric, const Json& value);
 
@@ -52,16 +54,8 @@ std::string parameter_label(const Json& parameter);
 /// SI unit of a channel, by the key that it has in the results.
 std::string_view channel_unit(std::string_view channel);
 
-/// What a condition is judged by: limits of its own, or the campaign's.
-const Json& limits_of(const Json& result, const Json& condition);
-
-/// PASS, WARN or FAIL of one channel of one condition by its limits; null where none applies.
-/// `excess`: distance from the ideal over that of the nearest limit, above 1 beyond.
-struct Judgement {
-  std::optional<std::string> verdict;
-  double excess = 0.0;
-};
-Judgement judge_channel(const Json& limits, const Json& condition, const std::string& channel);
+/// Verdict of one channel of one condition as the result states it; null where it has no limit.
+Json channel_verdict(const Json& condition, const std::string& channel);
 
 /// Values in their order as points over their numbers from 1, on a logarithmic scale.
 Plot ranked_points(const std::string& title, const std::string& y_label,
@@ -77,8 +71,13 @@ Json make_headline(const std::string& word, const std::string& mark, const std::
 /// Adds a reason that leads to a section (`link` its id, or empty); only the first three are shown.
 void add_reason(Json& headline, const std::string& text, const std::string& link);
 
-/// Headline, the three reasons that weigh most, and the range that is covered.
+/// Headline, the four aspects of the assessment, and the range that is covered.
 Json headline_view(const Json& result);
+/// The aspects of an assessment, each with what speaks against it and what for it; empty for a
+/// result of before there were any.
+Json assessment_view(const Json& result);
+/// The aspects that did not pass, in words: "independent validation: not assessed".
+std::string open_aspects(const Json& result);
 /// Headline of a fit to published tables, which has no records.
 Json tables_headline(const Json& result);
 /// Per channel: signals by leak levels.
@@ -100,8 +99,8 @@ Json formulas_view();
 /// @param series  its residuals/<condition>.csv
 /// @param curves  its entry in residual_tests.json, or null
 /// @param points  of one interactive series, about
-Json condition_view(const Json& result, const Json& condition, const Table& series,
-                    const Json& curves, std::size_t points);
+Json condition_view(const Json& condition, const Table& series, const Json& curves,
+                    std::size_t points);
 
 /// What the residuals of its channels tell, with the curves behind it.
 Json tests_view(const Json& condition, const Json& curves);

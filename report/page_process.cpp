@@ -30,18 +30,13 @@ Json starts_view(const Json& result) {
     least = std::min(least, *final_cost);
   }
   std::sort(costs.begin(), costs.end());
-  const auto near =
-      std::count_if(costs.begin(), costs.end(), [&](double each) { return each <= least * 1.01; });
   const std::size_t all = starts.size();
   if (costs.empty()) {
     view["reading"] = "No start ended with a cost: there is no answer.";
   } else if (all == 1) {
     view["reading"] = "One start alone: whether another minimum lies lower was not looked for.";
   } else {
-    view["reading"] =
-        fmt::format("{} of {} starts ended within 1 % of the lowest cost{}.", near, all,
-                    near >= 2 ? ", so that the answer was found more than once"
-                              : ": the answer was found once");
+    view["reading"] = text_of(result, "agreement") + ".";
   }
   const auto cost = number_of(result, "cost");
   constexpr double kSameCost = 1e-3;
@@ -54,8 +49,7 @@ Json starts_view(const Json& result) {
   view["waterfall"] = costs.size() > 1;
   if (costs.size() > 1) {
     Plot plot = ranked_points("Cost of every start, sorted", "final cost", costs);
-    plot.x_label = "start, best first; dashed: 1 % above the lowest";
-    plot.levels = {1.01 * least};
+    plot.x_label = "start, best first";
     view["plot_html"] = svg(plot);
   }
   return view;

@@ -68,6 +68,17 @@ class Node {
     return result;
   }
 
+  /// Members that are numbers; null stands for one that is not finite, and is left out.
+  std::vector<std::pair<std::string, double>> numbers() const {
+    if (!json_.is_object()) fail("an object");
+    std::vector<std::pair<std::string, double>> result;
+    for (const auto& [key, value] : json_.items()) {
+      const Node member(value, file_, path_ + "." + key);
+      if (!member.is_null()) result.emplace_back(key, member.real());
+    }
+    return result;
+  }
+
   bool is_null() const { return json_.is_null(); }
   std::string string() const {
     if (!json_.is_string()) fail("a text");
@@ -181,6 +192,47 @@ void read_covariance(const Node& root, model::PlantKind plant, EarlierFit& fit) 
   }
 }
 
+/// What a fit of before there were assessments does not have.
+calib::Aspect no_assessment() {
+  calib::Aspect aspect;
+  aspect.reasons.push_back({calib::AspectState::not_assessed,
+                            "no_assessment",
+                            "",
+                            {},
+                            "the fit.json of the values holds no assessment of its parameters"});
+  return aspect;
+}
+
+calib::Aspect read_aspect(const Node& node) {
+  using calib::AspectState;
+  const std::array states{AspectState::pass, AspectState::reservation, AspectState::fail,
+                          AspectState::not_assessed};
+  calib::Aspect aspect;
+  aspect.state = one_of(node["state"], states);
+  for (const Node& entry : node["reasons"].items()) {
+    calib::Reason& reason = aspect.reasons.emplace_back();
+    reason.state = one_of(entry["state"], states);
+    reason.code = entry["code"].string();
+    if (!entry["subject"].is_null()) reason.subject = entry["subject"].string();
+    reason.words = entry["words"].string();
+    reason.numbers = entry["numbers"].numbers();
+  }
+  return aspect;
+}
+
+void read_origin(const Json& json, const Node& root, EarlierFit& fit) {
+  using datasets::Use;
+  for (const Node& entry : root["conditions"].items()) {
+    fit.conditions.emplace_back(
+        entry["id"].string(),
+        one_of(entry["use"], std::array{Use::fit, Use::validate, Use::diagnose, Use::ignore}));
+  }
+  for (const Node& input : root["provenance"]["inputs"].items())
+    fit.input_hashes.push_back(input["sha256"].string());
+  fit.parameters =
+      json.contains("assessment") ? read_aspect(root["assessment"]["parameters"]) : no_assessment();
+}
+
 Json parse(const std::filesystem::path& file) {
   const std::string text = read_text(file);
   try {
@@ -230,6 +282,7 @@ EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
   }
   result.validity = read_validity(root["validity"]);
   read_covariance(root, plant, result);
+  read_origin(json, root, result);
   return result;
 }
 

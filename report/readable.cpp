@@ -61,6 +61,22 @@ std::string readable(double value_si, std::string_view si_unit, int digits) {
   return text;
 }
 
+std::string matched(double value, double uncertainty) {
+  constexpr int kUnknown = 6;
+  constexpr int kMostDecimals = 15;
+  if (!(uncertainty > 0.0) || !std::isfinite(uncertainty)) return significant(value, kUnknown);
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(uncertainty)));
+  if (decimals > kMostDecimals) return significant(value, kUnknown);
+  if (decimals >= 0) return fmt::format("{:.{}f}", value, decimals);
+  const double step = std::pow(10.0, -decimals);
+  return fmt::format("{:.0f}", std::round(value / step) * step);
+}
+
+std::string agreement_text(double value) {
+  const std::string text = fmt::format("{:.4f}", value);
+  return text == "1.0000" && value < 1.0 ? std::string("> 0.9999") : text;
+}
+
 std::string p_value_text(double p) {
   return p < 1e-4 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p);
 }

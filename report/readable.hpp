@@ -22,6 +22,16 @@ std::string significant(double value, int digits);
 /// "6.2 MPa", "0.35", "-": `digits` significant digits; "-" where the value is not finite.
 std::string readable(double value_si, std::string_view si_unit, int digits = 6);
 
+/// A value to the last of the two significant digits of its uncertainty (GUM, 7.2.6): 85.0114 with
+/// 0.051 is "85.011". Six significant digits where the uncertainty is not known or zero.
+///
+/// @param uncertainty  in the unit of the value: standard error, or half width of an interval
+std::string matched(double value, double uncertainty);
+
+/// Agreement such as rho2 as a fraction with four decimals; "> 0.9999" where these would claim that
+/// it is perfect.
+std::string agreement_text(double value);
+
 /// "p = 0.012", "p < 0.0001".
 std::string p_value_text(double p);
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "report/groups.hpp"
 #include "report/readable.hpp"
@@ -13,6 +14,7 @@
 namespace rigcal::report {
 namespace {
 
+using calib::AspectState;
 using calib::FitStatus;
 using calib::Verdict;
 using datasets::Channel;
@@ -39,16 +41,6 @@ std::optional<Channel> shown_channel(const calib::Fit& fit) {
   return first;
 }
 
-/// A fraction as percent, with so many decimals that what is missing to 100 shows 2 digits.
-std::string fraction(double value) {
-  const double missing = 100.0 * std::abs(1.0 - value);
-  if (!(missing > 0.0)) return fmt::format("{:.4f}", 100.0 * value);
-  constexpr int kLeastDecimals = 4;
-  constexpr int kMostDecimals = 10;  // beyond, a double of about 1 holds no more
-  const int decimals = 1 - static_cast<int>(std::floor(std::log10(missing)));
-  return fmt::format("{:.{}f}", 100.0 * value, std::clamp(decimals, kLeastDecimals, kMostDecimals));
-}
-
 std::string percent(double value) { return fmt::format("{:.3f}", value); }
 
 TextTable condition_table(const Result& result, Channel channel, const Style& style) {
@@ -57,9 +49,9 @@ TextTable condition_table(const Result& result, Channel channel, const Style& st
                    {"waveform", Align::left, 6},
                    {"frequency", Align::right, 5},
                    {"leak level", Align::left, 4},
-                   {"rho2 %", Align::right},
-                   {"R %", Align::right, 3},
-                   {"CCC %", Align::right},
+                   {"rho2", Align::right},
+                   {"R", Align::right, 3},
+                   {"CCC", Align::right},
                    {"error %", Align::right},
                    {"floor %", Align::right, 2},
                    {"verdict"}});
@@ -75,9 +67,9 @@ TextTable condition_table(const Result& result, Channel channel, const Style& st
         std::find_if(score.channels.begin(), score.channels.end(),
                      [&](const calib::ChannelScore& s) { return s.channel == channel; });
     const bool scored = found != score.channels.end() && found->agreement;
-    row.push_back(scored ? fraction(found->agreement->rho2) : "-");
-    row.push_back(scored ? fraction(found->agreement->r) : "-");
-    row.push_back(scored ? fraction(found->agreement->ccc) : "-");
+    row.push_back(scored ? agreement_text(found->agreement->rho2) : "-");
+    row.push_back(scored ? agreement_text(found->agreement->r) : "-");
+    row.push_back(scored ? agreement_text(found->agreement->ccc) : "-");
     row.push_back(scored ? percent(found->agreement->absolute_error_percent) : "-");
     row.push_back(scored && found->noise_floor ? percent(found->noise_floor->absolute_error_percent)
                                                : "-");
@@ -93,20 +85,20 @@ TextTable group_table(const Result& result, Channel channel) {
   TextTable table({{"by"},
                    {"group"},
                    {"conditions", Align::right, 2},
-                   {"rho2 %", Align::right},
-                   {"R %", Align::right, 5},
-                   {"CCC %", Align::right, 4},
+                   {"rho2", Align::right},
+                   {"R", Align::right, 5},
+                   {"CCC", Align::right, 4},
                    {"error %", Align::right},
-                   {"worst rho2 %", Align::right, 1},
+                   {"worst rho2", Align::right, 1},
                    {"worst error %", Align::right, 3}});
   for (const Group& group : groups(result.campaign, result.fit)) {
     const auto found = group.channels.find(channel);
     if (found == group.channels.end()) continue;
     const GroupScore& score = found->second;
     table.add({group.by == "leak_level" ? "leak level" : group.by, group.label,
-               fmt::format("{}", score.conditions), fraction(score.mean.rho2),
-               fraction(score.mean.r), fraction(score.mean.ccc),
-               percent(score.mean.absolute_error_percent), fraction(score.worst.rho2),
+               fmt::format("{}", score.conditions), agreement_text(score.mean.rho2),
+               agreement_text(score.mean.r), agreement_text(score.mean.ccc),
+               percent(score.mean.absolute_error_percent), agreement_text(score.worst.rho2),
                percent(score.worst.absolute_error_percent)});
   }
   return table;
@@ -128,9 +120,9 @@ std::string identifiability_text(const calib::FittedParameter& p, const Style& s
                          ? "not identifiable"
                          : std::string(to_string(p.identifiability));
   if (p.at_bound) text += ", at a bound";
-  const char* code = p.identifiability == Identifiability::not_identifiable     ? "31"
-                     : p.at_bound || p.identifiability == Identifiability::weak ? "33"
-                                                                                : "32";
+  const char* code = p.identifiability == Identifiability::not_identifiable           ? "31"
+                     : p.at_bound || p.identifiability != Identifiability::identified ? "33"
+                                                                                      : "32";
   return coloured(text, code, style);
 }
 
@@ -142,6 +134,18 @@ std::string in_unit(double value_si, const ReadableUnit& unit, int digits) {
 
 std::string limits(double low, double high, const ReadableUnit& unit, int digits) {
   return fmt::format("{} .. {}", in_unit(low, unit, digits), in_unit(high, unit, digits));
+}
+
+/// The standard error on which the interval rests.
+double error_of(const calib::FittedParameter& p) {
+  return p.interval == calib::IntervalSource::robust_standard_error
+             ? p.robust_standard_error.value_or(0.0)
+             : p.standard_error.value_or(0.0);
+}
+
+/// What the digits of a value are chosen by: half width of its interval; 0 where there is none.
+double uncertainty_of(const calib::FittedParameter& p) {
+  return p.ci95 ? 0.5 * (p.ci95->second - p.ci95->first) : 0.0;
 }
 
 /// One line per reason, led by all that it holds for; "all" where that is more than one and every
@@ -162,6 +166,32 @@ std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& r
                                 reasons[i].second),
                     columns, 4);
     text += "\n";
+  }
+  return text;
+}
+
+/// State of an aspect; what speaks against it, the gravest first; then what speaks for it.
+std::string aspect_text(std::string_view name, const calib::Aspect& aspect, const Style& style) {
+  constexpr std::size_t kShown = 3;  // of one state; the files hold all
+  const auto code = [](AspectState state) {
+    return state == AspectState::pass ? "32" : state == AspectState::fail ? "31" : "33";
+  };
+  const auto words = [](AspectState state) {
+    return state == AspectState::not_assessed ? std::string("not assessed")
+                                              : std::string(to_string(state));
+  };
+  std::string text =
+      fmt::format("  {}: {}\n", name, coloured(words(aspect.state), code(aspect.state), style));
+  std::map<AspectState, std::size_t> told;
+  for (const calib::Reason& reason : aspect.reasons) {
+    if (++told[reason.state] > kShown) continue;
+    const char* mark = reason.state == AspectState::pass ? "+" : "-";
+    text += wrapped(fmt::format("    {} {}", mark, reason.words), style.columns, 6) + "\n";
+  }
+  for (const auto& [state, count] : told) {
+    if (count <= kShown) continue;
+    text +=
+        fmt::format("    {} and {} more\n", state == AspectState::pass ? "+" : "-", count - kShown);
   }
   return text;
 }
@@ -201,10 +231,14 @@ std::string parameters_text(const Result& result, const Style& style) {
     const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
     const ReadableUnit unit = readable_unit(p.value, spec.unit);
     const std::string whose = p.scope == datasets::Scope::rig ? "rig" : p.level;
+    const double uncertainty = uncertainty_of(p);
     text.add({std::string(spec.key) + (p.nuisance ? " (nuisance)" : ""), whose,
-              in_unit(p.value, unit, 6), std::string(unit.name),
-              p.standard_error ? in_unit(*p.standard_error, unit, 3) : "-",
-              p.ci95 ? limits(p.ci95->first, p.ci95->second, unit, 5) : "-",
+              matched(p.value / unit.si, uncertainty / unit.si), std::string(unit.name),
+              p.standard_error ? in_unit(error_of(p), unit, 2) : "-",
+              p.ci95
+                  ? fmt::format("{} .. {}", matched(p.ci95->first / unit.si, uncertainty / unit.si),
+                                matched(p.ci95->second / unit.si, uncertainty / unit.si))
+                  : "-",
               limits(p.lower, p.upper, unit, 4), identifiability_text(p, style)});
     if (!p.reason.empty()) reasons.emplace_back(fmt::format("{} ({})", spec.key, whose), p.reason);
   }
@@ -229,16 +263,16 @@ std::string verdict_text(const Result& result, const Style& style) {
   const std::string word = coloured(std::string(to_string(status)), code, style);
   say(fit.message.empty() ? "status: " + word : fmt::format("status: {}: {}", word, fit.message),
       2);
-  for (const calib::ConditionScore& condition : fit.conditions) {
-    if (!condition.failure.empty())
-      say(fmt::format("  {}: not simulated: {}", condition.id, condition.failure), 4);
-    for (const std::string& reason : condition.reasons)
-      say(fmt::format("  {}: {}", condition.id, reason), 4);
-  }
-  say(fit.verdict              ? "verdict: " + coloured(*fit.verdict, style)
+  say(fit.verdict ? "verdict: " + coloured(*fit.verdict, style) +
+                        (*fit.verdict == Verdict::warn ? " (passed with reservations)" : "")
       : fit.conditions.empty() ? std::string("verdict: none (no condition was scored)")
                                : std::string("verdict: none (the campaign has no [acceptance])"),
       2);
+  const auto& [agreement, validation, adequacy, parameters] = fit.assessment;
+  for (const auto& [name, aspect] :
+       {std::pair{"agreement", &agreement}, std::pair{"validation", &validation},
+        std::pair{"adequacy", &adequacy}, std::pair{"parameters", &parameters}})
+    text += aspect_text(name, *aspect, style);
   if (!fit.agreement.empty()) say("starts: " + fit.agreement, 2);
   if (!fit.bootstrap_message.empty()) say("bootstrap: " + fit.bootstrap_message, 2);
   if (!fit.interval_advice.empty()) say("intervals: " + fit.interval_advice, 2);

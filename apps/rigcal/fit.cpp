@@ -32,6 +32,7 @@ struct FitRequest {
   bool profiles = false;
   bool cross_validate = false;
   bool resume = false;
+  bool strict = false;
   std::optional<double> max_time_s;
   std::optional<long> max_evaluations;
 };
@@ -82,8 +83,9 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
     settings.progress = std::ref(progress);
     fit = calib::fit(campaign, records, settings);
   }
-  const ExitCode code = write_and_print(
-      options.common, {report::ResultKind::fit, campaign, records, fit, provenance});
+  const ExitCode code =
+      write_and_print(options.common, {report::ResultKind::fit, campaign, records, fit, provenance},
+                      options.strict);
   checkpoint.finish(fit.status);
   return code;
 }
@@ -115,6 +117,7 @@ Run add_fit(CLI::App& verb) {
   verb.add_option("--max-evaluations", options->max_evaluations,
                   "Stop after so many evaluations of all conditions")
       ->check(CLI::PositiveNumber);
+  add_strict_option(verb, options->strict);
   return [options](const Invocation& invocation) { return run_fit(*options, invocation); };
 }
 

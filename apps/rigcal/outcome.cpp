@@ -71,7 +71,7 @@ std::string text_of(const CampaignOptions& options, const report::Result& result
 
 }  // namespace
 
-ExitCode exit_code_of(const calib::Fit& fit) {
+ExitCode exit_code_of(const calib::Fit& fit, bool strict) {
   switch (report::status_of(fit)) {
     case FitStatus::failed:
       return ExitCode::no_result;
@@ -80,12 +80,19 @@ ExitCode exit_code_of(const calib::Fit& fit) {
     case FitStatus::converged:
       break;
   }
-  return fit.verdict == calib::Verdict::fail ? ExitCode::verdict_fail : ExitCode::done;
+  const bool failed =
+      fit.verdict == calib::Verdict::fail || (strict && fit.verdict == calib::Verdict::warn);
+  return failed ? ExitCode::verdict_fail : ExitCode::done;
 }
 
-ExitCode write_and_print(const CampaignOptions& options, const report::Result& result) {
+void add_strict_option(CLI::App& verb, bool& strict) {
+  verb.add_flag("--strict", strict, "Exit with 1 on WARN too, not only on FAIL");
+}
+
+ExitCode write_and_print(const CampaignOptions& options, const report::Result& result,
+                         bool strict) {
   const std::vector<report::ResultFile> files = files_of(options, result);
-  const ExitCode code = exit_code_of(result.fit);
+  const ExitCode code = exit_code_of(result.fit, strict);
   report::write_results(options.out, files, result.provenance.inputs);
   if (result.kind == report::ResultKind::fit && code == ExitCode::no_result) {
     report::remove_stale(options.out / "fitted.toml");

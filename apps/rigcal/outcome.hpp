@@ -9,12 +9,17 @@
 namespace rigcal::app {
 
 /// Exit code of a fit or validation: failed, stopped, or by its verdict.
-ExitCode exit_code_of(const calib::Fit& fit);
+///
+/// @param strict  WARN counts as FAIL
+ExitCode exit_code_of(const calib::Fit& fit, bool strict);
 
 /// Writes the files of a fit or validation into --out and prints scorecard, parameters and verdict.
 ///
 /// @throws WriteError
-ExitCode write_and_print(const CampaignOptions& options, const report::Result& result);
+ExitCode write_and_print(const CampaignOptions& options, const report::Result& result, bool strict);
+
+/// --strict
+void add_strict_option(CLI::App& verb, bool& strict);
 
 /// Options of the solver from the campaign and the command line.
 calib::FitOptions fit_options(const CampaignOptions& options, const datasets::Campaign& campaign,

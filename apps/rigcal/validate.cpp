@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -22,6 +23,7 @@ using datasets::Use;
 struct ValidateRequest {
   CampaignOptions common;
   std::filesystem::path fit;
+  bool strict = false;
 };
 
 /// Known values of the rig that were others when the fit was made.
@@ -55,6 +57,32 @@ std::vector<std::string> warnings_of(const Campaign& campaign,
   return warnings;
 }
 
+/// Which of the records the earlier fit was estimated from: by their content, since names may stay
+/// where recordings are new ones.
+calib::Origin origin_of(const report::EarlierFit& earlier,
+                        const std::vector<datasets::Record>& records,
+                        const report::Provenance& provenance) {
+  const auto seen = [&](const std::string& file) {
+    const auto input = std::find_if(provenance.inputs.begin(), provenance.inputs.end(),
+                                    [&](const auto& each) { return each.path == file; });
+    return input != provenance.inputs.end() &&
+           std::find(earlier.input_hashes.begin(), earlier.input_hashes.end(), input->sha256) !=
+               earlier.input_hashes.end();
+  };
+  calib::Origin origin;
+  origin.parameters = earlier.parameters;
+  for (const datasets::Record& record : records) {
+    if (std::none_of(record.files.begin(), record.files.end(), seen)) continue;
+    const auto then =
+        std::find_if(earlier.conditions.begin(), earlier.conditions.end(),
+                     [&](const auto& each) { return each.first == record.condition; });
+    // A file that the fit read under another name counts as one that it was estimated from.
+    if (then == earlier.conditions.end() || then->second == Use::fit)
+      origin.estimated_from.insert(record.condition);
+  }
+  return origin;
+}
+
 ExitCode run_validate(const ValidateRequest& options, const Invocation& invocation) {
   const Campaign campaign = load(options.common);
   std::optional<report::EarlierFit> earlier;
@@ -75,14 +103,18 @@ ExitCode run_validate(const ValidateRequest& options, const Invocation& invocati
   {
     FitProgress progress(options.common.print.quiet, "nuisance parameters", settings);
     settings.progress = std::ref(progress);
-    fit = calib::validate(campaign, records, earlier ? &earlier->values : nullptr, settings);
+    const auto origin =
+        earlier ? std::optional(origin_of(*earlier, records, provenance)) : std::nullopt;
+    fit = calib::validate(campaign, records, earlier ? &earlier->values : nullptr, settings,
+                          origin ? &*origin : nullptr);
   }
   if (earlier) {
     const auto warnings = warnings_of(campaign, records, fit, *earlier);
     fit.warnings.insert(fit.warnings.end(), warnings.begin(), warnings.end());
   }
   return write_and_print(options.common,
-                         {report::ResultKind::validation, campaign, records, fit, provenance});
+                         {report::ResultKind::validation, campaign, records, fit, provenance},
+                         options.strict);
 }
 
 }  // namespace
@@ -92,6 +124,7 @@ Run add_validate(CLI::App& verb) {
   add_campaign_options(verb, options->common);
   verb.add_option("--fit", options->fit,
                   "fit.json of an earlier fit (default: the campaign's own values)");
+  add_strict_option(verb, options->strict);
   return [options](const Invocation& invocation) { return run_validate(*options, invocation); };
 }
 
