@@ -65,7 +65,8 @@ std::string matched(double value, double uncertainty) {
   constexpr int kUnknown = 6;
   constexpr int kMostDecimals = 15;
   if (!(uncertainty > 0.0) || !std::isfinite(uncertainty)) return significant(value, kUnknown);
-  const int decimals = 1 - static_cast<int>(std::floor(std::log10(uncertainty)));
+  constexpr double kRounding = 1e-9;  // 0.1 may have become 0.0999999999
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(uncertainty) + kRounding));
   if (decimals > kMostDecimals) return significant(value, kUnknown);
   if (decimals >= 0) return fmt::format("{:.{}f}", value, decimals);
   const double step = std::pow(10.0, -decimals);

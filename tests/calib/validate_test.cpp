@@ -193,7 +193,7 @@ TEST_CASE("acceptance: lower is better for errors, and no limit means no verdict
   CHECK_FALSE(unjudged.verdict.has_value());
 }
 
-TEST_CASE("acceptance: what could not be simulated fails, what has no number warns", "[calib]") {
+TEST_CASE("acceptance: what could not be simulated or evaluated fails", "[calib]") {
   const std::vector<datasets::AcceptanceLimit> limits{limit("rho2", 0.99, 0.995)};
   ConditionScore broken;
   broken.failure = "too many steps";
@@ -203,7 +203,8 @@ TEST_CASE("acceptance: what could not be simulated fails, what has no number war
   constant.channels[0].agreement.reset();
   constant.channels[0].problem = "constant";
   judge(limits, constant);
-  CHECK(constant.verdict == Verdict::warn);
+  CHECK(constant.verdict == Verdict::fail);
+  CHECK_THAT(constant.reasons.at(0), Contains("cannot be evaluated") && Contains("constant"));
 }
 
 TEST_CASE("latin hypercube: one point in every stratum, from the seed alone", "[calib]") {

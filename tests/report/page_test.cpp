@@ -38,6 +38,18 @@ std::string word_of(const std::string& html) {
 
 }  // namespace
 
+/// Adds a reason to an aspect, and gives the aspect its state.
+void speak(Json& json, const char* aspect, const char* state, const char* code,
+           const std::string& words) {
+  Json& found = json["assessment"][aspect];
+  found["state"] = state;
+  found["reasons"].push_back({{"code", code},
+                              {"state", state},
+                              {"subject", nullptr},
+                              {"numbers", Json::object()},
+                              {"words", words}});
+}
+
 TEST_CASE("page: sections in the order of the guide", "[report]") {
   const std::string html = page(stored_result());
   std::size_t at = 0;
@@ -57,7 +69,7 @@ TEST_CASE("page: sections in the order of the guide", "[report]") {
 
 TEST_CASE("page: carries the exact numbers beside the readable ones", "[report]") {
   const std::string html = page(stored_result());
-  CHECK_THAT(html, Contains("value=\"85.01139529\">85.0114<"));
+  CHECK_THAT(html, Contains("value=\"85.01139529\">85.01<"));
   CHECK_THAT(html, Contains("value=\"0.99876543\">0.9988<"));
   CHECK_THAT(html, Contains("value=\"6200000\">6.2<"));
   CHECK_THAT(html, Contains("0.1 Hz</data> to <data value=\"10\">10 Hz"));
@@ -103,7 +115,6 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
   }
   SECTION("noise that nothing tells") {
     json["lack_of_fit"] = {{"misfit", nullptr}, {"tests", Json::array()}};
-    CHECK_THAT(page(json), Contains("neither repeats nor sd tell the noise"));
     json["lack_of_fit"]["tests"] = {{{"condition", "sine"},
                                      {"channel", "position"},
                                      {"against", "repeats"},
@@ -116,13 +127,11 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     const std::string few = page(json);
     CHECK_THAT(few, Contains("Lack of fit cannot be judged: the records have too few"));
     CHECK_THAT(few, Contains("cannot be judged: few samples"));
-    CHECK_THAT(few, !Contains("neither repeats nor sd tell the noise"));
     CHECK_THAT(few, !Contains("No lack of fit detected"));
     json["lack_of_fit"]["misfit"] = false;
     CHECK_THAT(page(json), Contains("No lack of fit detected."));
-    CHECK_THAT(page(json), !Contains("neither repeats nor sd tell the noise"));
     json["lack_of_fit"]["misfit"] = true;
-    CHECK_THAT(page(json), Contains("significant lack of fit"));
+    CHECK_THAT(page(json), Contains("Significant lack of fit."));
   }
   SECTION("a residual that follows the input") {
     Json& tests = json["conditions"][0]["residual_tests"]["position"];
@@ -132,15 +141,11 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     Json& test = tests["cross_correlation"];
     test = {{"passed", false}, {"peak", -0.8}, {"verdict", "explained by the input"}};
     const std::string failed = page(json);
-    CHECK_THAT(failed, Contains("sine: 64 % of the residual variance of position is linearly"));
     CHECK_THAT(failed, Contains("<span class=\"tag warn\" role=\"img\" aria-label=\"failed\">!"));
-    test["peak"] = 0.2;
-    CHECK_THAT(page(json), !Contains("64 %") && !Contains("linearly explained"));
-    test["peak"] = -0.8;
     test["passed"] = nullptr;
     test["verdict"] = "cannot be judged: effective sample size 3";
     const std::string open = page(json);
-    CHECK_THAT(open, !Contains("linearly explained") && Contains("effective sample size 3"));
+    CHECK_THAT(open, Contains("effective sample size 3"));
     CHECK_THAT(open, Contains("aria-label=\"cannot be judged\">○") && !Contains("tag good\">✓"));
     test["passed"] = true;
     CHECK_THAT(page(json),
@@ -150,6 +155,8 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     json["verdict"] = json["conditions"][0]["verdict"] = "FAIL";
     json["conditions"][0]["metrics"]["position"]["rho2"] = 0.5;
     json["conditions"][0]["reasons"] = {"position: rho2 = 0.5 is below 0.9"};
+    json["conditions"][0]["channel_verdicts"]["position"] = "FAIL";
+    speak(json, "agreement", "fail", "limit_broken", "sine: position: rho2 = 0.5 is below 0.9");
     const std::string html = page(json);
     CHECK_THAT(word_of(html), Contains("FAIL"));
     CHECK_THAT(html, Contains("sine: position: rho2 = 0.5 is below 0.9"));
@@ -159,7 +166,7 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     json["verdict"] = json["conditions"][0]["verdict"] = nullptr;
     json["acceptance"] = Json::array();
     CHECK_THAT(word_of(page(json)), Contains("NOT JUDGED"));
-    json["conditions"][0]["metrics"]["position"]["rho2"] = 0.5;
+    speak(json, "agreement", "not_assessed", "poor_agreement", "least agreement: rho2 = 0.5");
     const std::string html = page(json);
     CHECK_THAT(word_of(html), Contains("POOR"));
     CHECK_THAT(html, Contains("<body class=\"bad\">"));
@@ -180,18 +187,33 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     json["verdict"] = json["conditions"][0]["verdict"] = "FAIL";
     json["conditions"][0]["failure"] = "too many steps";
     json["conditions"][0]["metrics"] = Json::object();
-    CHECK_THAT(page(json), Contains("sine could not be simulated: too many steps"));
+    CHECK_THAT(page(json), Contains("Could not be simulated: too many steps"));
   }
 }
 
-TEST_CASE("page: one condition is not called all of them", "[report]") {
+TEST_CASE("page: reservations stand apart from what speaks for a result", "[report]") {
   Json json = stored_result();
-  while (json["conditions"].size() > 1) json["conditions"].erase(1);
-  CHECK_THAT(page(json), Contains("The condition is within the campaign&apos;s limits."));
-  Json second = json["conditions"][0];
-  second["id"] = "again";
-  json["conditions"].push_back(second);
-  CHECK_THAT(page(json), Contains("All 2 conditions are within the campaign&apos;s limits."));
+  json["verdict"] = "WARN";
+  speak(json, "validation", "not_assessed", "no_validation", "none: every condition was fitted");
+  speak(json, "adequacy", "reservation", "lack_of_fit", "lack of fit in 1 of 1 signals");
+  for (int i = 0; i < 5; ++i)
+    speak(json, "parameters", "reservation", "weak", "parameter " + std::to_string(i));
+  const std::string html = page(json);
+  CHECK_THAT(word_of(html), Contains("WARN"));
+  CHECK_THAT(html, Contains("Passed with reservations (independent validation: not assessed; "
+                            "adequacy of the model: reservation; parameters: reservation)."));
+  CHECK_THAT(html, Contains("none: every condition was fitted</a>"));
+  CHECK_THAT(html, Contains("<td class=\"for\"><p>sine keeps its limits</p></td>"));
+  CHECK_THAT(html, Contains("parameter 2") && Contains("and 2 more") && !Contains("parameter 3"));
+}
+
+TEST_CASE("page: a result of before there were assessments can still be drawn", "[report]") {
+  Json json = stored_result();
+  json.erase("assessment");
+  json["conditions"][0].erase("channel_verdicts");
+  const std::string html = page(json);
+  CHECK_THAT(word_of(html), Contains("PASS"));
+  CHECK_THAT(html, !Contains("<table class=\"aspects\">"));
 }
 
 TEST_CASE("page: says which parameter is not identified, and why", "[report]") {
@@ -201,7 +223,7 @@ TEST_CASE("page: says which parameter is not identified, and why", "[report]") {
   json["parameters"][0]["standard_error"] = nullptr;
   json["parameters"][0]["ci95"] = nullptr;
   const std::string html = page(json);
-  CHECK_THAT(html, Contains("mass: acts only together with damping"));
+  CHECK_THAT(html, Contains("acts only together with damping"));
   CHECK_THAT(html, Contains("not identifiable"));
 }
 

@@ -8,6 +8,12 @@ namespace rigcal::test {
 inline nlohmann::ordered_json stored_result() {
   return nlohmann::ordered_json::parse(R"({
     "status": "converged", "schema": "rigcal.fit/1", "verdict": "PASS", "message": "converged",
+    "assessment": {
+      "agreement": {"state": "pass", "reasons": [{"code": "limits_kept", "state": "pass",
+        "subject": "sine", "numbers": {"conditions": 1}, "words": "sine keeps its limits"}]},
+      "validation": {"state": "pass", "reasons": []},
+      "adequacy": {"state": "pass", "reasons": []},
+      "parameters": {"state": "pass", "reasons": []}},
     "campaign": "rig", "synthetic": false, "cost": 10.5, "residual_count": 100, "evaluations": 3,
     "wall_seconds": 0.1, "simulation_tolerance": 1e-7,
     "parameters": [
@@ -31,7 +37,9 @@ inline nlohmann::ordered_json stored_result() {
         "maximum_error": 2e-5, "gain_ratio": 1.0, "phase_deg": 0.1, "delay_s": 1e-4,
         "problem": null}},
       "noise_floor": {"position": null}, "residual_tests": {"position": null},
-      "verdict": "PASS", "reasons": []}],
+      "limit_checks": [{"channel": "position", "metric": "rho2", "value": 0.99876543, "limit": 0.9,
+        "warn": 0.95, "tolerance_used": 0.0123457, "verdict": "PASS"}],
+      "channel_verdicts": {"position": "PASS"}, "verdict": "PASS", "reasons": []}],
     "groups": [], "starts": [], "best_start": 0, "failure_count": 0, "failures": [], "warnings": [],
     "provenance": {"version": "0", "revision": "r", "machine": "m", "command": "rigcal fit",
       "seed": 1, "options": {}, "inputs": []}})");
