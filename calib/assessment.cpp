@@ -90,7 +90,11 @@ void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<
     const std::string words = fmt::format("{}: {}", score->id, fmt::join(score->reasons, "; "));
     const std::vector<std::pair<std::string, double>> numbers{
         {"tolerance_used", largest_use(*score)}};
-    if (!score->failure.empty()) {
+    if (!score->not_scored.empty()) {
+      reasons.push_back(reason(AspectState::reservation, "not_scored",
+                               fmt::format("{}: not scored ({})", score->id, score->not_scored),
+                               score->id));
+    } else if (!score->failure.empty()) {
       reasons.push_back(reason(AspectState::fail, "not_simulated", words, score->id));
     } else if (score->verdict == Verdict::fail) {
       const bool evaluated = std::all_of(score->checks.begin(), score->checks.end(),
@@ -123,7 +127,8 @@ void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<
 void judge_unused_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto by_campaign = [&](const ConditionScore& score) {
     const datasets::Condition* condition = campaign.find(score.id);
-    return condition != nullptr && !condition->acceptance && score.failure.empty();
+    return condition != nullptr && !condition->acceptance && score.failure.empty() &&
+           score.not_scored.empty();
   };
   if (std::none_of(fit.conditions.begin(), fit.conditions.end(), by_campaign)) return;
   for (const datasets::AcceptanceLimit& limit : campaign.acceptance) {
@@ -141,6 +146,23 @@ void judge_unused_limits(const Campaign& campaign, const Fit& fit, std::vector<R
                                          "recorded {}",
                                          limit.metric, key, key)));
   }
+}
+
+/// Recordings about which something was found doubtful.
+void judge_recordings(const Fit& fit, std::vector<Reason>& reasons) {
+  const ConditionScore* first = nullptr;
+  std::size_t count = 0;
+  for (const ConditionScore& score : fit.conditions) {
+    if (score.data_warnings.empty()) continue;
+    ++count;
+    if (first == nullptr) first = &score;
+  }
+  if (first == nullptr) return;
+  reasons.push_back(
+      reason(AspectState::reservation, "recording_doubtful",
+             fmt::format("recordings of {} are doubtful; {}: {}", conditions_text(count), first->id,
+                         first->data_warnings.front()),
+             first->id, {{"conditions", static_cast<double>(count)}}));
 }
 
 /// The least rho2 of all signals, where the campaign gives no limits.
@@ -187,6 +209,7 @@ Aspect judge_agreement(const Campaign& campaign, const Fit& fit) {
   for (const ConditionScore& score : fit.conditions) scores.push_back(&score);
   judge_limits(scores, reasons);
   judge_unused_limits(campaign, fit, reasons);
+  judge_recordings(fit, reasons);
   if (reasons.empty()) {
     reasons.push_back(
         reason(AspectState::not_assessed, "not_scored",
@@ -293,13 +316,13 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
 }
 
 /// A signal whose noise nothing tells, so that its residual alone can speak.
-struct Unknown {
+struct UnjudgedSignal {
   const ConditionScore* condition = nullptr;
   const ChannelScore* channel = nullptr;
 };
 
-std::vector<Unknown> signals_of_unknown_noise(const Fit& fit) {
-  std::vector<Unknown> result;
+std::vector<UnjudgedSignal> signals_of_unknown_noise(const Fit& fit) {
+  std::vector<UnjudgedSignal> result;
   for (const ConditionScore& score : fit.conditions) {
     for (const ChannelScore& channel : score.channels) {
       const bool known =
@@ -313,11 +336,11 @@ std::vector<Unknown> signals_of_unknown_noise(const Fit& fit) {
 }
 
 /// The residual that the input explains most, of those given.
-void judge_driven(const std::vector<Unknown>& signals, std::vector<Reason>& reasons) {
-  const Unknown* worst = nullptr;
+void judge_driven(const std::vector<UnjudgedSignal>& signals, std::vector<Reason>& reasons) {
+  const UnjudgedSignal* worst = nullptr;
   double largest = 0.0;
   std::size_t count = 0;
-  for (const Unknown& each : signals) {
+  for (const UnjudgedSignal& each : signals) {
     const auto& tests = each.channel->residual_tests;
     if (!tests || !tests->cross_correlation || !tests->cross_correlation->failed()) continue;
     const double share = tests->cross_correlation->peak * tests->cross_correlation->peak;
@@ -341,12 +364,12 @@ void judge_driven(const std::vector<Unknown>& signals, std::vector<Reason>& reas
 }
 
 /// What the records of unknown noise say.
-void judge_residuals(const std::vector<Unknown>& signals, std::vector<Reason>& reasons) {
+void judge_residuals(const std::vector<UnjudgedSignal>& signals, std::vector<Reason>& reasons) {
   if (signals.empty()) return;
   judge_driven(signals, reasons);
   std::size_t coloured = 0;
   std::size_t judged = 0;
-  for (const Unknown& each : signals) {
+  for (const UnjudgedSignal& each : signals) {
     if (!each.channel->residual_tests) continue;
     const metrics::Autocorrelation& test = each.channel->residual_tests->autocorrelation;
     if (test.passed() || test.failed()) ++judged;
@@ -426,7 +449,7 @@ Reason judge_bounded(const Campaign& campaign, const Fit& fit, const FittedParam
 Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
   const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<Reason> reasons;
-  if (fit.status != FitStatus::converged)
+  if (!fit.has_converged())
     reasons.push_back(reason(AspectState::reservation, "not_converged", fit.message));
   std::size_t estimated = 0;
   std::size_t identified = 0;

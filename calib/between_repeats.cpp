@@ -10,7 +10,7 @@ namespace rigcal::calib {
 namespace {
 
 constexpr double kPoolingLevel = 0.25;
-constexpr double kMostFreedom = 1e6;
+constexpr double kFreedomWithoutEnd = 1e6;
 constexpr double kMostlyExplained = 0.8;
 
 using Eigen::Index;
@@ -125,13 +125,13 @@ RepeatVariance repeat_variance(const std::vector<MatrixXd>& scores,
     if (freedom > 0.0) squares += part * part / freedom;
   }
   if (!any) return {};
-  return {variance, std::min(variance * variance / squares, kMostFreedom)};
+  return {variance, std::min(variance * variance / squares, kFreedomWithoutEnd)};
 }
 
 double exceedance(const RepeatVariance& repeats, const RobustVariance& robust) {
   if (!(repeats.freedom > 0.0) || !(robust.variance > 0.0)) return 1.0;
   return metrics::fisher_f_exceedance(repeats.variance / robust.variance, repeats.freedom,
-                                      std::min(robust.freedom, kMostFreedom));
+                                      std::min(robust.freedom, kFreedomWithoutEnd));
 }
 
 bool rests_on_repeats(const RepeatVariance& repeats, const RobustVariance& robust) {

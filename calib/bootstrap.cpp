@@ -186,6 +186,21 @@ std::string drawn_from(const std::vector<Source>& sources) {
   return text;
 }
 
+/// Drops what lies beyond the replicate that reached a limit of evaluations: which of the later
+/// ones were made meanwhile depends on the threads.
+void cut_at(const std::optional<long>& allowed, std::vector<long>& taken,
+            std::vector<std::vector<double>>& values) {
+  if (!allowed) return;
+  long sum = 0;
+  for (std::size_t b = 0; b < taken.size(); ++b) {
+    if (sum >= *allowed) {
+      taken[b] = 0;
+      values[b].clear();
+    }
+    sum += taken[b];
+  }
+}
+
 }  // namespace
 
 std::size_t block_length(const metrics::Autoregression& noise, std::size_t samples) {
@@ -205,7 +220,8 @@ std::size_t block_length(const metrics::Autoregression& noise, std::size_t sampl
 }
 
 void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
-               const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit) {
+               const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit,
+               Budget* budget) {
   if (found.scatter.empty()) {
     fit.bootstrap_message = "no bootstrap: there are no residuals to draw from";
     return;
@@ -225,9 +241,13 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   quiet.progress = nullptr;
   const auto replicates = static_cast<std::size_t>(options.bootstrap);
   std::vector<std::vector<double>> values(replicates);  // empty: did not converge
-  std::atomic<std::size_t> made = 0;
+  Budget without_limits(options.cancel, {}, {}, {});
+  Budget& left = budget != nullptr ? *budget : without_limits;
+  const std::optional<long> allowed = left.evaluations_left();
+  std::vector<long> taken(replicates, 0);  // evaluations; 0: not made to its end
+  std::atomic<int> done = 0;
   parallel_for(replicates, options.threads, [&](std::size_t b) {
-    if (options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed)) return;
+    if (left.spent()) return;
     Problem drawn = problem;
     for (std::size_t i = 0; i < drawn.conditions.size(); ++i) {
       auto stream = datasets::random_stream(
@@ -236,18 +256,25 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
       (sources[i].repeats.empty() ? draw_blocks : draw_repeats)(sources[i], stream,
                                                                 drawn.conditions[i]);
     }
-    Evaluator evaluator(drawn, {1, options.cancel, {}, {}});
+    Evaluator evaluator(drawn, {1, left.cancel(), left.deadline(), {}});
     const auto solved =
         refine(drawn, evaluator, optimum.z, options.max_iterations, static_cast<int>(b) + 1, quiet);
-    if (solved.status != FitStatus::stopped || !evaluator.cancelled()) ++made;
+    left.count(evaluator.ledger().evaluations);
+    if (solved.status == FitStatus::stopped && evaluator.aborted()) return;
+    taken[b] = evaluator.ledger().evaluations;
     if (solved.status == FitStatus::converged) values[b] = drawn.to_physical(evaluator.best().z);
+    if (options.beside)
+      options.beside("replicates of the bootstrap", ++done, static_cast<int>(replicates));
   });
+  cut_at(allowed, taken, values);
+  const auto made = static_cast<std::size_t>(
+      std::count_if(taken.begin(), taken.end(), [](long each) { return each > 0; }));
   values.erase(
       std::remove_if(values.begin(), values.end(), [](const auto& each) { return each.empty(); }),
       values.end());
   fit.bootstrap_replicates = static_cast<int>(values.size());
   fit.bootstrap_message =
-      fmt::format("{} of {} replicates converged", values.size(), made.load()) +
+      fmt::format("{} of {} replicates converged", values.size(), made) +
       (made == replicates ? "" : fmt::format(", {} were asked for", replicates)) +
       drawn_from(sources);
   if (values.size() < kLeastReplicates) {

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "calib/budget.hpp"
 #include "calib/evaluation.hpp"
 #include "calib/fit.hpp"
 #include "calib/problem.hpp"
@@ -34,7 +35,10 @@ std::size_t block_length(const metrics::Autoregression& noise, std::size_t sampl
 ///
 /// @param found   with scatter
 /// @param scores  of the problem's conditions at the optimum, in their order
+/// @param budget  what is left of that of the whole job; null: no limit but `options.cancel`. A
+///                limit of evaluations ends it after the same replicate for any number of threads
 void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
-               const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit);
+               const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit,
+               Budget* budget = nullptr);
 
 }  // namespace rigcal::calib

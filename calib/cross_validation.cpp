@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
 
 #include "common/error.hpp"
@@ -68,13 +70,15 @@ void add_shift(const Fit& whole, const Fit& part, const Campaign& campaign, Held
 }
 
 HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>& records,
-                  const std::string& id, const Fit& whole, const FitOptions& options) {
+                  const std::string& id, const Fit& whole, const FitOptions& options,
+                  long& evaluations) {
   HeldOut held;
   held.condition = id;
   if (const ConditionScore* fitted = score_of(whole, id)) held.fitted_rms = rms_of(*fitted);
   try {
     const Campaign others = without(campaign, id, whole);
     const Fit part = fit(others, records, options);
+    evaluations = part.evaluations;
     const ConditionScore* predicted = score_of(part, id);
     if (part.status != FitStatus::converged) {
       held.problem = "the fit of the others: " + part.message;
@@ -94,7 +98,7 @@ HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>&
 
 std::vector<HeldOut> cross_validate(const Campaign& campaign,
                                     const std::vector<datasets::Record>& records, const Fit& whole,
-                                    const FitOptions& options) {
+                                    const FitOptions& options, Budget* budget) {
   std::vector<std::string> ids;
   for (const auto& condition : campaign.conditions) {
     if (condition.use == Use::fit) ids.push_back(condition.id);
@@ -109,9 +113,37 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
     result[0].problem = "it is the only condition of the fit: expected two at least";
     return result;
   }
+  Budget without_limits(options.cancel, {}, {}, {});
+  Budget& left = budget != nullptr ? *budget : without_limits;
+  const std::optional<long> allowed = left.evaluations_left();
+  std::vector<long> taken(ids.size(), 0);
+  std::atomic<int> done = 0;
+  const auto not_made = [&](std::size_t i) {
+    HeldOut none;
+    none.condition = ids[i];
+    none.problem = "not left out: " + left.reason();
+    return none;
+  };
   parallel_for(ids.size(), options.threads, [&](std::size_t i) {
-    result[i] = leave_out(campaign, records, ids[i], whole, once);
+    if (left.spent()) {
+      result[i] = not_made(i);
+      return;
+    }
+    FitOptions fold = once;
+    if (left.deadline()) {
+      const std::chrono::duration<double> time = *left.deadline() - Budget::Clock::now();
+      fold.max_seconds = std::max(1e-3, time.count());
+    }
+    result[i] = leave_out(campaign, records, ids[i], whole, fold, taken[i]);
+    left.count(taken[i]);
+    if (options.beside) options.beside("conditions left out", ++done, static_cast<int>(ids.size()));
   });
+  // Which were made beyond the one that reached a limit depends on the threads.
+  long sum = 0;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    if (allowed && sum >= *allowed) result[i] = not_made(i);
+    sum += taken[i];
+  }
   return result;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/budget.hpp"
 #include "calib/fit.hpp"
 
 namespace rigcal::calib {
@@ -11,10 +12,11 @@ namespace rigcal::calib {
 /// predicts the one left out (nuisance parameters of its own are estimated on it). A condition that
 /// alone tells of an unknown, such as the only one of its leak level, cannot be predicted.
 ///
-/// @param whole  the fit with all of them, with its scores
+/// @param whole   the fit with all of them, with its scores
+/// @param budget  what is left of that of the whole job; null: no limit but `options.cancel`
 std::vector<HeldOut> cross_validate(const datasets::Campaign& campaign,
                                     const std::vector<datasets::Record>& records, const Fit& whole,
-                                    const FitOptions& options);
+                                    const FitOptions& options, Budget* budget = nullptr);
 
 /// How many conditions were predicted, and how well at worst, in one sentence.
 std::string cross_validation_summary(const std::vector<HeldOut>& held_out);

@@ -11,6 +11,7 @@
 #include "calib/assessment.hpp"
 #include "calib/basins.hpp"
 #include "calib/bootstrap.hpp"
+#include "calib/budget.hpp"
 #include "calib/checkpoint.hpp"
 #include "calib/combinations.hpp"
 #include "calib/cross_validation.hpp"
@@ -145,18 +146,14 @@ void warn_of_parameters(const Problem& problem, const std::vector<FittedParamete
   if (!loose.empty()) fit.message += fmt::format("; not identifiable: {}", fmt::join(loose, ", "));
 }
 
-Evaluator::Options evaluator_options(const Campaign& campaign, const FitOptions& options,
-                                     Clock::time_point began) {
-  Evaluator::Options result;
-  result.threads = options.threads;
-  result.cancel = options.cancel;
-  result.max_evaluations = options.max_evaluations;
+Budget budget_of(const Campaign& campaign, const FitOptions& options, Clock::time_point began) {
   const auto limit_s = options.max_seconds ? options.max_seconds : campaign.fit.max_seconds;
-  if (limit_s) {
-    result.deadline = began + std::chrono::duration_cast<Clock::duration>(
-                                  std::chrono::duration<double>(*limit_s));
-  }
-  return result;
+  return Budget(options.cancel, began, limit_s, options.max_evaluations);
+}
+
+/// What a search may take of what is left of the budget.
+Evaluator::Options evaluator_options(const FitOptions& options, const Budget& budget) {
+  return {options.threads, budget.cancel(), budget.deadline(), budget.evaluations_left()};
 }
 
 /// Akaike's and Schwarz's criteria. The noise is known, or was estimated from the residual: 2 cost
@@ -323,12 +320,21 @@ bool asks_for_more(const FitOptions& options) {
 }
 
 /// What was asked for beside the fit: bootstrap, profiles, cross-validation.
+/// Where the budget ends it, what was made by then is kept.
 void look_again(const Problem& problem, const Campaign& campaign,
                 const std::vector<Record>& records, const Solved& solved, const FitOptions& options,
-                Fit& fit) {
-  if (options.bootstrap > 0)
-    bootstrap(problem, solved.optimum, solved.spread, fit.conditions, options, fit);
-  if (options.profiles) profiles(problem, records, solved.optimum, options, fit);
+                Budget& budget, Fit& fit) {
+  const auto note = [&](StoppedIn stage) {
+    if (budget.spent() && fit.stopped_in == StoppedIn::nothing) fit.stopped_in = stage;
+  };
+  if (options.bootstrap > 0) {
+    bootstrap(problem, solved.optimum, solved.spread, fit.conditions, options, fit, &budget);
+    note(StoppedIn::bootstrap);
+  }
+  if (options.profiles) {
+    profiles(problem, records, solved.optimum, options, fit, &budget);
+    note(StoppedIn::profiles);
+  }
   for (const std::size_t j : solved.open) {  // the smoothing of roots would bound them, no record
     fit.parameters[j].bootstrap.reset();
     fit.parameters[j].profile.reset();
@@ -337,16 +343,12 @@ void look_again(const Problem& problem, const Campaign& campaign,
                                                  fit.misfit.value_or(false));
   if (!compared.empty()) fit.interval_advice += "; " + compared;
   if (options.cross_validate) {
-    fit.cross_validation = cross_validate(campaign, records, fit, options);
+    fit.cross_validation = cross_validate(campaign, records, fit, options, &budget);
+    note(StoppedIn::cross_validation);
     fit.interval_advice += "; " + cross_validation_summary(fit.cross_validation);
     const auto words = cross_validation_words(fit.cross_validation);
     fit.warnings.insert(fit.warnings.end(), words.begin(), words.end());
   }
-  const bool cancelled =
-      options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
-  if (!asks_for_more(options) || !cancelled) return;
-  fit.status = FitStatus::stopped;
-  fit.message += "; stopped on request before all that was asked for was done";
 }
 
 /// The lack of fit of every scored condition that is not among those fitted to.
@@ -374,14 +376,41 @@ std::set<std::string> fitted_conditions(const Campaign& campaign) {
   return ids;
 }
 
+/// What was found doubtful about the recordings, on with the result that rests on them: once for
+/// all conditions of which the same is said.
+void add_record_warnings(const std::vector<Record>& records, Fit& fit) {
+  std::vector<std::pair<std::string, std::vector<std::string>>> gathered;  // text, conditions
+  for (ConditionScore& score : fit.conditions) {
+    const auto record = std::find_if(records.begin(), records.end(), [&](const Record& each) {
+      return each.condition == score.id;
+    });
+    if (record == records.end()) continue;
+    score.data_warnings = record->warnings;
+    for (const std::string& text : record->warnings) {
+      auto same = std::find_if(gathered.begin(), gathered.end(),
+                               [&](const auto& each) { return each.first == text; });
+      if (same == gathered.end()) same = gathered.insert(gathered.end(), {text, {}});
+      same->second.push_back(score.id);
+    }
+  }
+  for (const auto& [text, conditions] : gathered) {
+    fit.warnings.push_back(conditions.size() == 1
+                               ? fmt::format("recording of {}: {}", conditions.front(), text)
+                               : fmt::format("recordings of {} conditions ({}, ...): {}",
+                                             conditions.size(), conditions.front(), text));
+  }
+}
+
 /// Puts scores in the order of the campaign and judges them together.
 ///
 /// @param origin  of the values where they are an earlier fit's
-void finish(const Campaign& campaign, Clock::time_point began, const Origin* origin, Fit& fit) {
+void finish(const Campaign& campaign, const std::vector<Record>& records, Clock::time_point began,
+            const Origin* origin, Fit& fit) {
   std::stable_sort(fit.conditions.begin(), fit.conditions.end(), [&](const auto& a, const auto& b) {
     return campaign.find(a.id) < campaign.find(b.id);
   });
   add_predictions(fit);
+  add_record_warnings(records, fit);
   fit.assessment = assess(campaign, fit,
                           origin != nullptr ? origin->estimated_from : fitted_conditions(campaign),
                           origin != nullptr ? &origin->parameters : nullptr);
@@ -406,12 +435,11 @@ void warn_of_start(const Campaign& campaign, const std::vector<const Condition*>
 /// Scores conditions at known values, nuisance parameters estimated anew.
 Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
              const std::vector<const Condition*>& conditions,
-             const std::vector<FittedValue>* values, const FitOptions& options,
-             Clock::time_point began) {
+             const std::vector<FittedValue>* values, const FitOptions& options, Budget& budget) {
   Fit fit;
   warn_of_start(campaign, conditions, records, fit);
   Problem problem = make_problem(campaign, records, conditions, true, values);
-  Evaluator evaluator(problem, evaluator_options(campaign, options, began));
+  Evaluator evaluator(problem, evaluator_options(options, budget));
   FitOptions once = options;
   once.starts = 1;
   once.resume = nullptr;
@@ -426,9 +454,15 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
     const Evaluation optimum = solve_problem(problem, evaluator, once, fit).optimum;
     if (optimum.ok) z = optimum.z;
     fit.message = "nuisance parameters: " + fit.message;
+    budget.count(evaluator.ledger().evaluations);
   }
   const auto known = describe_known(problem, values);
   fit.parameters.insert(fit.parameters.end(), known.begin(), known.end());
+  if (fit.status == FitStatus::stopped) {
+    fit.stopped_in = StoppedIn::validation;
+    fit.conditions = unscored_conditions(problem, fit.message);
+    return fit;
+  }
   fit.conditions = score_conditions(problem, z, options.threads);
   if (problem.map.unknowns().empty() &&
       std::all_of(fit.conditions.begin(), fit.conditions.end(),
@@ -437,6 +471,25 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
     fit.message = "no condition could be simulated";
   }
   return fit;
+}
+
+/// What was being made, in words.
+std::string_view words(StoppedIn stage) {
+  switch (stage) {
+    case StoppedIn::nothing:
+      break;
+    case StoppedIn::starts:
+      return "search";
+    case StoppedIn::validation:
+      return "estimation of the validation's nuisance parameters";
+    case StoppedIn::bootstrap:
+      return "bootstrap";
+    case StoppedIn::profiles:
+      return "profiles' computation";
+    case StoppedIn::cross_validation:
+      return "cross-validation";
+  }
+  return "";
 }
 
 /// Nuisance parameters and scores of the validate conditions join a fit.
@@ -521,6 +574,30 @@ std::string_view to_string(Verdict verdict) {
   return "";
 }
 
+std::string_view to_string(StoppedIn stage) {
+  switch (stage) {
+    case StoppedIn::nothing:
+      break;
+    case StoppedIn::starts:
+      return "starts";
+    case StoppedIn::validation:
+      return "validation";
+    case StoppedIn::bootstrap:
+      return "bootstrap";
+    case StoppedIn::profiles:
+      return "profiles";
+    case StoppedIn::cross_validation:
+      return "cross_validation";
+  }
+  return "";
+}
+
+bool Fit::has_converged() const {
+  return status == FitStatus::converged ||
+         (status == FitStatus::stopped && stopped_in != StoppedIn::nothing &&
+          stopped_in != StoppedIn::starts);
+}
+
 bool Fit::usable() const {
   return status == FitStatus::converged &&
          std::all_of(parameters.begin(), parameters.end(),
@@ -552,26 +629,38 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
 
   Fit result;
   warn_of_start(campaign, fitted, records, result);
-  Evaluator evaluator(problem, evaluator_options(campaign, options, began));
+  Budget budget = budget_of(campaign, options, began);
+  Evaluator evaluator(problem, evaluator_options(options, budget));
   const Solved solved = solve_from_starts(problem, evaluator, options, result);
   if (solved.optimum.ok) {
     result.conditions = score_conditions(problem, solved.optimum.z, options.threads);
+    budget.count(evaluator.ledger().evaluations);
+    // Before what may take hours, so that a stop there changes no score.
+    std::optional<Fit> validation;
+    if (!validated.empty()) {
+      const auto values = values_of(result.parameters);
+      FitOptions quiet = options;
+      quiet.progress = nullptr;
+      validation = score_at(campaign, records, validated, &values, quiet, budget);
+    }
+    if (result.status == FitStatus::stopped) result.stopped_in = StoppedIn::starts;
+    if (result.status == FitStatus::converged && validation)
+      result.stopped_in = validation->stopped_in;
     if (result.status == FitStatus::converged) {
-      look_again(problem, campaign, records, solved, options, result);
+      look_again(problem, campaign, records, solved, options, budget, result);
     } else if (asks_for_more(options)) {
       result.message +=
           "; bootstrap, profiles and cross-validation are made of what converged only";
     }
-    const auto values = values_of(result.parameters);
-    if (!validated.empty()) {
-      FitOptions quiet = options;
-      quiet.progress = nullptr;
-      add_validation(score_at(campaign, records, validated, &values, quiet, began), result);
+    if (validation) add_validation(std::move(*validation), result);
+    if (result.status == FitStatus::converged && result.stopped_in != StoppedIn::nothing) {
+      result.status = FitStatus::stopped;
+      result.message += fmt::format("; the {} was {}", words(result.stopped_in), budget.reason());
     }
   }
   const auto known = describe_known(problem);
   result.parameters.insert(result.parameters.end(), known.begin(), known.end());
-  finish(campaign, began, nullptr, result);
+  finish(campaign, records, began, nullptr, result);
   return result;
 }
 
@@ -585,8 +674,9 @@ Fit validate(const Campaign& campaign, const std::vector<Record>& records,
     throw InputError({campaign.file.string()},
                      "no condition has use = \"fit\" or \"validate\": expected at least one");
   }
-  Fit result = score_at(campaign, records, conditions, values, options, began);
-  finish(campaign, began, origin, result);
+  Budget budget = budget_of(campaign, options, began);
+  Fit result = score_at(campaign, records, conditions, values, options, budget);
+  finish(campaign, records, began, origin, result);
   return result;
 }
 

@@ -35,8 +35,8 @@ struct FitOptions {
   std::uint64_t seed = 1;    ///< of the latin hypercube
   int threads = 1;           ///< results are the same bits for any number
   int max_iterations = 200;  ///< per start
-  std::optional<long> max_evaluations;  ///< of all residuals, all starts; beyond: `stopped`
-  std::optional<double> max_seconds;    ///< of all starts together; beyond: status `stopped`
+  std::optional<long> max_evaluations;  ///< of all residuals, of the whole job; then: `stopped`
+  std::optional<double> max_seconds;    ///< of the whole job; then: status `stopped`
   double function_tolerance = 1e-10;    ///< |d cost| / cost of Ceres
   double gradient_tolerance = 1e-10;
   double parameter_tolerance = 1e-9;
@@ -48,6 +48,9 @@ struct FitOptions {
   const std::atomic<bool>* cancel = nullptr;          ///< ends the fit with the best so far
   /// Told of every iteration: start (from 1), iteration, cost, relative change of cost, seconds.
   std::function<void(int, int, double, double, double)> progress;
+  /// Told of what is made beside the fit: "replicates of the bootstrap", how many are done, of how
+  /// many. From any thread.
+  std::function<void(const char*, int, int)> beside;
 
   void validate() const;
 };
@@ -211,11 +214,13 @@ struct ConditionScore {
   std::string id;
   datasets::Use use = datasets::Use::fit;
   std::vector<ChannelScore> channels;
-  std::vector<LimitCheck> checks;    ///< of every limit that holds for a channel of it
-  std::optional<Verdict> verdict;    ///< worst of the checks; absent without limits
-  std::vector<std::string> reasons;  ///< of WARN and FAIL, in words
-  std::string failure;               ///< why it could not be simulated; empty if it could
-  long samples = 0;                  ///< that count (inside the windows)
+  std::vector<LimitCheck> checks;          ///< of every limit that holds for a channel of it
+  std::optional<Verdict> verdict;          ///< worst of the checks; absent without limits
+  std::vector<std::string> reasons;        ///< of WARN and FAIL, in words
+  std::vector<std::string> data_warnings;  ///< what is doubtful about the recording, in words
+  std::string failure;                     ///< why it could not be simulated; empty if it could
+  std::string not_scored;  ///< why it was not scored although it might be; empty if it was
+  long samples = 0;        ///< that count (inside the windows)
   std::vector<double> time_s;
   /// measured mean and simulated value per output channel, whole record
   std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
@@ -225,9 +230,14 @@ struct ConditionScore {
   std::vector<bool> in_window;  ///< empty: all
 };
 
+/// What a job was at when it was stopped.
+enum class StoppedIn { nothing, starts, validation, bootstrap, profiles, cross_validation };
+std::string_view to_string(StoppedIn stage);
+
 /// Everything that a fit found.
 struct Fit {
   FitStatus status = FitStatus::failed;
+  StoppedIn stopped_in = StoppedIn::nothing;
   std::string message;  ///< in words: why it stopped, what is not to be trusted
   double cost = 0.0;    ///< half the sum of squared weighted residuals, priors included
   long residual_count = 0;
@@ -263,6 +273,8 @@ struct Fit {
 
   /// A result that may be used: converged, every parameter finite.
   bool usable() const;
+  /// The search converged, whatever was stopped after it.
+  bool has_converged() const;
 };
 
 /// Calibrates the free parameters on the `fit` conditions by Ceres (analytic Jacobian, unit box)

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 
@@ -48,13 +49,14 @@ class Follower {
  public:
   Follower(const Problem& problem, const std::vector<datasets::Record>& records,
            std::size_t unknown, const Evaluation& optimum, double threshold,
-           const FitOptions& options)
+           const FitOptions& options, Budget& budget)
       : problem_(problem),
         records_(records),
         unknown_(unknown),
         threshold_(threshold),
         options_(options),
-        optimum_(optimum) {
+        optimum_(optimum),
+        budget_(budget) {
     options_.progress = nullptr;
     std::vector<double> others = optimum.z;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(unknown));
@@ -68,12 +70,13 @@ class Follower {
     datasets::Campaign campaign;
     const double value = problem_.map.to_physical(static_cast<int>(unknown_), z);
     const Problem fixed = with_known(problem_, records_, unknown_, value, campaign);
-    Evaluator evaluator(fixed, {1, options_.cancel, {}, {}});
+    Evaluator evaluator(fixed, {1, budget_.cancel(), budget_.deadline(), {}});
     const std::vector<double>& from = nearest(z);
     if (fixed.map.unknowns().empty()) {
       evaluator.evaluate(from);
     } else {
       const auto solved = refine(fixed, evaluator, from, options_.max_iterations, 1, options_);
+      evaluations_ += evaluator.ledger().evaluations;
       if (solved.status != FitStatus::converged) return std::nullopt;
     }
     if (!evaluator.best().ok) return std::nullopt;
@@ -83,9 +86,8 @@ class Follower {
     return found;
   }
 
-  bool cancelled() const {
-    return options_.cancel != nullptr && options_.cancel->load(std::memory_order_relaxed);
-  }
+  bool cancelled() const { return budget_.cancelled() || budget_.out_of_time(); }
+  long evaluations() const { return evaluations_; }
 
   Profile table() const {
     Profile profile;
@@ -123,6 +125,8 @@ class Follower {
   double threshold_;
   FitOptions options_;
   const Evaluation& optimum_;
+  Budget& budget_;
+  long evaluations_ = 0;
   std::map<double, Point> points_;
 };
 
@@ -204,6 +208,16 @@ double first_step(const Problem& problem, std::size_t unknown, double z0,
   return std::clamp(kProfile95 * error / slope, kLeastStep, 0.5);
 }
 
+/// Of which the budget allowed nothing but the optimum.
+Profile not_made(double value) {
+  Profile profile;
+  profile.low = {{}, value, true};
+  profile.high = {{}, value, true};
+  profile.values = {value};
+  profile.rises = {0.0};
+  return profile;
+}
+
 }  // namespace
 
 Problem with_known(const Problem& problem, const std::vector<datasets::Record>& records,
@@ -224,13 +238,22 @@ Problem with_known(const Problem& problem, const std::vector<datasets::Record>& 
 }
 
 void profiles(const Problem& problem, const std::vector<datasets::Record>& records,
-              const Evaluation& optimum, const FitOptions& options, Fit& fit) {
+              const Evaluation& optimum, const FitOptions& options, Fit& fit, Budget* budget) {
   const auto& unknowns = problem.map.unknowns();
+  Budget without_limits(options.cancel, {}, {}, {});
+  Budget& left = budget != nullptr ? *budget : without_limits;
+  const std::optional<long> allowed = left.evaluations_left();
+  std::vector<long> taken(unknowns.size(), 0);
+  std::atomic<int> done = 0;
   parallel_for(unknowns.size(), options.threads, [&](std::size_t j) {
     if (unknowns[j].nuisance) return;
     FittedParameter& parameter = fit.parameters[j];
+    if (left.spent()) {
+      parameter.profile = not_made(parameter.value);
+      return;
+    }
     Follower follower(problem, records, j, optimum, threshold_of(parameter, fit.reduced_chi_square),
-                      options);
+                      options, left);
     const double step = first_step(problem, j, optimum.z[j], parameter);
     const ProfileEnd low = follow(follower, problem, j, optimum.z[j], step, -1.0);
     const ProfileEnd high = follow(follower, problem, j, optimum.z[j], step, 1.0);
@@ -238,7 +261,18 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     profile.low = low;
     profile.high = high;
     parameter.profile = std::move(profile);
+    taken[j] = follower.evaluations();
+    left.count(taken[j]);
+    if (options.beside) options.beside("profiles", ++done, static_cast<int>(unknowns.size()));
   });
+  // Which profiles were made beyond the one that reached a limit depends on the threads.
+  long sum = 0;
+  for (std::size_t j = 0; j < unknowns.size(); ++j) {
+    FittedParameter& parameter = fit.parameters[j];
+    if (allowed && sum >= *allowed && parameter.profile)
+      parameter.profile = not_made(parameter.value);
+    sum += taken[j];
+  }
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     FittedParameter& parameter = fit.parameters[j];
     if (!parameter.profile) continue;
@@ -249,13 +283,11 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     if (profile.lower_cost_found)
       say("its profile finds a lower cost: the fit is not at the minimum, make more starts");
     if (profile.low.lost || profile.high.lost) {
-      const bool stopped =
-          options.cancel != nullptr && options.cancel->load(std::memory_order_relaxed);
       say(fmt::format("its profile was not made {}: {}",
                       profile.low.lost && profile.high.lost ? "on either side"
                       : profile.low.lost                    ? "below"
                                                             : "above",
-                      stopped ? "stopped on request" : "no fit there converged"));
+                      left.spent() ? left.reason() : "no fit there converged"));
     }
     if (profile.low.value && profile.high.value) continue;
     const model::ParameterSpec& spec = model::parameter_table(

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "calib/budget.hpp"
 #include "calib/evaluation.hpp"
 #include "calib/fit.hpp"
 #include "calib/problem.hpp"
@@ -22,8 +23,11 @@ Problem with_known(const Problem& problem, const std::vector<datasets::Record>& 
 /// parameter then not identifiable. One where no fit converged is lost, which says nothing of the
 /// parameter.
 ///
-/// @param fit  with parameters of the problem's unknowns; receives the profiles
+/// @param fit     with parameters of the problem's unknowns; receives the profiles
+/// @param budget  what is left of that of the whole job; null: no limit but `options.cancel`. A
+///                profile that a limit of evaluations overtakes is made to its end
 void profiles(const Problem& problem, const std::vector<datasets::Record>& records,
-              const Evaluation& optimum, const FitOptions& options, Fit& fit);
+              const Evaluation& optimum, const FitOptions& options, Fit& fit,
+              Budget* budget = nullptr);
 
 }  // namespace rigcal::calib

@@ -154,6 +154,22 @@ std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<c
   return scores;
 }
 
+std::vector<ConditionScore> unscored_conditions(const Problem& problem, const std::string& why) {
+  std::vector<ConditionScore> scores;
+  for (const ProblemCondition& condition : problem.conditions) {
+    ConditionScore& score = scores.emplace_back();
+    score.id = condition.condition->id;
+    score.use = condition.condition->use;
+    score.samples = static_cast<long>(condition.rows.size());
+    score.time_s = condition.record->time_s;
+    score.not_scored = why;
+    for (const double t : score.time_s) score.drive.push_back(condition.inputs.drive.value(t));
+    for (const ProblemChannel& channel : condition.channels)
+      score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean, {}};
+  }
+  return scores;
+}
+
 std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>& scores) {
   std::vector<std::string> warnings;
   for (const ConditionScore& score : scores) {

@@ -17,6 +17,11 @@ namespace rigcal::calib {
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
                                              int threads);
 
+/// The same conditions where their nuisance parameters were not estimated: no score is told.
+///
+/// @param why  in words
+std::vector<ConditionScore> unscored_conditions(const Problem& problem, const std::string& why);
+
 /// Scores that are better than the noise allows any model, in words: the fit follows the noise, or
 /// the noise is smaller than its stated standard deviation.
 std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>& scores);

@@ -220,6 +220,8 @@ Json condition_json(const Result& result, const calib::ConditionScore& score) {
   if (condition != nullptr && condition->acceptance) {
     json["acceptance"] = acceptance_json(*condition->acceptance);
   }
+  json["warnings"] = score.data_warnings;
+  json["not_scored"] = score.not_scored.empty() ? Json(nullptr) : Json(score.not_scored);
   json["failure"] = score.failure.empty() ? Json(nullptr) : Json(score.failure);
   json["metrics"] = Json::object();
   json["noise_floor"] = Json::object();
@@ -340,6 +342,9 @@ Json result_json(const Result& result) {
   const calib::Fit& fit = result.fit;
   Json json;
   json["status"] = std::string(to_string(status_of(fit)));
+  json["stopped_in"] = fit.stopped_in == calib::StoppedIn::nothing
+                           ? Json(nullptr)
+                           : Json(std::string(to_string(fit.stopped_in)));
   json["schema"] = result.kind == ResultKind::fit ? kFitSchema : kValidationSchema;
   json["verdict"] = text_or_null(fit.verdict);
   json["assessment"] = assessment_json(fit.assessment);

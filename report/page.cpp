@@ -80,7 +80,9 @@ Part calibration_part(const ReadFile& read, const std::string& where, int thread
   }
   part.synthetic = result.at("synthetic").get<bool>();
   part.headline = headline_view(result);
-  part.view["unfinished"] = text_of(result, "status") == "stopped";
+  const std::string stopped_in = text_of(result, "stopped_in");
+  part.view["unfinished"] =
+      text_of(result, "status") == "stopped" && (stopped_in.empty() || stopped_in == "starts");
   part.view["matrix"] = matrix_view(result);
   part.view["has_matrix"] = !part.view["matrix"].empty();
   part.view["groups"] = groups_view(result);

@@ -68,6 +68,8 @@ Json condition_view(const Json& condition, const Table& series, const Json& curv
   const std::string id = text_of(condition, "id");
   Json view;
   view["id"] = id;
+  view["not_scored"] = text_of(condition, "not_scored");
+  view["is_not_scored"] = !text_of(condition, "not_scored").empty();
   view["anchor"] = anchor(id);
   view["badge"] = badge(condition.at("verdict"));
   view["failure"] = text_of(condition, "failure");

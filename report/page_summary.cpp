@@ -30,6 +30,17 @@ Json headline_of(const Json& result) {
   if (status == "failed")
     return make_headline("FAILED", "✕", "bad",
                          "There is no usable result: no number below may be used.");
+  const std::string stopped_in = text_of(result, "stopped_in");
+  if (status == "stopped" && !stopped_in.empty() && stopped_in != "starts") {
+    return make_headline(
+        "STOPPED", "!", "warn",
+        fmt::format(
+            "{}: {}.",
+            stopped_in == "validation"
+                ? "Some conditions were not scored"
+                : "The fit converged and was scored; what was asked for beside it is not whole",
+            text_of(result, "message")));
+  }
   if (status == "stopped") {
     return make_headline(
         "STOPPED", "✕", "bad",

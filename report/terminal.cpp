@@ -73,9 +73,10 @@ TextTable condition_table(const Result& result, Channel channel, const Style& st
     row.push_back(scored ? percent(found->agreement->absolute_error_percent) : "-");
     row.push_back(scored && found->noise_floor ? percent(found->noise_floor->absolute_error_percent)
                                                : "-");
-    row.push_back(!score.failure.empty() ? coloured("not simulated", "31", style)
-                  : score.verdict        ? coloured(*score.verdict, style)
-                                         : "-");
+    row.push_back(!score.not_scored.empty() ? coloured("not scored", "33", style)
+                  : !score.failure.empty()  ? coloured("not simulated", "31", style)
+                  : score.verdict           ? coloured(*score.verdict, style)
+                                            : "-");
     table.add(std::move(row));
   }
   return table;

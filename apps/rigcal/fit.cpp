@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <memory>
@@ -37,6 +38,18 @@ struct FitRequest {
   std::optional<long> max_evaluations;
 };
 
+/// CLI11's own check of a positive number lets "nan" and "inf" pass.
+CLI::Validator finite_positive() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0.0;
+        const bool valid =
+            CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0;
+        return valid ? std::string() : fmt::format("found {}, expected a number above zero", text);
+      },
+      "POSITIVE");
+}
+
 /// A fit that begins anew must not look as if it went on.
 void say_nothing_to_resume(const FitRequest& options, int starts) {
   std::fputs(
@@ -48,9 +61,8 @@ void say_nothing_to_resume(const FitRequest& options, int starts) {
 
 ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
-  const auto records =
-      datasets::load_records(campaign, {datasets::Use::fit, datasets::Use::validate},
-                             options.common.threads, true);
+  const auto records = datasets::load_records(
+      campaign, {datasets::Use::fit, datasets::Use::validate}, options.common.threads, true);
   calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
   settings.starts = options.starts.value_or(settings.starts);
   if (!options.starts) settings.further_starts = kFurtherStarts;
@@ -81,6 +93,8 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
                                              : std::string("start {}"),
                          settings);
     settings.progress = std::ref(progress);
+    BesideProgress beside(options.common.print.quiet);
+    settings.beside = std::ref(beside);
     fit = calib::fit(campaign, records, settings);
   }
   const ExitCode code =
@@ -111,9 +125,10 @@ Run add_fit(CLI::App& verb) {
                 "Leave out one condition after the other and predict it");
   verb.add_flag("--resume", options->resume,
                 "Go on where a fit of the same inputs and options was stopped or killed");
-  verb.add_option("--max-time", options->max_time_s,
-                  "Stop after so many seconds (default: the campaign's, or none)")
-      ->check(CLI::PositiveNumber);
+  verb.add_option(
+          "--max-time", options->max_time_s,
+          "Stop after so many seconds, bootstrap and all (default: the campaign's, or none)")
+      ->check(finite_positive());
   verb.add_option("--max-evaluations", options->max_evaluations,
                   "Stop after so many evaluations of all conditions")
       ->check(CLI::PositiveNumber);

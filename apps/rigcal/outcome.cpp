@@ -20,7 +20,7 @@ std::string fitted_toml(const CampaignOptions& options, const report::Result& re
     if (p.fitted) values.push_back({p.index, p.scope, p.level, p.value});
   }
   const std::string text = fitted_campaign_text(result.campaign, values, options.out);
-  if (report::status_of(result.fit) == FitStatus::converged) return text;
+  if (result.fit.has_converged()) return text;
   return "# status: stopped: the best so far, not a fit that converged\n" + text;
 }
 

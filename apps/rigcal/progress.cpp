@@ -76,6 +76,15 @@ void FitProgress::operator()(int start, int iteration, double cost, double relat
   });
 }
 
+void BesideProgress::operator()(const char* pieces, int done, int all) {
+  const std::lock_guard lock(mutex_);
+  if (!line_ || pieces_ != pieces) {
+    pieces_ = pieces;
+    line_.emplace(quiet_, pieces_);
+  }
+  (*line_)(done, all);
+}
+
 CountProgress::CountProgress(bool quiet, std::string pieces)
     : line_(quiet), pieces_(std::move(pieces)) {}
 

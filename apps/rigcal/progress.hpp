@@ -68,4 +68,19 @@ class CountProgress {
   std::string pieces_;
 };
 
+/// Tells how much is done of what is made beside a fit, one kind of work after the other.
+class BesideProgress {
+ public:
+  explicit BesideProgress(bool quiet) : quiet_(quiet) {}
+
+  /// May be called from any thread.
+  void operator()(const char* pieces, int done, int all);
+
+ private:
+  std::mutex mutex_;
+  bool quiet_;
+  std::string pieces_;
+  std::optional<CountProgress> line_;
+};
+
 }  // namespace rigcal::app

@@ -246,6 +246,21 @@ TEST_CASE("assessment: parameters", "[calib]") {
   }
 }
 
+TEST_CASE("assessment: a doubtful recording and a condition that was not scored are reservations",
+          "[calib]") {
+  Scene scene;
+  scene.fit.conditions[0].data_warnings = {"40 spikes"};
+  CHECK(find(scene.assessed().agreement, "recording_doubtful")->subject == "fitted");
+  CHECK(scene.verdict() == Verdict::warn);
+  scene.fit.conditions[0].data_warnings.clear();
+  ConditionScore& other = scene.fit.conditions[1];
+  other.checks.clear();
+  other.verdict.reset();
+  other.not_scored = "stopped on request";
+  CHECK(find(scene.assessed().validation, "not_scored")->subject == "other");
+  CHECK(scene.verdict() == Verdict::warn);
+}
+
 TEST_CASE("assessment: without limits there is no verdict, but poor agreement is named",
           "[calib]") {
   Scene scene;

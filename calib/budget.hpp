@@ -1,0 +1,48 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <optional>
+#include <string>
+
+namespace rigcal::calib {
+
+/// What a whole job may cost: the search and everything that is made beside it. Shared by its
+/// threads.
+class Budget {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// @param cancel           ends the job when it becomes true; may be null
+  /// @param max_seconds      from `began`; beyond what a clock can count: without end
+  /// @param max_evaluations  of all residuals
+  Budget(const std::atomic<bool>* cancel, Clock::time_point began,
+         const std::optional<double>& max_seconds, const std::optional<long>& max_evaluations);
+
+  const std::atomic<bool>* cancel() const { return cancel_; }
+  const std::optional<Clock::time_point>& deadline() const { return deadline_; }
+  const std::optional<long>& max_evaluations() const { return max_evaluations_; }
+
+  /// Evaluations that one piece of the job has taken.
+  void count(long evaluations) { evaluations_ += evaluations; }
+  /// Evaluations that are left; none without a limit.
+  std::optional<long> evaluations_left() const;
+
+  bool cancelled() const;
+  bool out_of_time() const { return deadline_ && Clock::now() >= *deadline_; }
+  bool out_of_evaluations() const {
+    return max_evaluations_ && evaluations_.load() >= *max_evaluations_;
+  }
+  /// Whether nothing more may begin.
+  bool spent() const { return cancelled() || out_of_time() || out_of_evaluations(); }
+  /// "stopped on request", "stopped by the time limit", ...: what has spent it.
+  std::string reason() const;
+
+ private:
+  const std::atomic<bool>* cancel_;
+  std::optional<Clock::time_point> deadline_;
+  std::optional<long> max_evaluations_;
+  std::atomic<long> evaluations_ = 0;
+};
+
+}  // namespace rigcal::calib
