@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "calib/sandwich.hpp"
 #include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
@@ -15,8 +16,6 @@ constexpr double kMisfitLevel = 0.05;
 constexpr int kLongestMemory = 5000;
 /// A residual twice as large as the noise: what a test that passes must be able to tell.
 constexpr double kLargestUsefulRatio = 4.0;
-/// Highest order of the noise model of a prediction's residual, as in sandwich.cpp.
-constexpr int kMostLags = 20;
 
 /// 1 + 2 sum rho_h^2: by how much correlation thins a sum of squares out.
 double square_inflation(const metrics::Autoregression& noise, double samples) {

@@ -17,7 +17,6 @@ using metrics::Autoregression;
 /// Rows of samples in memory order: the recursions walk along the samples.
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr int kMostLags = 20;
 /// Integral of the squared Parzen kernel, both sides.
 constexpr double kParzenSquare = 0.539285;
 

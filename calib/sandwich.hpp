@@ -7,6 +7,9 @@
 
 namespace rigcal::calib {
 
+/// Highest order of the autoregression that residuals are taken for.
+inline constexpr int kMostLags = 20;
+
 /// Weighted residuals r and their Jacobian J of one condition at the optimum. Jacobian rows are in
 /// coordinates in which the sum of J^T J over all conditions and priors is the identity.
 struct ScoreRows {
