@@ -29,6 +29,7 @@
 #include "calib/sharpen.hpp"
 #include "calib/symmetry.hpp"
 #include "calib/weights.hpp"
+#include "datasets/record_warnings.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -379,26 +380,17 @@ std::set<std::string> fitted_conditions(const Campaign& campaign) {
 /// What was found doubtful about the recordings, on with the result that rests on them: once for
 /// all conditions of which the same is said.
 void add_record_warnings(const std::vector<Record>& records, Fit& fit) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> gathered;  // text, conditions
+  std::vector<const Record*> used;
   for (ConditionScore& score : fit.conditions) {
     const auto record = std::find_if(records.begin(), records.end(), [&](const Record& each) {
       return each.condition == score.id;
     });
     if (record == records.end()) continue;
     score.data_warnings = record->warnings;
-    for (const std::string& text : record->warnings) {
-      auto same = std::find_if(gathered.begin(), gathered.end(),
-                               [&](const auto& each) { return each.first == text; });
-      if (same == gathered.end()) same = gathered.insert(gathered.end(), {text, {}});
-      same->second.push_back(score.id);
-    }
+    used.push_back(&*record);
   }
-  for (const auto& [text, conditions] : gathered) {
-    fit.warnings.push_back(conditions.size() == 1
-                               ? fmt::format("recording of {}: {}", conditions.front(), text)
-                               : fmt::format("recordings of {} conditions ({}, ...): {}",
-                                             conditions.size(), conditions.front(), text));
-  }
+  for (const auto& each : datasets::gathered_warnings(used))
+    fit.warnings.push_back(each.with_conditions());
 }
 
 /// Puts scores in the order of the campaign and judges them together.

@@ -4,6 +4,7 @@
 #include <locale.h>
 #include <udunits2.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -145,6 +146,16 @@ std::string_view trimmed(std::string_view text) {
   while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
   while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
   return text;
+}
+
+/// UDUNITS would read up to a NUL alone, and messages would end there.
+void refuse_control_characters(std::string_view text) {
+  const auto is_control = [](char c) { return c >= 0 && c < ' ' && c != '\t'; };
+  if (std::none_of(text.begin(), text.end(), is_control)) return;
+  std::string shown(text);
+  std::replace_if(shown.begin(), shown.end(), is_control, '?');
+  throw QuantityError(
+      fmt::format("'{}' holds a control character (here '?'); expected text", shown));
 }
 
 /// Whether a number stands in the text that is no exponent ("2 mm", "bar 5"): UDUNITS would
@@ -309,6 +320,8 @@ Split split_number(std::string_view text) {
 }  // namespace
 
 UnitConversion unit_conversion(std::string_view from, std::string_view to) {
+  refuse_control_characters(from);
+  refuse_control_characters(to);
   const Unit source = parse_unit(from);
   const Unit target = parse_unit(to);
   if (source.powers != target.powers)
@@ -319,6 +332,7 @@ UnitConversion unit_conversion(std::string_view from, std::string_view to) {
 }
 
 double parse_quantity(std::string_view text, std::string_view unit) {
+  refuse_control_characters(text);
   const Unit target = parse_unit(unit);
   try {
     const Split split = split_number(trimmed(text));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "datasets/alignment.hpp"
+#include "datasets/identical_repeats.hpp"
 #include "datasets/lag.hpp"
 #include "datasets/median.hpp"
 #include "datasets/resample.hpp"
@@ -207,18 +208,34 @@ void warn_of_pair(const Stack& stack, const Series& series, Channel channel, Spa
       distance, info(channel).unit, 100.0 * distance / (*high - *low)));
 }
 
-/// Enters the deviation of each repeat and names the outliers of one channel.
-void judge_repeats(const Stack& stack, const Series& series, Channel channel, Span span,
-                   const AverageOptions& options, const std::vector<Repeat>& repeats,
-                   Record& record) {
-  if (stack.rows.size() < 2 || !(series.pooled_sd > 0.0)) return;
-  const auto from_others = distances_from_others(stack, series, span);
-  for (std::size_t k = 0; k < stack.rows.size(); ++k) {
-    RepeatReport& report = record.repeat_reports[stack.carriers[k]];
-    report.deviation = std::max(report.deviation, from_others[k] / series.pooled_sd);
+/// Names repeats that are one recording given twice.
+void warn_of_copies(const Stack& stack, const std::vector<std::size_t>& first, Channel channel,
+                    const std::vector<Repeat>& repeats, std::vector<std::string>& warnings) {
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (first[k] == k) continue;
+    warnings.push_back(
+        fmt::format("{}: {} and {} are identical, as one recording given twice is; both count, so "
+                    "that the noise is underestimated",
+                    info(channel).key, repeats[stack.carriers[first[k]]].source,
+                    repeats[stack.carriers[k]].source));
   }
-  if (stack.rows.size() == 2)
-    return warn_of_pair(stack, series, channel, span, options, repeats, record.warnings);
+}
+
+/// The rows that are no copies of an earlier one.
+Stack distinct_rows(const Stack& stack, const std::vector<std::size_t>& first) {
+  Stack distinct;
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (first[k] != k) continue;
+    distinct.carriers.push_back(stack.carriers[k]);
+    distinct.rows.push_back(stack.rows[k]);
+  }
+  return distinct;
+}
+
+/// Names the outliers of one channel.
+/// @param stack  without copies, which would vouch for each other
+void warn_of_outliers(const Stack& stack, Channel channel, Span span, const AverageOptions& options,
+                      Record& record) {
   const auto from_median = distances_from_median(stack, span);
   const double typical = median(from_median);
   for (std::size_t k = 0; k < stack.rows.size(); ++k) {
@@ -231,6 +248,26 @@ void judge_repeats(const Stack& stack, const Series& series, Channel channel, Sp
         typical > 0.0 ? fmt::format("{:.3g} times as far as is typical", from_median[k] / typical)
                       : std::string("where the others agree exactly")));
   }
+}
+
+/// Enters the deviation of each repeat, and names copies and outliers of one channel.
+void judge_repeats(const Stack& stack, const Series& series, Channel channel, Span span,
+                   const AverageOptions& options, const std::vector<Repeat>& repeats,
+                   Record& record) {
+  if (stack.rows.size() < 2 || !(series.pooled_sd > 0.0)) return;
+  const auto from_others = distances_from_others(stack, series, span);
+  for (std::size_t k = 0; k < stack.rows.size(); ++k) {
+    RepeatReport& report = record.repeat_reports[stack.carriers[k]];
+    report.deviation = std::max(report.deviation, from_others[k] / series.pooled_sd);
+  }
+  const auto first = first_identical(repeats, stack.carriers, channel);
+  const Stack distinct = distinct_rows(stack, first);
+  if (distinct.rows.size() == 1) return;  // conclude_sd() says so
+  warn_of_copies(stack, first, channel, repeats, record.warnings);
+  if (distinct.rows.size() == 2)
+    warn_of_pair(distinct, series, channel, span, options, repeats, record.warnings);
+  else
+    warn_of_outliers(distinct, channel, span, options, record);
 }
 
 /// Names repeats that leave more than a hundredth of the record uncovered.

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 // A second thread gains nothing here, and errors of the source would have to cross it.
 #define CSV_IO_NO_THREAD
@@ -54,6 +55,8 @@ class TextSource : public io::ByteSourceBase {
   TextSource(const std::filesystem::path& path, std::size_t max_bytes)
       : where_{path.string()}, max_bytes_(max_bytes), file_(open_text(path, max_bytes)) {}
 
+  bool had_no_last_newline() const { return had_no_last_newline_; }
+
   int read(char* buffer, int size) override {
     const std::size_t wanted = static_cast<std::size_t>(size);
     std::size_t count = std::fread(buffer, 1, wanted, file_.get());
@@ -66,6 +69,7 @@ class TextSource : public io::ByteSourceBase {
     if (count < wanted && bytes_ > 0 && !ends_with_newline_) {
       buffer[count++] = '\n';
       ends_with_newline_ = true;
+      had_no_last_newline_ = true;
     }
     return static_cast<int>(count);
   }
@@ -88,14 +92,18 @@ class TextSource : public io::ByteSourceBase {
   FilePtr file_;
   std::size_t bytes_ = 0;
   bool ends_with_newline_ = false;
+  bool had_no_last_newline_ = false;
 };
 
 }  // namespace
 
 struct CsvLines::Implementation {
   Implementation(const std::filesystem::path& path, std::size_t max_bytes)
-      : file(path.string()), reader(file, std::make_unique<TextSource>(path, max_bytes)) {}
+      : Implementation(path, std::make_unique<TextSource>(path, max_bytes)) {}
+  Implementation(const std::filesystem::path& path, std::unique_ptr<TextSource> text)
+      : file(path.string()), source(text.get()), reader(file, std::move(text)) {}
   std::string file;
+  const TextSource* source;  ///< the reader's
   io::LineReader reader;
 };
 
@@ -114,5 +122,9 @@ char* CsvLines::next() {
 }
 
 long CsvLines::number() const { return static_cast<long>(implementation_->reader.get_file_line()); }
+
+bool CsvLines::ends_without_newline() const {
+  return implementation_->source->had_no_last_newline();
+}
 
 }  // namespace rigcal::datasets

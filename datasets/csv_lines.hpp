@@ -26,6 +26,9 @@ class CsvLines {
   /// Number of the line that next() gave last, from 1.
   long number() const;
 
+  /// Whether the file went to its end without a newline, once next() has given null.
+  bool ends_without_newline() const;
+
  private:
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;

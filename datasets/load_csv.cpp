@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -153,6 +154,7 @@ class RowReader {
           bad_index = count;
         }
         if (!value || bad) continue;
+        if (count + 1 == header_.names.size()) note_last_field(field.text.size(), line_number);
         auto& column = table_.columns[next->target];
         if (!column.empty() && request_.columns[next->target] == request_.time_column &&
             !(*value > column.back()))
@@ -172,6 +174,16 @@ class RowReader {
   }
 
   std::size_t rows() const { return rows_; }
+
+  /// Says so if the last number of a file that ends without a newline is the shortest.
+  void judge_end() {
+    if (last_line_ == 0 || !(last_length_ < shortest_length_) || rows_ < 2) return;
+    table_.cut_short = fmt::format(
+        "{}:{}: the file ends without a newline in the shortest number of column '{}', of {} "
+        "character{}, where all others have {} or more: it may have been cut",
+        header_.file, last_line_, shown(header_.names.back().full), last_length_,
+        last_length_ == 1 ? "" : "s", shortest_length_);
+  }
 
   /// The table, with room that is mostly unused given back.
   CsvTable take() {
@@ -236,6 +248,13 @@ class RowReader {
                     shown(field.text), shown(name), header_.separator == ',' ? "" : " or -1,5e-3"));
   }
 
+  /// Keeps the length of the number that ends the last line, and the least of those before it.
+  void note_last_field(std::size_t length, long line_number) {
+    if (last_line_ != 0) shortest_length_ = std::min(shortest_length_, last_length_);
+    last_length_ = length;
+    last_line_ = line_number;
+  }
+
   bool is_text_only(std::string_view line) const {
     bool any = false;
     CsvFields fields(line, header_.separator);
@@ -251,6 +270,9 @@ class RowReader {
   std::vector<Wanted> wanted_;
   CsvTable table_;
   std::size_t rows_ = 0;
+  long last_line_ = 0;  ///< 0: the last column is not wanted
+  std::size_t last_length_ = 0;
+  std::size_t shortest_length_ = std::numeric_limits<std::size_t>::max();
 };
 
 /// Rows that the file can have at most: a field takes two bytes, with its separator.
@@ -290,6 +312,7 @@ CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) 
   if (reader.rows() == 0)
     throw InputError({header.file, header.line},
                      "no rows after the header; expected at least one row of numbers");
+  if (lines.ends_without_newline()) reader.judge_end();
   return reader.take();
 }
 

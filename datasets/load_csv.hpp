@@ -18,6 +18,9 @@ struct CsvRequest {
 struct CsvTable {
   std::vector<std::vector<double>> columns;  ///< one per requested name, same length each
   long first_data_line = 0;                  ///< line number of the first row, for messages
+  /// In words, if the file may have been cut within its last number: it ends without a newline, and
+  /// the number has fewer characters than any other of its column. Else empty.
+  std::string cut_short;
 };
 
 /// Reads the wanted columns of a CSV file, strictly.

@@ -13,6 +13,8 @@
 #include "datasets/load_csv.hpp"
 #include "datasets/load_mat.hpp"
 #include "datasets/moving_windows.hpp"
+#include "datasets/sensor_warnings.hpp"
+#include "datasets/short_records.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -30,16 +32,19 @@ AverageOptions options_of(const Campaign& campaign, const Condition& condition) 
   throw InputError(condition.where, fmt::format("condition \"{}\": {}", condition.id, message));
 }
 
-/// Columns of a CSV or MAT file, the time first.
+/// Columns of a CSV or MAT file, the time first; what is doubtful about the file goes to the
+/// repeat.
 std::vector<std::vector<double>> read_columns(const Campaign& campaign,
                                               const std::filesystem::path& path,
-                                              std::vector<std::string> names) {
+                                              std::vector<std::string> names, Repeat& repeat) {
   if (is_mat_file(path)) return load_mat(path, {std::move(names), campaign.time_column});
   CsvRequest request;
   request.separator = campaign.separator;
   request.time_column = campaign.time_column;
   request.columns = std::move(names);
-  return load_csv(path, request).columns;
+  CsvTable table = load_csv(path, request);
+  if (!table.cut_short.empty()) repeat.warnings.push_back(table.cut_short);
+  return std::move(table.columns);
 }
 
 /// What drives the rig at each sample of the record.
@@ -108,15 +113,15 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
   };
   for (const auto& [channel, column] : source.columns)
     if (const auto minus = minus_of(channel, column); !minus.empty()) names.push_back(minus);
-  auto columns = read_columns(campaign, source.path, std::move(names));
+  Repeat repeat;
+  repeat.source = source.label;
+  auto columns = read_columns(campaign, source.path, std::move(names), repeat);
 
   const auto converted = [&](std::size_t column, const UnitConversion& to_si) {
     std::vector<double> values = std::move(columns[column]);
     std::transform(values.begin(), values.end(), values.begin(), to_si);
     return values;
   };
-  Repeat repeat;
-  repeat.source = source.label;
   repeat.time_s = converted(0, campaign.time_to_s);
   std::size_t column = 1;
   std::size_t minus = 1 + source.columns.size();
@@ -142,15 +147,22 @@ std::vector<Repeat> load_all_repeats(const Campaign& campaign, const Condition& 
 Record average_of(const Campaign& campaign, const Condition& condition,
                   std::vector<Repeat>& repeats, bool keep_deviations) {
   try {
+    const auto faults = sensor_faults(campaign, condition, repeats);
+    std::vector<std::string> seen;
+    for (const Repeat& repeat : repeats)
+      seen.insert(seen.end(), repeat.warnings.begin(), repeat.warnings.end());
     const Conditioning done = condition_repeats(campaign, repeats);
     AverageOptions options = options_of(campaign, condition);
     options.keep_deviations = keep_deviations;
     for (auto& [channel, sd] : options.known_sd) sd *= done.noise_gain;
     Record record = average(condition.id, repeats, options);
     record.notes = done.notes;
-    record.warnings.insert(record.warnings.end(), done.warnings.begin(), done.warnings.end());
+    seen.insert(seen.end(), done.warnings.begin(), done.warnings.end());
+    record.warnings.insert(record.warnings.end(), seen.begin(), seen.end());
     record.windows = condition.windows;
     if (condition.moving_windows) find_moving_windows(campaign, condition, record);
+    const auto stuck = sensor_warnings(faults, record.windows);
+    record.warnings.insert(record.warnings.end(), stuck.begin(), stuck.end());
     return record;
   } catch (const std::invalid_argument& error) {
     refuse(condition, error.what());
@@ -174,6 +186,9 @@ std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use
   parallel_for(wanted.size(), threads, [&](std::size_t i) {
     records[i] = load_record(campaign, *wanted[i], keep_deviations);
   });
+  std::vector<Record*> all;
+  for (Record& record : records) all.push_back(&record);
+  warn_of_short_records(campaign, all);
   return records;
 }
 

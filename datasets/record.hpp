@@ -41,6 +41,7 @@ struct Repeat {
   std::string source;  ///< file, and the column set where one file holds several repeats
   std::vector<double> time_s;
   std::map<Channel, std::vector<double>> values;  ///< each of the shape of time_s
+  std::vector<std::string> warnings{};            ///< in words: what its files look like
 };
 
 /// Mean over the repeats of one channel.
@@ -86,7 +87,7 @@ struct Record {
   /// What counts, in order: the campaign's windows, or those found; empty: all of it.
   std::vector<TimeWindow> windows;
   std::vector<std::string> notes;     ///< in words: what was done to it, such as decimation
-  std::vector<std::string> warnings;  ///< in words: outliers, single repeats, gaps, spikes
+  std::vector<std::string> warnings;  ///< in words: outliers, gaps, spikes, sensors
   std::vector<std::string> files;     ///< every file read for it
 };
 

@@ -3,9 +3,26 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <charconv>
 #include <cmath>
+#include <string_view>
+#include <system_error>
 
 namespace rigcal::report {
+namespace {
+
+/// A spreadsheet takes a text with such a beginning for a formula and runs it. A number is none.
+bool is_formula(const std::string& text) {
+  if (text.empty() || std::string_view("=+-@\t\r").find(text.front()) == std::string_view::npos)
+    return false;
+  const char* begin = text.data() + (text.front() == '+' ? 1 : 0);
+  const char* end = text.data() + text.size();
+  double value = 0.0;
+  const auto [rest, error] = std::from_chars(begin, end, value);
+  return error != std::errc{} || rest != end;
+}
+
+}  // namespace
 
 std::string csv_number(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : std::string();
@@ -16,9 +33,10 @@ std::string csv_number(const std::optional<double>& value) {
 }
 
 std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  const std::string safe = is_formula(text) ? "'" + text : text;
+  if (safe.find_first_of(",\"\r\n") == std::string::npos) return safe;
   std::string result = "\"";
-  for (const char c : text) {
+  for (const char c : safe) {
     if (c == '"') result += '"';
     result += c;
   }

@@ -10,7 +10,9 @@ namespace rigcal::report {
 std::string csv_number(double value);
 std::string csv_number(const std::optional<double>& value);
 
-/// A text as a CSV field: in quotes where it holds a comma, a quote or a line end.
+/// A text as a CSV field: in quotes where it holds a comma, a quote or a line end; with "'" in
+/// front where a spreadsheet would run it as a formula (text that begins with = + - @, a tab or a
+/// carriage return and is no number).
 std::string csv_text(const std::string& text);
 
 /// A text as a line that begins with "#".

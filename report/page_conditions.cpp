@@ -78,6 +78,10 @@ Json condition_view(const Json& condition, const Table& series, const Json& curv
   view["reasons"] = Json::array();
   for (const Json& reason : condition.at("reasons")) view["reasons"].push_back({{"text", reason}});
   view["has_reasons"] = !condition.at("reasons").empty();
+  view["doubts"] = Json::array();
+  if (const auto doubts = condition.find("warnings"); doubts != condition.end())
+    for (const Json& doubt : *doubts) view["doubts"].push_back({{"text", doubt}});
+  view["has_doubts"] = !view["doubts"].empty();
   view["scores"] = score_rows(condition);
   view["has_scores"] = !view["scores"].empty();
   view["plots"] = Json::array();

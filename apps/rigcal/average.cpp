@@ -6,6 +6,7 @@
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/load_record.hpp"
+#include "datasets/short_records.hpp"
 #include "report/csv.hpp"
 #include "report/folder.hpp"
 #include "report/terminal.hpp"
@@ -26,7 +27,12 @@ ExitCode run_average(const CampaignOptions& options, const Invocation& invocatio
     if (!condition.has_record() || condition.use == datasets::Use::ignore) continue;
     stop_if(invocation.cancel);
     records.push_back(datasets::load_record(campaign, condition));
-    const datasets::Record& record = records.back();
+  }
+  std::vector<datasets::Record*> all;
+  for (datasets::Record& record : records) all.push_back(&record);
+  datasets::warn_of_short_records(campaign, all);
+  for (const datasets::Record& record : records) {
+    const datasets::Condition& condition = *campaign.find(record.condition);
     files.push_back({std::filesystem::path("averaged") / (condition.id + ".csv"),
                      report::averaged_csv(record)});
     text += report::record_text(condition, record);

@@ -11,6 +11,8 @@
 #include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/parallel.hpp"
+#include "datasets/record_warnings.hpp"
+#include "datasets/short_records.hpp"
 #include "datasets/single_repeats.hpp"
 #include "diagnosis/obstacles.hpp"
 #include "report/diagnosis.hpp"
@@ -47,6 +49,22 @@ void warn_of_validity(const Campaign& campaign, const report::Validity& covered,
     // How large the leak is, is the question; a fit to healthy records covers none.
     asked.leakage_coefficient.reset();
     for (const std::string& text : report::outside(asked, covered)) record.warnings.push_back(text);
+  }
+}
+
+/// What is doubtful about the recordings: with the average that rests on one, or once for many.
+void warn_of_recordings(const std::vector<datasets::RepeatRecords>& records,
+                        diagnosis::Diagnosis& found) {
+  std::vector<const datasets::Record*> averages;
+  for (const datasets::RepeatRecords& each : records) averages.push_back(&each.average);
+  for (const auto& warning : datasets::gathered_warnings(averages)) {
+    if (warning.conditions.size() > 1) {
+      found.warnings.push_back(warning.with_conditions());
+      continue;
+    }
+    for (diagnosis::RecordDiagnosis& record : found.records)
+      if (!record.repeat && record.condition == warning.conditions.front())
+        record.warnings.push_back("recording: " + warning.text);
   }
 }
 
@@ -100,6 +118,9 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
   parallel_for(records.size(), settings.threads, [&](std::size_t i) {
     records[i] = datasets::load_repeats(campaign, *diagnosable.conditions[i]);
   });
+  std::vector<datasets::Record*> loaded;
+  for (datasets::RepeatRecords& each : records) loaded.push_back(&each.average);
+  datasets::warn_of_short_records(campaign, loaded);
   std::vector<datasets::Record> averages;
   for (const datasets::RepeatRecords& each : records) averages.push_back(each.average);
   provenance.inputs = report::hash_inputs(campaign, averages, more_inputs);
@@ -113,6 +134,7 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
                         diagnosable.left_out.end());
   stop_if(invocation.cancel);
   warn_of_validity(campaign, earlier.validity, found);
+  warn_of_recordings(records, found);
   if (earlier.status == calib::FitStatus::stopped)
     found.warnings.push_back("the fit was stopped before it converged: " + earlier.message);
   return write_diagnosis(options, {campaign, found, reasons, provenance});

@@ -237,3 +237,12 @@ TEST_CASE("parse_quantity: a locale with decimal comma changes nothing", "[commo
   CHECK_THAT(value, WithinRel(0.0381, kRounding));
   CHECK_THAT(message, Contains("decimal point"));
 }
+
+TEST_CASE("parse_quantity: control characters are refused, and shown", "[common]") {
+  using namespace std::string_view_literals;
+  CHECK_THROWS_WITH(parse_quantity("60 kg\0x"sv, "kg"),
+                    Contains("'60 kg?x'") && Contains("control character"));
+  CHECK_THROWS_AS(parse_quantity("60\n kg", "kg"), QuantityError);
+  CHECK_THROWS_AS(unit_conversion("mm\0"sv, "m"), QuantityError);
+  CHECK(parse_quantity("60\tkg", "kg") == 60.0);
+}

@@ -208,6 +208,24 @@ TEST_CASE("average: identical repeats tell no noise", "[datasets]") {
   CHECK_THAT(record.warnings.at(0), Contains("identical"));
 }
 
+TEST_CASE("average: of three repeats two are one recording", "[datasets]") {
+  const auto repeats = jittered(sine_response, {0.0, 0.0}, 0.01);
+  auto copy = repeats[0];
+  copy.source = "copy.csv";
+  const Record record = average("c", {repeats[0], repeats[1], copy}, {});
+  REQUIRE(record.warnings.size() == 1);
+  CHECK_THAT(record.warnings[0], Contains("position: r0.csv and copy.csv are identical"));
+  // The other one is not to blame.
+  for (const RepeatReport& report : record.repeat_reports) CHECK_FALSE(report.outlier);
+
+  auto off = jittered(sine_response, {0.0, 0.0, 0.0, 0.0}, 0.01);
+  for (double& x : off[3].values[Channel::position]) x += 0.2;
+  off.push_back(off[0]);
+  const Record with_outlier = average("c", off, {});
+  CHECK(with_outlier.repeat_reports[3].outlier);
+  CHECK(with_outlier.warnings.size() == 2);
+}
+
 TEST_CASE("average: channels of different repeats are averaged over their carriers", "[datasets]") {
   auto repeats = jittered(sine_response, {0.0, 0.0, 0.0}, 0.01);
   repeats[0].values[Channel::pressure_a] = std::vector<double>(2000, 1e5);

@@ -472,3 +472,18 @@ TEST_CASE("load_csv: a pipe above the limit of bytes", "[datasets]") {
   CHECK_THAT(result.message, Contains("is longer than the limit of 1000000 bytes"));
   CHECK(result.bytes_given < 80'000'000);
 }
+
+TEST_CASE("load_csv: a file that may have been cut within its last number", "[datasets]") {
+  const auto cut = [](const std::string& content, const std::vector<std::string>& columns) {
+    return load_csv(File(content).path(), request(columns)).cut_short;
+  };
+  const std::string rows = "t,x\n0.0,3.4209\n0.1,-1.2345\n0.2,2.5";
+  CHECK_THAT(cut(rows, {"t", "x"}), Contains(":4: the file ends without a newline") &&
+                                        Contains("column 'x', of 3 characters") &&
+                                        Contains("6 or more"));
+  CHECK(cut(rows + "\n", {"t", "x"}).empty());            // whole
+  CHECK(cut(rows + "432", {"t", "x"}).empty());           // as long as others
+  CHECK(cut(rows, {"t"}).empty());                        // its last column is not used
+  CHECK(cut("t,x\n0.0,3.4", {"t", "x"}).empty());         // nothing to compare with
+  CHECK(cut("t,x\n0,1\n1,10\n2,3", {"t", "x"}).empty());  // not the shortest
+}

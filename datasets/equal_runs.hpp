@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace rigcal::datasets {
+
+/// A maximal run of samples of exactly the same value.
+struct EqualRun {
+  std::size_t begin = 0;
+  std::size_t length = 1;
+  double value = 0.0;
+
+  std::size_t end() const { return begin + length; }
+};
+
+/// All runs of a signal, in order; their lengths add up to its own.
+///
+/// @param x  shape (n), finite
+std::vector<EqualRun> equal_runs(std::span<const double> x);
+
+/// The step of the converter or of the printed digits: the smallest difference of neighbours that
+/// is not zero; 0 where all are equal.
+double resolution(const std::vector<EqualRun>& runs);
+
+/// Median of the steps from one value to the next; 0 where all are equal.
+double typical_step(const std::vector<EqualRun>& runs);
+
+/// Whether the signal arrives at a run and leaves it with speed, as far as the record tells: three
+/// samples before it and after it lie at least so far from it.
+///
+/// @param x  shape (n), of which the run is
+bool cuts_a_motion(std::span<const double> x, const EqualRun& run, double least);
+
+/// Whether the signal has noise well above its resolution, so that no sensor that works gives the
+/// same value many times. The steps from one value to the next then go up and down: at least 5 % of
+/// them, and 30, are larger than both their neighbours, or smaller than both, by four steps of the
+/// resolution and by 1e-6 of the range (the rounding of simulations is less). Of white noise half
+/// and more are, whatever slow motion it lies on; of a smooth signal few. The rounding of a
+/// converter alone makes a difference of two steps.
+///
+/// @param low, high  runs at or beyond these values are left out
+bool shows_noise(const std::vector<EqualRun>& runs, double low, double high);
+
+}  // namespace rigcal::datasets

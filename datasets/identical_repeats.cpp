@@ -1,0 +1,32 @@
+#include "datasets/identical_repeats.hpp"
+
+#include <algorithm>
+#include <functional>
+
+namespace rigcal::datasets {
+namespace {
+
+bool is_constant(const std::vector<double>& x) {
+  return std::adjacent_find(x.begin(), x.end(), std::not_equal_to<>()) == x.end();
+}
+
+}  // namespace
+
+std::vector<std::size_t> first_identical(const std::vector<Repeat>& repeats,
+                                         const std::vector<std::size_t>& carriers,
+                                         Channel channel) {
+  std::vector<std::size_t> first(carriers.size());
+  for (std::size_t k = 0; k < carriers.size(); ++k) {
+    first[k] = k;
+    const auto& own = repeats[carriers[k]].values.at(channel);
+    if (!info(channel).is_output || is_constant(own)) continue;
+    for (std::size_t earlier = 0; earlier < k; ++earlier) {
+      if (repeats[carriers[earlier]].values.at(channel) != own) continue;
+      first[k] = earlier;
+      break;
+    }
+  }
+  return first;
+}
+
+}  // namespace rigcal::datasets

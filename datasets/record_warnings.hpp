@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/record.hpp"
+
+namespace rigcal::datasets {
+
+/// A warning, and the conditions of whose recordings it says the same.
+struct RecordWarning {
+  std::string text;
+  std::vector<std::string> conditions;  ///< in the order of the records; at least one
+
+  /// "recording of sine: ...", "recordings of 24 conditions (sine, ...): ...".
+  std::string with_conditions() const;
+};
+
+/// The warnings of all records, each text once, in the order of their first appearance.
+std::vector<RecordWarning> gathered_warnings(const std::vector<const Record*>& records);
+
+}  // namespace rigcal::datasets
