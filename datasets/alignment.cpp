@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "datasets/equal_runs.hpp"
 #include "datasets/lag.hpp"
 #include "datasets/median.hpp"
 
@@ -81,10 +82,6 @@ bool jumps(const std::vector<double>& x) {
   double step = 0.0;
   for (std::size_t i = 1; i < x.size(); ++i) step = std::max(step, std::abs(x[i] - x[i - 1]));
   return step > 0.25 * (*high - *low);
-}
-
-bool is_constant(const std::vector<double>& x) {
-  return std::all_of(x.begin(), x.end(), [&](double value) { return value == x.front(); });
 }
 
 /// Channels that every repeat carries, the best to align on first.

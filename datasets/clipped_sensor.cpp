@@ -9,15 +9,15 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr std::size_t kShortest = 3;
-constexpr std::size_t kFewest = 8;
-constexpr double kDriveMotion = 0.005;
-constexpr int kPassages = 2;
-constexpr std::size_t kBeside = 3;
+constexpr std::size_t kShortestClip = 3;
+constexpr std::size_t kFewestClipped = 8;
+constexpr double kClipDriveMotion = 0.005;
+constexpr int kClipPassages = 2;
+constexpr std::size_t kBesideDip = 3;
 constexpr double kDepth = 3.0;
 constexpr std::size_t kFewestDips = 10;
 constexpr double kShareOfStep = 0.5;
-constexpr double kSteps = 2.0;  // one of a converter's rounding is not enough
+constexpr double kFallSteps = 2.0;  // one of a converter's rounding is not enough
 
 /// How long a value typically lasts that is not extreme: 1, or more where samples are held.
 double typical_length(const std::vector<EqualRun>& runs, double low, double high) {
@@ -42,7 +42,7 @@ bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smal
       depth = std::max(depth, std::abs(runs[k].value - extreme));
       continue;
     }
-    if (last < runs.size() && runs[k].begin - runs[last].end() <= kBeside &&
+    if (last < runs.size() && runs[k].begin - runs[last].end() <= kBesideDip &&
         depth > 0.97 * kDepth * smallest)  // steps are known to rounding only
       ++dips;
     last = k;
@@ -71,7 +71,7 @@ std::vector<EqualRun> clipped_runs(std::span<const double> x, std::span<const do
   const double step = typical_step(runs);
   const double smallest = resolution(runs);
   const bool cut = noise_is_cut(runs, extreme, smallest);
-  const double shortest = static_cast<double>(kShortest) * typical_length(runs, *low, *high);
+  const double shortest = static_cast<double>(kShortestClip) * typical_length(runs, *low, *high);
   for (const EqualRun& run : runs) {
     if (run.value != extreme || static_cast<double>(run.length) < shortest) continue;
     if (cut) {
@@ -79,15 +79,15 @@ std::vector<EqualRun> clipped_runs(std::span<const double> x, std::span<const do
       continue;
     }
     const double least =
-        std::max(kShareOfStep * step, (kSteps + flat_top_fall(run.length)) * smallest);
+        std::max(kShareOfStep * step, (kFallSteps + flat_top_fall(run.length)) * smallest);
     if (!noisy && !cuts_a_motion(x, run, least)) continue;
-    if (drive_motion(drive, run) >= kDriveMotion && drive_passages(drive, run) < kPassages)
+    if (drive_motion(drive, run) >= kClipDriveMotion && drive_passages(drive, run) < kClipPassages)
       found.push_back(run);
   }
   const std::size_t samples =
       std::accumulate(found.begin(), found.end(), std::size_t{0},
                       [](std::size_t sum, const EqualRun& run) { return sum + run.length; });
-  if (samples < kFewest) found.clear();
+  if (samples < kFewestClipped) found.clear();
   return found;
 }
 

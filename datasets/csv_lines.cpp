@@ -55,7 +55,8 @@ class TextSource : public io::ByteSourceBase {
   TextSource(const std::filesystem::path& path, std::size_t max_bytes)
       : where_{path.string()}, max_bytes_(max_bytes), file_(open_text(path, max_bytes)) {}
 
-  bool had_no_last_newline() const { return had_no_last_newline_; }
+  /// Set by the time that the last line is read.
+  const bool& had_no_last_newline() const { return had_no_last_newline_; }
 
   int read(char* buffer, int size) override {
     const std::size_t wanted = static_cast<std::size_t>(size);
@@ -101,9 +102,11 @@ struct CsvLines::Implementation {
   Implementation(const std::filesystem::path& path, std::size_t max_bytes)
       : Implementation(path, std::make_unique<TextSource>(path, max_bytes)) {}
   Implementation(const std::filesystem::path& path, std::unique_ptr<TextSource> text)
-      : file(path.string()), source(text.get()), reader(file, std::move(text)) {}
+      : file(path.string()),
+        had_no_last_newline(text->had_no_last_newline()),
+        reader(file, std::move(text)) {}
   std::string file;
-  const TextSource* source;  ///< the reader's
+  const bool& had_no_last_newline;  ///< of the reader's source
   io::LineReader reader;
 };
 
@@ -123,8 +126,6 @@ char* CsvLines::next() {
 
 long CsvLines::number() const { return static_cast<long>(implementation_->reader.get_file_line()); }
 
-bool CsvLines::ends_without_newline() const {
-  return implementation_->source->had_no_last_newline();
-}
+bool CsvLines::ends_without_newline() const { return implementation_->had_no_last_newline; }
 
 }  // namespace rigcal::datasets

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "datasets/median.hpp"
@@ -9,13 +10,17 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kSteps = 4.0;
+constexpr double kMotionSteps = 4.0;
 constexpr double kShareOfRange = 1e-6;
-constexpr double kLeastShare = 0.05;
-constexpr std::size_t kFewest = 30;
-constexpr std::size_t kBeside = 3;  // samples on each side of a run
+constexpr double kLeastTurning = 0.05;
+constexpr std::size_t kFewestTurns = 30;
+constexpr std::size_t kBesideRun = 3;  // samples on each side of a run
 
 }  // namespace
+
+bool is_constant(std::span<const double> x) {
+  return std::adjacent_find(x.begin(), x.end(), std::not_equal_to<>()) == x.end();
+}
 
 std::vector<EqualRun> equal_runs(std::span<const double> x) {
   std::vector<EqualRun> runs;
@@ -45,10 +50,10 @@ double typical_step(const std::vector<EqualRun>& runs) {
 }
 
 bool cuts_a_motion(std::span<const double> x, const EqualRun& run, double least) {
-  const bool has_before = run.begin >= kBeside;
-  const bool has_after = run.end() + kBeside <= x.size();
-  const bool arrives = !has_before || std::abs(x[run.begin - kBeside] - run.value) >= least;
-  const bool leaves = !has_after || std::abs(x[run.end() - 1 + kBeside] - run.value) >= least;
+  const bool has_before = run.begin >= kBesideRun;
+  const bool has_after = run.end() + kBesideRun <= x.size();
+  const bool arrives = !has_before || std::abs(x[run.begin - kBesideRun] - run.value) >= least;
+  const bool leaves = !has_after || std::abs(x[run.end() - 1 + kBesideRun] - run.value) >= least;
   return (has_before || has_after) && arrives && leaves;
 }
 
@@ -57,7 +62,7 @@ bool shows_noise(const std::vector<EqualRun>& runs, double low, double high) {
   const auto [smallest, largest] = std::minmax_element(
       runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
   const double least =
-      0.97 * std::max(kSteps * resolution(runs),  // which is known to rounding only
+      0.97 * std::max(kMotionSteps * resolution(runs),  // which is known to rounding only
                       kShareOfRange * (largest->value - smallest->value));
   const auto step = [&](std::size_t k) { return runs[k].value - runs[k - 1].value; };
   const auto is_inside = [&](std::size_t k) { return runs[k].value > low && runs[k].value < high; };
@@ -70,8 +75,8 @@ bool shows_noise(const std::vector<EqualRun>& runs, double low, double high) {
     const double after = step(k) - step(k + 1);
     if (before * after > 0.0 && std::min(std::abs(before), std::abs(after)) > least) ++turning;
   }
-  return turning >= kFewest &&
-         static_cast<double>(turning) >= kLeastShare * static_cast<double>(all);
+  return turning >= kFewestTurns &&
+         static_cast<double>(turning) >= kLeastTurning * static_cast<double>(all);
 }
 
 }  // namespace rigcal::datasets

@@ -20,6 +20,9 @@ struct EqualRun {
 /// @param x  shape (n), finite
 std::vector<EqualRun> equal_runs(std::span<const double> x);
 
+/// Whether all samples are the same, as far as there are any.
+bool is_constant(std::span<const double> x);
+
 /// The step of the converter or of the printed digits: the smallest difference of neighbours that
 /// is not zero; 0 where all are equal.
 double resolution(const std::vector<EqualRun>& runs);

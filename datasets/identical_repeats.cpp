@@ -1,17 +1,8 @@
 #include "datasets/identical_repeats.hpp"
 
-#include <algorithm>
-#include <functional>
+#include "datasets/equal_runs.hpp"
 
 namespace rigcal::datasets {
-namespace {
-
-bool is_constant(const std::vector<double>& x) {
-  return std::adjacent_find(x.begin(), x.end(), std::not_equal_to<>()) == x.end();
-}
-
-}  // namespace
-
 std::vector<std::size_t> first_identical(const std::vector<Repeat>& repeats,
                                          const std::vector<std::size_t>& carriers,
                                          Channel channel) {

@@ -26,8 +26,8 @@ TEST_CASE("clipped_runs: a sine that is clipped, with noise and without", "[data
     for (const double level : {0.8, 0.95}) {
       for (const double noise : {0.0, 0.002}) {
         CAPTURE(period, level, noise);
-        const Samples drive = sine(4000, period);
-        const Samples whole = with_noise(sine(4000, period), noise);
+        const Samples drive = sine_signal(4000, period);
+        const Samples whole = with_noise(sine_signal(4000, period), noise);
         const Samples cut = clipped(whole, -2.0, level);
         const auto beyond = static_cast<std::size_t>(
             std::count_if(whole.begin(), whole.end(), [&](double v) { return v >= level; }));
@@ -45,15 +45,15 @@ TEST_CASE("clipped_runs: a sine that is clipped, with noise and without", "[data
 }
 
 TEST_CASE("clipped_runs: both ends, and behind a converter", "[datasets]") {
-  const Samples drive = sine(4000, 200.0);
-  const Samples cut = quantised(clipped(sine(4000, 200.0), -0.7, 0.9), 0.001);
+  const Samples drive = sine_signal(4000, 200.0);
+  const Samples cut = quantised(clipped(sine_signal(4000, 200.0), -0.7, 0.9), 0.001);
   CHECK(clipped_samples(cut, drive, RangeEnd::lowest) > 0);
   CHECK(clipped_samples(cut, drive, RangeEnd::highest) > 0);
 }
 
 TEST_CASE("clipped_runs: at rest, noise of which one side is cut away", "[datasets]") {
   // A piston on its stop for most of the record, at the end of the converter's range.
-  const Samples drive = square(4000, 1000.0);
+  const Samples drive = square_signal(4000, 1000.0);
   const Samples stop = with_noise(lagged(drive, 30.0), 0.005);
   CHECK(clipped_samples(quantised(clipped(stop, -2.0, 0.998), 0.001), drive, RangeEnd::highest) >
         100);
@@ -66,7 +66,7 @@ TEST_CASE("clipped_runs: nothing of what is whole", "[datasets]") {
       CAPTURE(step, noise);
       for (const double period : {12.0, 20.0, 100.0, 1000.0, 5000.0}) {
         CAPTURE(period);
-        const Samples drive = sine(10000, period);
+        const Samples drive = sine_signal(10000, period);
         CHECK(both_ends(quantised(with_noise(drive, noise), step), drive) == 0);
         // Late by an eighth of a period.
         const Samples late = samples(10000, [&](double i) {
@@ -77,7 +77,7 @@ TEST_CASE("clipped_runs: nothing of what is whole", "[datasets]") {
       // Squares, answered slowly or within a sample.
       for (const double tau : {0.1, 1.0, 3.0, 30.0}) {
         CAPTURE(tau);
-        const Samples drive = square(10000, 500.0);
+        const Samples drive = square_signal(10000, 500.0);
         CHECK(both_ends(quantised(with_noise(lagged(drive, tau), noise), step), drive) == 0);
       }
       // A ramp that is held at both ends.
@@ -92,7 +92,7 @@ TEST_CASE("clipped_runs: nothing of what is whole", "[datasets]") {
 }
 
 TEST_CASE("clipped_runs: what hums while it moves and is quiet at rest is whole", "[datasets]") {
-  const Samples drive = square(10000, 500.0);
+  const Samples drive = square_signal(10000, 500.0);
   const Samples slow = lagged(drive, 30.0);
   const Samples hum = with_noise(Samples(10000, 0.0), 1.0);
   Samples x(10000);
@@ -103,6 +103,6 @@ TEST_CASE("clipped_runs: what hums while it moves and is quiet at rest is whole"
 
 TEST_CASE("clipped_runs: a constant signal and a drive of another length say nothing",
           "[datasets]") {
-  CHECK(both_ends(Samples(100, 1.0), sine(100, 20.0)) == 0);
-  CHECK(both_ends(clipped(sine(4000, 200.0), -0.5, 0.5), sine(3999, 200.0)) == 0);
+  CHECK(both_ends(Samples(100, 1.0), sine_signal(100, 20.0)) == 0);
+  CHECK(both_ends(clipped(sine_signal(4000, 200.0), -0.5, 0.5), sine_signal(3999, 200.0)) == 0);
 }

@@ -15,14 +15,14 @@ TEST_CASE("drive_motion: share of the drive's range that it passes in a run", "[
   CHECK_THAT(drive_motion(ramp, {10, 5, 0.0}), WithinAbs(0.04, 1e-12));  // too short for parts
   CHECK(drive_motion(Samples(50, 2.0), {10, 20, 0.0}) == 0.0);
   // What is held does not move; an edge in its last tenth is not yet answered.
-  const Samples held = square(200, 100.0);
+  const Samples held = square_signal(200, 100.0);
   CHECK(drive_motion(held, {50, 50, 0.0}) == 0.0);
   CHECK(drive_motion(held, {55, 50, 0.0}) == 0.0);
   CHECK(drive_motion(held, {70, 50, 0.0}) == 1.0);
 }
 
 TEST_CASE("drive_passages: from one end of the range to the other", "[datasets]") {
-  const Samples drive = sine(400, 100.0);
+  const Samples drive = sine_signal(400, 100.0);
   CHECK(drive_passages(drive, {0, 30, 0.0}) == 0);
   CHECK(drive_passages(drive, {0, 80, 0.0}) == 1);
   CHECK(drive_passages(drive, {20, 110, 0.0}) == 2);

@@ -54,11 +54,17 @@ TEST_CASE("cuts_a_motion: three samples before and after a run lie far enough fr
 TEST_CASE("shows_noise: noise of two steps of a converter, not its flicker nor motion",
           "[datasets]") {
   CHECK(noisy(with_noise(Samples(2000, 0.0), 0.01)));
-  CHECK(noisy(with_noise(sine(2000, 1000.0), 0.01)));
-  CHECK(noisy(quantised(with_noise(sine(2000, 1000.0), 0.02), 0.01)));
-  CHECK_FALSE(noisy(sine(2000, 1000.0)));
-  CHECK_FALSE(noisy(quantised(sine(2000, 1000.0), 0.01)));
-  CHECK_FALSE(noisy(quantised(with_noise(sine(2000, 1000.0), 0.004), 0.01)));
-  CHECK_FALSE(noisy(with_noise(lagged(square(2000, 500.0), 20.0), 1e-9)));  // of rounding
-  CHECK_FALSE(noisy(with_noise(Samples(40, 0.0), 0.01)));                   // too few
+  CHECK(noisy(with_noise(sine_signal(2000, 1000.0), 0.01)));
+  CHECK(noisy(quantised(with_noise(sine_signal(2000, 1000.0), 0.02), 0.01)));
+  CHECK_FALSE(noisy(sine_signal(2000, 1000.0)));
+  CHECK_FALSE(noisy(quantised(sine_signal(2000, 1000.0), 0.01)));
+  CHECK_FALSE(noisy(quantised(with_noise(sine_signal(2000, 1000.0), 0.004), 0.01)));
+  CHECK_FALSE(noisy(with_noise(lagged(square_signal(2000, 500.0), 20.0), 1e-9)));  // of rounding
+  CHECK_FALSE(noisy(with_noise(Samples(40, 0.0), 0.01)));                          // too few
+}
+
+TEST_CASE("is_constant: one value throughout, or none at all", "[datasets]") {
+  CHECK(is_constant(Samples{}));
+  CHECK(is_constant(Samples{2.0, 2.0, 2.0}));
+  CHECK_FALSE(is_constant(Samples{2.0, 2.0, 2.0 + 1e-15}));
 }

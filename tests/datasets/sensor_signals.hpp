@@ -22,12 +22,12 @@ Samples samples(std::size_t n, Function f) {
 }
 
 /// Sine of amplitude 1 with `period` samples.
-inline Samples sine(std::size_t n, double period) {
+inline Samples sine_signal(std::size_t n, double period) {
   return samples(n, [&](double i) { return std::sin(2.0 * std::numbers::pi * i / period); });
 }
 
 /// +1 and -1 in turn, each for half a period.
-inline Samples square(std::size_t n, double period) {
+inline Samples square_signal(std::size_t n, double period) {
   return samples(n, [&](double i) { return std::fmod(i, period) < 0.5 * period ? 1.0 : -1.0; });
 }
 

@@ -35,7 +35,7 @@ Repeat repeat_of(const std::string& source, Samples position) {
   return repeat;
 }
 
-Samples motion() { return with_noise(sine(4000, 400.0), 0.002); }
+Samples motion() { return with_noise(sine_signal(4000, 400.0), 0.002); }
 
 /// With an interruption from sample 1000, exclusive of its 200th.
 Samples interrupted() {
@@ -78,7 +78,7 @@ TEST_CASE("sensor_faults: the drive is the recorded one, or a generated sine or 
   recorded.waveform = Waveform::recorded;
   CHECK(sensor_faults(closed_loop(), recorded, {broken}).empty());
   Repeat with_reference = broken;
-  with_reference.values[Channel::reference] = sine(4000, 400.0);
+  with_reference.values[Channel::reference] = sine_signal(4000, 400.0);
   CHECK(sensor_faults(closed_loop(), recorded, {with_reference}).size() == 1);
   with_reference.values[Channel::reference] = Samples(4000, 0.5);  // at rest
   CHECK(sensor_faults(closed_loop(), recorded, {with_reference}).empty());
@@ -86,8 +86,8 @@ TEST_CASE("sensor_faults: the drive is the recorded one, or a generated sine or 
 
 TEST_CASE("sensor_faults: what is commanded may stand at its limit", "[datasets]") {
   Repeat repeat = repeat_of("a.csv", motion());
-  repeat.values[Channel::command] = clipped(sine(4000, 400.0), -0.5, 0.5);
-  repeat.values[Channel::reference] = sine(4000, 400.0);
+  repeat.values[Channel::command] = clipped(sine_signal(4000, 400.0), -0.5, 0.5);
+  repeat.values[Channel::reference] = sine_signal(4000, 400.0);
   CHECK(sensor_faults(closed_loop(), condition(), {repeat}).empty());
   repeat.values[Channel::pressure_a] = clipped(motion(), -0.5, 2.0);
   const auto faults = sensor_faults(closed_loop(), condition(), {repeat});

@@ -7,7 +7,7 @@ using Catch::Contains;
 
 namespace {
 
-Condition sine(double frequency_hz, std::optional<double> duration_s = {}) {
+Condition sine_condition(double frequency_hz, std::optional<double> duration_s = {}) {
   Condition condition;
   condition.waveform = Waveform::sine;
   condition.frequency_hz = frequency_hz;
@@ -30,15 +30,15 @@ using Told = std::vector<bool>;
 }  // namespace
 
 TEST_CASE("short_records: against the duration that the campaign states", "[datasets]") {
-  CHECK(told({sine(1.0, 20.0)}, {18.9}) == Told{true});
-  CHECK(told({sine(1.0, 20.0)}, {19.1}) == Told{false});
-  CHECK(told({sine(1.0)}, {1.0}) == Told{false});
-  const Condition half = sine(1.0, 20.0);
+  CHECK(told({sine_condition(1.0, 20.0)}, {18.9}) == Told{true});
+  CHECK(told({sine_condition(1.0, 20.0)}, {19.1}) == Told{false});
+  CHECK(told({sine_condition(1.0)}, {1.0}) == Told{false});
+  const Condition half = sine_condition(1.0, 20.0);
   CHECK_THAT(short_records({{&half, 10.0}}).at(0), Contains("after 10 s of the 20 s"));
 }
 
 TEST_CASE("short_records: against other conditions of the same signal", "[datasets]") {
-  const std::vector<Condition> same(4, sine(1.0));
+  const std::vector<Condition> same(4, sine_condition(1.0));
   CHECK(told(same, {20.0, 19.5, 14.9, 20.0}) == Told{false, false, true, false});
   CHECK(told(same, {20.0, 19.5, 15.1, 20.0}) == Told{false, false, false, false});
   // Two long and two short, or one long: which was meant?
@@ -47,7 +47,7 @@ TEST_CASE("short_records: against other conditions of the same signal", "[datase
   CHECK(told({same.begin(), same.begin() + 2}, {20.0, 10.0}) == Told{false, false});
   // Another signal has a length of its own.
   std::vector<Condition> mixed = same;
-  mixed[2] = sine(2.0);
+  mixed[2] = sine_condition(2.0);
   CHECK(told(mixed, {20.0, 20.0, 10.0, 20.0}) == Told(4, false));
   std::vector<Condition> recorded(4);
   CHECK(told(recorded, {20.0, 20.0, 10.0, 20.0}) == Told(4, false));
