@@ -10,7 +10,6 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 // A second thread gains nothing here, and errors of the source would have to cross it.
 #define CSV_IO_NO_THREAD
@@ -52,11 +51,12 @@ FilePtr open_text(const std::filesystem::path& path, std::size_t max_bytes) {
 /// NUL bytes (they cut its lines short), UTF-16, files without end.
 class TextSource : public io::ByteSourceBase {
  public:
-  TextSource(const std::filesystem::path& path, std::size_t max_bytes)
-      : where_{path.string()}, max_bytes_(max_bytes), file_(open_text(path, max_bytes)) {}
-
-  /// Set by the time that the last line is read.
-  const bool& had_no_last_newline() const { return had_no_last_newline_; }
+  /// @param had_no_last_newline  told by the time that the last line is read; outlives the source
+  TextSource(const std::filesystem::path& path, std::size_t max_bytes, bool& had_no_last_newline)
+      : where_{path.string()},
+        max_bytes_(max_bytes),
+        file_(open_text(path, max_bytes)),
+        had_no_last_newline_(had_no_last_newline) {}
 
   int read(char* buffer, int size) override {
     const std::size_t wanted = static_cast<std::size_t>(size);
@@ -93,20 +93,18 @@ class TextSource : public io::ByteSourceBase {
   FilePtr file_;
   std::size_t bytes_ = 0;
   bool ends_with_newline_ = false;
-  bool had_no_last_newline_ = false;
+  bool& had_no_last_newline_;
 };
 
 }  // namespace
 
 struct CsvLines::Implementation {
   Implementation(const std::filesystem::path& path, std::size_t max_bytes)
-      : Implementation(path, std::make_unique<TextSource>(path, max_bytes)) {}
-  Implementation(const std::filesystem::path& path, std::unique_ptr<TextSource> text)
       : file(path.string()),
-        had_no_last_newline(text->had_no_last_newline()),
-        reader(file, std::move(text)) {}
+        reader(file, std::make_unique<TextSource>(path, max_bytes, had_no_last_newline)) {}
   std::string file;
-  const bool& had_no_last_newline;  ///< of the reader's source
+  bool had_no_last_newline =
+      false;  ///< here, since the reader drops its source when it has read it
   io::LineReader reader;
 };
 
