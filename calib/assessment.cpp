@@ -8,6 +8,7 @@
 #include <map>
 
 #include "calib/lack_of_fit.hpp"
+#include "common/significant.hpp"
 #include "metrics/metric_table.hpp"
 
 namespace rigcal::calib {
@@ -275,10 +276,10 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
     const LackOfFit& worst = *beyond.front();
     reasons.push_back(reason(
         AspectState::reservation, "lack_of_fit",
-        fmt::format("lack of fit in {} of {} signals of known noise; worst: {}, model error {:.2g} "
+        fmt::format("lack of fit in {} of {} signals of known noise; worst: {}, model error {} "
                     "times the noise ({:.2g} allowed)",
                     beyond.size(), tests.size(), signal_of(worst.condition, worst.channel),
-                    model_error(worst), bound),
+                    significant(model_error(worst), 2), bound),
         worst.condition,
         {{"signals", static_cast<double>(beyond.size())},
          {"model_error_to_noise", model_error(worst)},
@@ -289,9 +290,10 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
     const LackOfFit& first = *overstated.front();
     reasons.push_back(
         reason(AspectState::reservation, "noise_overstated",
-               fmt::format("the residual of {} is {:.2g} times the noise that `sd` states: by an "
+               fmt::format("the residual of {} is {} times the noise that `sd` states: by an "
                            "overstated noise a lack of fit is not seen",
-                           signal_of(first.condition, first.channel), std::sqrt(first.ratio)),
+                           signal_of(first.condition, first.channel),
+                           significant(std::sqrt(first.ratio), 2)),
                first.condition, {{"residual_to_noise", std::sqrt(first.ratio)}}));
   }
   if (!powerless.empty()) {

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "common/significant.hpp"
+
 namespace rigcal::calib {
 namespace {
 
@@ -91,7 +93,7 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
                                     100.0 * share, partner(problem, found, unknown)));
 }
 
-/// Half width of the interval to believe, and on what it rests.
+/// Half width of the 95 % interval, and on which error it rests.
 double choose_interval(const Problem& problem, const Uncertainty& found, std::size_t unknown,
                        FittedParameter& parameter) {
   const double plain = *parameter.standard_error;
@@ -107,15 +109,15 @@ double choose_interval(const Problem& problem, const Uncertainty& found, std::si
   if (robust > kRobustMatters * plain) {
     add_reason(parameter,
                fmt::format("{}: the robust error, on which the "
-                           "interval rests, is {:.2g} times the plain one",
+                           "interval rests, is {} times the plain one",
                            found.from_repeats[unknown] ? "repeats differ from one another"
-                                                       : "residuals are correlated in time",
-                           robust / plain));
+                                                       : "residuals are autocorrelated",
+                           significant(robust / plain, 2)));
   }
   return found.robust_quantile[unknown] * robust;
 }
 
-/// Of what the records hardly tell they ask for nothing.
+/// On which bound the estimate lies, and whether the cost presses against it.
 void describe_bound(const Problem& problem, const OptimumCheck& check, std::size_t unknown,
                     FittedParameter& parameter) {
   const BoundSide side = check.side[unknown];
@@ -124,12 +126,12 @@ void describe_bound(const Problem& problem, const OptimumCheck& check, std::size
   parameter.at_bound = true;
   const bool lower = side == BoundSide::lower;
   const std::string text =
-      fmt::format("at its {} bound {}: {}", lower ? "lower" : "upper",
+      fmt::format("at its {} bound {} ({})", lower ? "lower" : "upper",
                   number(spec_of(problem, u.index), lower ? u.lower : u.upper),
                   parameter.identifiability == Identifiability::not_identifiable
-                      ? "not because the records ask for it"
-                  : check.held[unknown] ? "the records ask for a value beyond it"
-                                        : "the records ask for no value beyond it");
+                      ? "the records do not determine it"
+                  : check.held[unknown] ? "active: the fit would improve beyond it"
+                                        : "the fit would not improve beyond it");
   parameter.reason = parameter.reason.empty() ? text : text + "; " + parameter.reason;
 }
 

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "calib/lack_of_fit.hpp"
+#include "common/significant.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -36,12 +37,12 @@ std::string ends_text(const std::pair<double, double>& interval, std::string_vie
                      unit == "1" ? "" : " ", unit == "1" ? "" : unit);
 }
 
-/// Where profile or bootstrap of a parameter say otherwise than `ci95`, and what to believe.
+/// Where profile or bootstrap of a parameter say otherwise than `ci95`, and which to use.
 std::string other_interval(const FittedParameter& parameter, std::string_view unit, bool misfit) {
   if (parameter.profile && parameter.profile->low.value && parameter.profile->high.value) {
     const std::pair ends{*parameter.profile->low.value, *parameter.profile->high.value};
     if (skewness(parameter.value, ends) > kAgrees) {
-      return fmt::format("believe the profile, {}; the cost is not quadratic there",
+      return fmt::format("use the interval of the profile, {}: the cost is not quadratic there",
                          ends_text(ends, unit));
     }
   }
@@ -49,15 +50,16 @@ std::string other_interval(const FittedParameter& parameter, std::string_view un
   const std::pair<double, double>& drawn = parameter.bootstrap->ci95;
   const double ratio = width(drawn) / width(*parameter.ci95);
   if (ratio > kAgrees) {
-    return fmt::format("believe the bootstrap, {}, {:.2g} times as wide", ends_text(drawn, unit),
-                       ratio);
+    return fmt::format("use the interval of the bootstrap, {}: it is {} times as wide",
+                       ends_text(drawn, unit), significant(ratio, 2));
   }
   if (skewness(parameter.value, drawn) > 2.0 * kAgrees)
-    return fmt::format("believe the bootstrap, {}, which is skewed", ends_text(drawn, unit));
+    return fmt::format("use the interval of the bootstrap, {}: it is skewed",
+                       ends_text(drawn, unit));
   // Few repeats know their own scatter badly: a variance of f degrees of freedom to sqrt(2 / f).
   const double chance = 2.0 / std::sqrt(2.0 * std::max(1.0, parameter.bootstrap->freedom));
   if (ratio * (kAgrees + chance) < 1.0) {
-    return fmt::format("the bootstrap is {:.2g} times as wide; believe `ci95`{}", ratio,
+    return fmt::format("the bootstrap is {:.2g} times as wide; use `ci95`{}", ratio,
                        misfit ? ", which counts what the model lacks too" : "");
   }
   return {};
@@ -69,9 +71,9 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
                             const Uncertainty& found, const std::vector<LackOfFit>& tests) {
   if (!check.nearly_stationary()) {
     return fmt::format(
-        "believe none: the fit ended at no minimum, {:.2g} standard errors from the nearest as the "
-        "derivatives there see it; the intervals lie about that point, not about what fits best",
-        check.relative_offset);
+        "no interval is reliable: the fit did not end at a minimum; by the derivatives at its end "
+        "the nearest is {} standard errors away, and the intervals lie about that end",
+        significant(check.relative_offset, 2));
   }
   if (found.scatter.empty()) {
     return "only the plain standard errors exist: too few residuals to tell their correlation, or "
@@ -188,14 +190,14 @@ std::string compare_intervals(const Problem& problem,
   const char* const s = drawn && !followed ? "s" : "";
   if (!carried.empty() && (drawn || followed)) {
     words.push_back(
-        fmt::format("{} leave{} out what is uncertain of {}: believe `ci95`, which holds it", made,
-                    s, fmt::join(carried, ", ")));
+        fmt::format("{} leave{} out the uncertainty of {}: use `ci95`, which includes it", made, s,
+                    fmt::join(carried, ", ")));
   } else if (words.empty() && (drawn || followed)) {
     words.push_back(
         fmt::format("{}{} agree{} with `ci95`", open.empty() ? "" : "elsewhere ", made, s));
   }
   if (!open.empty()) {
-    words.insert(words.begin(), fmt::format("believe no interval of what is not identifiable: {}",
+    words.insert(words.begin(), fmt::format("not identifiable, so that no interval is reliable: {}",
                                             fmt::join(open, ", ")));
   }
   return fmt::format("{}", fmt::join(words, "; "));

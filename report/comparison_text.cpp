@@ -61,7 +61,7 @@ std::string estimate_text(const Json& estimate, const RowUnit& unit) {
   if (!estimate.is_object() || !number_of(estimate, "value")) return "-";
   const std::string text = text_of(shown_in(estimate.at("value"), unit.si, 6), "text");
   if (!estimate.at("fitted").get<bool>()) return text + " (known)";
-  const Json interval = shown_interval(estimate.at("ci95"), unit.si, 5);
+  const Json interval = shown_interval(estimate.at("ci95"), unit.si);
   if (!interval.at("known").get<bool>()) return text + " (no interval)";
   return fmt::format("{} [{}, {}]", text, text_of(interval.at("low"), "text"),
                      text_of(interval.at("high"), "text"));

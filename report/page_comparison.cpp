@@ -13,7 +13,7 @@ namespace {
 
 Json estimate_cell(const Json& estimate, const RowUnit& unit) {
   if (!estimate.is_object()) return {{"there", false}};
-  const Json interval = shown_interval(estimate.at("ci95"), unit.si, 5);
+  const Json interval = shown_interval(estimate.at("ci95"), unit.si);
   const std::string grade = text_of(estimate, "identifiability");
   return {{"there", true},
           {"value", shown_matched(estimate.at("value"), estimate.at("ci95"), unit.si, 6)},

@@ -62,9 +62,9 @@ Json record_row(const Json& record, std::size_t number) {
   row["badge"] = leak_badge(record);
   row["reference"] = record.at("is_reference").get<bool>();
   row["coefficient"] = shown_in(record.at("leakage_coefficient"), 1.0, 4);
-  row["ci"] = shown_interval(record.at("ci95"), 1.0, 3);
+  row["ci"] = shown_interval(record.at("ci95"), 1.0);
   row["share"] = shown_in(record.at("leak_share_percent"), 1.0, 4);
-  row["share_ci"] = shown_interval(record.at("leak_share_ci95_percent"), 1.0, 3);
+  row["share_ci"] = shown_interval(record.at("leak_share_ci95_percent"), 1.0);
   row["flow"] = shown_in(record.at("leak_flow_l_per_min"), 1.0, 3);
   row["probabilities"] = probabilities_view(record);
   row["by_features"] = text_of(record, "class_by_features");

@@ -10,8 +10,6 @@
 namespace rigcal::report {
 namespace {
 
-constexpr int kDigits = 5;  ///< of the ends of an interval, at least
-
 RowUnit unit_of(const Json& parameter) {
   return row_unit(number_of(parameter, "value").value_or(0.0), parameter);
 }
@@ -21,10 +19,9 @@ Json interval_by(const Json& parameter, const char* error_key, const RowUnit& un
   constexpr double kNormalQuantile = 1.96;
   const auto value = number_of(parameter, "value");
   const auto error = number_of(parameter, error_key);
-  if (!value || !error) return shown_interval(nullptr, unit.si, kDigits);
+  if (!value || !error) return shown_interval(nullptr, unit.si);
   return shown_interval(
-      Json::array({*value - kNormalQuantile * *error, *value + kNormalQuantile * *error}), unit.si,
-      kDigits);
+      Json::array({*value - kNormalQuantile * *error, *value + kNormalQuantile * *error}), unit.si);
 }
 
 /// "± 2.1 %" of the value; empty where that says nothing.
@@ -69,7 +66,7 @@ Json fitted_row(const Json& p) {
   row["nuisance"] = p.at("nuisance").get<bool>();
   row["value"] = shown_matched(p.at("value"), p.at("ci95"), unit.si, 6);
   row["unit"] = unit.name;
-  row["interval"] = shown_interval(p.at("ci95"), unit.si, kDigits);
+  row["interval"] = shown_interval(p.at("ci95"), unit.si);
   row["half_width"] = half_width_text(p);
   for (const char* key : {"standard_error", "robust_standard_error"}) {
     row[key] = shown_in(p.at(key), unit.si, 2);

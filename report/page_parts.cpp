@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/significant.hpp"
 #include "datasets/record.hpp"
 #include "metrics/metric_table.hpp"
 #include "report/readable.hpp"
@@ -17,20 +18,12 @@ Json shown_in(const Json& value, double si_per_unit, int digits) {
           {"text", significant(value.get<double>() / si_per_unit, digits)}};
 }
 
-Json shown_interval(const Json& pair, double si_per_unit, int digits) {
+Json shown_interval(const Json& pair, double si_per_unit) {
   const bool known = pair.is_array() && pair[0].is_number() && pair[1].is_number();
-  if (known) {
-    const double low = pair[0].get<double>();
-    const double high = pair[1].get<double>();
-    const double size = std::max(std::abs(low), std::abs(high));
-    constexpr double kMostDigits = 12.0;  // beyond, the ends are one number
-    const double needed = std::log10(size / (high - low)) + 2.0;
-    if (high > low && needed < kMostDigits)
-      digits = std::max(digits, static_cast<int>(std::ceil(needed)));
-  }
+  constexpr int kDigits = 5;
   return {{"known", known},
-          {"low", shown_in(known ? pair[0] : Json(), si_per_unit, digits)},
-          {"high", shown_in(known ? pair[1] : Json(), si_per_unit, digits)}};
+          {"low", shown_matched(known ? pair[0] : Json(), pair, si_per_unit, kDigits)},
+          {"high", shown_matched(known ? pair[1] : Json(), pair, si_per_unit, kDigits)}};
 }
 
 Json shown(const Json& value, std::string_view si_unit, int digits) {

@@ -22,9 +22,9 @@ namespace rigcal::report {
 Json shown(const Json& value, std::string_view si_unit, int digits = 5);
 /// The same in a unit that others share.
 Json shown_in(const Json& value, double si_per_unit, int digits = 5);
-/// Both ends of an interval, with two digits of its width where these are more than `digits`;
-/// `known` false where an end is missing.
-Json shown_interval(const Json& pair, double si_per_unit, int digits);
+/// Both ends of an interval, to the second digit of its half width; `known` false where an end is
+/// missing.
+Json shown_interval(const Json& pair, double si_per_unit);
 /// rho2, R or CCC: "0.9996", "> 0.9999".
 Json shown_agreement(const Json& value);
 /// An estimate with no more digits than its 95 % interval supports; `digits` where it has none.

@@ -31,17 +31,8 @@ Json headline_of(const Json& result) {
     return make_headline("FAILED", "✕", "bad",
                          "There is no usable result: no number below may be used.");
   const std::string stopped_in = text_of(result, "stopped_in");
-  if (status == "stopped" && !stopped_in.empty() && stopped_in != "starts") {
-    return make_headline(
-        "STOPPED", "!", "warn",
-        fmt::format(
-            "{}: {}.",
-            stopped_in == "validation"
-                ? "Some conditions were not scored"
-                : "The fit converged and was scored; what was asked for beside it is not whole",
-            text_of(result, "message")));
-  }
-  if (status == "stopped") {
+  const bool fit_ended = !stopped_in.empty() && stopped_in != "starts";
+  if (status == "stopped" && !fit_ended) {
     return make_headline(
         "STOPPED", "✕", "bad",
         "Ended before it converged: these are the best values so far, not a calibration.");
@@ -60,6 +51,15 @@ Json headline_of(const Json& result) {
                     : fmt::format("{} of {} conditions {} outside the campaign's limits: the "
                                   "model is not validated.",
                                   failed, all, failed == 1 ? "is" : "are"));
+  }
+  // After FAIL: a limit that is broken stays broken, whatever else was not finished.
+  if (status == "stopped") {
+    return make_headline(
+        "STOPPED", "!", "warn",
+        stopped_in == "validation"
+            ? "Some conditions were not scored."
+            : "The fit converged and was scored; not all that was asked for beside it was "
+              "finished.");
   }
   if (verdict == "WARN") {
     return make_headline("WARN", "!", "warn",

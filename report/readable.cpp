@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "common/significant.hpp"
+
 namespace rigcal::report {
 namespace {
 
@@ -42,17 +44,6 @@ ReadableUnit readable_unit(double value_si, std::string_view si_unit) {
   return found;
 }
 
-std::string significant(double value, int digits) {
-  constexpr double kExponentFrom = 1e6;
-  std::string text = fmt::format("{:.{}g}", value, digits);
-  const double size = std::abs(value);
-  if (text.find('e') == std::string::npos || !(size >= 1.0)) return text;
-  // An exponent here means more digits before the point than are asked for.
-  const double step = std::pow(10.0, std::floor(std::log10(size)) + 1.0 - digits);
-  const double rounded = std::round(value / step) * step;
-  return std::abs(rounded) < kExponentFrom ? fmt::format("{:.0f}", rounded) : text;
-}
-
 std::string readable(double value_si, std::string_view si_unit, int digits) {
   if (!std::isfinite(value_si)) return "-";
   const ReadableUnit unit = readable_unit(value_si, si_unit);
@@ -64,6 +55,7 @@ std::string readable(double value_si, std::string_view si_unit, int digits) {
 std::string matched(double value, double uncertainty) {
   constexpr int kUnknown = 6;
   constexpr int kMostDecimals = 15;
+  if (value == 0.0) return "0";
   if (!(uncertainty > 0.0) || !std::isfinite(uncertainty)) return significant(value, kUnknown);
   constexpr double kRounding = 1e-9;  // 0.1 may have become 0.0999999999
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(uncertainty) + kRounding));

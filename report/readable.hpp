@@ -15,15 +15,12 @@ struct ReadableUnit {
 /// 0.0508 m -> mm. Units that have no such relatives stay SI; "1" has an empty name.
 ReadableUnit readable_unit(double value_si, std::string_view si_unit);
 
-/// A value rounded to so many significant digits, without an exponent from 1 to below a million:
-/// "170", where two digits alone would be "1.7e+02".
-std::string significant(double value, int digits);
-
 /// "6.2 MPa", "0.35", "-": `digits` significant digits; "-" where the value is not finite.
 std::string readable(double value_si, std::string_view si_unit, int digits = 6);
 
 /// A value to the last of the two significant digits of its uncertainty (GUM, 7.2.6): 85.0114 with
-/// 0.051 is "85.011". Six significant digits where the uncertainty is not known or zero.
+/// 0.051 is "85.011". Exactly zero is "0". Six significant digits where the uncertainty is not
+/// known or zero.
 ///
 /// @param uncertainty  in the unit of the value: standard error, or half width of an interval
 std::string matched(double value, double uncertainty);

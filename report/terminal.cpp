@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/significant.hpp"
 #include "report/groups.hpp"
 #include "report/readable.hpp"
 #include "report/text_table.hpp"
@@ -109,7 +110,7 @@ TextTable group_table(const Result& result, Channel channel) {
 std::string narrow_note(const TextTable& table, const char* file, const Style& style) {
   const std::vector<std::string> left_out = table.left_out(style.columns);
   if (left_out.empty()) return {};
-  return wrapped(fmt::format("  for want of room without {}: they are in {}",
+  return wrapped(fmt::format("  columns hidden (narrow terminal): {}; see {}",
                              fmt::join(left_out, ", "), file),
                  style.columns, 2) +
          "\n";

@@ -138,7 +138,7 @@ TEST_CASE("fit: an optimum outside the box is named", "[calib]") {
   CHECK(found.status == FitStatus::converged);  // a constrained optimum
   CHECK(mass.at_bound);
   CHECK_THAT(mass.value, WithinRel(60.0, 1e-6));
-  CHECK_THAT(mass.reason, Contains("upper bound") && Contains("ask for a value beyond it"));
+  CHECK_THAT(mass.reason, Contains("upper bound") && Contains("the fit would improve beyond it"));
   CHECK_THAT(found.message, Contains("mass_kg"));
   CHECK(mentions(found.warnings, "mass_kg"));
 }

@@ -106,11 +106,12 @@ TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
   REQUIRE(p.profile.has_value());
   CHECK_FALSE(p.profile->lower_cost_found);
   CHECK_THAT(p.reason, Contains("profile is open above"));
-  CHECK_THAT(found.interval_advice, Contains("believe no interval of what is not identifiable: ") &&
-                                        Contains("discharge_coefficient") && !Contains("mass_kg"));
+  CHECK_THAT(found.interval_advice,
+             Contains("not identifiable, so that no interval is reliable: ") &&
+                 Contains("discharge_coefficient") && !Contains("mass_kg"));
 }
 
-TEST_CASE("intervals: which of them to believe", "[calib]") {
+TEST_CASE("intervals: which of them to use", "[calib]") {
   const Twin twin = twin_far_off();
   const auto records = twin.records(250, 500.0, 3);
   const Problem problem =
@@ -125,7 +126,7 @@ TEST_CASE("intervals: which of them to believe", "[calib]") {
   parameters[0].bootstrap = drawn;
   CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95`");
   CHECK_THAT(compare_intervals(problem, parameters, {"supply_pressure_pa"}),
-             Contains("the bootstrap leaves out what is uncertain of supply_pressure_pa"));
+             Contains("the bootstrap leaves out the uncertainty of supply_pressure_pa"));
   drawn.ci95 = {84.99994, 85.00006};  // 0.6 times as wide: nine degrees of freedom may
   parameters[0].bootstrap = drawn;
   CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95`");
@@ -138,7 +139,7 @@ TEST_CASE("intervals: which of them to believe", "[calib]") {
   drawn.ci95 = {84.99995, 85.00015};
   parameters[0].bootstrap = drawn;
   CHECK_THAT(compare_intervals(problem, parameters),
-             Contains("84.99995 to 85.00015 kg, which is skewed"));
+             Contains("84.99995 to 85.00015 kg: it is skewed"));
   drawn.ci95 = {84.9998, 85.0002};
   parameters[0].bootstrap = drawn;
   CHECK_THAT(compare_intervals(problem, parameters), Contains("2 times as wide"));
@@ -146,10 +147,10 @@ TEST_CASE("intervals: which of them to believe", "[calib]") {
   parameters[0].profile->low.value = 84.99999;
   parameters[0].profile->high.value = 85.0001;
   CHECK_THAT(compare_intervals(problem, parameters),
-             Contains("believe the profile, 84.99999 to 85.0001 kg;"));
+             Contains("use the interval of the profile, 84.99999 to 85.0001 kg:"));
   parameters[0].identifiability = Identifiability::not_identifiable;
   CHECK(compare_intervals(problem, parameters) ==
-        "believe no interval of what is not identifiable: " + problem.name(0));
+        "not identifiable, so that no interval is reliable: " + problem.name(0));
 }
 
 TEST_CASE("bootstrap: its spread is that of the noise, the same for any number of threads",

@@ -105,7 +105,7 @@ TEST_CASE("settle: where there is no time left to make it good, it is not called
 }
 
 TEST_CASE(
-    "fit: stopped after any number of evaluations it gives intervals that it says not to believe",
+    "fit: stopped after any number of evaluations it gives intervals that it calls unreliable",
     "[calib]") {
   const Twin twin = two_signals();
   const auto records = twin.records(1000, 1000.0, 1);
@@ -119,7 +119,7 @@ TEST_CASE(
     CAPTURE(most);
     CHECK(found.status == FitStatus::stopped);
     CHECK(found.cost <= at_start);
-    CHECK_THAT(found.interval_advice, Contains("believe none"));
+    CHECK_THAT(found.interval_advice, Contains("no interval is reliable"));
     REQUIRE(found.parameters.size() >= 2);
     for (const FittedParameter& each : {found.parameters[0], found.parameters[1]}) {
       REQUIRE(each.ci95);
@@ -129,7 +129,7 @@ TEST_CASE(
     ++most;
   }
   CHECK(most > 5);
-  CHECK_THAT(found.interval_advice, !Contains("believe none"));
+  CHECK_THAT(found.interval_advice, !Contains("no interval is reliable"));
 }
 
 TEST_CASE("fit: its cost is that of simulations at the values it gives", "[calib]") {

@@ -107,6 +107,18 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     json["status"] = "stopped";
     CHECK_THAT(word_of(page(json)), Contains("STOPPED"));
   }
+  SECTION("stopped after the fit: its verdict counts") {
+    json["status"] = "stopped";
+    json["stopped_in"] = "bootstrap";
+    json["message"] = "the bootstrap was stopped by the time limit";
+    const std::string html = page(json);
+    CHECK_THAT(word_of(html), Contains("STOPPED"));
+    CHECK_THAT(html, Contains("The fit converged and was scored; not all that was asked for") &&
+                         Contains("the bootstrap was stopped by the time limit") &&
+                         !Contains("not of a calibration"));
+    json["verdict"] = "FAIL";
+    CHECK_THAT(word_of(page(json)), Contains("FAIL"));
+  }
   SECTION("stopped: neither scores nor intervals pass for those of a calibration") {
     json["status"] = "stopped";
     const std::string html = page(json);
