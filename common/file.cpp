@@ -9,7 +9,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <cstdio>
 #include <memory>
 #include <system_error>
 #include <vector>
@@ -22,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kBlockBytes = std::size_t{1} << 16;
+constexpr int kMostLeftovers = 1000;
 
 std::string reason(int error_number) { return std::generic_category().message(error_number); }
 
@@ -33,13 +33,18 @@ std::string reason(int error_number) { return std::generic_category().message(er
 class TemporaryFile {
  public:
   explicit TemporaryFile(const fs::path& target) : target_(target) {
-    // Process and running number keep writers of the same target apart; O_EXCL makes sure.
+    // Process and running number keep writers of the same target apart; O_EXCL makes sure. What a
+    // killed process of the same number left, as in containers, where all are number 1, is passed
+    // over.
     static std::atomic<unsigned> running_number{0};
-    const std::string name =
-        fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), running_number++);
-    path_ = target.parent_path() / name;
-    descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) fail_to_write(target, reason(errno));
+    for (int tries = 0; descriptor_ < 0; ++tries) {
+      const std::string name =
+          fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), running_number++);
+      path_ = target.parent_path() / name;
+      descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ < 0 && (errno != EEXIST || tries == kMostLeftovers))
+        fail_to_write(target, reason(errno));
+    }
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
@@ -75,9 +80,55 @@ class TemporaryFile {
   bool renamed_ = false;
 };
 
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
+/// An open regular file.
+class RegularFile {
+ public:
+  RegularFile(const fs::path& path, const std::string& expected) : where_{path.string()} {
+    // O_NONBLOCK: opening a pipe does not wait for its writer. It does nothing to regular files.
+    descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+    if (descriptor_ < 0)
+      throw InputError(where_,
+                       fmt::format("cannot be opened: {}; expected {}", reason(errno), expected));
+    struct stat status {};
+    if (::fstat(descriptor_, &status) == 0 && S_ISREG(status.st_mode)) {
+      bytes_ = static_cast<std::size_t>(status.st_size);
+      return;
+    }
+    ::close(descriptor_);
+    throw InputError(
+        where_, fmt::format("is {}; expected {}",
+                            S_ISDIR(status.st_mode) ? "a folder" : "no regular file", expected));
+  }
+  RegularFile(const RegularFile&) = delete;
+  RegularFile& operator=(const RegularFile&) = delete;
+  ~RegularFile() { ::close(descriptor_); }
+
+  /// At the time it was opened.
+  std::size_t bytes() const { return bytes_; }
+
+  /// Reads into a buffer; fewer bytes than its size at the end alone.
+  std::size_t read(char* buffer, std::size_t size) const {
+    std::size_t count = 0;
+    while (count < size) {
+      const ssize_t got = ::read(descriptor_, buffer + count, size - count);
+      if (got < 0 && errno == EINTR) continue;
+      if (got < 0) fail_to_read(errno);
+      if (got == 0) break;
+      count += static_cast<std::size_t>(got);
+    }
+    return count;
+  }
+
+ private:
+  [[noreturn]] void fail_to_read(int error_number) const {
+    throw InputError(where_, "cannot be read: " + reason(error_number));
+  }
+
+  Location where_;
+  int descriptor_ = -1;
+  std::size_t bytes_ = 0;
 };
+
 struct FreeDigest {
   void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
 };
@@ -96,21 +147,41 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
   file.rename_into_place();
 }
 
-std::string sha256_of_file(const fs::path& path) {
-  const auto fail = [&path](int error_number) {
-    throw InputError(Location{path.string()}, "cannot be read: " + reason(error_number));
+std::string read_file(const fs::path& path, std::size_t most_bytes, const std::string& expected) {
+  const RegularFile file(path, expected);
+  const auto check = [&](std::size_t bytes) {
+    if (bytes > most_bytes)
+      throw InputError({path.string()}, fmt::format("has {} bytes; expected {} of at most {} MB",
+                                                    bytes, expected, most_bytes >> 20));
   };
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
-  if (!file) fail(errno);
+  check(file.bytes());
+  // One byte more than there was, which tells whether it has grown.
+  std::string text(file.bytes() + 1, '\0');
+  std::size_t count = 0;
+  for (;;) {
+    count += file.read(text.data() + count, text.size() - count);
+    check(count);
+    if (count < text.size()) break;
+    text.resize(2 * text.size());
+  }
+  text.resize(count);
+  return text;
+}
+
+void require_regular_file(const fs::path& path, const std::string& expected) {
+  const RegularFile checked(path, expected);
+}
+
+std::string sha256_of_file(const fs::path& path) {
+  const RegularFile file(path, "a file");
   const std::unique_ptr<EVP_MD_CTX, FreeDigest> digest(EVP_MD_CTX_new());
   if (!digest || EVP_DigestInit_ex(digest.get(), EVP_sha256(), nullptr) != 1)
     throw Error(ExitCode::internal, "OpenSSL does not offer SHA-256");
 
-  std::vector<unsigned char> block(kBlockBytes);
+  std::vector<char> block(kBlockBytes);
   std::size_t count = 0;
-  while ((count = std::fread(block.data(), 1, block.size(), file.get())) > 0)
+  while ((count = file.read(block.data(), block.size())) > 0)
     EVP_DigestUpdate(digest.get(), block.data(), count);
-  if (std::ferror(file.get()) != 0) fail(errno);
 
   std::array<unsigned char, EVP_MAX_MD_SIZE> sum{};
   unsigned int length = 0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -11,6 +12,20 @@ namespace rigcal {
 ///
 /// @throws WriteError  with path and reason; no partial file stays behind
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
+
+/// The content of a regular file. Never waits for a pipe.
+///
+/// @param expected  what the file should be, in words: "a campaign file (TOML)"
+/// @throws InputError  there is none, it is a folder, pipe or device, has more than `most_bytes`,
+/// or
+///                     cannot be read
+std::string read_file(const std::filesystem::path& path, std::size_t most_bytes,
+                      const std::string& expected);
+
+/// Refuses what is no regular file before something opens it that would wait for a pipe.
+///
+/// @throws InputError  as read_file()
+void require_regular_file(const std::filesystem::path& path, const std::string& expected);
 
 /// SHA-256 of a file, 64 lower-case hex digits. Reads in blocks.
 ///

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <sstream>
 #include <system_error>
 #include <tuple>
 
+#include "common/file.hpp"
 #include "common/quantity.hpp"
 #include "common/suggest.hpp"
 
@@ -67,29 +67,6 @@ void check_key_depth(std::string_view text, const std::string& file) {
   }
 }
 
-std::string read_file(const std::filesystem::path& path) {
-  std::error_code error;
-  const auto status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) {
-    throw InputError({path.string()}, "no such file; expected a campaign file (TOML)");
-  }
-  if (!std::filesystem::is_regular_file(status)) {
-    throw InputError({path.string()}, "not a regular file; expected a campaign file (TOML)");
-  }
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error && size > kMaxCampaignBytes) {
-    throw InputError({path.string()},
-                     fmt::format("the file has {} MB; expected a campaign file (TOML) of at most "
-                                 "{} MB",
-                                 size >> 20, kMaxCampaignBytes >> 20));
-  }
-  std::ifstream in(path, std::ios::binary);
-  std::string text(error ? 0 : size, '\0');
-  in.read(text.data(), static_cast<std::streamsize>(text.size()));
-  if (error || !in) throw InputError({path.string()}, "the file cannot be read");
-  return text;
-}
-
 std::string quoted_start(std::string_view text) {
   if (text.size() <= kLongestShown) return toml_quoted(text);
   std::size_t end = kLongestShown;
@@ -124,7 +101,7 @@ std::string_view unit_part(std::string_view text) {
 }  // namespace
 
 toml::table parse_toml_file(const std::filesystem::path& path) {
-  const std::string text = read_file(path);
+  const std::string text = read_file(path, kMaxCampaignBytes, "a campaign file (TOML)");
   const std::string file = path.string();
   check_key_depth(text, file);
   try {

@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "common/error.hpp"
 #include "report/json.hpp"
+#include "report/read_json.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -113,11 +111,8 @@ std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenanc
 }
 
 calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Provenance& provenance) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError({file.string()}, "cannot be read; expected a checkpoint");
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  const Json json = read_json(file, "a checkpoint of rigcal fit, or a fit without --resume");
   try {
-    const Json json = Json::parse(text);
     if (json.at("schema") != kSchema) {
       throw InputError({file.string()}, fmt::format("key 'schema': expected \"{}\"", kSchema));
     }

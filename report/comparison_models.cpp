@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "calib/model_choice.hpp"
+#include "common/error.hpp"
 #include "report/comparison_parts.hpp"
 
 namespace rigcal::report {
@@ -52,13 +53,23 @@ void take_likeliest_noise(const Json& weights, Candidate& candidate) {
   if (estimated) candidate.cost = cost;
 }
 
+/// A number of things. Conversion of a double beyond its range to a whole number is undefined.
+double count_of(const Compared& compared, const std::string& key) {
+  constexpr double kMostCounted = 1e9;
+  const double count = compared.result.at(key).get<double>();
+  if (count >= 0.0 && count <= kMostCounted && count == std::floor(count)) return count;
+  throw InputError({compared.file.string()},
+                   fmt::format("key '{}': found {}, expected a whole number from 0 to {}", key,
+                               count, kMostCounted));
+}
+
 Candidate candidate_of(const Compared& compared) {
   const Json& result = compared.result;
   Candidate candidate;
   candidate.name = compared.name;
   candidate.cost = result.at("cost").get<double>();
-  candidate.parameters = result.at("rank").get<int>();
-  candidate.residuals = result.at("residual_count").get<double>();
+  candidate.parameters = static_cast<int>(count_of(compared, "rank"));
+  candidate.residuals = count_of(compared, "residual_count");
   candidate.effective_samples =
       number_of(result, "effective_samples").value_or(candidate.residuals);
   take_likeliest_noise(result.at("weights"), candidate);

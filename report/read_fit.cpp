@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
-#include <iterator>
 
 #include "common/error.hpp"
 #include "common/suggest.hpp"
 #include "report/json.hpp"
+#include "report/read_json.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -16,25 +15,6 @@ using datasets::FittedValue;
 using datasets::Scope;
 
 constexpr const char* kTruthSchema = "rigcal.truth/1";
-
-std::string read_text(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::error_code error;
-  if (!stream || !std::filesystem::is_regular_file(file, error)) {
-    throw InputError({file.string()}, "cannot be read; expected the fit.json of an earlier fit");
-  }
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-Location location_of_byte(const std::string& file, const std::string& text, std::size_t byte) {
-  const std::size_t end = std::min(byte > 0 ? byte - 1 : 0, text.size());
-  const auto begin = text.begin();
-  const auto stop = begin + static_cast<std::ptrdiff_t>(end);
-  const long line = 1 + static_cast<long>(std::count(begin, stop, '\n'));
-  const std::size_t newline = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
-  const std::size_t line_start = newline == std::string::npos ? 0 : newline + 1;
-  return {file, line, static_cast<long>(end - line_start) + 1};
-}
 
 /// One value of the file, with its place in words.
 class Node {
@@ -233,20 +213,11 @@ void read_origin(const Json& json, const Node& root, EarlierFit& fit) {
       json.contains("assessment") ? read_aspect(root["assessment"]["parameters"]) : no_assessment();
 }
 
-Json parse(const std::filesystem::path& file) {
-  const std::string text = read_text(file);
-  try {
-    return Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    throw InputError(location_of_byte(file.string(), text, error.byte), "this is not JSON");
-  }
-}
-
 }  // namespace
 
 EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
   const std::string name = file.string();
-  const Json json = parse(file);
+  const Json json = read_json(file, "the fit.json of an earlier fit");
   const Node root(json, name, "");
   if (!json.is_object()) {
     throw InputError({name}, "found no JSON object, expected the fit.json of an earlier fit");
@@ -287,7 +258,7 @@ EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
 }
 
 std::vector<FittedValue> read_truth(const std::filesystem::path& file, model::PlantKind plant) {
-  const Json json = parse(file);
+  const Json json = read_json(file, "the truth.json of a synthetic campaign");
   const Node root(json, file.string(), "");
   if (root["schema"].string() != kTruthSchema)
     root["schema"].fail(fmt::format("\"{}\"", kTruthSchema));

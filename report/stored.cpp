@@ -2,14 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
+#include <system_error>
 
 #include "common/error.hpp"
+#include "common/file.hpp"
 #include "common/parallel.hpp"
 #include "report/page_parts.hpp"
+#include "report/read_json.hpp"
 
 namespace rigcal::report {
 namespace {
+
+/// Of a table. One of 20 columns has two million rows then.
+constexpr std::size_t kMostTableBytes = std::size_t{512} << 20;
 
 std::string path_in(const std::string& where, const std::string& name) {
   return (std::filesystem::path(where) / name).string();
@@ -19,24 +24,17 @@ Json parsed(const ReadFile& read, const std::string& where, const std::string& n
   const auto text = read(name);
   if (!text)
     throw InputError({path_in(where, name)}, "is missing; make the result again with this version");
-  try {
-    return Json::parse(*text);
-  } catch (const Json::parse_error& error) {
-    throw InputError({path_in(where, name)}, fmt::format("this is not JSON: {}", error.what()));
-  }
+  return parse_json(*text, path_in(where, name));
 }
 
 }  // namespace
 
 ReadFile files_in(const std::filesystem::path& folder) {
   return [folder](const std::filesystem::path& path) -> std::optional<std::string> {
-    std::ifstream stream(folder / path, std::ios::binary | std::ios::ate);
-    if (!stream) return std::nullopt;
-    std::string text(static_cast<std::size_t>(stream.tellg()), '\0');
-    stream.seekg(0);
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    if (!stream) return std::nullopt;
-    return text;
+    std::error_code error;
+    if (!std::filesystem::exists(folder / path, error)) return std::nullopt;
+    const std::size_t most = path.extension() == ".json" ? JsonLimits().bytes : kMostTableBytes;
+    return read_file(folder / path, most, "a result of rigcal");
   };
 }
 

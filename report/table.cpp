@@ -11,6 +11,8 @@
 namespace rigcal::report {
 namespace {
 
+constexpr std::size_t kMostColumns = 10'000;
+
 std::vector<std::string> split(std::string_view line) {
   std::vector<std::string> fields;
   for (std::size_t begin = 0; begin <= line.size();) {
@@ -35,13 +37,14 @@ Table parse_table(std::string_view text, const std::string& file) {
     ++line_number;
     const std::size_t end = std::min(text.find('\n'), text.size());
     const std::string_view line = text.substr(0, end);
-    const std::size_t rest = text.size() - end - 1;
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.empty() || line.front() == '#') continue;
     if (table.names.empty()) {
       table.names = split(line);
+      if (table.names.size() > kMostColumns)
+        throw InputError({file, line_number}, fmt::format("{} columns; expected at most {}",
+                                                          table.names.size(), kMostColumns));
       table.columns.resize(table.names.size());
-      for (auto& column : table.columns) column.reserve(rest / (line.size() + 1) + 1);
       continue;
     }
     const char* at = line.data();

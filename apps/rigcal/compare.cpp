@@ -20,6 +20,25 @@ struct CompareOptions {
   PrintOptions print;
 };
 
+/// The comparison, or an error that names the result which this version cannot read.
+report::Json compared(const std::vector<report::Compared>& results,
+                      const report::Provenance& provenance) {
+  try {
+    return report::comparison_json(results, provenance);
+  } catch (const report::Json::exception&) {
+    for (const report::Compared& each : results) {
+      try {
+        report::comparison_json({each, each}, provenance);
+      } catch (const report::Json::exception& error) {
+        throw InputError(
+            {each.file.string()},
+            fmt::format("the result is not as this version writes it: {}", error.what()));
+      }
+    }
+    throw;
+  }
+}
+
 ExitCode run_compare(const CompareOptions& options, const Invocation& invocation) {
   if (options.folders.size() < 2)
     throw UsageError("compare: expected two result folders or more, the one to compare with first");
@@ -36,7 +55,7 @@ ExitCode run_compare(const CompareOptions& options, const Invocation& invocation
   provenance.command = invocation.command;
   for (const report::Compared& each : results)
     provenance.inputs.push_back({each.file.string(), sha256_of_file(each.file)});
-  const report::Json json = report::comparison_json(results, provenance);
+  const report::Json json = compared(results, provenance);
   std::vector<report::ResultFile> files{{"comparison.json", report::json_text(json)}};
   add_page(options.out, hardware_threads(), files);
   report::write_results(options.out, files, provenance.inputs);
@@ -56,7 +75,9 @@ Run add_compare(CLI::App& verb) {
                   "Folders of fits or validations; the first is what the others are compared with")
       ->required()
       ->check(CLI::ExistingDirectory);
-  verb.add_option("--out", options->out, "Folder of the results")->capture_default_str();
+  verb.add_option("--out", options->out, "Folder of the results")
+      ->check(not_empty())
+      ->capture_default_str();
   add_print_options(verb, options->print);
   return [options](const Invocation& invocation) { return run_compare(*options, invocation); };
 }

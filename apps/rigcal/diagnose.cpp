@@ -145,7 +145,8 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
 Run add_diagnose(CLI::App& verb) {
   const auto options = std::make_shared<DiagnoseRequest>();
   add_campaign_options(verb, options->common);
-  verb.add_option("--fit", options->fit, "fit.json of a fit to healthy records of the rig");
+  verb.add_option("--fit", options->fit, "fit.json of a fit to healthy records of the rig")
+      ->check(not_empty());
   return [options](const Invocation& invocation) { return run_diagnose(*options, invocation); };
 }
 

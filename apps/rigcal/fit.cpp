@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -115,7 +116,7 @@ Run add_fit(CLI::App& verb) {
           "minimum); the best result counts")
       ->check(CLI::Range(1, kMostStarts));
   verb.add_option("--seed", options->seed, "Seed of the further starts")
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str();
   verb.add_option("--bootstrap", options->bootstrap,
                   "Intervals from so many fits to redrawn repeats or residuals")
@@ -131,7 +132,7 @@ Run add_fit(CLI::App& verb) {
       ->check(finite_positive());
   verb.add_option("--max-evaluations", options->max_evaluations,
                   "Stop after so many evaluations of all conditions")
-      ->check(CLI::PositiveNumber);
+      ->check(whole_number(1, std::numeric_limits<long>::max()));
   add_strict_option(verb, options->strict);
   return [options](const Invocation& invocation) { return run_fit(*options, invocation); };
 }

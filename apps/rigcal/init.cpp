@@ -9,6 +9,7 @@
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
+#include "common/file.hpp"
 #include "datasets/draft_campaign.hpp"
 #include "report/folder.hpp"
 
@@ -41,6 +42,7 @@ std::vector<std::filesystem::path> with_folders_opened(
   std::vector<std::filesystem::path> files;
   for (const auto& path : paths) {
     if (!std::filesystem::is_directory(path)) {
+      require_regular_file(path, "a recording (CSV or MAT)");
       files.push_back(path);
       continue;
     }
@@ -87,7 +89,9 @@ ExitCode run_init(const InitRequest& options) {
 Run add_init(CLI::App& verb) {
   const auto options = std::make_shared<InitRequest>();
   verb.add_option("FILE", options->files, "Recordings, CSV or MAT, or folders of them")->required();
-  verb.add_option("--out", options->out, "Folder of the draft")->capture_default_str();
+  verb.add_option("--out", options->out, "Folder of the draft")
+      ->check(not_empty())
+      ->capture_default_str();
   add_print_options(verb, options->print);
   return [options](const Invocation&) { return run_init(*options); };
 }

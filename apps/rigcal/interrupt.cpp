@@ -22,6 +22,8 @@ extern "C" void on_signal(int) {
 const std::atomic<bool>& watch_signals() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  // A limit of the size of files is an error of writing, not the end of the process.
+  std::signal(SIGXFSZ, SIG_IGN);
   return interrupted;
 }
 

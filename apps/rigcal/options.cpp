@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -20,6 +21,27 @@ constexpr int kMostThreads = 1024;
 
 }  // namespace
 
+CLI::Validator not_empty() {
+  return CLI::Validator(
+      [](std::string& text) { return text.empty() ? std::string("found an empty path") : ""; },
+      "PATH");
+}
+
+CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        std::uint64_t value = 0;
+        const char* end = text.data() + text.size();
+        const auto [rest, error] = std::from_chars(text.data(), end, value);
+        const bool valid =
+            error == std::errc{} && rest == end && value >= lowest && value <= highest;
+        return valid ? std::string()
+                     : fmt::format("found {}, expected a whole number from {} to {}", text, lowest,
+                                   highest);
+      },
+      "INTEGER");
+}
+
 int hardware_threads() {
   const unsigned count = std::thread::hardware_concurrency();
   return count > 0 ? static_cast<int>(std::min<unsigned>(count, kMostThreads)) : 1;
@@ -32,10 +54,13 @@ void add_print_options(CLI::App& verb, PrintOptions& options) {
 
 void add_campaign_options(CLI::App& verb, CampaignOptions& options) {
   options.threads = hardware_threads();
-  verb.add_option("CAMPAIGN", options.campaign, "Campaign file")->required();
+  verb.add_option("CAMPAIGN", options.campaign, "Campaign file")->required()->check(not_empty());
   verb.add_option("--data", options.data,
-                  "Where relative record paths start (default: the campaign file's folder)");
-  verb.add_option("--out", options.out, "Folder of the results")->capture_default_str();
+                  "Where relative record paths start (default: the campaign file's folder)")
+      ->check(not_empty());
+  verb.add_option("--out", options.out, "Folder of the results")
+      ->check(not_empty())
+      ->capture_default_str();
   // One value per --set, or it would swallow the campaign file.
   verb.add_option("--set", options.set, "Change a value: name=\"value unit\"; repeatable")
       ->allow_extra_args(false);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -28,6 +29,12 @@ struct CampaignOptions {
   int threads = 1;
   PrintOptions print;
 };
+
+/// Refuses the empty path, which a script passes where a variable is not set.
+CLI::Validator not_empty();
+
+/// CLI11's own conversion takes what is too large for the largest there is.
+CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 
 /// Threads that this machine has.
 int hardware_threads();

@@ -57,7 +57,8 @@ Run add_plan(CLI::App& verb) {
   const auto options = std::make_shared<PlanRequest>();
   add_campaign_options(verb, options->common);
   verb.add_option("--fit", options->fit,
-                  "fit.json whose values are taken (default: the campaign's own)");
+                  "fit.json whose values are taken (default: the campaign's own)")
+      ->check(not_empty());
   return [options](const Invocation& invocation) { return run_plan(*options, invocation); };
 }
 

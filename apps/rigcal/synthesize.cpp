@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 
 #include "apps/rigcal/interrupt.hpp"
@@ -45,7 +46,7 @@ Run add_synthesize(CLI::App& verb) {
   add_campaign_options(verb, options->common);
   verb.add_option("--seed", options->seed, "Seed of the noise")
       ->required()
-      ->check(CLI::NonNegativeNumber);
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
   return [options](const Invocation& invocation) { return run_synthesize(*options, invocation); };
 }
 

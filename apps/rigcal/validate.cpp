@@ -123,7 +123,8 @@ Run add_validate(CLI::App& verb) {
   const auto options = std::make_shared<ValidateRequest>();
   add_campaign_options(verb, options->common);
   verb.add_option("--fit", options->fit,
-                  "fit.json of an earlier fit (default: the campaign's own values)");
+                  "fit.json of an earlier fit (default: the campaign's own values)")
+      ->check(not_empty());
   add_strict_option(verb, options->strict);
   return [options](const Invocation& invocation) { return run_validate(*options, invocation); };
 }

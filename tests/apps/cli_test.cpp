@@ -199,7 +199,7 @@ const std::vector<BadCall> kBadCalls{
     {{"simulate", "campaign.toml", "--condition", "sinus"}, {"--condition", "sine"}},
     {{"synthesize", "campaign.toml", "--seed", "1"}, {"campaign.toml", "[synthetic]"}},
     {{"synthesize", "campaign.toml"}, {"--seed"}},
-    {{"validate", "campaign.toml", "--fit", "fit.json"}, {"fit.json", "cannot be read"}},
+    {{"validate", "campaign.toml", "--fit", "fit.json"}, {"fit.json", "cannot be opened"}},
     {{"params", "campaign.toml"}, {"params: ", "campaign.toml"}},
 };
 

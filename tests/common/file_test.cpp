@@ -1,6 +1,8 @@
 #include "common/file.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -16,6 +18,8 @@
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
 using rigcal::InputError;
+using rigcal::read_file;
+using rigcal::require_regular_file;
 using rigcal::sha256_of_file;
 using rigcal::write_file_atomically;
 using rigcal::WriteError;
@@ -94,6 +98,42 @@ TEST_CASE("write_file_atomically: a full disk leaves the old file as it was", "[
   CHECK(entries(folder) == 1);
 }
 
+TEST_CASE("write_file_atomically: what a killed process of this number left is no obstacle",
+          "[common]") {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 100; ++i)
+    std::ofstream(folder / fmt::format(".out.csv.{}.{}.tmp", ::getpid(), i)) << "left";
+  write_file_atomically(folder / "out.csv", "x");
+  CHECK(text_of(folder / "out.csv") == "x");
+  CHECK(entries(folder) == 101);
+}
+
+TEST_CASE("read_file: all bytes of a regular file, up to a limit", "[common]") {
+  const TemporaryFolder folder;
+  const std::string binary("a\0b\n\xFF", 5);
+  const fs::path file = folder.write("file", binary);
+  CHECK(read_file(file, 5, "a test") == binary);
+  CHECK(read_file(folder.write("empty", ""), 0, "a test").empty());
+  CHECK_THROWS_WITH(read_file(file, 4, "a test"),
+                    Contains("file: has 5 bytes; expected a test of at most"));
+  // Its size is told as zero; it has to be read to its end.
+  CHECK(read_file("/proc/self/status", 1 << 20, "a test").find("Name:") == 0);
+  CHECK_THROWS_AS(read_file("/proc/self/status", 10, "a test"), InputError);
+}
+
+TEST_CASE("read_file: never waits for a pipe, never reads a device", "[common]") {
+  const TemporaryFolder folder;
+  REQUIRE(::mkfifo((folder / "pipe").c_str(), 0600) == 0);
+  for (const fs::path& path : {folder / "pipe", fs::path("/dev/zero")}) {
+    CHECK_THROWS_WITH(read_file(path, 100, "a test"),
+                      Contains("is no regular file; expected a test"));
+    CHECK_THROWS_AS(require_regular_file(path, "a test"), InputError);
+    CHECK_THROWS_AS(sha256_of_file(path), InputError);
+  }
+  CHECK_THROWS_WITH(read_file(folder.path(), 100, "a test"), Contains("is a folder"));
+  CHECK_THROWS_WITH(read_file(folder / "none", 100, "a test"), Contains("No such file"));
+}
+
 TEST_CASE("sha256_of_file: published test vectors", "[common]") {
   // FIPS 180-2, appendix B: "abc", the 56-byte message, and a million times "a".
   const TemporaryFolder folder;
@@ -112,6 +152,6 @@ TEST_CASE("sha256_of_file: published test vectors", "[common]") {
 TEST_CASE("sha256_of_file: what cannot be read is an error", "[common]") {
   const TemporaryFolder folder;
   CHECK_THROWS_WITH(sha256_of_file(folder / "missing"),
-                    Contains("missing: cannot be read: No such file"));
+                    Contains("missing: cannot be opened: No such file"));
   CHECK_THROWS_AS(sha256_of_file(folder / ""), InputError);
 }

@@ -21,6 +21,7 @@ TEST_CASE("table: without a final newline, and without rows", "[report]") {
   CHECK(parse_table("x\n1\n2", "t.csv").columns.front().size() == 2);
   CHECK(parse_table("x,y\n", "t.csv").columns.size() == 2);
   CHECK(parse_table("", "t.csv").columns.empty());
+  CHECK(parse_table("x,y", "t.csv").columns.size() == 2);
 }
 
 TEST_CASE("table: says where it is broken", "[report]") {
