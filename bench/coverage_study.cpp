@@ -16,6 +16,7 @@
 #include "bench/problems.hpp"
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
+#include "common/significant.hpp"
 #include "datasets/load_record.hpp"
 #include "datasets/noise.hpp"
 #include "datasets/synthetic_repeat.hpp"
@@ -43,6 +44,7 @@ struct Scenario {
   double supply = 0.0;      ///< relative standard deviation between repeats
   double oil = 0.0;         ///< the same of the bulk modulus
   double friction_n = 0.0;  ///< Coulomb friction that the fitted model does not have
+  bool leaks = true;        ///< else the leakage coefficient is on its bound
   int repeats = 5;
 };
 
@@ -72,6 +74,7 @@ std::vector<Scenario> scenarios() {
     add(fmt::format("bulk modulus differs by {} %", percent),
         [&](Scenario& s) { s.oil = percent / 100.0; });
   }
+  add("no leak, so that its bound is active", [](Scenario& s) { s.leaks = false; });
   add("unmodelled friction of 100 N", [](Scenario& s) { s.friction_n = 100.0; });
   return all;
 }
@@ -99,8 +102,9 @@ datasets::Campaign make_campaign(const Scenario& scenario) {
     setting.value = truth.value[i];
     setting.fit = std::find(kFree.begin(), kFree.end(), table[i].key) != kFree.end();
     if (setting.fit) {
-      synthetic.parameters.emplace_back(setting.index, truth.value[i]);
-      setting.lower = truth.value[i] / 5.0;
+      const bool absent = !scenario.leaks && table[i].key == "leakage_coefficient";
+      synthetic.parameters.emplace_back(setting.index, absent ? 0.0 : truth.value[i]);
+      setting.lower = absent ? 0.0 : truth.value[i] / 5.0;
       setting.upper = truth.value[i] * 5.0;
       setting.value = truth.value[i] * kOffTruth;
     }
@@ -176,6 +180,7 @@ std::vector<double> true_values(const Scenario& scenario) {
   std::vector<double> truth;
   for (const std::string& key : kFree)
     truth.push_back(six_signal_truth().value[static_cast<std::size_t>(index_of(key))]);
+  if (!scenario.leaks) truth.back() = 0.0;
   if (scenario.friction_n == 0.0) return truth;
   Scenario silent;
   silent.friction_n = scenario.friction_n;
@@ -190,7 +195,7 @@ std::vector<double> true_values(const Scenario& scenario) {
 
 struct Outcome {
   std::vector<bool> holds, plain;
-  std::vector<double> half_width;  ///< over the truth
+  std::vector<double> half_width;  ///< over the truth; NaN where that is 0
   bool warned = false;
 };
 
@@ -205,13 +210,15 @@ Outcome outcome_of(const calib::Fit& fit, const std::vector<double>& truth) {
     result.holds.push_back(interval.first <= truth[j] && truth[j] <= interval.second);
     result.plain.push_back(std::abs(found.value - truth[j]) <=
                            quantile * found.standard_error.value());
-    result.half_width.push_back((interval.second - interval.first) / 2.0 / truth[j]);
+    const double half = (interval.second - interval.first) / 2.0;
+    result.half_width.push_back(truth[j] == 0.0 ? std::nan("") : half / truth[j]);
   }
   result.warned =
       fit.misfit.value_or(false) || (fit.between_repeats && fit.between_repeats->differ);
-  for (const std::string& key : kFree) {
-    result.warned =
-        result.warned || parameter(fit, key).identifiability != calib::Identifiability::identified;
+  for (std::size_t j = 0; j < kFree.size(); ++j) {
+    const auto expected =
+        truth[j] == 0.0 ? calib::Identifiability::bounded : calib::Identifiability::identified;
+    result.warned = result.warned || parameter(fit, kFree[j]).identifiability != expected;
   }
   return result;
 }
@@ -242,8 +249,8 @@ std::string median_half_widths(std::vector<Outcome> outcomes) {
     std::nth_element(
         outcomes.begin(), outcomes.begin() + middle, outcomes.end(),
         [j](const Outcome& a, const Outcome& b) { return a.half_width[j] < b.half_width[j]; });
-    words.push_back(
-        fmt::format("{:.2g}", 100.0 * outcomes[static_cast<std::size_t>(middle)].half_width[j]));
+    const double percent = 100.0 * outcomes[static_cast<std::size_t>(middle)].half_width[j];
+    words.push_back(std::isnan(percent) ? "-" : significant(percent, 2));
   }
   return fmt::format("{}", fmt::join(words, " "));
 }
@@ -253,8 +260,10 @@ void study(const Scenario& scenario, std::size_t campaigns, int threads) {
   const std::vector<double> truth = true_values(scenario);
   std::vector<Outcome> outcomes(campaigns);
   parallel_for(campaigns, threads, [&](std::size_t i) {
-    outcomes[i] =
-        outcome_of(calib::fit(campaign, make_records(campaign, scenario, i + 1), {}), truth);
+    const auto records = make_records(campaign, scenario, i + 1);
+    outcomes[i] = outcome_of(calib::fit(campaign, records, {}), truth);
+    for (const datasets::Record& record : records)
+      outcomes[i].warned = outcomes[i].warned || !record.warnings.empty();
   });
   const auto warned = std::count_if(outcomes.begin(), outcomes.end(),
                                     [](const Outcome& each) { return each.warned; });

@@ -7,8 +7,10 @@
 #include <limits>
 
 #include "datasets/alignment.hpp"
+#include "datasets/coarse_steps.hpp"
 #include "datasets/identical_repeats.hpp"
 #include "datasets/lag.hpp"
+#include "datasets/mains_hum.hpp"
 #include "datasets/median.hpp"
 #include "datasets/resample.hpp"
 
@@ -270,6 +272,29 @@ void judge_repeats(const Stack& stack, const Series& series, Channel channel, Sp
     warn_of_outliers(distinct, channel, span, options, record);
 }
 
+/// Names noise that the mean of the repeats and their scatter do not stand for.
+/// @param deviations  of each row from the mean
+void warn_of_noise(const std::vector<std::vector<double>>& deviations, const Series& series,
+                   Channel channel, const AverageOptions& options,
+                   const std::vector<Repeat>& repeats, std::vector<std::string>& warnings) {
+  if (!info(channel).is_output || !(series.pooled_sd > 0.0)) return;
+  const ChannelInfo& about = info(channel);
+  const std::vector<double>& time_s = repeats.front().time_s;
+  const double rate_hz = static_cast<double>(time_s.size() - 1) / (time_s.back() - time_s.front());
+  if (const auto hum = mains_hum(deviations, rate_hz, options.drive_hz)) {
+    warnings.push_back(fmt::format(
+        "{}: hum of the mains, {:.0f} Hz with an amplitude of {:.2g} {} in every repeat; what it "
+        "leaves in their mean counts as noise, which it is not",
+        about.key, hum->frequency_hz, hum->amplitude, about.unit));
+  }
+  if (const auto step = coarse_step(repeats, channel, series.pooled_sd)) {
+    warnings.push_back(fmt::format(
+        "{}: readings come in steps of {:.3g} {}, and the repeats scatter by {:.2g} {} only: each "
+        "is rounded alike, which their mean does not remove and their scatter does not show",
+        about.key, *step, about.unit, series.pooled_sd, about.unit));
+  }
+}
+
 /// Names repeats that leave more than a hundredth of the record uncovered.
 void warn_of_gaps(const std::vector<Repeat>& repeats, const std::vector<double>& shift,
                   std::vector<std::string>& warnings) {
@@ -316,9 +341,12 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
   for (const auto& [channel, stack] : stacks) {
     Series series = moments(stack, span);
     conclude_sd(series, channel, options, record.warnings);
-    if (options.keep_deviations && stack.rows.size() > 1)
-      series.deviations = deviations_from(stack, series, span);
     judge_repeats(stack, series, channel, span, options, repeats, record);
+    if (stack.rows.size() > 1) {
+      auto deviations = deviations_from(stack, series, span);
+      warn_of_noise(deviations, series, channel, options, repeats, record.warnings);
+      if (options.keep_deviations) series.deviations = std::move(deviations);
+    }
     if (repeats.size() == 1) series.repeats = options.repeats_averaged;
     record.channels.emplace(channel, std::move(series));
   }

@@ -22,6 +22,8 @@ namespace {
 AverageOptions options_of(const Campaign& campaign, const Condition& condition) {
   AverageOptions options;
   options.align = campaign.alignment == Alignment::correlate;
+  if (condition.frequency_hz && !condition.end_frequency_hz)
+    options.drive_hz = *condition.frequency_hz;
   options.repeats_averaged = condition.averaged ? condition.repeats_averaged : 1;
   for (const auto& [channel, setting] : campaign.channels)
     if (setting.sd) options.known_sd[channel] = *setting.sd;

@@ -181,6 +181,25 @@ TEST_CASE("average: of two repeats that disagree neither is named the wrong one"
   CHECK_FALSE(record.repeat_reports[1].outlier);
 }
 
+TEST_CASE("average: hum and coarse steps are named", "[datasets]") {
+  std::vector<Repeat> repeats;
+  for (unsigned r = 0; r < 5; ++r) {
+    repeats.push_back(repeat_of("r" + std::to_string(r), sine_response, 0.0, 0.01, r));
+    for (std::size_t i = 0; i < repeats[r].time_s.size(); ++i) {
+      repeats[r].values[Channel::position][i] +=
+          0.05 * std::sin(100.0 * std::numbers::pi * repeats[r].time_s[i] + 2.5 * r);
+    }
+  }
+  CHECK_THAT(average("hum", repeats, {}).warnings.front(),
+             Contains("position: hum of the mains, 50 Hz with an amplitude of 0.05"));
+  for (unsigned r = 0; r < 5; ++r) {
+    repeats[r] = repeat_of("r" + std::to_string(r), sine_response, 0.0, 0.01, r);
+    for (double& x : repeats[r].values[Channel::position]) x = std::round(x / 0.04) * 0.04;
+  }
+  CHECK_THAT(average("steps", repeats, {}).warnings.front(),
+             Contains("position: readings come in steps of 0.04 m, and the repeats scatter by"));
+}
+
 TEST_CASE("average: a single repeat has no false standard deviation", "[datasets]") {
   const auto repeats = jittered(sine_response, {0.0}, 0.01);
   const Record unknown = average("c", repeats, {});
