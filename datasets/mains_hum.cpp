@@ -87,7 +87,8 @@ std::optional<MainsHum> mains_hum(const std::vector<std::vector<double>>& deviat
     const double line_hz = std::max(kLineHalfWidthHz, resolution_hz);
     const double near_hz = line_hz + kSideLobes * resolution_hz;
     const double far_hz = kSideShare * frequency_hz;
-    if (0.5 * rate_hz < frequency_hz + far_hz || 2.0 * near_hz > far_hz) continue;
+    // A record of one sample has no rate.
+    if (!(0.5 * rate_hz >= frequency_hz + far_hz) || !(2.0 * near_hz <= far_hz)) continue;
     if (hidden_by_drive(frequency_hz, drive_hz, line_hz)) continue;
     if (!spectrum) spectrum = spectrum_of(deviations, rate_hz);
     const double line = largest(*spectrum, frequency_hz, 0.0, line_hz);

@@ -22,6 +22,8 @@ struct MainsHum {
 ///
 /// @param deviations  of each repeat from the mean of all, shape (repeats, samples); a sample that
 ///                    a repeat lacks is NaN
+/// @param rate_hz     of the samples; nothing is found below 2.9 times the mains' frequency, nor in
+///                    records of less than about 0.3 s
 /// @param drive_hz    frequency of a periodic drive, 0 if there is none
 std::optional<MainsHum> mains_hum(const std::vector<std::vector<double>>& deviations,
                                   double rate_hz, double drive_hz);

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -36,6 +38,15 @@ Json estimate_json(const Json* parameter, bool usable) {
   return json;
 }
 
+/// Whether a value is zero or not significantly different from it, so that nothing is a percentage
+/// of it.
+bool may_be_zero(const Json& estimate) {
+  if (number_of(estimate, "value").value_or(0.0) == 0.0) return true;
+  const Json& ci = estimate.at("ci95");
+  if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number()) return false;
+  return ci[0].get<double>() <= 0.0 && ci[1].get<double>() >= 0.0;
+}
+
 /// `p_value` is that of this difference alone; `significant` is set later, for all together.
 Json difference_json(const Json& first, const Json& other, bool same_records) {
   if (!first.is_object() || !other.is_object()) return nullptr;
@@ -43,7 +54,7 @@ Json difference_json(const Json& first, const Json& other, bool same_records) {
   const auto b = number_of(other, "value");
   Json json;
   json["difference"] = a && b ? number(*b - *a) : Json(nullptr);
-  json["percent"] = a && b && *a != 0.0 ? number(100.0 * (*b / *a - 1.0)) : Json(nullptr);
+  json["percent"] = a && b && !may_be_zero(first) ? number(100.0 * (*b / *a - 1.0)) : Json(nullptr);
   json["standard_error"] = nullptr;
   json["p_value"] = nullptr;
   json["p_value_of_all"] = nullptr;
@@ -125,6 +136,14 @@ Json compared_parameters(const std::vector<Compared>& results) {
   }
   for (std::size_t i = 1; i < results.size(); ++i) judge_together(list, i);
   return list;
+}
+
+std::string change_text(const Json& difference, const RowUnit& unit) {
+  if (const auto percent = number_of(difference, "percent"))
+    return fmt::format("{:+.3g} %", *percent);
+  const auto absolute = number_of(difference, "difference");
+  if (!absolute) return {};
+  return fmt::format("{:+.2g}{}{}", *absolute / unit.si, unit.name.empty() ? "" : " ", unit.name);
 }
 
 bool worth_a_row(const Json& parameter) {

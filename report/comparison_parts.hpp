@@ -44,11 +44,12 @@ Json tested_parameters(const Json& parameters, std::size_t results);
 /// A difference from the first result that a reader must see: significant, or not tested.
 struct Change {
   std::string parameter, result;
-  double percent = 0.0;
+  std::string by;           ///< "+1.2 %", or "+0.3 mm" where the first value may be zero
   std::optional<double> p;  ///< for all parameters together; absent where it was not tested
   std::string reason;       ///< why not
 };
-/// The significant ones first, the surest before the others; then the others, the largest first.
+/// The significant ones first, the surest before the others; then the others, the largest in
+/// standard errors first.
 ///
 /// @param comparison  with `results` and `parameters`
 std::vector<Change> changes_of(const Json& comparison);
@@ -65,6 +66,9 @@ Json compared_records(const std::vector<Compared>& results);
 /// `leak_trends`: leakage coefficients along dates and temperatures.
 Json leak_trends(const std::vector<Compared>& results);
 
+/// A difference from the first result in percent; where that value is zero or not significantly
+/// different from it, in the unit. Empty where one has no value.
+std::string change_text(const Json& difference, const RowUnit& unit);
 /// Whether a parameter of comparison.json tells anything: some result estimates it, or known
 /// values differ.
 bool worth_a_row(const Json& parameter);

@@ -64,26 +64,35 @@ Json tested_parameters(const Json& parameters, std::size_t results) {
 }
 
 std::vector<Change> changes_of(const Json& comparison) {
-  std::vector<Change> changes;
+  std::vector<std::pair<double, Change>> changes;  // with the size in standard errors
   for (const Json& parameter : comparison.at("parameters")) {
+    const Json& estimates = parameter.at("estimates");
     for (std::size_t i = 1; i < parameter.at("differences").size(); ++i) {
       const Json& difference = parameter.at("differences")[i];
       if (!difference.is_object() || difference.at("reason") == kKnownInBoth) continue;
-      const auto percent = number_of(difference, "percent");
-      if (!percent || *percent == 0.0) continue;
+      const auto size = number_of(difference, "difference");
+      if (!size || *size == 0.0) continue;
       const Json& significant = difference.at("significant");
       if (significant == false) continue;
-      changes.push_back({parameter_label(parameter), text_of(comparison.at("results")[i], "name"),
-                         *percent, number_of(difference, "p_value_of_all"),
-                         text_of(difference, "reason")});
+      const double error = std::hypot(number_of(estimates[0], "standard_error").value_or(0.0),
+                                      number_of(estimates[i], "standard_error").value_or(0.0));
+      changes.emplace_back(
+          std::abs(*size) / error,
+          Change{parameter_label(parameter), text_of(comparison.at("results")[i], "name"),
+                 change_text(difference, unit_of_estimates(parameter)),
+                 number_of(difference, "p_value_of_all"), text_of(difference, "reason")});
     }
   }
-  std::stable_sort(changes.begin(), changes.end(), [](const Change& a, const Change& b) {
-    if (a.p.has_value() != b.p.has_value()) return a.p.has_value();
-    if (a.p && *a.p != *b.p) return *a.p < *b.p;
-    return std::abs(a.percent) > std::abs(b.percent);
+  std::stable_sort(changes.begin(), changes.end(), [](const auto& a, const auto& b) {
+    const auto& p = a.second.p;
+    const auto& q = b.second.p;
+    if (p.has_value() != q.has_value()) return p.has_value();
+    if (p && *p != *q) return *p < *q;
+    return a.first > b.first;
   });
-  return changes;
+  std::vector<Change> sorted;
+  for (auto& [size, change] : changes) sorted.push_back(std::move(change));
+  return sorted;
 }
 
 }  // namespace rigcal::report

@@ -59,7 +59,8 @@ std::string results_table(const Json& comparison, std::size_t columns) {
 /// "85.011 [84.96, 85.06]", "6.2 (known)", "-" in the unit of the row.
 std::string estimate_text(const Json& estimate, const RowUnit& unit) {
   if (!estimate.is_object() || !number_of(estimate, "value")) return "-";
-  const std::string text = text_of(shown_in(estimate.at("value"), unit.si, 6), "text");
+  const std::string text =
+      text_of(shown_matched(estimate.at("value"), estimate.at("ci95"), unit.si, 6), "text");
   if (!estimate.at("fitted").get<bool>()) return text + " (known)";
   const Json interval = shown_interval(estimate.at("ci95"), unit.si);
   if (!interval.at("known").get<bool>()) return text + " (no interval)";
@@ -69,11 +70,10 @@ std::string estimate_text(const Json& estimate, const RowUnit& unit) {
 
 std::string unit_text(const RowUnit& unit) { return unit.name.empty() ? "1" : unit.name; }
 
-std::string difference_text(const Json& difference) {
+std::string difference_text(const Json& difference, const RowUnit& unit) {
   if (!difference.is_object()) return "-";
-  const auto percent = number_of(difference, "percent");
-  if (!percent) return "-";
-  std::string text = fmt::format("{:+.3g} %", *percent);
+  const std::string text = change_text(difference, unit);
+  if (text.empty()) return "-";
   if (const auto p = number_of(difference, "p_value_of_all")) {
     return text + fmt::format(" ({}){}", p_value_text(*p),
                               difference.at("significant").get<bool>() ? " *" : "");
@@ -97,7 +97,7 @@ TextTable wide_estimates(const Json& comparison) {
     std::vector<std::string> row{parameter_label(parameter), unit_text(unit)};
     for (std::size_t i = 0; i < estimates.size(); ++i) {
       row.push_back(estimate_text(estimates[i], unit));
-      if (i > 0) row.push_back(difference_text(parameter.at("differences")[i]));
+      if (i > 0) row.push_back(difference_text(parameter.at("differences")[i], unit));
     }
     table.add(std::move(row));
   }
@@ -116,7 +116,7 @@ std::string stacked_estimates(const Json& comparison) {
     for (std::size_t i = 0; i < results.size(); ++i) {
       table.add({"  " + text_of(results[i], "name"),
                  estimate_text(parameter.at("estimates")[i], unit),
-                 i > 0 ? difference_text(parameter.at("differences")[i]) : std::string()});
+                 i > 0 ? difference_text(parameter.at("differences")[i], unit) : std::string()});
     }
   }
   // The title of a parameter goes above its lines; the line of the columns stays first.

@@ -25,13 +25,13 @@ Json estimate_cell(const Json& estimate, const RowUnit& unit) {
           {"grade", grade == "not_identifiable" ? "not identifiable" : grade}};
 }
 
-Json change_cell(const Json& difference) {
+Json change_cell(const Json& difference, const RowUnit& unit) {
   if (!difference.is_object()) return {{"there", false}};
-  const auto percent = number_of(difference, "percent");
+  const std::string by = change_text(difference, unit);
   const auto p = number_of(difference, "p_value_of_all");
   const bool significant = p && difference.at("significant").get<bool>();
-  return {{"there", percent.has_value()},
-          {"percent", percent ? fmt::format("{:+.3g} %", *percent) : std::string()},
+  return {{"there", !by.empty()},
+          {"by", by},
           {"exact", shown_in(difference.at("difference"), 1.0).at("exact")},
           {"judged", p.has_value()},
           {"p", p ? p_value_text(*p) : std::string()},
@@ -54,7 +54,7 @@ Json parameter_rows(const Json& parameters) {
     for (std::size_t i = 0; i < estimates.size(); ++i) {
       Json cell{{"estimate", estimate_cell(estimates[i], unit)}};
       cell["later"] = i > 0;
-      cell["change"] = change_cell(parameter.at("differences")[i]);
+      cell["change"] = change_cell(parameter.at("differences")[i], unit);
       cells.push_back(std::move(cell));
     }
     rows.push_back({{"name", parameter_label(parameter)},
@@ -289,9 +289,9 @@ Json model_rows(const Json& comparison) {
   return rows;
 }
 
-std::string change_text(const Change& change) {
+std::string change_sentence(const Change& change) {
   const std::string text =
-      fmt::format("{} differs in {} by {:+.3g} %", change.parameter, change.result, change.percent);
+      fmt::format("{} differs in {} by {}", change.parameter, change.result, change.by);
   return change.p ? fmt::format("{} ({})", text, p_value_text(*change.p))
                   : fmt::format("{}, not tested: {}", text, change.reason);
 }
@@ -337,7 +337,7 @@ Json comparison_headline(const Json& comparison) {
                            text_of(result, "message")),
                "results");
   }
-  for (const Change& change : changes) add_reason(view, change_text(change), "estimates");
+  for (const Change& change : changes) add_reason(view, change_sentence(change), "estimates");
   return view;
 }
 

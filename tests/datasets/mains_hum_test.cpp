@@ -59,6 +59,7 @@ TEST_CASE("mains_hum: neither noise nor lines elsewhere are hum", "[datasets]") 
   CHECK_FALSE(mains_hum(deviations(50.0, 0.3, 0.1, 100), kRateHz, 0.0));
   CHECK_FALSE(mains_hum(deviations(50.0, 0.3, 0.1, 20000), 100.0, 0.0));
   CHECK_FALSE(mains_hum(deviations(50.0, 0.3, 0.1, 20000, 1), kRateHz, 0.0));
+  CHECK_FALSE(mains_hum(deviations(50.0, 0.3, 0.1, 1), std::nan(""), 0.0));
 }
 
 TEST_CASE("mains_hum: late edges of a square wave are none", "[datasets]") {

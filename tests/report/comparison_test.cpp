@@ -74,6 +74,25 @@ TEST_CASE("comparison: a clear change is significant, and said so", "[report]") 
   CHECK_THAT(text, Contains("before") && Contains("after"));
 }
 
+TEST_CASE("comparison: nothing is a percentage of what may be zero", "[report]") {
+  Compared tight = compared_fit("before", 85.0, 0.0);
+  Json json = comparison_json({tight, compared_fit("after", 85.0, 0.3)}, {});
+  const Json& leak = json["parameters"][2]["differences"][1];
+  CHECK(leak["percent"].is_null());
+  CHECK(leak["significant"] == true);
+  CHECK_THAT(comparison_text(json, {}), Contains("+0.3 (p"));
+  CHECK_THAT(comparison_headline(json)["reasons"][0]["text"].get<std::string>(),
+             Contains("leakage_coefficient differs in after by +0.3 (p"));
+  // Not zero, but its interval holds zero: 0.03 would be +200 %.
+  Compared other = compared_fit("after", 87.0, 0.03);
+  other.result["provenance"]["inputs"][1]["sha256"] = "before";
+  json = comparison_json({compared_fit("before", 85.0, 0.01), other}, {});
+  CHECK(json["parameters"][2]["differences"][1]["percent"].is_null());
+  // Two standard errors against 3.5: the mass comes first, though neither can be tested.
+  CHECK_THAT(comparison_headline(json)["reasons"][0]["text"].get<std::string>(),
+             Contains("mass differs in after by +2.35 %, not tested"));
+}
+
 TEST_CASE("comparison: fits on a terminal of 80 columns", "[report]") {
   const Json json = comparison_json({compared_fit("before the seal change", 85.0, 0.3),
                                      compared_fit("after the seal change", 86.0, 0.4)},
