@@ -1,19 +1,22 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Speeds, ringing and leakage of the Festo records, measured and simulated.
 
-    docs/festo/measures.py RESULT_DIR [DATA_DIR]     (needs python3-numpy; RESULT_DIR from `rigcal fit`;
-                                                      with DATA_DIR the ring of every repeat too)
+    docs/festo/measures.py RESULT_DIR DATA_DIR [RECORD...]     (needs python3-numpy; RESULT_DIR from `rigcal fit`)
+
+Of the single repeats in DATA_DIR, the first peak and the ring of p_A. RECORD: steps_2V and the like; all three, if
+none is named.
 """
+import pathlib
 import sys
 
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from result_files import print_table, residuals  # noqa: E402
 
-def residuals(path):
-    lines = [line for line in open(path) if not line.startswith("#")]
-    names = lines[0].strip().split(",")
-    table = np.genfromtxt(lines[1:], delimiter=",")
-    return {name: table[:, i] for i, name in enumerate(names)}
+RECORDS = ("steps_1V", "steps_2V", "steps_4V")
+HEADER = ["record", "", "out mm/s", "back mm/s", "first peak of p_A bar", "ring of p_A Hz", "p_A at closed valve bar/s"]
+FORMATS = (".1f", ".1f", ".2f", ".1f", ".1f")
 
 
 def speed(t, x, begin, end):
@@ -62,43 +65,32 @@ def rings_of_repeats(path, begin):
     return np.array(rings).T
 
 
-def taken_up(t, x, p, back, end):
-    """What chamber A takes up per pressure [m3/Pa] on its way down, around 33 and 16 bar, the piston at rest:
-    flow of the orifice that the steady way back gauges, over the rate of the pressure."""
-    area_m2, tank_pa = 2.011e-4, 1.15e5
-    steady = (t >= back) & (t < end) & (x > 0.06) & (x < 0.16)
-    gauge = area_m2 * abs(np.polyfit(t[steady], x[steady], 1)[0]) / np.sqrt(p[steady].mean() - tank_pa)
-    result = []
-    first = np.searchsorted(t, back)
-    for high, low in ((36e5, 30e5), (17.5e5, 14.5e5)):
-        begin, stop = (first + int(np.argmax(p[first:] < level)) for level in (high, low))
-        crossed = [t[i - 1] + (p[i - 1] - level) / (p[i - 1] - p[i]) * (t[i] - t[i - 1])
-                   for i, level in ((begin, high), (stop, low))]
-        rate = (high - low) / (crossed[1] - crossed[0])
-        result.append(gauge * np.sqrt(0.5 * (high + low) - tank_pa) / rate)
-    return result
+def measures(r, kind):
+    """Speeds out and back, first peak, ring, rate at closed valve: in the units of HEADER."""
+    t, x, p = r["time_s"], r[f"{kind}_position_m"], r[f"{kind}_pressure_a_pa"]
+    _, out, stop, back = steps(r)
+    closed = (t > stop + 0.01) & (t < back - 0.002)
+    peak, hertz = ring(t, p, out)
+    return np.array([speed(t, x, out, stop), speed(t, x, back, t[-1]), peak, hertz,
+                     1e-5 * np.polyfit(t[closed], p[closed], 1)[0]])
 
 
-def main(folder, data=None):
-    for name in ("steps_1V", "steps_2V", "steps_4V"):
-        r = residuals(f"{folder}/residuals/{name}.csv")
-        t = r["time_s"]
-        volts, out, stop, back = steps(r)
-        closed = (t > stop + 0.01) & (t < back - 0.002)
-        for kind in ("measured", "simulated"):
-            x, a = r[f"{kind}_position_m"], r[f"{kind}_pressure_a_pa"]
-            peak, hertz = ring(t, a, out)
-            fall = 1e-5 * np.polyfit(t[closed], a[closed], 1)[0]
-            print(f"{volts} V {kind:9}: out {speed(t, x, out, stop):6.1f}, back {speed(t, x, back, t[-1]):6.1f} mm/s; "
-                  f"p_A first peak {peak:5.2f} bar, ring {hertz:4.1f} Hz; p_A at closed valve {fall:6.1f} bar/s")
-            if kind == "measured":
-                high, low = taken_up(t, x, a, back, t[-1])
-                print(f"{volts} V measured : chamber A takes up {1e13 * high:.2f}e-13 m3/Pa near 33 bar, "
-                      f"{1e13 * low:.2f}e-13 near 16 bar")
-        if data:
-            peaks, hertz = rings_of_repeats(f"{data}/{name}_1kHz.csv", out)
-            print(f"{volts} V repeats  : p_A first peak {peaks.min():.2f} to {peaks.max():.2f} bar, ring "
-                  f"{hertz.min():.1f} to {hertz.max():.1f} Hz, median {np.median(hertz):.1f} Hz")
+def rows_of_record(folder, data, name):
+    r = residuals(folder, name)
+    volts, out, _, _ = steps(r)
+    measured, simulated = measures(r, "measured"), measures(r, "simulated")
+    peaks, rings = rings_of_repeats(f"{data}/{name}_1kHz.csv", out)
+    for kind, values in (("measured", measured), ("simulated", simulated)):
+        yield [f"{volts} V", kind, *(f"{value:{digits}}" for value, digits in zip(values, FORMATS))]
+    yield [f"{volts} V", "simulated to measured", *(f"{100 * ratio - 100:+.1f} %" for ratio in simulated / measured)]
+    yield [f"{volts} V", "single repeats", "", "", f"{peaks.min():.2f} to {peaks.max():.2f}",
+           f"{rings.min():.1f} to {rings.max():.1f}, median {np.median(rings):.1f}", ""]
+    yield [f"{volts} V", "simulated to median", "", "", f"{100 * simulated[2] / np.median(peaks) - 100:+.1f} %",
+           f"{100 * simulated[3] / np.median(rings) - 100:+.1f} %", ""]
+
+
+def main(folder, data, *names):
+    print_table(HEADER, (row for name in names or RECORDS for row in rows_of_record(folder, data, name)))
 
 
 if __name__ == "__main__":

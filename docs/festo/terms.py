@@ -1,12 +1,13 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """What each term of the Festo campaign is worth: fits without one at a time.
 
     docs/festo/terms.py RIGCAL DATA_DIR OUT_DIR [TERM...]     (run at the project's root)
 """
-import csv
-import json
-import subprocess
+import pathlib
 import sys
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from result_files import fit, print_table, read_json, scorecard  # noqa: E402
 
 CAMPAIGN = "datasets/festo_tp511/campaign.toml"
 # term: values that leave it out
@@ -24,28 +25,29 @@ FREE = ("coulomb_friction external_force stroke hose_capacity_a hose_capacity_b 
         "valve_dead_band gain_supply_to_b gain_a_to_tank gain_b_to_tank").split()
 
 
-def fit(rigcal, data, out, term):
+def without(term, rigcal, data, out):
+    """The cost, and the fields of a row that follow it."""
     fixed = [setting.split("=")[0] for setting in TERMS[term]]
-    command = [rigcal, "fit", CAMPAIGN, "--data", data, "--out", f"{out}/{term}", "--quiet",
-               "--free", ",".join(name for name in FREE if name not in fixed)]
-    for setting in TERMS[term]:
-        command += ["--set", setting]
-    subprocess.run(command, stdout=subprocess.DEVNULL, check=False)
-    cost = json.load(open(f"{out}/{term}/fit.json"))["cost"]
-    score = {}
-    for row in csv.DictReader(line for line in open(f"{out}/{term}/scorecard.csv") if line[0] != "#"):
-        score[row["condition"], row["channel"]] = 100 * float(row["rho2"])
-        if row["condition"] == "steps_2V" and row["channel"] == "position":
-            error = float(row["absolute_error_percent"])
-    print(f"| {term} | {cost:.0f} | {score['steps_2V', 'position']:.3f} | {error:.3f} | "
-          + " | ".join(f"{score[c, p]:.2f}" for c in ("steps_2V", "steps_2V_moving") for p in ("pressure_a", "pressure_b"))
-          + " |", flush=True)
+    options = [option for setting in TERMS[term] for option in ("--set", setting)]
+    fit(rigcal, CAMPAIGN, data, f"{out}/{term}", "--free", ",".join(name for name in FREE if name not in fixed), *options)
+    result = read_json(f"{out}/{term}", "fit.json")
+    score = {(row["condition"], row["channel"]): row for row in scorecard(f"{out}/{term}")}
+    position = score["steps_2V", "position"]
+    pressures = [score[condition, channel] for condition in ("steps_2V", "steps_2V_moving")
+                 for channel in ("pressure_a", "pressure_b")]
+    return result["cost"], [result["status"], f"{100 * float(position['rho2']):.3f}",
+                            f"{float(position['absolute_error_percent']):.3f}",
+                            *(f"{100 * float(row['rho2']):.2f}" for row in pressures)]
 
 
 def main(rigcal, data, out, *terms):
-    print("| without | cost | x rho2 % | x error % | p_A % | p_B % | p_A moving % | p_B moving % |\n" + "| --- " * 8 + "|")
-    for term in terms or TERMS:
-        fit(rigcal, data, out, term)
+    """The first row is the campaign as it is, whose cost is the unit of the others'."""
+    whole, fields = without("none", rigcal, data, out)
+    rows = [["none", "1", *fields]]
+    for term in terms or [each for each in TERMS if each != "none"]:
+        cost, fields = without(term, rigcal, data, out)
+        rows.append([f"`{term}`", f"{cost / whole:.4f}", *fields])
+    print_table(["without", "cost", "fit", "x rho2 %", "x error %", "p_A %", "p_B %", "p_A moving %", "p_B moving %"], rows)
 
 
 if __name__ == "__main__":
