@@ -389,8 +389,8 @@ void judge_residuals(const std::vector<UnjudgedSignal>& signals, std::vector<Rea
   } else if (coloured > 0) {
     reasons.push_back(reason(
         AspectState::reservation, "noise_unknown",
-        fmt::format("{}, and the residual of {} is autocorrelated: by the noise, or by what the "
-                    "model lacks; repeats would tell",
+        fmt::format("{}, and the residual of {} is autocorrelated: coloured noise, or unmodelled "
+                    "dynamics; repeats would distinguish them",
                     unknown, coloured),
         {}, numbers));
   } else {

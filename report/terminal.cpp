@@ -209,7 +209,7 @@ std::string scorecard_text(const Result& result, const Style& style) {
                      narrow_note(conditions, "scorecard.csv", style);
   const TextTable gathered = group_table(result, *channel);
   if (!gathered.empty()) {
-    text += "\n" + coloured("Gathered (means, and the worst)", "1", style) + "\n" +
+    text += "\n" + coloured("Summary by group (mean and worst)", "1", style) + "\n" +
             gathered.text(style.columns) +
             narrow_note(gathered, result.kind == ResultKind::fit ? "fit.json" : "validation.json",
                         style);
