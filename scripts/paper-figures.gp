@@ -31,7 +31,7 @@ plot "figure8.csv" using 1:2 with lines lw 1.5 dt 3 lc rgb grey title "reference
      "" using 1:6 with lines lw 2 dt 4 lc rgb red title "critical (100 %)"
 
 set output "figure9.svg"
-set title "Figure 9: flows with a leakage above 30 % (C = 1.35), sine 0.1 Hz"
+set title "Figure 9: flows with 30 % of the servo flow leaking (C = 0.6), sine 0.1 Hz"
 set ylabel "flow / (L/min)"
 plot "figure9.csv" using 1:2 with lines lw 2 lc rgb blue title "servo valve", \
      "" using 1:3 with lines lw 2 dt 2 lc rgb red title "leakage", \

@@ -1,27 +1,24 @@
 #!/usr/bin/python3
 """What the staircase of Martensson's bench tells without a model.
 
-    holding.py DIR
+    docs/martensson_bench/holding.py DATA_DIR     (needs python3-numpy)
 
-DIR holds the records of martensson_hydraulic_bench. Prints the controller, the command at which the
-piston holds its load on every stair, and the speed by command. Needs numpy.
+Prints the controller, the command at which the piston holds its load on the stairs, and the speed by command.
 """
 import pathlib
 import sys
 
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from result_files import print_table  # noqa: E402
 
-def main():
-    file = pathlib.Path(sys.argv[1]) / "hanging_load_with_cross_port_orifice.csv"
-    t, r, y, u = np.loadtxt(file, delimiter=",", skiprows=1).T
+COMMANDS_V = (-1.4, -1.0, -0.8, -0.6, -0.4, -0.2, 0.2, 0.4, 0.6, 0.8, 1.0)
 
-    terms = np.column_stack([r - y, np.ones_like(r)])
-    (gain, offset), *_ = np.linalg.lstsq(terms, u, rcond=None)
-    left = np.std(u - terms @ (gain, offset))
-    print(f"controller: u = {gain:.4f} (r - y) {offset:+.4f} V, rms {1e3 * left:.0f} mV")
 
-    print("holding: last second of each stair of 4 s or more, y - r and u in V")
+def held_on_stairs(t, r, y, u):
+    """By the sense of the step: y - r and u [V], means of the last second of each stair of 4 s or more that has come to
+    rest."""
     edges = np.concatenate([[0], np.nonzero(np.diff(r))[0] + 1, [len(t)]])
     held = {"up": [], "down": []}
     before = r[0]
@@ -29,25 +26,35 @@ def main():
         if end - first < 200:
             continue
         step, before = r[first] - before, r[first]
-        if abs(step) < 0.5:
+        if abs(step) < 0.5 or abs(y[end - 1] - y[end - 100]) > 0.02:
             continue
-        rest = slice(end - 50, end)
-        sense = "up" if step > 0 else "down"
-        if abs(y[end - 1] - y[end - 100]) > 0.02:
-            continue
-        held[sense].append(u[rest].mean())
-        print(f"  {t[first]:6.1f} s {sense:4s} r {r[first]:5.2f}: {np.mean(y[rest] - r[rest]):+.3f} "
-              f"{u[rest].mean():+.3f}")
-    for sense, values in held.items():
-        print(f"  after a step {sense}: u from {min(values):+.3f} to {max(values):+.3f} V")
+        last = slice(end - 50, end)
+        held["up" if step > 0 else "down"].append((np.mean(y[last] - r[last]), u[last].mean()))
+    return {sense: np.array(values).T for sense, values in held.items()}
 
-    print("speed by command, V/s of y (means over half a second):")
+
+def main(data):
+    file = pathlib.Path(data) / "hanging_load_with_cross_port_orifice.csv"
+    t, r, y, u = np.loadtxt(file, delimiter=",", skiprows=1).T
+
+    terms = np.column_stack([r - y, np.ones_like(r)])
+    found = np.linalg.lstsq(terms, u, rcond=None)[0]
+    left = np.std(u - terms @ found)
+    print(f"Controller: u = {found[0]:.4f} (r - y) {found[1]:+.4f} V, rms {1e3 * left:.0f} mV.\n")
+
+    print_table(["step", "stairs", "y - r, V", "u that holds, V"],
+                [[sense, f"{errors.size}", f"{errors.min():+.3f} to {errors.max():+.3f}",
+                  f"{commands.min():+.3f} to {commands.max():+.3f}"]
+                 for sense, (errors, commands) in held_on_stairs(t, r, y, u).items()])
+    print()
     window = np.ones(25) / 25
     speed = np.convolve(np.gradient(y, t), window, "same")
     command = np.convolve(u, window, "same")
-    for middle in (-1.4, -1.0, -0.8, -0.6, -0.4, -0.2, 0.2, 0.4, 0.6, 0.8, 1.0):
-        part = np.abs(command - middle) < 0.05
-        print(f"  {middle:+.1f} V: {speed[part].mean():+.3f} ({part.sum()} samples)")
+    parts = [np.abs(command - middle) < 0.05 for middle in COMMANDS_V]
+    print_table(["command, V (means over half a second)", *(f"{middle:+.1f}" for middle in COMMANDS_V)],
+                [["speed of y, V/s", *(f"{speed[part].mean():+.3f}" for part in parts)],
+                 ["samples", *(f"{part.sum()}" for part in parts)]])
 
 
-main()
+if __name__ == "__main__":
+    main(*sys.argv[1:])
