@@ -1,0 +1,130 @@
+"""Every script of scripts/ and docs/ is run by a test. usage: scripts_test.py RIGCAL
+
+The scripts run in a tree of their own, with the program that is tested; what installs and builds only tells what it was
+asked for there, and the programs that measure for hours only repeat their arguments.
+"""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+DATA = pathlib.Path(os.environ.get("RIGCAL_DATA", ROOT.parent / "shared" / "data"))
+RIGCAL = pathlib.Path("rigcal")  # from the command line
+ELSEWHERE = {
+    "build": ".ci/run",
+    "lint": ".ci/run",
+    "setup": ".ci/run",
+    "docs-numbers": "tests/docs/numbers_test.py",
+    "mutation-study": "tests/CMakeLists.txt",
+}
+ECHO = '#!/bin/sh\necho "$(basename "$0") $*"\n'
+
+
+def make_program(path, text=ECHO):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    path.chmod(0o755)
+
+
+class Scripts(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.tree = pathlib.Path(folder.name) / "tree"
+        shutil.copytree(ROOT / "scripts", self.tree / "scripts", ignore=shutil.ignore_patterns("__pycache__"))
+        for name in ("setup", "build"):
+            make_program(self.tree / "scripts" / name)
+        for name in ("datasets", "tests"):
+            (self.tree / name).symlink_to(ROOT / name)
+        release = self.tree / "build" / "release"
+        for name in ("speed", "coverage_study", "diagnosis_study"):
+            make_program(release / "bench" / f"rigcal_{name}")
+        (release / "rigcal").symlink_to(RIGCAL)
+        self.programs = self.tree / "programs"  # before all others
+        self.programs.mkdir()
+
+    def run_script(self, name, *arguments):
+        path = f"{self.programs}:{os.environ['PATH']}"
+        environment = {key: value for key, value in os.environ.items() if key != "RIGCAL"} | {"PATH": path}
+        done = subprocess.run([self.tree / "scripts" / name, *arguments], cwd=self.tree, capture_output=True, text=True,
+                              check=False, env=environment)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return done.stdout
+
+    def test_coverage_study(self):
+        self.assertEqual(self.run_script("coverage-study", "7", "2"), "rigcal_coverage_study 7 2\n")
+
+    def test_demo(self):
+        printed = self.run_script("demo")
+        self.assertIn("setup \nbuild release --target rigcal\n", printed)
+        for name in ("truth.json", "fit.json", "validation.json", "report.html", "validation/report.html"):
+            self.assertTrue((self.tree / "demo" / name).is_file(), name)
+
+    def test_diagnosis_study(self):
+        printed = self.run_script("diagnosis-study", "3", "4")
+        self.assertIn("rigcal_diagnosis_study classes 3 4\n", printed)
+        self.assertIn("rigcal_diagnosis_study smallest 3 4\n", printed)
+
+    def test_paper_figures(self):
+        if not shutil.which("gnuplot"):
+            make_program(self.programs / "gnuplot", "#!/bin/sh\nfor n in 5 8 9 10 11; do cp figure$n.csv figure$n.svg; done\n")
+        self.assertIn("setup --figures\n", self.run_script("paper-figures", "figures"))
+        for number in (5, 8, 9, 10, 11):
+            self.assertGreater((self.tree / "figures" / f"figure{number}.svg").stat().st_size, 0)
+            header, first, *_ = (self.tree / "figures" / f"figure{number}.csv").read_text().splitlines()
+            self.assertEqual(len(first.split(",")), len(header.split(",")))
+
+    def test_paper_figures_without_gnuplot(self):
+        make_program(self.programs / "gnuplot", "#!/bin/sh\nexit 1\n")
+        self.assertIn("setup \n", self.run_script("paper-figures", "--csv", "figures"))
+        self.assertEqual(len(list((self.tree / "figures").iterdir())), 5)
+
+    def test_performance(self):
+        (self.tree / "docs").mkdir()
+        self.run_script("performance", "3")
+        self.assertTrue((self.tree / "docs" / "performance.md").read_text().endswith("\nrigcal_speed 3\n"))
+
+    def test_report_performance(self):
+        printed = self.run_script("report-performance")
+        self.assertIn("conditions: 24, samples each: 30000\n", printed)
+        self.assertRegex(printed, r"written in [\d.]+ s of CPU, \d{7} bytes\nopens")
+
+    def test_resume_study(self):
+        self.assertTrue(self.run_script("resume-study", "2", "3").endswith("killed 2 times: the same\n"))
+
+    def test_start_study(self):
+        records = DATA / "sim_hopsan_leaky_servo"
+        if not records.is_dir():
+            self.skipTest(f"no recordings in {records}")
+        self.assertIn("1 of 1 starts end within", self.run_script("start-study", records, "1"))
+
+    def test_test(self):
+        make_program(self.programs / "ctest")
+        printed = self.run_script("test")
+        for preset in ("release", "dev"):
+            self.assertIn(f"build {preset}\n== {preset}: test\nctest --preset {preset} -j", printed)
+
+    def test_every_script_has_a_test(self):
+        tested = {name[5:].replace("_", "-") for name in dir(self) if name.startswith("test_")}
+        for path in (ROOT / "scripts").iterdir():
+            if not os.access(path, os.X_OK) or path.is_dir() or path.name in tested:
+                continue
+            self.assertIn(path.name, ELSEWHERE)
+            self.assertIn(path.name, (ROOT / ELSEWHERE[path.name]).read_text())
+
+    def test_every_script_of_the_documents_prints_a_block(self):
+        blocks = "".join(re.findall("^<!-- numbers: .*\n", "".join(path.read_text() for path in ROOT.glob("docs/*.md")), re.M))
+        scripts = [path for path in ROOT.glob("docs/**/*") if path.is_file() and os.access(path, os.X_OK)]
+        self.assertTrue(scripts)
+        for path in scripts:
+            self.assertIn(f"<!-- numbers: {path.relative_to(ROOT)} ", blocks)
+
+
+if __name__ == "__main__":
+    RIGCAL = pathlib.Path(sys.argv.pop(1)).resolve()
+    unittest.main()
