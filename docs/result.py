@@ -61,12 +61,12 @@ def estimate(parameter):
 
 
 def parameters(*folders):
-    found = [{each["name"]: each for each in fitted_parameters(folder)} for folder in folders]
+    found = [{(each["key"], each["level"]): each for each in fitted_parameters(folder)} for folder in folders]
     names = [pathlib.Path(folder).name for folder in folders]
     several = len(folders) > 1
-    rows = [[f"`{each['key']}`"] + ([where] if several else []) + estimate(each)
-            for name in dict.fromkeys(name for fit in found for name in fit)
-            for where, fit in zip(names, found) if (each := fit.get(name))]
+    rows = [[f"`{key}`" + (f", {level}" if level else "")] + ([where] if several else []) + estimate(each)
+            for key, level in dict.fromkeys(name for fit in found for name in fit)
+            for where, fit in zip(names, found) if (each := fit.get((key, level)))]
     print_table(["parameter"] + (["fit"] if several else []) + ["estimate", "95 % interval", "identifiability"], rows)
 
 
