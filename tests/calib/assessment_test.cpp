@@ -174,6 +174,8 @@ TEST_CASE("assessment: lack of fit counts where it is significant and larger tha
   CHECK(scene.assessed().adequacy.state == AspectState::pass);
   test.by_repeats = false;  // a stated noise that is far too large hides a lack of fit
   CHECK(find(scene.assessed().adequacy, "noise_overstated") != nullptr);
+  test.ratio = 0.3;  // a residual of more than half of the noise
+  CHECK(find(scene.assessed().adequacy, "noise_overstated") == nullptr);
 }
 
 TEST_CASE("assessment: without known noise the residual speaks", "[calib]") {
@@ -234,6 +236,20 @@ TEST_CASE("assessment: parameters", "[calib]") {
     CHECK(scene.assessed().parameters.state == AspectState::pass);
     scene.fit.parameters[2].value = 0.04;
     CHECK(scene.assessed().parameters.state == AspectState::reservation);
+  }
+  SECTION("bounded on both sides of zero: the farther end counts") {
+    FittedParameter leak = bounded_leak(0.001);
+    leak.ci95 = {-0.1, 0.001};
+    scene.fit.parameters.push_back(leak);
+    scene.campaign.acceptance_bounds.negligible[leak.index] = 0.05;
+    CHECK(scene.assessed().parameters.state == AspectState::reservation);
+  }
+  SECTION("a point that one of several starts found") {
+    scene.fit.starts.resize(3);
+    scene.fit.basins = {{1.0, {2}, {}}, {2.0, {1, 3}, {}}};
+    CHECK(find(scene.assessed().parameters, "found_once") != nullptr);
+    scene.fit.basins = {{1.0, {2, 1}, {}}, {2.0, {3}, {}}};
+    CHECK(find(scene.assessed().parameters, "found_once") == nullptr);
   }
   SECTION("a fit that did not converge never passes") {
     scene.fit.status = FitStatus::stopped;

@@ -31,6 +31,15 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
   CHECK_THAT(words, Contains("2 of 4 starts") && Contains("1 other minimum") &&
                         Contains("1 did not converge"));
   CHECK(agreement_of({starts[0]}, found, 1.0).empty());
+  // Of one cost, but at two points: a tenth of the interval's width is 0.02.
+  const auto apart = [&](double distance) {
+    return basins({start(1, 10.0, 1.0, FitStatus::converged),
+                   start(2, 10.0, 1.0 + distance, FitStatus::converged)},
+                  {parameter}, 1.0)
+        .size();
+  };
+  CHECK(apart(0.019) == 1);
+  CHECK(apart(0.021) == 2);
   // Where the residuals are far beyond the noise so are differences of cost that mean nothing.
   const std::vector<StartReport> rough{start(1, 4e6, 1.0, FitStatus::converged),
                                        start(2, 4e6 + 9.0, 1.0, FitStatus::converged)};

@@ -162,6 +162,43 @@ TEST_CASE("between repeats: what aligned repeats were shifted by is theirs again
   CHECK(repeat_deviations(condition, {}).isZero());
 }
 
+TEST_CASE("between repeats: starts at different times are named, a mixture is not", "[calib]") {
+  Twin twin;
+  twin.free("mass", 80.0, 10.0, 500.0);
+  twin.add("square", datasets::Waveform::square, 2.0, 0.01);
+  auto records = twin.records(40, 500.0, 1);
+  datasets::Series& ramp = records[0].channels[datasets::Channel::position];
+  for (std::size_t i = 0; i < 40; ++i) ramp.mean[i] = 3.0 * records[0].time_s[i];  // 3 m/s
+  const Problem problem = problem_of(twin, records);
+  const double sd = problem.conditions[0].channels[0].sd;
+  ScoreRows rows;
+  rows.jacobian = MatrixXd(40, 3);
+  for (Index t = 0; t < 40; ++t) {
+    const double phase = 0.1 * static_cast<double>(t);
+    rows.jacobian.row(t) << std::sin(phase), std::cos(2.0 * phase), phase * phase;
+  }
+  // Four repeats that began at these times: their standard deviation is sqrt(14 / 3) ms.
+  const std::vector<double> late_s{3e-3, -1e-3, 0.0, -2e-3};
+  MatrixXd deviations(40, 4);
+  for (Index r = 0; r < 4; ++r)
+    deviations.col(r).setConstant(-3.0 * late_s[static_cast<std::size_t>(r)] / sd);
+  const MatrixXd scores = repeat_scores(rows.jacobian, deviations);
+  const auto found = likely_difference(problem, problem.start(), {rows}, {scores});
+  REQUIRE(found.has_value());
+  CHECK(found->cause == "start");
+  CHECK_THAT(found->sd, WithinRel(1e-3 * std::sqrt(14.0 / 3.0), 1e-9));
+  CHECK_THAT(found->explained, WithinRel(1.0, 1e-9));
+
+  // As much again in each direction across that: no cause explains four fifths.
+  MatrixXd mixture = scores;
+  const VectorXd along = scores.col(0).normalized();
+  for (Index r = 0; r < 3; ++r) {
+    VectorXd across = VectorXd::Unit(3, r) - along(r) * along;
+    mixture.col(r) += scores.col(0).norm() * across.normalized();
+  }
+  CHECK_FALSE(likely_difference(problem, problem.start(), {rows}, {mixture}));
+}
+
 /// Five repeats per condition of a rig whose supply pressure differs by 2 % from run to run.
 struct DifferingSupply {
   Twin twin;

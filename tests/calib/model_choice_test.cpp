@@ -26,6 +26,18 @@ TEST_CASE("model choice: a term that explains more than noise is taken", "[calib
   CHECK_THAT(choice.message, Contains("friction is preferred"));
 }
 
+TEST_CASE("model choice: two terms that explain little", "[calib]") {
+  const auto choice =
+      choose(candidate("plain", 500.0, 3, 1000.0), candidate("both", 498.0, 5, 1000.0));
+  const double ratio = 4.0 * 995.0 / 996.0;
+  CHECK(choice.freedom == 2);
+  CHECK_THAT(choice.likelihood_ratio, WithinAbs(ratio, 1e-9));
+  CHECK_THAT(choice.p, WithinAbs(std::exp(-0.5 * ratio), 1e-9));  // chi-square of two
+  CHECK_FALSE(choice.larger);
+  CHECK_THAT(choice.delta_aic, WithinAbs(4.0 - ratio, 1e-9));
+  CHECK_THAT(choice.delta_bic, WithinAbs(2.0 * std::log(1000.0) - ratio, 1e-9));
+}
+
 TEST_CASE("model choice: correlated residuals are worth fewer", "[calib]") {
   const auto choice =
       choose(candidate("plain", 520.0, 3, 1000.0), candidate("friction", 498.0, 4, 50.0));

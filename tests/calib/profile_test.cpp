@@ -94,6 +94,42 @@ TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of
   CHECK_THAT(cut.reason, Contains("profile is open above"));
 }
 
+TEST_CASE("profile: what a prior alone tells ends where the prior does", "[calib]") {
+  // Valve gain and discharge coefficient act as their product.
+  Twin twin = twin_far_off();
+  twin.free("discharge_coefficient", 0.6, 0.1, 1.0).prior = datasets::Prior{0.6, 0.02};
+  FitOptions options;
+  options.profiles = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  const FittedParameter& p = parameter(found, "discharge_coefficient");
+  CAPTURE(p.reason);
+  CHECK_THAT(p.standard_error.value(), WithinRel(0.02, 0.02));
+  REQUIRE(p.profile.has_value());
+  // 1.96 standard deviations of it; a crossing is found to 2 % of the rise.
+  CHECK_THAT(p.profile->high.value.value() - p.value, WithinRel(1.96 * 0.02, 0.03));
+  CHECK_THAT(p.value - p.profile->low.value.value(), WithinRel(1.96 * 0.02, 0.03));
+}
+
+TEST_CASE("profile: a lower cost than that of the fit is told", "[calib]") {
+  const Twin twin = twin_far_off();
+  const auto records = twin.records(250, 500.0, 3);
+  const Problem problem = problem_of(twin, records);
+  Fit found = fit(twin.campaign, records, {});
+  std::vector<double> z;
+  for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
+    FittedParameter& each = found.parameters[j];
+    each.value += 5.0 * each.standard_error.value();
+    each.ci95->first += 5.0 * each.standard_error.value();
+    each.ci95->second += 5.0 * each.standard_error.value();
+    z.push_back(problem.map.to_unit(static_cast<int>(j), each.value));
+  }
+  profiles(problem, records, evaluate_at(problem, z, 1), {}, found);
+  for (const auto* key : {"mass", "valve_gain"}) {
+    CHECK(parameter(found, key).profile->lower_cost_found);
+    CHECK_THAT(parameter(found, key).reason, Contains("its profile finds a lower cost"));
+  }
+}
+
 TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
   // Along what the records do not tell at all the cost is as flat as simulations can be.
   Twin twin = twin_far_off();

@@ -91,6 +91,27 @@ TEST_CASE("scaling_exponent: what it is of", "[calib]") {
     CHECK(exponent(key) == 0.0);
 }
 
+TEST_CASE("symmetry: a prior alone tells the scale, as well as it is stated", "[calib]") {
+  Twin twin;
+  twin.free("mass", 85.0, 10.0, 500.0);
+  twin.free("damping", 1000.0, 100.0, 5000.0);
+  twin.free("stiffness", 2e4, 1e3, 1e5);
+  twin.free("bulk_modulus", 6.89e8, 1e8, 2e9);
+  auto& supply = twin.free("supply_pressure", 6.2e6, 1e6, 2e7);
+  supply.prior = datasets::Prior{6.2e6, 0.05 * 6.2e6};
+  twin.free("valve_gain", 4.06e-5, 1e-5, 2e-4);
+  twin.free("leakage_coefficient", 0.35, 0.05, 2.0);
+  twin.add("square", Waveform::square, 2.0, 0.01);
+  const auto records = twin.records(200, 500.0, 3);
+  const Problem problem = problem_of(twin, records);
+  const auto found = scaling_symmetry(problem, problem.start(), 1.0, 1);
+  REQUIRE(found.has_value());
+  CHECK(found->unknowns.size() == 7);
+  // By a factor of 1.5 the prior is felt with 0.5 / 0.05, per logarithm.
+  CHECK_THAT(found->relative_sd, Catch::WithinRel(0.05 * std::log(1.5) / 0.5, 0.02));
+  CHECK_FALSE(found->holds());
+}
+
 TEST_CASE("symmetry: a known supply pressure leaves none", "[calib]") {
   // Slow and short: mass and bulk modulus together are told no better than to 10 %, but a known
   // supply pressure, valve gain and damping do hold the scale.

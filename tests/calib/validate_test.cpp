@@ -183,6 +183,21 @@ TEST_CASE("acceptance: FAIL beyond the limit, WARN between, PASS above both", "[
   CHECK_THAT(failing.reasons.at(0), Contains("rho2 = 0.98") && Contains("0.99"));
 }
 
+TEST_CASE("acceptance: how much of a tolerance is used, and the worst of several limits",
+          "[calib]") {
+  ConditionScore score = scored(0.995);
+  judge({limit("rho2", 0.99, 0.993), limit("absolute_error_percent", 8.0, 6.0)}, score);
+  REQUIRE(score.checks.size() == 2);
+  CHECK_THAT(score.checks[0].used, WithinRel(0.5, 1e-9));  // 0.005 of 0.01
+  CHECK_THAT(score.checks[1].used, WithinRel(0.25, 1e-9));
+  CHECK(score.verdict == Verdict::pass);
+  for (const double worse : {1.0, 2.0}) {
+    ConditionScore mixed = scored(0.995);
+    judge({limit("rho2", 0.99, 0.993), limit("absolute_error_percent", worse, 0.5)}, mixed);
+    CHECK(mixed.verdict == (worse < 2.0 ? Verdict::fail : Verdict::warn));  // 2 is on the limit
+  }
+}
+
 TEST_CASE("acceptance: lower is better for errors, and no limit means no verdict", "[calib]") {
   ConditionScore score = scored(1.0);
   judge({limit("absolute_error_percent", 1.0, 0.5)}, score);

@@ -1,0 +1,47 @@
+#include "calib/cross_validation.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+
+using Catch::Contains;
+using datasets::Channel;
+
+TEST_CASE("cross-validation: what is predicted worse than fitted, and what moves", "[calib]") {
+  HeldOut held;
+  held.condition = "sine";
+  held.rms = {{Channel::position, 2e-3}};
+  held.fitted_rms = {{Channel::position, 1e-3}};
+  held.largest_shift = -4.0;
+  held.shifted = "mass_kg";
+  HeldOut even = held;
+  even.condition = "square";
+  even.rms = {{Channel::position, 1.4e-3}};
+  even.largest_shift = 2.9;
+  const auto words = cross_validation_words({held, even});
+  REQUIRE(words.size() == 2);
+  CHECK_THAT(words[0], Contains("\"sine\"") && Contains("predicted 2 times worse"));
+  CHECK_THAT(words[1], Contains("\"sine\"") && Contains("mass_kg moves by -4 of its errors"));
+  CHECK_THAT(cross_validation_summary({even, held}),
+             Contains("2 of 2 conditions") &&
+                 Contains("at most 2 times that of the fit (position of \"sine\")"));
+}
+
+TEST_CASE("cross-validation: a shift goes to where the others lead", "[calib]") {
+  Twin twin;
+  twin.free("valve_gain", 4e-5, 1e-5, 2e-4);
+  twin.add("low", datasets::Waveform::square, 2.0, 0.01);
+  twin.add("high", datasets::Waveform::square, 2.0, 0.01);
+  twin.offsets["high"] = {Twin::index("valve_gain"), 4.3e-5};  // beside 4.06e-5
+  FitOptions options;
+  options.cross_validate = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  REQUIRE(found.cross_validation.size() == 2);
+  CHECK(found.cross_validation[0].largest_shift > 1.0);   // without the low one
+  CHECK(found.cross_validation[1].largest_shift < -1.0);  // without the high one
+  CHECK(found.cross_validation[0].shifted == "valve_gain_m_per_v");
+}
+
+}  // namespace rigcal::calib
