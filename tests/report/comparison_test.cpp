@@ -74,6 +74,20 @@ TEST_CASE("comparison: a clear change is significant, and said so", "[report]") 
   CHECK_THAT(text, Contains("before") && Contains("after"));
 }
 
+TEST_CASE("comparison: several differences are judged together", "[report]") {
+  // 2.1 standard errors each, p = 0.036 (2 Phi(-2.1)): by itself significant, one of two not.
+  const double mass_kg = 85.0 + 2.1 * std::hypot(0.4, 0.4);
+  const double leak = 0.3 + 2.1 * std::hypot(0.01, 0.01);
+  const Json both = comparison_json(
+      {compared_fit("before", 85.0, 0.3), compared_fit("after", mass_kg, leak)}, {});
+  for (const std::size_t i : {0U, 2U}) {
+    const Json& difference = both["parameters"][i]["differences"][1];
+    CHECK_THAT(difference["p_value"].get<double>(), WithinRel(0.035728841, 1e-6));
+    CHECK_THAT(difference["p_value_of_all"].get<double>(), WithinRel(2.0 * 0.035728841, 1e-6));
+    CHECK(difference["significant"] == false);
+  }
+}
+
 TEST_CASE("comparison: nothing is a percentage of what may be zero", "[report]") {
   Compared tight = compared_fit("before", 85.0, 0.0);
   Json json = comparison_json({tight, compared_fit("after", 85.0, 0.3)}, {});
@@ -150,6 +164,28 @@ TEST_CASE("comparison: the leak's trend along dates", "[report]") {
   CHECK(json["leak_trends"][0]["points"][0]["day"] == 20513.0);
 }
 
+TEST_CASE("comparison: a leak is of the days on which its own conditions were fitted", "[report]") {
+  std::vector<Compared> results{compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
+                                compared_fit("c", 85.0, 0.40, 10)};
+  for (Compared& each : results) {
+    Json other = each.result["conditions"][0];
+    other["date"] = "2020-01-01";
+    other["id"] = "validated";
+    other["use"] = "validate";
+    each.result["conditions"].push_back(other);
+    Json& leakage = each.result["parameters"][2];
+    leakage["scope"] = "leak_level";
+    leakage["level"] = "none";
+    other["id"] = "leaking";
+    other["use"] = "fit";
+    other["leak_level"] = "33 %";
+    each.result["conditions"].push_back(other);
+  }
+  const Json json = comparison_json(results, {});
+  CHECK(json["leak_trends"][0]["points"][0]["day"] == 20513.0);
+  CHECK(json["leak_trends"][0]["along_date"]["points"] == 3);
+}
+
 TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
   Compared worse = compared_fit("worse", 85.0, 0.3);
   worse.result["conditions"][0]["metrics"]["position"]["rho2"] = 0.9;
@@ -162,6 +198,7 @@ TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
   CHECK(rho2["conditions"] == 1);
   CHECK(rho2["worse"] == 1);
   CHECK(rho2["mean"] == 0.9);
+  CHECK(rho2["mean_of_first"] == 0.99876543);
   // One condition tells nothing by its sign.
   CHECK(rho2["p_value"].is_null());
   CHECK(rho2["significant"].is_null());
@@ -186,6 +223,14 @@ TEST_CASE("comparison: a sign test needs six conditions, of records of their own
   CHECK(rho2["p_value"] == 0.03125);  // 2 / 2^6
   CHECK(rho2["significant"] == true);
   CHECK(rho2["reason"].is_null());
+  // A tie speaks for neither.
+  Compared tied = worse;
+  tied.result["conditions"][0]["metrics"]["position"]["rho2"] = 0.99876543;
+  const Json of_five = comparison_json({good, tied}, {})["metrics"][0]["against_first"][1];
+  CHECK(of_five["conditions"] == 6);
+  CHECK(of_five["worse"] == 5);
+  CHECK(of_five["better"] == 0);
+  CHECK(of_five["reason"] == "not tested: 5 conditions, and a sign test needs 6");
   worse.result["provenance"]["inputs"] = good.result["provenance"]["inputs"];
   json = comparison_json({good, worse}, {});
   rho2 = json["metrics"][0]["against_first"][1];

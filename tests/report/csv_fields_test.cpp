@@ -26,5 +26,6 @@ TEST_CASE("csv_text: what a spreadsheet would run is text", "[report]") {
 TEST_CASE("csv_number: nothing for what is no number", "[report]") {
   CHECK(csv_number(0.1) == "0.1");
   CHECK(csv_number(std::numeric_limits<double>::quiet_NaN()).empty());
+  CHECK(csv_number(-std::numeric_limits<double>::infinity()).empty());
   CHECK(csv_number(std::optional<double>()).empty());
 }

@@ -73,6 +73,9 @@ TEST_CASE("coverage: what conditions and the narrower scope of a fit tell", "[re
   is(found.frequency_hz, 0.5, 8.0);
   is(found.amplitude, 0.002, 0.004);  // half of -1 to 3 mm
   is(found.supply_pressure_pa, 6.1e6, 7e6);
+  auto recorded = campaign;
+  recorded.conditions = {chirp};
+  is(coverage(recorded, {record}, fit, {Use::fit}).supply_pressure_pa, 6.1e6, 6.4e6);
   is(found.leakage_coefficient, 0.2, 0.7);
   CHECK(found.leak_levels == std::vector<std::string>{"seal", "none"});
   std::swap(fit.parameters.front(), fit.parameters.back());
