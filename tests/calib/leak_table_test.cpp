@@ -1,5 +1,6 @@
 #include "calib/leak_table.hpp"
 
+#include <algorithm>
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -82,6 +83,20 @@ TEST_CASE("leak_table: the paper's Table 3 is met as far as it can be", "[calib]
     CHECK((entry.grade == LeakGrade::outlier) == misprint);
     CHECK(entry.note.empty() != misprint);
   }
+  // Counts and the root mean square are those of the cells.
+  int within_10 = 0;
+  double largest_percent = 0.0;
+  for (const calib::LeakEntry& entry : paper().entries) {
+    const double error = std::abs(entry.comparison.value().relative_error_percent.value());
+    CAPTURE(entry.signal.name(), entry.target_percent, error);
+    CHECK((entry.grade == LeakGrade::within_10) == (error < 10.0));
+    within_10 += error < 10.0 ? 1 : 0;
+    const double off = std::log(entry.comparison->share_percent / entry.target_percent);
+    largest_percent = std::max(largest_percent, 100.0 * std::abs(off));
+  }
+  CHECK(summary.within_10 == within_10);
+  CHECK(summary.share_rms_percent.value() > largest_percent / std::sqrt(24.0));
+  CHECK(summary.share_rms_percent.value() < largest_percent);
 }
 
 TEST_CASE("leak_table: the paper's Table 4 is met, what cannot be is apart", "[calib]") {

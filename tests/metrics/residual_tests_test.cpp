@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "metrics/distributions.hpp"
+
 namespace {
 
 using rigcal::metrics::residual_tests;
@@ -113,6 +115,28 @@ TEST_CASE("residual_tests: heavy tails and trends are named", "[metrics]") {
   CHECK_FALSE(drift.drift.passed());
   // Standard error of the slope: 1 / (sqrt(2000) * 5.77 s) = 0.004 per s
   CHECK_THAT(drift.drift.slope_per_s, Catch::WithinAbs(0.02, 0.016));
+}
+
+TEST_CASE("residual_tests: a normal sample lies on the line of the normal plot", "[metrics]") {
+  constexpr int kSamples = 200;
+  std::vector<double> sample(kSamples);
+  std::vector<double> input(kSamples);
+  for (int i = 0; i < kSamples; ++i) {
+    const int shuffled = i * 77 % kSamples;
+    sample[static_cast<std::size_t>(i)] =
+        3.0 * rigcal::metrics::normal_quantile((shuffled + 0.5) / kSamples);
+    input[static_cast<std::size_t>(i)] = i % 7;
+  }
+  const ResidualTests tests = residual_tests(sample, input, 0.01);
+  const auto& plot = tests.normality;
+  REQUIRE(plot.normal_quantile.size() == plot.residual_quantile.size());
+  for (std::size_t i = 0; i < plot.normal_quantile.size(); ++i) {
+    CAPTURE(plot.normal_quantile[i]);
+    // The value drawn is the nearest of the sample: half a rank away at most.
+    const double drawn = rigcal::metrics::normal_cdf(plot.residual_quantile[i] * tests.std / 3.0);
+    CHECK(std::abs(drawn - rigcal::metrics::normal_cdf(plot.normal_quantile[i])) <
+          0.5001 / kSamples);
+  }
 }
 
 TEST_CASE("residual_tests: offset and trend are tested at half the level each", "[metrics]") {
