@@ -79,6 +79,36 @@ TEST_CASE("combinations: the scaling symmetry is named, with mass and supply pre
   CHECK_FALSE(mentions(fit(twin.campaign, records, {}).combinations, "scaling", "symmetry"));
 }
 
+TEST_CASE("combinations: the power that is fixed, and how well", "[calib]") {
+  Twin twin;
+  twin.free("mass", 80.0, 10.0, 500.0);
+  twin.free("damping", 1000.0, 100.0, 5000.0);
+  twin.add("sine", Waveform::sine, 5.0, 0.01);
+  const auto records = twin.records(20, 500.0, 1);
+  const Problem problem = problem_of(twin, records);
+  REQUIRE(problem.spec(0).key == "mass");
+  // Standard deviations of the logarithms, in two independent directions.
+  const auto words_of = [&](const Eigen::RowVector2d& of_mass,
+                            const Eigen::RowVector2d& of_damping) {
+    Uncertainty found;
+    found.spread = Eigen::MatrixXd(2, 2);
+    found.spread << of_mass / std::log(500.0 / 10.0), of_damping / std::log(5000.0 / 100.0);
+    std::vector<FittedParameter> parameters(2);
+    for (FittedParameter& each : parameters)
+      each.identifiability = Identifiability::not_identifiable;
+    return name_combinations(problem, problem.start(), found, parameters);
+  };
+  const auto square = words_of({1.0, 0.01}, {0.5, 0.0});
+  REQUIRE(square.size() == 1);
+  CHECK_THAT(square[0], Contains("mass/damping^2 = 8e-05"));
+  CHECK_THAT(square[0], Contains("(to 2 %)"));  // 1.96 times 1 %
+  const auto product = words_of({0.5, 0.02}, {-0.5, 0.02});
+  REQUIRE(product.size() == 1);
+  CHECK_THAT(product[0], Contains("mass * damping = 8e+04"));
+  CHECK_THAT(product[0], Contains("(to 7.8 %)"));    // 1.96 times 4 %
+  CHECK(words_of({0.5, 0.2}, {0.5, -0.2}).empty());  // to 78 % at best
+}
+
 TEST_CASE("combinations: a slow sine leaves the bulk modulus open, fast squares do not",
           "[calib]") {
   Twin slow = bulk_twin();

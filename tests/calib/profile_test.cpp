@@ -110,6 +110,30 @@ TEST_CASE("profile: what a prior alone tells ends where the prior does", "[calib
   CHECK_THAT(p.value - p.profile->low.value.value(), WithinRel(1.96 * 0.02, 0.03));
 }
 
+TEST_CASE("profile: without an interval it ends where the cost says 95 %", "[calib]") {
+  const Twin twin = twin_far_off();
+  const auto records = twin.records(250, 500.0, 3);
+  const Problem problem = problem_of(twin, records);
+  const Fit found = fit(twin.campaign, records, {});
+  Fit bare = found;
+  std::vector<double> z;
+  for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
+    bare.parameters[j].ci95.reset();
+    bare.parameters[j].standard_error.reset();
+    bare.parameters[j].robust_standard_error.reset();
+    z.push_back(problem.map.to_unit(static_cast<int>(j), found.parameters[j].value));
+  }
+  profiles(problem, records, evaluate_at(problem, z, 1), {}, bare);
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const double error = found.parameters[j].standard_error.value();
+    const Profile& profile = bare.parameters[j].profile.value();
+    CHECK_THAT(profile.high.value.value() - found.parameters[j].value,
+               WithinRel(1.96 * error, 0.03));
+    CHECK_THAT(found.parameters[j].value - profile.low.value.value(),
+               WithinRel(1.96 * error, 0.03));
+  }
+}
+
 TEST_CASE("profile: a lower cost than that of the fit is told", "[calib]") {
   const Twin twin = twin_far_off();
   const auto records = twin.records(250, 500.0, 3);

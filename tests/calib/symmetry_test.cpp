@@ -110,6 +110,8 @@ TEST_CASE("symmetry: a prior alone tells the scale, as well as it is stated", "[
   // By a factor of 1.5 the prior is felt with 0.5 / 0.05, per logarithm.
   CHECK_THAT(found->relative_sd, Catch::WithinRel(0.05 * std::log(1.5) / 0.5, 0.02));
   CHECK_FALSE(found->holds());
+  twin.setting("supply_pressure").prior->sd *= 10.0;  // half of the value
+  CHECK(scaling_symmetry(problem_of(twin, records), problem.start(), 1.0, 1)->holds());
 }
 
 TEST_CASE("symmetry: a known supply pressure leaves none", "[calib]") {
