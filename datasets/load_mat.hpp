@@ -24,7 +24,8 @@ struct MatRequest {
 /// that a double cannot hold, time that does not increase, vectors of different lengths, files
 /// that end early or whose compressed data are damaged. At most 12 million numbers are read.
 ///
-/// Calls from several threads wait for each other: HDF5 is not made for threads.
+/// Version 5 is read by a reader of our own. Version 7.3 is read by HDF5 in a process of its own,
+/// with limits of memory and time, because a damaged file can crash it or let it run for ever.
 ///
 /// @return             one vector per column, of the same length
 /// @throws InputError  file, column and element, what was found and what was expected

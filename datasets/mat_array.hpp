@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+namespace rigcal::datasets {
+
+enum class MatKind { number, text, cell, structure, sparse, function, object, empty };
+
+/// What a MAT file says of an array; its numbers stay in the file.
+struct MatArray {
+  std::string name;
+  MatKind kind = MatKind::empty;
+  bool is_complex = false;
+  std::vector<std::size_t> dims;
+  std::vector<std::string> field_names;  ///< of a structure
+  /// Of a structure, shape (elements x field names): an element's fields stand together.
+  std::vector<MatArray> fields;
+
+  /// Where its reader finds the numbers, in terms of that reader.
+  std::uint64_t place = 0;
+  std::uint32_t storage = 0;
+  std::size_t variable = 0;
+
+  /// Readers make sure that it does not overflow.
+  std::size_t element_count() const {
+    std::size_t count = 1;
+    for (const std::size_t n : dims) count *= n;
+    return count;
+  }
+};
+
+/// Elements of an array in the order of the file, column by column: start, start + stride, ...
+struct MatSelection {
+  std::size_t start = 0;
+  std::size_t stride = 1;
+  std::size_t count = 0;
+};
+
+/// An open MAT file.
+class MatSource {
+ public:
+  MatSource() = default;
+  MatSource(const MatSource&) = delete;
+  MatSource& operator=(const MatSource&) = delete;
+  virtual ~MatSource() = default;
+
+  virtual const std::string& name() const = 0;
+  virtual const std::vector<MatArray>& variables() const = 0;
+
+  /// @param array   of variables(), of real numbers; the selection lies within it
+  /// @param column  its name in messages
+  /// @throws InputError  damaged, or an integer that a double cannot hold
+  virtual std::vector<double> numbers(const MatArray& array, const MatSelection& selection,
+                                      const std::string& column) = 0;
+};
+
+/// Whether a double can hold a number; not so 64-bit integers beyond 2^53.
+template <typename Number>
+bool is_exact_as_double(Number number) {
+  if constexpr (std::is_integral_v<Number> && sizeof(Number) == 8) {
+    constexpr Number kMost = Number{1} << 53;
+    if (number > kMost) return false;
+    if constexpr (std::is_signed_v<Number>) return number >= -kMost;
+  }
+  return true;
+}
+
+}  // namespace rigcal::datasets

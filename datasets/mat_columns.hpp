@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "datasets/mat_array.hpp"
+
+namespace rigcal::datasets {
+
+/// One column of a MAT file, by its name in MATLAB (mat_path.hpp).
+///
+/// @param values_so_far  numbers that were already taken from the file; it counts against the limit
+/// @throws InputError  file, column and element, what was found and what was expected
+std::vector<double> read_mat_column(MatSource& source, const std::string& column,
+                                    std::size_t values_so_far);
+
+/// Every column that read_mat_column() could read: vectors, and columns of matrices of up to 100
+/// columns, in the order of the file.
+std::vector<std::string> list_mat_columns(const MatSource& source);
+
+}  // namespace rigcal::datasets
