@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <stdexcept>
+
 #include "common/error.hpp"
 #include "report/json.hpp"
 #include "report/read_json.hpp"
@@ -24,6 +27,24 @@ Json identity(const Provenance& provenance) {
   return json;
 }
 
+/// What a checkpoint cannot hold; what() says it in words.
+class NoCheckpoint : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A whole number of a range. (Conversion of any other number is undefined, or another value.)
+template <typename Integer>
+Integer whole(const Json& json, const std::string& key, Integer lowest, Integer highest) {
+  const Json& value = json.at(key);
+  const double number = value.is_number_integer() ? value.get<double>() : std::nan("");
+  if (number >= static_cast<double>(lowest) && number <= static_cast<double>(highest))
+    return value.get<Integer>();
+  throw NoCheckpoint(fmt::format("key '{}': found {}, expected a whole number from {} to {}", key,
+                                 value.is_number() ? value.dump() : "no number", lowest, highest));
+}
+
+constexpr int kMostCounted = 1'000'000'000;
+
 Json start_json(const calib::StartReport& start) {
   return {{"number", start.number},
           {"start_values", start.start_values},
@@ -37,13 +58,14 @@ Json start_json(const calib::StartReport& start) {
 
 calib::StartReport start_from(const Json& json) {
   calib::StartReport start;
-  start.number = json.at("number").get<int>();
+  start.number = whole(json, "number", 1, kMostCounted);
   start.start_values = json.at("start_values").get<std::vector<double>>();
   start.end_values = json.at("end_values").get<std::vector<double>>();
   start.initial_cost = json.at("initial_cost").get<double>();
   start.final_cost = json.at("final_cost").get<double>();
-  start.iterations = json.at("iterations").get<int>();
-  start.status = static_cast<calib::FitStatus>(json.at("status").get<int>());
+  start.iterations = whole(json, "iterations", 0, kMostCounted);
+  start.status = static_cast<calib::FitStatus>(
+      whole(json, "status", 0, static_cast<int>(calib::FitStatus::failed)));
   start.message = json.at("message").get<std::string>();
   return start;
 }
@@ -68,19 +90,24 @@ Json ledger_json(const calib::EvaluationLedger& ledger) {
 
 calib::EvaluationLedger ledger_from(const Json& json) {
   calib::EvaluationLedger ledger;
-  ledger.evaluations = json.at("evaluations").get<long>();
-  ledger.failure_count = json.at("failure_count").get<long>();
+  constexpr long kMostEvaluations = long{1} << 53;
+  ledger.evaluations = whole(json, "evaluations", 0L, kMostEvaluations);
+  ledger.failure_count = whole(json, "failure_count", 0L, kMostEvaluations);
   for (const Json& each : json.at("failures")) {
     calib::SimulationFailure& failure = ledger.failures.emplace_back();
     failure.condition = each.at("condition").get<std::string>();
     failure.parameters = each.at("parameters").get<std::vector<std::pair<std::string, double>>>();
     failure.time_s = each.at("time_s").get<double>();
     failure.reason = each.at("reason").get<std::string>();
-    failure.start = each.at("start").get<int>();
+    failure.start = whole(each, "start", 0, kMostCounted);
   }
   for (const Json& each : json.at("kept")) {
-    const auto status = static_cast<model::SimulationStatus>(each.at(1).get<int>());
-    ledger.kept[{each.at(0).get<std::size_t>(), status}] = each.at(2).get<int>();
+    // [condition, status, count]
+    const Json entry{{"condition", each.at(0)}, {"status", each.at(1)}, {"count", each.at(2)}};
+    const auto status = static_cast<model::SimulationStatus>(
+        whole(entry, "status", 0, static_cast<int>(model::SimulationStatus::cancelled)));
+    const auto condition = static_cast<std::size_t>(whole(entry, "condition", 0, kMostCounted));
+    ledger.kept[{condition, status}] = whole(entry, "count", 0, kMostCounted);
   }
   return ledger;
 }
@@ -118,14 +145,18 @@ calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Prove
     }
     require_same_fit(file.string(), json.at("fit"), identity(provenance));
     calib::Checkpoint checkpoint;
-    for (const Json& start : json.at("starts")) checkpoint.starts.push_back(start_from(start));
-    checkpoint.best = json.at("best").get<int>();
+    for (const Json& start : json.at("starts")) {
+      checkpoint.starts.push_back(start_from(start));
+      // They are kept in the order in which they were made.
+      if (checkpoint.starts.back().number != static_cast<int>(checkpoint.starts.size()))
+        throw NoCheckpoint("key 'starts': expected them numbered from 1");
+    }
+    checkpoint.best = whole(json, "best", 0, static_cast<int>(checkpoint.starts.size()));
     checkpoint.best_z = json.at("best_z").get<std::vector<double>>();
     checkpoint.ledger = ledger_from(json.at("ledger"));
-    const auto most = static_cast<int>(checkpoint.starts.size());
-    if (checkpoint.best < 0 || checkpoint.best > most)
-      throw InputError({file.string()}, "key 'best': expected the number of one of its starts");
     return checkpoint;
+  } catch (const NoCheckpoint& error) {
+    throw InputError({file.string()}, error.what());
   } catch (const Json::exception& error) {
     throw InputError({file.string()},
                      fmt::format("is no checkpoint of rigcal fit: {}; expected one, or a fit "

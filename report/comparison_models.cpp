@@ -24,9 +24,9 @@ bool same_weights(const Json& a, const Json& b) {
   if (a.size() != b.size()) return false;
   for (std::size_t i = 0; i < a.size(); ++i) {
     for (const char* key : {"condition", "channel", "samples"})
-      if (a[i].at(key) != b[i].at(key)) return false;
-    const auto mine = number_of(a[i], "sd");
-    const auto theirs = number_of(b[i], "sd");
+      if (a.at(i).at(key) != b.at(i).at(key)) return false;
+    const auto mine = number_of(a.at(i), "sd");
+    const auto theirs = number_of(b.at(i), "sd");
     if (mine.has_value() != theirs.has_value()) return false;
     if (mine && !(std::abs(*theirs - *mine) <= kSame * *mine)) return false;
   }
@@ -55,12 +55,12 @@ void take_likeliest_noise(const Json& weights, Candidate& candidate) {
 
 /// A number of things. Conversion of a double beyond its range to a whole number is undefined.
 double count_of(const Compared& compared, const std::string& key) {
-  constexpr double kMostCounted = 1e9;
+  constexpr double kLargestCount = 1e9;
   const double count = compared.result.at(key).get<double>();
-  if (count >= 0.0 && count <= kMostCounted && count == std::floor(count)) return count;
+  if (count >= 0.0 && count <= kLargestCount && count == std::floor(count)) return count;
   throw InputError({compared.file.string()},
                    fmt::format("key '{}': found {}, expected a whole number from 0 to {}", key,
-                               count, kMostCounted));
+                               count, kLargestCount));
 }
 
 Candidate candidate_of(const Compared& compared) {

@@ -43,8 +43,8 @@ Json estimate_json(const Json* parameter, bool usable) {
 bool may_be_zero(const Json& estimate) {
   if (number_of(estimate, "value").value_or(0.0) == 0.0) return true;
   const Json& ci = estimate.at("ci95");
-  if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number()) return false;
-  return ci[0].get<double>() <= 0.0 && ci[1].get<double>() >= 0.0;
+  if (!ci.is_array() || !ci.at(0).is_number() || !ci.at(1).is_number()) return false;
+  return ci.at(0).get<double>() <= 0.0 && ci.at(1).get<double>() >= 0.0;
 }
 
 /// `p_value` is that of this difference alone; `significant` is set later, for all together.

@@ -39,9 +39,9 @@ Json metric_against(const Json& conditions, const std::string& channel, const ch
   for (const Json& condition : conditions) {
     if (text_of(condition, "channel") != channel) continue;
     const Json& scores = condition.at("scores");
-    if (!scores[0].is_object() || !scores[other].is_object()) continue;
-    const auto a = number_of(scores[0], metric);
-    const auto b = number_of(scores[other], metric);
+    if (!scores.at(0).is_object() || !scores.at(other).is_object()) continue;
+    const auto a = number_of(scores.at(0), metric);
+    const auto b = number_of(scores.at(other), metric);
     if (!a || !b) continue;
     ++pairs;
     first_sum += *a;

@@ -45,7 +45,7 @@ Json tested_parameters(const Json& parameters, std::size_t results) {
     int significant = 0;
     std::vector<Untested> open;
     for (const Json& parameter : parameters) {
-      const Json& difference = parameter.at("differences")[i];
+      const Json& difference = parameter.at("differences").at(i);
       if (!difference.is_object() || difference.at("reason") == kKnownInBoth) continue;
       ++compared;
       if (!difference.at("significant").is_boolean()) {
@@ -68,7 +68,7 @@ std::vector<Change> changes_of(const Json& comparison) {
   for (const Json& parameter : comparison.at("parameters")) {
     const Json& estimates = parameter.at("estimates");
     for (std::size_t i = 1; i < parameter.at("differences").size(); ++i) {
-      const Json& difference = parameter.at("differences")[i];
+      const Json& difference = parameter.at("differences").at(i);
       if (!difference.is_object() || difference.at("reason") == kKnownInBoth) continue;
       const auto size = number_of(difference, "difference");
       if (!size || *size == 0.0) continue;
@@ -78,7 +78,7 @@ std::vector<Change> changes_of(const Json& comparison) {
                                       number_of(estimates[i], "standard_error").value_or(0.0));
       changes.emplace_back(
           std::abs(*size) / error,
-          Change{parameter_label(parameter), text_of(comparison.at("results")[i], "name"),
+          Change{parameter_label(parameter), text_of(comparison.at("results").at(i), "name"),
                  change_text(difference, unit_of_estimates(parameter)),
                  number_of(difference, "p_value_of_all"), text_of(difference, "reason")});
     }

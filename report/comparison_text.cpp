@@ -97,7 +97,7 @@ TextTable wide_estimates(const Json& comparison) {
     std::vector<std::string> row{parameter_label(parameter), unit_text(unit)};
     for (std::size_t i = 0; i < estimates.size(); ++i) {
       row.push_back(estimate_text(estimates[i], unit));
-      if (i > 0) row.push_back(difference_text(parameter.at("differences")[i], unit));
+      if (i > 0) row.push_back(difference_text(parameter.at("differences").at(i), unit));
     }
     table.add(std::move(row));
   }
@@ -115,8 +115,8 @@ std::string stacked_estimates(const Json& comparison) {
     titles.push_back(fmt::format("{}, {}\n", parameter_label(parameter), unit_text(unit)));
     for (std::size_t i = 0; i < results.size(); ++i) {
       table.add({"  " + text_of(results[i], "name"),
-                 estimate_text(parameter.at("estimates")[i], unit),
-                 i > 0 ? difference_text(parameter.at("differences")[i], unit) : std::string()});
+                 estimate_text(parameter.at("estimates").at(i), unit),
+                 i > 0 ? difference_text(parameter.at("differences").at(i), unit) : std::string()});
     }
   }
   // The title of a parameter goes above its lines; the line of the columns stays first.
@@ -167,7 +167,7 @@ std::string metrics_table(const Json& comparison, std::size_t columns) {
         return text_of(shown_score(text_of(metric, "metric"), against[i].at(key)), "text");
       };
       table.add({text_of(metric, "channel"), metric_title(text_of(metric, "metric")),
-                 text_of(comparison.at("results")[i], "name"),
+                 text_of(comparison.at("results").at(i), "name"),
                  fmt::format("{}", against[i].at("conditions").get<int>()),
                  mean_text("mean_of_first"), mean_text("mean"),
                  fmt::format("{}", against[i].at("better").get<int>()),
@@ -187,7 +187,7 @@ std::string models_text(const Json& comparison, std::size_t columns) {
                               : reason.empty()
                                   ? verdict
                                   : fmt::format("{}; no likelihood ratio: {}", verdict, reason);
-    text += wrapped(fmt::format("  {}: {}", text_of(comparison.at("results")[i], "name"), words),
+    text += wrapped(fmt::format("  {}: {}", text_of(comparison.at("results").at(i), "name"), words),
                     columns, 4);
     text += "\n";
   }
@@ -227,8 +227,8 @@ std::string comparison_text(const Json& comparison, const Style& style) {
       "all parameters together (Holm)",
       estimates_table(comparison, columns), style);
   for (std::size_t i = 1; i < comparison.at("significance").size(); ++i) {
-    text += wrapped(fmt::format("{}: {}", text_of(comparison.at("results")[i], "name"),
-                                text_of(comparison.at("significance")[i], "text")),
+    text += wrapped(fmt::format("{}: {}", text_of(comparison.at("results").at(i), "name"),
+                                text_of(comparison.at("significance").at(i), "text")),
                     columns, 2) +
             "\n";
   }

@@ -39,10 +39,10 @@ Json condition_views(const Calibration& stored, int threads) {
   const Json none;
   const auto all = stored.curves.find("conditions");
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    const std::string id = text_of(conditions[i], "id");
+    const std::string id = text_of(conditions.at(i), "id");
     const bool found = all != stored.curves.end() && all->contains(id);
     sections[i] =
-        condition_view(conditions[i], stored.series[i], found ? all->at(id) : none, points);
+        condition_view(conditions.at(i), stored.series[i], found ? all->at(id) : none, points);
   });
   return sections;
 }
@@ -251,7 +251,7 @@ std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& rea
     if (has("fit.json") || has("validation.json")) {
       const Calibration stored = load_calibration(read, where, 1);
       for (std::size_t i = 0; i < stored.series.size(); ++i) {
-        const Json& condition = stored.result.at("conditions")[i];
+        const Json& condition = stored.result.at("conditions").at(i);
         add(condition_figures(condition, stored.series[i]), text_of(condition, "id") + "_");
       }
     }

@@ -54,7 +54,7 @@ Json parameter_rows(const Json& parameters) {
     for (std::size_t i = 0; i < estimates.size(); ++i) {
       Json cell{{"estimate", estimate_cell(estimates[i], unit)}};
       cell["later"] = i > 0;
-      cell["change"] = change_cell(parameter.at("differences")[i], unit);
+      cell["change"] = change_cell(parameter.at("differences").at(i), unit);
       cells.push_back(std::move(cell));
     }
     rows.push_back({{"name", parameter_label(parameter)},
@@ -177,8 +177,8 @@ Json trend_views(const Json& trends) {
         const double p = trend.at("p_value").get<double>();
         reading = fmt::format(
             "{}: {:+.3g} {} ({:.3g} to {:.3g}), {}: {}.", text_of(series, "of"), *slope,
-            axis.per_unit, trend.at("ci95")[0].get<double>(), trend.at("ci95")[1].get<double>(),
-            p_value_text(p),
+            axis.per_unit, trend.at("ci95").at(0).get<double>(),
+            trend.at("ci95").at(1).get<double>(), p_value_text(p),
             trend.at("significant").get<bool>() ? "significant trend" : "no significant trend");
       }
       list.push_back({{"svg_html", svg(trend_plot(series, axis))}, {"reading", reading}});
@@ -215,19 +215,19 @@ Json metric_rows(const Json& comparison) {
   for (const Json& metric : comparison.at("metrics")) {
     const Json& against = metric.at("against_first");
     for (std::size_t i = 1; i < against.size(); ++i) {
-      if (!against[i].is_object()) continue;
-      const auto p = number_of(against[i], "p_value");
+      if (!against.at(i).is_object()) continue;
+      const auto p = number_of(against.at(i), "p_value");
       rows.push_back(
           {{"channel", text_of(metric, "channel")},
            {"metric", text_of(metric, "metric")},
-           {"result", text_of(comparison.at("results")[i], "name")},
-           {"conditions", fmt::format("{}", against[i].at("conditions").get<int>())},
-           {"first", shown_score(text_of(metric, "metric"), against[i].at("mean_of_first"))},
-           {"mean", shown_score(text_of(metric, "metric"), against[i].at("mean"))},
-           {"better", fmt::format("{}", against[i].at("better").get<int>())},
-           {"worse", fmt::format("{}", against[i].at("worse").get<int>())},
-           {"p", p ? p_value_text(*p) : text_of(against[i], "reason")},
-           {"significant", against[i].at("significant") == true}});
+           {"result", text_of(comparison.at("results").at(i), "name")},
+           {"conditions", fmt::format("{}", against.at(i).at("conditions").get<int>())},
+           {"first", shown_score(text_of(metric, "metric"), against.at(i).at("mean_of_first"))},
+           {"mean", shown_score(text_of(metric, "metric"), against.at(i).at("mean"))},
+           {"better", fmt::format("{}", against.at(i).at("better").get<int>())},
+           {"worse", fmt::format("{}", against.at(i).at("worse").get<int>())},
+           {"p", p ? p_value_text(*p) : text_of(against.at(i), "reason")},
+           {"significant", against.at(i).at("significant") == true}});
     }
   }
   return rows;
@@ -236,7 +236,7 @@ Json metric_rows(const Json& comparison) {
 Json result_rows(const Json& results) {
   Json rows = Json::array();
   for (std::size_t i = 0; i < results.size(); ++i) {
-    const Json& result = results[i];
+    const Json& result = results.at(i);
     const std::string status = text_of(result, "status");
     Json mark = badge(result.at("verdict"));
     if (status != "converged") mark = {{"word", status}, {"mark", "✕"}, {"class", "bad"}};
@@ -244,14 +244,14 @@ Json result_rows(const Json& results) {
     const Json& kelvin = result.at("temperature_k");
     std::string when;
     if (dates.is_array()) {
-      when = dates[0].get<std::string>();
-      if (dates[0] != dates[1]) when += " to " + dates[1].get<std::string>();
+      when = dates.at(0).get<std::string>();
+      if (dates.at(0) != dates.at(1)) when += " to " + dates.at(1).get<std::string>();
     }
     std::string warm;
     if (kelvin.is_array()) {
-      warm = fmt::format("{:.4g}", kelvin[0].get<double>() - 273.15);
-      if (kelvin[0] != kelvin[1])
-        warm += fmt::format(" to {:.4g}", kelvin[1].get<double>() - 273.15);
+      warm = fmt::format("{:.4g}", kelvin.at(0).get<double>() - 273.15);
+      if (kelvin.at(0) != kelvin.at(1))
+        warm += fmt::format(" to {:.4g}", kelvin.at(1).get<double>() - 273.15);
     }
     rows.push_back({{"number", fmt::format("{}", i + 1)},
                     {"name", text_of(result, "name")},
@@ -273,10 +273,10 @@ Json model_rows(const Json& comparison) {
   Json rows = Json::array();
   const Json& models = comparison.at("models");
   for (std::size_t i = 1; i < models.size(); ++i) {
-    const Json& model = models[i];
+    const Json& model = models.at(i);
     const auto p = number_of(model, "p_value");
     const std::string verdict = text_of(model, "verdict");
-    rows.push_back({{"name", text_of(comparison.at("results")[i], "name")},
+    rows.push_back({{"name", text_of(comparison.at("results").at(i), "name")},
                     {"aic", shown_in(model.at("delta_aic"), 1.0, 4)},
                     {"bic", shown_in(model.at("delta_bic"), 1.0, 4)},
                     {"ratio", shown_in(model.at("likelihood_ratio"), 1.0, 4)},
@@ -358,9 +358,9 @@ Json comparison_view(const Json& comparison) {
   view["results"] = result_rows(comparison.at("results"));
   view["significance"] = Json::array();
   for (std::size_t i = 1; i < comparison.at("significance").size(); ++i) {
-    view["significance"].push_back(fmt::format("{}: {}.",
-                                               text_of(comparison.at("results")[i], "name"),
-                                               text_of(comparison.at("significance")[i], "text")));
+    view["significance"].push_back(
+        fmt::format("{}: {}.", text_of(comparison.at("results").at(i), "name"),
+                    text_of(comparison.at("significance").at(i), "text")));
   }
   view["parameters"] = parameter_rows(comparison.at("parameters"));
   view["plots"] = Json::array();

@@ -159,8 +159,8 @@ Json methods_view(const Json& diagnosis) {
                     {"undecided", fmt::format("{}", method.at("undecided").get<int>())},
                     {"off_by_two", fmt::format("{}", method.at("off_by_two_or_more").get<int>())},
                     {"accuracy", percent(method.at("accuracy"))},
-                    {"low", percent(ci.is_array() ? ci[0] : Json())},
-                    {"high", percent(ci.is_array() ? ci[1] : Json())},
+                    {"low", percent(ci.is_array() ? ci.at(0) : Json())},
+                    {"high", percent(ci.is_array() ? ci.at(1) : Json())},
                     {"confusion", confusion_view(method.at("confusion"))}});
   }
   return list;

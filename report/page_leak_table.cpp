@@ -60,8 +60,8 @@ Json leak_cell(const Json& entry) {
   const Json& range = entry.at("share_by_rounding_percent");
   cell["has_range"] = range.is_array();
   if (range.is_array()) {
-    cell["range_low"] = shown_in(range[0], 1.0, 3);
-    cell["range_high"] = shown_in(range[1], 1.0, 3);
+    cell["range_low"] = shown_in(range.at(0), 1.0, 3);
+    cell["range_high"] = shown_in(range.at(1), 1.0, 3);
   }
   return cell;
 }

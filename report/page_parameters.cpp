@@ -28,10 +28,10 @@ Json interval_by(const Json& parameter, const char* error_key, const RowUnit& un
 std::string half_width_text(const Json& parameter) {
   const Json& ci = parameter.at("ci95");
   const auto value = number_of(parameter, "value");
-  if (!ci.is_array() || !ci[0].is_number() || !ci[1].is_number() || !value || *value == 0.0)
+  if (!ci.is_array() || !ci.at(0).is_number() || !ci.at(1).is_number() || !value || *value == 0.0)
     return {};
   // The end that no limit of the parameter has cut, as the grade and its reason count.
-  const double half = std::max(ci[1].get<double>() - *value, *value - ci[0].get<double>());
+  const double half = std::max(ci.at(1).get<double>() - *value, *value - ci.at(0).get<double>());
   const double percent = 100.0 * half / std::abs(*value);
   if (percent > 1000.0) return "over 1000 %";
   return percent < 100.0 ? fmt::format("± {:.2g} %", percent) : fmt::format("± {:.0f} %", percent);
@@ -110,7 +110,7 @@ Json correlation_rows(const Json& correlation) {
       cells.push_back(std::move(cell));
     }
     rows.push_back({{"number", fmt::format("{}", i + 1)},
-                    {"name", names[i].get<std::string>()},
+                    {"name", names.at(i).get<std::string>()},
                     {"cells", std::move(cells)}});
   }
   return rows;
@@ -127,7 +127,7 @@ std::string correlation_reading(const Json& correlation) {
       const Json& value = matrix.at(i).at(j);
       if (!value.is_number() || std::abs(value.get<double>()) <= std::abs(strongest)) continue;
       strongest = value.get<double>();
-      pair = names[j].get<std::string>() + " and " + names[i].get<std::string>();
+      pair = names.at(j).get<std::string>() + " and " + names.at(i).get<std::string>();
     }
   }
   if (pair.empty()) return {};
@@ -159,7 +159,7 @@ std::string joined_reason(const std::vector<std::string>& parts) {
 std::string lift_common_reasons(Json& rows) {
   if (rows.size() < 2) return {};
   std::vector<std::string> common;
-  for (const std::string& part : parts_of_reason(text_of(rows[0], "reason"))) {
+  for (const std::string& part : parts_of_reason(text_of(rows.at(0), "reason"))) {
     const bool everywhere = std::all_of(rows.begin(), rows.end(), [&](const Json& row) {
       const auto parts = parts_of_reason(text_of(row, "reason"));
       return std::find(parts.begin(), parts.end(), part) != parts.end();

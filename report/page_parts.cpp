@@ -19,11 +19,11 @@ Json shown_in(const Json& value, double si_per_unit, int digits) {
 }
 
 Json shown_interval(const Json& pair, double si_per_unit) {
-  const bool known = pair.is_array() && pair[0].is_number() && pair[1].is_number();
+  const bool known = pair.is_array() && pair.at(0).is_number() && pair.at(1).is_number();
   constexpr int kDigits = 5;
   return {{"known", known},
-          {"low", shown_matched(known ? pair[0] : Json(), pair, si_per_unit, kDigits)},
-          {"high", shown_matched(known ? pair[1] : Json(), pair, si_per_unit, kDigits)}};
+          {"low", shown_matched(known ? pair.at(0) : Json(), pair, si_per_unit, kDigits)},
+          {"high", shown_matched(known ? pair.at(1) : Json(), pair, si_per_unit, kDigits)}};
 }
 
 Json shown(const Json& value, std::string_view si_unit, int digits) {
@@ -48,9 +48,10 @@ Json shown_score(const std::string& metric, const Json& value) {
 }
 
 Json shown_matched(const Json& value, const Json& interval, double si_per_unit, int digits) {
-  const bool known = interval.is_array() && interval[0].is_number() && interval[1].is_number();
+  const bool known =
+      interval.is_array() && interval.at(0).is_number() && interval.at(1).is_number();
   if (!value.is_number() || !known) return shown_in(value, si_per_unit, digits);
-  const double half = 0.5 * (interval[1].get<double>() - interval[0].get<double>());
+  const double half = 0.5 * (interval.at(1).get<double>() - interval.at(0).get<double>());
   return {{"exact", fmt::format("{}", value.get<double>())},
           {"text", matched(value.get<double>() / si_per_unit, half / si_per_unit)}};
 }
@@ -129,10 +130,10 @@ Plot ranked_points(const std::string& title, const std::string& y_label,
 }
 
 void add_interval(Trace& intervals, double x, const Json& pair, double si_per_unit) {
-  if (!pair.is_array() || !pair[0].is_number() || !pair[1].is_number()) return;
+  if (!pair.is_array() || !pair.at(0).is_number() || !pair.at(1).is_number()) return;
   intervals.x.push_back(x);
-  intervals.y.push_back(pair[0].get<double>() / si_per_unit);
-  intervals.upper.push_back(pair[1].get<double>() / si_per_unit);
+  intervals.y.push_back(pair.at(0).get<double>() / si_per_unit);
+  intervals.upper.push_back(pair.at(1).get<double>() / si_per_unit);
 }
 
 std::string_view channel_unit(std::string_view channel) {

@@ -83,8 +83,8 @@ Json headline_of(const Json& result) {
 Json range_row(const Json& validity, const char* key, const char* name, std::string_view unit) {
   const auto found = validity.find(key);
   if (found == validity.end() || !found->is_array()) return nullptr;
-  const Json low = shown((*found)[0], unit, 4);
-  const Json high = shown((*found)[1], unit, 4);
+  const Json low = shown((*found).at(0), unit, 4);
+  const Json high = shown((*found).at(1), unit, 4);
   return {{"name", name}, {"low", low}, {"high", high}, {"single", low == high}};
 }
 

@@ -49,11 +49,11 @@ Json profile_view(const Json& parameter) {
   const Json& values = profile.at("values");
   const Json& rises = profile.at("rises");
   for (std::size_t i = 0; i < std::min(values.size(), rises.size()); ++i) {
-    if (!values[i].is_number() || !rises[i].is_number()) continue;
+    if (!values.at(i).is_number() || !rises.at(i).is_number()) continue;
     // Far beyond the end it would only flatten what counts.
-    if (rises[i].get<double>() > kHighestRise) continue;
-    trace.x.push_back(values[i].get<double>() / unit.si);
-    trace.y.push_back(rises[i].get<double>());
+    if (rises.at(i).get<double>() > kHighestRise) continue;
+    trace.x.push_back(values.at(i).get<double>() / unit.si);
+    trace.y.push_back(rises.at(i).get<double>());
   }
   Trace points = trace;
   points.kind = Trace::Kind::points;
@@ -74,8 +74,8 @@ Json bootstrap_row(const Json& parameter) {
           {"value", shown_in(parameter.at("value"), unit.si, 6)},
           {"standard_error", shown_in(bootstrap.at("standard_error"), unit.si, 3)},
           {"bias", shown_in(bootstrap.at("bias"), unit.si, 3)},
-          {"low", shown_in(ci[0], unit.si, 5)},
-          {"high", shown_in(ci[1], unit.si, 5)}};
+          {"low", shown_in(ci.at(0), unit.si, 5)},
+          {"high", shown_in(ci.at(1), unit.si, 5)}};
 }
 
 Json lack_of_fit_view(const Json& lack) {

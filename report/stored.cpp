@@ -65,7 +65,7 @@ Calibration load_calibration(const ReadFile& read, const std::string& where, int
   const Json& conditions = stored.result.at("conditions");
   stored.series.resize(conditions.size());
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    const std::string name = "residuals/" + text_of(conditions[i], "id") + ".csv";
+    const std::string name = "residuals/" + text_of(conditions.at(i), "id") + ".csv";
     if (const auto text = read(name)) stored.series[i] = parse_table(*text, path_in(where, name));
   });
   return stored;

@@ -70,6 +70,23 @@ class Scripts(unittest.TestCase):
         self.assertIn("rigcal_diagnosis_study classes 3 4\n", printed)
         self.assertIn("rigcal_diagnosis_study smallest 3 4\n", printed)
 
+    def test_fuzz(self):
+        for name in ("mat", "csv"):
+            make_program(self.tree / "build" / "fuzz" / "tests" / "fuzz" / f"{name}_fuzz",
+                         '#!/bin/sh\necho "$*"\necho "stat::number_of_executed_units: 7"\n')
+        self.assertIn("mat: 7 executions, nothing found\n", self.run_script("fuzz", "2", "mat"))
+        log = (self.tree / "build" / "fuzz" / "found" / "mat.log").read_text()
+        self.assertIn("-max_total_time=120 ", log)
+        self.assertIn(" build/fuzz/corpus/mat tests/fuzz/corpus/mat\n", log)
+        self.assertIn("build fuzz --target mat_fuzz csv_fuzz\n", self.run_script("fuzz", "--seconds", "5", "mat", "csv"))
+
+    def test_fuzz_that_finds_something(self):
+        make_program(self.tree / "build" / "fuzz" / "tests" / "fuzz" / "mat_fuzz", "#!/bin/sh\nexit 77\n")
+        done = subprocess.run([self.tree / "scripts" / "fuzz", "1", "mat"], cwd=self.tree, capture_output=True, text=True,
+                              check=False)
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("mat: found something, see build/fuzz/found/mat.log", done.stderr)
+
     def test_paper_figures(self):
         if not shutil.which("gnuplot"):
             make_program(self.programs / "gnuplot", "#!/bin/sh\nfor n in 5 8 9 10 11; do cp figure$n.csv figure$n.svg; done\n")

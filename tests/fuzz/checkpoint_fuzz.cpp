@@ -1,0 +1,47 @@
+#include "common/error.hpp"
+#include "report/checkpoint.hpp"
+#include "report/read_json.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#ifdef RIGCAL_LIBFUZZER
+#include "tests/fuzz/json_mutator.hpp"
+#endif
+
+using namespace rigcal;
+
+namespace {
+
+/// What a checkpoint says of the fit that it belongs to: it holds version and revision, which no
+/// corpus can know. Inputs hold a text in its place.
+const std::string& fit_identity() {
+  static const std::string text =
+      report::parse_json(report::checkpoint_text({}, {}), "identity").at("fit").dump();
+  return text;
+}
+
+constexpr std::string_view kIdentitySign = "\"@FIT@\"";
+
+}  // namespace
+
+/// A checkpoint is read, and then is what it says once written and read again; or is refused.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  std::string text(fuzz::text_of_bytes(data, size));
+  if (const auto at = text.find(kIdentitySign); at != std::string::npos)
+    text.replace(at, kIdentitySign.size(), fit_identity());
+  calib::Checkpoint checkpoint;
+  try {
+    checkpoint = report::read_checkpoint(fuzz::scratch_file("checkpoint.json", text), {});
+  } catch (const InputError&) {
+    return 0;
+  }
+  const std::string written = report::checkpoint_text(checkpoint, {});
+  const auto again = report::read_checkpoint(fuzz::scratch_file("again.json", written), {});
+  fuzz::require(report::checkpoint_text(again, {}) == written, "a checkpoint reads back");
+  return 0;
+}
+
+#ifdef RIGCAL_LIBFUZZER
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most_bytes, unsigned seed) {
+  return fuzz::mutate_json_text(data, size, most_bytes, seed);
+}
+#endif

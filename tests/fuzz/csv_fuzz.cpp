@@ -1,0 +1,29 @@
+#include <cmath>
+
+#include "common/error.hpp"
+#include "datasets/load_csv.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+using namespace rigcal;
+using namespace rigcal::datasets;
+
+/// Every column of a CSV file is read as finite numbers, as many in each, or is refused.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto file = fuzz::scratch_file("record.csv", fuzz::text_of_bytes(data, size));
+  try {
+    const std::vector<std::string> names = csv_full_header(file);
+    for (const bool has_time : {false, true}) {
+      CsvRequest request;
+      request.columns = names;
+      if (has_time && !names.empty()) request.time_column = names.front();
+      const CsvTable table = load_csv(file, request);
+      fuzz::require(table.columns.size() == names.size(), "one column per name");
+      for (const std::vector<double>& column : table.columns) {
+        fuzz::require(column.size() == table.columns.front().size(), "columns of one length");
+        for (const double value : column) fuzz::require(std::isfinite(value), "finite numbers");
+      }
+    }
+  } catch (const InputError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,27 @@
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <vector>
+
+#include "tests/fuzz/fuzz.hpp"
+
+/// Hands every file of the folders that are given to the fuzz target: what was once found must
+/// not come back.
+int main(int argc, char** argv) {
+  int count = 0;
+  for (int i = 1; i < argc; ++i) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(argv[i]))
+      files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    for (const std::filesystem::path& file : files) {
+      std::printf("%s\n", file.c_str());
+      std::fflush(stdout);  // it names the one that ends the process
+      std::ifstream stream(file, std::ios::binary);
+      const std::string content{std::istreambuf_iterator<char>(stream), {}};
+      LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(content.data()), content.size());
+      ++count;
+    }
+  }
+  return count > 0 ? 0 : 1;
+}

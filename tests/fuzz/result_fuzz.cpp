@@ -1,0 +1,57 @@
+#include <optional>
+
+#include "common/error.hpp"
+#include "report/comparison.hpp"
+#include "report/page.hpp"
+#include "report/read_json.hpp"
+#include "tests/fuzz/fuzz.hpp"
+#ifdef RIGCAL_LIBFUZZER
+#include "tests/fuzz/json_mutator.hpp"
+#endif
+
+using namespace rigcal;
+using namespace rigcal::report;
+
+namespace {
+
+/// What `attempt` reads is read, or refused as input.
+template <typename Attempt>
+void read_or_refuse(Attempt attempt) {
+  try {
+    attempt();
+  } catch (const InputError&) {
+  }
+}
+
+}  // namespace
+
+/// A fit.json, or another result in JSON, is read by all that reads such, or is refused.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const std::string text(fuzz::text_of_bytes(data, size));
+  const auto file = fuzz::scratch_file("fit.json", text);
+  for (const model::PlantKind plant :
+       {model::PlantKind::load_pressure, model::PlantKind::two_chamber}) {
+    read_or_refuse([&] { read_fit(file, plant); });
+    read_or_refuse([&] { read_truth(file, plant); });
+  }
+  for (const std::string kind : {"fit.json", "leak_table.json", "diagnosis.json"}) {
+    const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+      if (path == kind || path == "residual_tests.json") return text;
+      if (path.extension() == ".csv") return "time_s,position_residual_m\n0,1\n";
+      return std::nullopt;
+    };
+    read_or_refuse([&] { result_page(read, "folder", 1); });
+  }
+  read_or_refuse([&] {
+    const auto compared = load_compared({fuzz::scratch_folder(), fuzz::scratch_folder()});
+    comparison_text(comparison_json(compared, {}), {});
+  });
+  return 0;
+}
+
+#ifdef RIGCAL_LIBFUZZER
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size,
+                                               std::size_t most_bytes, unsigned seed) {
+  return fuzz::mutate_json_text(data, size, most_bytes, seed);
+}
+#endif
