@@ -11,20 +11,16 @@
 #include "common/parallel.hpp"
 #include "datasets/single_repeats.hpp"
 #include "diagnosis/feature_clusters.hpp"
+#include "diagnosis/healthy_reference.hpp"
+#include "diagnosis/judgement.hpp"
 #include "diagnosis/obstacles.hpp"
+#include "diagnosis/residual_rms.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
 
 using datasets::Campaign;
 using datasets::Condition;
-
-/// Share changes by less than this fraction of a relative change of the coefficient: a plateau.
-constexpr double kFlat = 0.1;
-/// Share of a difference from the healthy model that a leak leaves unexplained: told of, and too
-/// much for a class.
-constexpr double kNoticeable = 0.05;
-constexpr double kTooMuch = 1.0 / 3.0;
 
 /// A condition with its records and what a leak does in it.
 struct Prepared {
@@ -76,14 +72,6 @@ struct Task {
   int single = -1;  ///< index of the repeat; -1: the average
 };
 
-/// Residual of a record at the sample nearest to a time.
-double at_time(const std::vector<double>& residual, const std::vector<double>& time_s, double t) {
-  const auto above = std::lower_bound(time_s.begin(), time_s.end(), t);
-  auto i = static_cast<std::size_t>(above - time_s.begin());
-  if (i == time_s.size() || (i > 0 && t - time_s[i - 1] < time_s[i] - t)) --i;
-  return residual[i];
-}
-
 /// A repeat of a healthy condition, or its average where it has no repeats.
 struct Reference {
   const Prepared* prepared = nullptr;
@@ -101,34 +89,6 @@ std::vector<Reference> references_of(const Campaign& campaign, const std::vector
     for (std::size_t i = 1; i < each.residuals.size(); ++i) references.push_back({&each, i});
   }
   return references;
-}
-
-/// Takes the mean residual of the references off every output channel.
-void correct(const std::vector<Reference>& references, datasets::Record& record) {
-  for (auto& [channel, series] : record.channels) {
-    std::vector<double> sum(record.time_s.size(), 0.0);
-    for (const Reference& each : references) {
-      const auto& channels = each.prepared->residuals[each.index];
-      const auto residual = channels.find(channel);
-      if (residual == channels.end()) continue;
-      for (std::size_t i = 0; i < sum.size(); ++i)
-        sum[i] += at_time(residual->second, each.prepared->time_s(), record.time_s[i]);
-    }
-    for (std::size_t i = 0; i < sum.size(); ++i)
-      series.mean[i] -= sum[i] / static_cast<double>(references.size());
-  }
-}
-
-/// The parity residual where it counts.
-metrics::ResidualFeatures features_of(const std::vector<double>& residual,
-                                      const std::vector<double>& time_s,
-                                      const std::optional<datasets::TimeWindow>& covered) {
-  std::vector<double> counted;
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    if (!covered || (time_s[i] >= covered->start_s && time_s[i] <= covered->end_s))
-      counted.push_back(residual[i]);
-  }
-  return metrics::residual_features(counted);
 }
 
 RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, const Task& task,
@@ -153,8 +113,8 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
   } else {
     result.repeats = records.average.repeats;
   }
-  result.features = features_of(prepared.residuals[index].at(datasets::Channel::position),
-                                record.time_s, covered);
+  result.features = features_within(prepared.residuals[index].at(datasets::Channel::position),
+                                    record.time_s, covered);
 
   std::vector<Reference> references = references_of(problem.campaign, all, result.signal);
   if (is_single || references.size() > prepared.residuals.size() - 1) {
@@ -166,7 +126,12 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
         std::any_of(references.begin(), references.end(),
                     [&](const Reference& each) { return each.prepared == &prepared; });
   }
-  if (!references.empty()) correct(references, record);
+  if (!references.empty()) {
+    std::vector<TimedResidual> residuals;
+    for (const Reference& each : references)
+      residuals.push_back({&each.prepared->residuals[each.index], &each.prepared->time_s()});
+    take_off(residuals, record);
+  }
   result.reference_repeats = static_cast<int>(references.size());
 
   const LeakProblem bounded = problem.up_to(2.0 * prepared.curve->points().back().coefficient);
@@ -175,15 +140,7 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
   return result;
 }
 
-double square(double x) { return x * x; }
-
-/// The part of a residual that is not new in each sample.
-double structured(double rms, double noise) {
-  return std::sqrt(std::max(0.0, square(rms) - square(noise)));
-}
-
 struct SignalRecords {
-  std::vector<RecordDiagnosis*> averages;
   std::map<std::string, std::vector<RecordDiagnosis*>> singles;  ///< by condition
   std::vector<RecordDiagnosis*> healthy;                         ///< averages and singles
 };
@@ -194,99 +151,31 @@ std::map<std::string, SignalRecords> by_signal(const Campaign& campaign,
   for (RecordDiagnosis& record : records) {
     if (!record.fit.ok()) continue;
     SignalRecords& own = signals[record.signal];
-    if (record.repeat) {
-      own.singles[record.condition].push_back(&record);
-    } else {
-      own.averages.push_back(&record);
-    }
+    if (record.repeat) own.singles[record.condition].push_back(&record);
     if (is_healthy(campaign, *campaign.find(record.condition))) own.healthy.push_back(&record);
   }
   return signals;
 }
 
 SignalErrors errors_of(const SignalRecords& records) {
-  SignalErrors errors;
-  double squares = 0.0;
-  for (const auto& [condition, singles] : records.singles) {
-    if (singles.size() < 2) continue;
-    double mean = 0.0;
-    for (const RecordDiagnosis* each : singles) mean += each->fit.coefficient;
-    mean /= static_cast<double>(singles.size());
-    for (const RecordDiagnosis* each : singles)
-      squares += square((each->fit.coefficient - mean) * each->fit.effect_m);
-    errors.repeat_freedom += static_cast<int>(singles.size()) - 1;
+  std::vector<std::vector<const LeakFit*>> singles;
+  for (const auto& [condition, members] : records.singles) {
+    auto& own = singles.emplace_back();
+    for (const RecordDiagnosis* each : members) own.push_back(&each->fit);
   }
-  if (errors.repeat_freedom > 0) errors.repeat_m = std::sqrt(squares / errors.repeat_freedom);
-  double healthy = 0.0;
-  int count = 0;
+  std::vector<const LeakFit*> healthy;
   for (const RecordDiagnosis* each : records.healthy) {
-    if (each->repeat) continue;
-    healthy += square(each->fit.coefficient * each->fit.effect_m);
-    ++count;
+    if (!each->repeat) healthy.push_back(&each->fit);
   }
-  if (count > 0) errors.healthy_m = std::sqrt(healthy / count);
-  return errors;
+  return signal_errors(singles, healthy);
 }
 
 /// Structured parity residual that the healthy model leaves in healthy records of the signal [m].
 double healthy_misfit(const SignalRecords& records) {
   double largest = 0.0;
   for (const RecordDiagnosis* each : records.healthy)
-    largest = std::max(largest, structured(each->fit.parity_rms_m, each->fit.noise_rms_m));
+    largest = std::max(largest, structured_rms(each->fit.parity_rms_m, each->fit.noise_rms_m));
   return largest;
-}
-
-/// Share of the structured parity residual's power that a leak does not explain; 0 where no more is
-/// left than noise, or twice of what healthy records leave.
-double unexplained_share(const LeakFit& fit, double healthy_m) {
-  const double left = structured(fit.misfit_rms_m, fit.noise_rms_m);
-  if (left <= std::max(2.0 * healthy_m, fit.noise_rms_m)) return 0.0;
-  const double beyond = square(left) - square(healthy_m);
-  const double explained = square(fit.parity_rms_m) - square(fit.misfit_rms_m);
-  return beyond / (beyond + std::max(0.0, explained));
-}
-
-void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m) {
-  const LeakFit& fit = record.fit;
-  const LeakEstimate& estimate = record.estimate;
-  const double left = unexplained_share(fit, healthy_m);
-  if (!record.unexplained && left > kNoticeable) {
-    record.warnings.push_back(
-        fmt::format("a leak explains all but {:.0f} % of the difference from the healthy model "
-                    "(rms {:.3g} mm); "
-                    "what is left, {:.3g} mm, is more than noise: another fault may be part of it",
-                    100.0 * left, 1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m));
-  }
-  if (record.unexplained) {
-    record.warnings.push_back(fmt::format(
-        "not explained by a leak: it takes the difference from the healthy model from {:.3g} mm to "
-        "{:.3g} mm rms only, where healthy records leave {:.3g} mm; something else is wrong "
-        "(friction, valve, sensor), or the fit does not hold for this record",
-        1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m, 1e3 * healthy_m));
-  }
-  if (estimate.leak_score < -4.0) {
-    record.warnings.push_back(fmt::format(
-        "a leak below zero would fit best (coefficient {:.3g}): the machine is faster than its "
-        "healthy model, so supply or valve are not as they were in the fit",
-        fit.coefficient));
-  }
-  const double log_slope =
-      estimate.share > 0.0 ? fit.share_slope * fit.coefficient / estimate.share : 1.0;
-  if (std::abs(log_slope) < kFlat) {
-    record.warnings.push_back(fmt::format(
-        "the share hardly depends on the coefficient here (d ln share / d ln C = {:.2g}): a "
-        "coefficient cannot be told from a share of this signal",
-        log_slope));
-  }
-  if (!errors.repeat_m)
-    record.warnings.emplace_back(
-        "no repeats of this signal: how one run varies from the next is not in the interval");
-  if (record.is_reference)
-    record.warnings.emplace_back(
-        "the healthy reference of its signal: its leak is zero by construction");
-  if (!errors.healthy_m && record.reference_repeats == 0)
-    record.warnings.emplace_back(
-        "no healthy record of this signal: what the model lacks is not in the interval");
 }
 
 /// The class that the record is known to have, if any.
@@ -343,7 +232,7 @@ SignalDiagnosis limits_of(const Campaign& campaign, const SignalRecords& records
     std::optional<DetectionLimit>& kept =
         each->repeat ? result.smallest_single_leak : result.smallest_leak;
     if (!each->repeat) result.repeats = each->repeats;
-    if (!kept || limit.leak_flow_m3_per_s > kept->leak_flow_m3_per_s) kept = limit;
+    keep_larger(limit, kept);
   }
   if (records.healthy.empty()) result.reason = "no healthy record of this signal";
   return result;
@@ -404,12 +293,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
       if (!record.fit.ok() || record.signal != signal) continue;
       record.estimate = estimate_leak(record.fit, *curves.at(record.condition), errors,
                                       record.repeats, record.reference_repeats, campaign.diagnosis);
-      record.unexplained = unexplained_share(record.fit, healthy_m) > kTooMuch;
-      const auto best = static_cast<std::size_t>(record.estimate.most_probable);
-      if (!record.unexplained &&
-          record.estimate.probability[best] >= campaign.diagnosis.least_probability)
-        record.leak_class = record.estimate.most_probable;
-      warn(record, errors, healthy_m);
+      judge(record, errors, healthy_m, campaign.diagnosis);
     }
     result.signals.push_back(limits_of(campaign, members, errors, curves, signal));
   }

@@ -148,4 +148,8 @@ DetectionLimit detection_limit(const LeakEstimate& healthy, const LeakCurve& cur
   return limit;
 }
 
+void keep_larger(const DetectionLimit& limit, std::optional<DetectionLimit>& kept) {
+  if (!kept || limit.leak_flow_m3_per_s > kept->leak_flow_m3_per_s) kept = limit;
+}
+
 }  // namespace rigcal::diagnosis

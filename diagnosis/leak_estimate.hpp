@@ -7,22 +7,12 @@
 #include "datasets/diagnosis_settings.hpp"
 #include "diagnosis/leak_curve.hpp"
 #include "diagnosis/leak_fit.hpp"
+#include "diagnosis/signal_errors.hpp"
 
 namespace rigcal::diagnosis {
 
 using datasets::LeakClass;
 inline constexpr std::size_t kClassCount = datasets::kLeakClasses.size();
-
-/// Errors of a leak that the records of one signal tell together, as an rms change of position, so
-/// that they carry over from one leak level to another.
-struct SignalErrors {
-  /// Standard deviation of a single repeat about the mean of its condition, pooled.
-  std::optional<double> repeat_m;
-  int repeat_freedom = 0;
-  /// Leak that healthy records seem to have, where they correct nothing: what the model lacks looks
-  /// like a leak of this size.
-  std::optional<double> healthy_m;
-};
 
 /// What is known of the leak in one record.
 struct LeakEstimate {
@@ -65,5 +55,8 @@ struct DetectionLimit {
 /// @param healthy  estimate of a record without a leak
 DetectionLimit detection_limit(const LeakEstimate& healthy, const LeakCurve& curve,
                                const datasets::DiagnosisSettings& settings);
+
+/// Keeps the limit that takes the larger flow to be seen.
+void keep_larger(const DetectionLimit& limit, std::optional<DetectionLimit>& kept);
 
 }  // namespace rigcal::diagnosis

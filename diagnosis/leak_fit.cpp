@@ -9,6 +9,8 @@
 #include "calib/problem.hpp"
 #include "calib/solve.hpp"
 #include "calib/triangle.hpp"
+#include "diagnosis/phase_clusters.hpp"
+#include "diagnosis/residual_rms.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
@@ -18,7 +20,6 @@ using datasets::Condition;
 using datasets::Record;
 
 constexpr const char* kLeak = "leakage_coefficient";
-constexpr int kClusters = 10;
 constexpr int kIterations = 40;
 
 void erase_value(datasets::Overrides& overrides, int index) {
@@ -79,23 +80,6 @@ Linear linearise(const calib::ProblemCondition& condition, const model::Simulati
   return linear;
 }
 
-/// The cluster of each sample that counts, from 0.
-std::vector<int> clusters_of(const calib::ProblemCondition& condition) {
-  const Condition& c = *condition.condition;
-  const bool periodic =
-      c.waveform == datasets::Waveform::sine || c.waveform == datasets::Waveform::square;
-  std::vector<int> clusters;
-  for (std::size_t i = 0; i < condition.rows.size(); ++i) {
-    double place = static_cast<double>(i) / static_cast<double>(condition.rows.size());
-    if (periodic && c.frequency_hz) {
-      const double periods = condition.record->time_s[condition.rows[i]] * *c.frequency_hz;
-      place = periods - std::floor(periods);
-    }
-    clusters.push_back(std::min(kClusters - 1, static_cast<int>(kClusters * place)));
-  }
-  return clusters;
-}
-
 /// What the triangle R of [J r] (calib/triangle.hpp) tells of the unknowns of J.
 struct Solved {
   Eigen::MatrixXd root;  ///< inverse of J's part of R: root root^T is the inverse of J^T J
@@ -115,28 +99,6 @@ Solved least_squares(const Linear& linear) {
   for (auto column : solved.root.colwise()) upper.solveInPlace(column);
   solved.step = -solved.root * r.col(p).head(p);
   return solved;
-}
-
-/// Sandwich covariance of the unknowns, and its degrees of freedom.
-///
-/// @param bread  inverse of J^T J
-std::pair<Eigen::MatrixXd, int> cluster_sandwich(const Linear& linear, const Eigen::MatrixXd& bread,
-                                                 const Eigen::VectorXd& residual,
-                                                 const std::vector<int>& clusters) {
-  const auto samples = static_cast<Eigen::Index>(clusters.size());
-  const Eigen::Index p = linear.jacobian.cols();
-  Eigen::MatrixXd scores = Eigen::MatrixXd::Zero(kClusters, p);
-  for (Eigen::Index row = 0; row < residual.size(); ++row) {
-    const int cluster = clusters[static_cast<std::size_t>(row % samples)];
-    scores.row(cluster) += linear.jacobian.row(row) * residual(row);
-  }
-  const auto used =
-      static_cast<int>(std::count_if(scores.rowwise().begin(), scores.rowwise().end(),
-                                     [](const auto& row) { return row.squaredNorm() > 0.0; }));
-  const int freedom = std::max(1, used - static_cast<int>(p));
-  const double factor = static_cast<double>(used) / freedom;
-  const Eigen::MatrixXd moves = bread.lazyProduct(scores.transpose());
-  return {factor * moves.lazyProduct(moves.transpose()), freedom};
 }
 
 /// Share over the steady part and its derivatives by every free parameter.
@@ -168,19 +130,6 @@ ShareAt share_gradient(const model::Simulation& run, std::size_t servo, std::siz
   if (!(servo_mean > 0.0)) return {0.0, Eigen::VectorXd::Zero(servo_gradient.size())};
   const double share = leak_mean / servo_mean;
   return {share, (leak_gradient - share * servo_gradient) / servo_mean};
-}
-
-double rms(const std::vector<double>& x) {
-  double squares = 0.0;
-  for (const double value : x) squares += value * value;
-  return x.empty() ? 0.0 : std::sqrt(squares / static_cast<double>(x.size()));
-}
-
-/// Standard deviation of the part that is independent from sample to sample (von Neumann).
-double noise_rms(const std::vector<double>& x) {
-  double squares = 0.0;
-  for (std::size_t i = 1; i < x.size(); ++i) squares += (x[i] - x[i - 1]) * (x[i] - x[i - 1]);
-  return x.size() < 2 ? 0.0 : std::sqrt(0.5 * squares / static_cast<double>(x.size() - 1));
 }
 
 model::SimulationOptions options_of(const calib::Problem& problem,
@@ -245,7 +194,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, bo
   fit.coefficient = values[kLeak] + step(leak);
   const Eigen::MatrixXd bread = root.lazyProduct(root.transpose());
   const auto [covariance, freedom] = cluster_sandwich(
-      linear, bread, linear.residual + linear.jacobian * step, clusters_of(condition));
+      linear.jacobian, linear.residual + linear.jacobian * step, bread, clusters_of(condition));
   fit.scatter_se = std::sqrt(covariance(leak, leak));
   fit.scatter_freedom = freedom;
   // Whether the optimiser is content does not matter: the last step is taken here, by linear

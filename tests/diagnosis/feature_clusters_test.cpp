@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 using namespace rigcal::diagnosis;
+namespace metrics = rigcal::metrics;
 using rigcal::datasets::LeakClass;
 
 namespace {
@@ -23,6 +24,23 @@ TEST_CASE("FeatureClusters: the nearest mean", "[diagnosis]") {
   CHECK(clusters.nearest({0.0, 0.0, 0.0}) == LeakClass::normal);
   CHECK(clusters.nearest({20.0, 20.0, 9.0}) == LeakClass::slight);
   CHECK_FALSE(FeatureClusters({}).nearest({0.0, 0.0, 0.0}));
+}
+
+TEST_CASE("FeatureClusters: each of the three features tells", "[diagnosis]") {
+  const metrics::ResidualFeatures origin{1.0, 1.0, 1.0};
+  for (double metrics::ResidualFeatures::*feature :
+       {&metrics::ResidualFeatures::mean, &metrics::ResidualFeatures::rms,
+        &metrics::ResidualFeatures::std}) {
+    metrics::ResidualFeatures away = origin;
+    away.*feature = 3.0;
+    const FeatureClusters clusters(
+        {{"s", 1, LeakClass::normal, origin}, {"s", 1, LeakClass::critical, away}});
+    metrics::ResidualFeatures near = origin;
+    near.*feature = 2.1;
+    CHECK(clusters.nearest(near) == LeakClass::critical);
+    near.*feature = 1.9;
+    CHECK(clusters.nearest(near) == LeakClass::normal);
+  }
 }
 
 TEST_CASE("class_without_repeat: own signal, other repeats", "[diagnosis]") {

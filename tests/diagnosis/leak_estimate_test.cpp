@@ -159,6 +159,18 @@ TEST_CASE("detection_limit: Currie's sum of both quantiles", "[diagnosis]") {
   CHECK_THAT(limit.leak_flow_m3_per_s, WithinRel(0.039712e-5, 1e-3));
 }
 
+TEST_CASE("keep_larger: the limit of the larger flow, whatever comes first", "[diagnosis]") {
+  const DetectionLimit small{0.5, 1e-6, 0.02};
+  const DetectionLimit large{0.1, 2e-6, 0.01};
+  for (const bool small_first : {false, true}) {
+    std::optional<DetectionLimit> kept;
+    keep_larger(small_first ? small : large, kept);
+    keep_larger(small_first ? large : small, kept);
+    REQUIRE(kept);
+    CHECK(kept->leak_flow_m3_per_s == 2e-6);
+  }
+}
+
 TEST_CASE("class_of: a share at a limit is above it", "[diagnosis]") {
   CHECK(class_of(kSettings, 0.0) == LeakClass::normal);
   CHECK(class_of(kSettings, 0.01) == LeakClass::slight);

@@ -79,6 +79,22 @@ TEST_CASE("obstacles: a condition that can be diagnosed is enough", "[diagnosis]
   CHECK_THAT(all(found.left_out), Contains("\"b\" is left out") && Contains("no record"));
 }
 
+TEST_CASE("is_healthy: class normal, or a coefficient that is known to be 0", "[diagnosis]") {
+  const auto healthy = [](const std::string& levels) {
+    const datasets::Campaign campaign =
+        load_text(kHead + kChannels + levels + condition("a", "leak_level = \"x\"\n"));
+    return diagnosis::is_healthy(campaign, campaign.conditions.front());
+  };
+  const auto level = [](const std::string& value) {
+    return "[leak_level.x]\nparameters = { leakage_coefficient = " + value + " }\n";
+  };
+  CHECK(healthy(level("0")));
+  CHECK_FALSE(healthy(level("0.3")));
+  CHECK_FALSE(healthy("[leak_level.x]\nparameters = { mass = \"50 kg\" }\n"));
+  CHECK(healthy("[diagnosis]\nlevel_class = { x = \"normal\" }\n"));
+  CHECK_FALSE(healthy("[diagnosis]\nlevel_class = { x = \"slight\" }\n" + level("0")));
+}
+
 TEST_CASE("confounded: level with specimen and date, but not where both appear", "[diagnosis]") {
   const std::string levels = "[diagnosis]\nlevel_class = { none = \"normal\" }\n";
   const auto with = [&](const std::string& second_date) {

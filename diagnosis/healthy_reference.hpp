@@ -1,0 +1,32 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "datasets/campaign.hpp"
+#include "datasets/record.hpp"
+#include "metrics/residual_features.hpp"
+
+namespace rigcal::diagnosis {
+
+/// What one healthy record differs by from the healthy model, on its own time base.
+struct TimedResidual {
+  const std::map<datasets::Channel, std::vector<double>>* channels = nullptr;
+  const std::vector<double>* time_s = nullptr;
+};
+
+/// Takes the mean residual of healthy records, each at its sample nearest in time, off every
+/// channel of a record.
+void take_off(std::span<const TimedResidual> healthy, datasets::Record& record);
+
+/// Features of a parity residual over the times that a record covers, ends included.
+///
+/// @param residual  shape (time_s)
+/// @param covered   none: all of it
+metrics::ResidualFeatures features_within(const std::vector<double>& residual,
+                                          const std::vector<double>& time_s,
+                                          const std::optional<datasets::TimeWindow>& covered);
+
+}  // namespace rigcal::diagnosis

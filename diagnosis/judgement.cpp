@@ -1,0 +1,71 @@
+#include "diagnosis/judgement.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace rigcal::diagnosis {
+namespace {
+
+/// Share changes by less than this fraction of a relative change of the coefficient: a plateau.
+constexpr double kFlat = 0.1;
+/// Share of a difference from the healthy model that a leak leaves unexplained: told of, and too
+/// much for a class.
+constexpr double kNoticeable = 0.05;
+constexpr double kTooMuch = 1.0 / 3.0;
+
+void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m) {
+  const LeakFit& fit = record.fit;
+  const LeakEstimate& estimate = record.estimate;
+  const double left = unexplained_share(fit, healthy_m);
+  if (!record.unexplained && left > kNoticeable) {
+    record.warnings.push_back(
+        fmt::format("a leak explains all but {:.0f} % of the difference from the healthy model "
+                    "(rms {:.3g} mm); "
+                    "what is left, {:.3g} mm, is more than noise: another fault may be part of it",
+                    100.0 * left, 1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m));
+  }
+  if (record.unexplained) {
+    record.warnings.push_back(fmt::format(
+        "not explained by a leak: it takes the difference from the healthy model from {:.3g} mm to "
+        "{:.3g} mm rms only, where healthy records leave {:.3g} mm; something else is wrong "
+        "(friction, valve, sensor), or the fit does not hold for this record",
+        1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m, 1e3 * healthy_m));
+  }
+  if (estimate.leak_score < -4.0) {
+    record.warnings.push_back(fmt::format(
+        "a leak below zero would fit best (coefficient {:.3g}): the machine is faster than its "
+        "healthy model, so supply or valve are not as they were in the fit",
+        fit.coefficient));
+  }
+  const double log_slope =
+      estimate.share > 0.0 ? fit.share_slope * fit.coefficient / estimate.share : 1.0;
+  if (std::abs(log_slope) < kFlat) {
+    record.warnings.push_back(fmt::format(
+        "the share hardly depends on the coefficient here (d ln share / d ln C = {:.2g}): a "
+        "coefficient cannot be told from a share of this signal",
+        log_slope));
+  }
+  if (!errors.repeat_m)
+    record.warnings.emplace_back(
+        "no repeats of this signal: how one run varies from the next is not in the interval");
+  if (record.is_reference)
+    record.warnings.emplace_back(
+        "the healthy reference of its signal: its leak is zero by construction");
+  if (!errors.healthy_m && record.reference_repeats == 0)
+    record.warnings.emplace_back(
+        "no healthy record of this signal: what the model lacks is not in the interval");
+}
+
+}  // namespace
+
+void judge(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
+           const datasets::DiagnosisSettings& settings) {
+  record.unexplained = unexplained_share(record.fit, healthy_m) > kTooMuch;
+  const auto best = static_cast<std::size_t>(record.estimate.most_probable);
+  if (!record.unexplained && record.estimate.probability[best] >= settings.least_probability)
+    record.leak_class = record.estimate.most_probable;
+  warn(record, errors, healthy_m);
+}
+
+}  // namespace rigcal::diagnosis

@@ -1,0 +1,124 @@
+#include "diagnosis/judgement.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace rigcal;
+using namespace rigcal::diagnosis;
+using Catch::Contains;
+using Catch::StartsWith;
+
+namespace {
+
+/// A medium leak that is sure and explains all.
+RecordDiagnosis sure_record() {
+  RecordDiagnosis record;
+  record.fit.coefficient = 0.4;
+  record.fit.share_slope = 0.375;
+  record.fit.parity_rms_m = 1e-3;
+  record.fit.misfit_rms_m = 1e-5;
+  record.fit.noise_rms_m = 1e-5;
+  record.estimate.share = 0.15;
+  record.estimate.probability = {0.0, 0.0, 1.0, 0.0, 0.0};
+  record.estimate.most_probable = LeakClass::medium;
+  record.estimate.leak_score = 20.0;
+  return record;
+}
+
+SignalErrors known_errors() {
+  SignalErrors errors;
+  errors.repeat_m = 1e-5;
+  errors.repeat_freedom = 4;
+  errors.healthy_m = 1e-6;
+  return errors;
+}
+
+RecordDiagnosis judged(RecordDiagnosis record, const SignalErrors& errors = known_errors(),
+                       const datasets::DiagnosisSettings& settings = {}) {
+  judge(record, errors, 0.0, settings);
+  return record;
+}
+
+std::string told(const RecordDiagnosis& record) {
+  std::string text;
+  for (const std::string& each : record.warnings) text += each + "\n";
+  return text;
+}
+
+/// A leak takes the residual from 1 to `left`, without noise: left^2 of the power is unexplained.
+RecordDiagnosis leaving(double left) {
+  RecordDiagnosis record = sure_record();
+  record.fit.noise_rms_m = 0.0;
+  record.fit.misfit_rms_m = 1e-3 * left;
+  return record;
+}
+
+}  // namespace
+
+TEST_CASE("judge: a sure leak has its class and nothing to be warned of", "[diagnosis]") {
+  const auto record = judged(sure_record());
+  CHECK(record.leak_class == LeakClass::medium);
+  CHECK_FALSE(record.unexplained);
+  CHECK(told(record).empty());
+}
+
+TEST_CASE("judge: undecided below the least probability", "[diagnosis]") {
+  RecordDiagnosis torn = sure_record();
+  torn.estimate.probability = {0.0, 0.4, 0.45, 0.15, 0.0};
+  CHECK_FALSE(judged(torn).leak_class);
+  datasets::DiagnosisSettings bold;
+  bold.least_probability = 0.45;
+  CHECK(judged(torn, known_errors(), bold).leak_class == LeakClass::medium);
+}
+
+TEST_CASE("judge: from a twentieth unexplained on told of, from a third not classified",
+          "[diagnosis]") {
+  CHECK(told(judged(leaving(std::sqrt(0.045)))).empty());
+  const auto partly = judged(leaving(std::sqrt(0.055)));
+  CHECK_THAT(told(partly), Contains("another fault may be part of it"));
+  CHECK(partly.leak_class == LeakClass::medium);
+  CHECK_FALSE(judged(leaving(std::sqrt(0.32))).unexplained);
+  const auto other = judged(leaving(std::sqrt(0.35)));
+  CHECK(other.unexplained);
+  CHECK_FALSE(other.leak_class);
+  CHECK_THAT(told(other), StartsWith("not explained by a leak"));
+}
+
+TEST_CASE("judge: a leak below zero is told of from four standard errors on", "[diagnosis]") {
+  RecordDiagnosis fast = sure_record();
+  fast.estimate.share = 0.0;
+  fast.fit.coefficient = -0.1;
+  fast.estimate.leak_score = -3.9;
+  CHECK(told(judged(fast)).empty());
+  fast.estimate.leak_score = -4.1;
+  CHECK_THAT(told(judged(fast)), StartsWith("a leak below zero would fit best"));
+}
+
+TEST_CASE("judge: a plateau is told of by the relative slope", "[diagnosis]") {
+  // d ln share / d ln C = slope C / share.
+  RecordDiagnosis flat = sure_record();
+  flat.fit.coefficient = 0.02;  // 0.375 * 0.02 / 0.15 = 0.05
+  CHECK_THAT(told(judged(flat)), Contains("the share hardly depends on the coefficient"));
+  CHECK_THAT(told(judged(flat)), Contains("d ln C = 0.05"));
+  flat.fit.coefficient = 0.06;  // 0.15
+  CHECK(told(judged(flat)).empty());
+  // A share that falls by as much is no plateau, and one of nothing is not judged.
+  flat.fit.share_slope = -0.375;
+  CHECK(told(judged(flat)).empty());
+  flat.estimate.share = 0.0;
+  CHECK(told(judged(flat)).empty());
+}
+
+TEST_CASE("judge: what is not in the interval is told", "[diagnosis]") {
+  SignalErrors errors = known_errors();
+  errors.repeat_m.reset();
+  CHECK_THAT(told(judged(sure_record(), errors)), StartsWith("no repeats of this signal"));
+  errors = known_errors();
+  errors.healthy_m.reset();
+  CHECK_THAT(told(judged(sure_record(), errors)), StartsWith("no healthy record of this signal"));
+  RecordDiagnosis corrected = sure_record();
+  corrected.reference_repeats = 5;
+  CHECK(told(judged(corrected, errors)).empty());
+  corrected.is_reference = true;
+  CHECK_THAT(told(judged(corrected, errors)), StartsWith("the healthy reference of its signal"));
+}
