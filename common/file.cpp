@@ -62,13 +62,17 @@ class TemporaryFile {
     }
   }
 
-  void rename_into_place() {
+  /// Whole, but not in its place yet.
+  void finish() {
     // Without fsync a power cut can leave the new name on an empty file.
     if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS)
       fail_to_write(target_, reason(errno));
     const int closed = ::close(descriptor_);
     descriptor_ = -1;
     if (closed != 0) fail_to_write(target_, reason(errno));
+  }
+
+  void rename_into_place() {
     if (::rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, reason(errno));
     renamed_ = true;
   }
@@ -136,15 +140,24 @@ struct FreeDigest {
 }  // namespace
 
 void write_file_atomically(const fs::path& path, std::string_view content) {
-  if (!path.has_filename()) fail_to_write(path, "not the name of a file");
-  if (path.has_parent_path()) {
+  write_files_atomically({{path, content}});
+}
+
+void write_files_atomically(const std::vector<std::pair<fs::path, std::string_view>>& files) {
+  std::vector<std::unique_ptr<TemporaryFile>> written;
+  for (const auto& [path, content] : files) {
     std::error_code error;
-    fs::create_directories(path.parent_path(), error);
-    if (error) fail_to_write(path, fmt::format("its folder cannot be made: {}", error.message()));
+    if (!path.has_filename() || fs::is_directory(path, error))
+      fail_to_write(path, "not the name of a file");
+    if (path.has_parent_path()) {
+      fs::create_directories(path.parent_path(), error);
+      if (error) fail_to_write(path, fmt::format("its folder cannot be made: {}", error.message()));
+    }
+    written.push_back(std::make_unique<TemporaryFile>(path));
+    written.back()->write(content);
+    written.back()->finish();
   }
-  TemporaryFile file(path);
-  file.write(content);
-  file.rename_into_place();
+  for (const auto& file : written) file->rename_into_place();
 }
 
 std::string read_file(const fs::path& path, std::size_t most_bytes, const std::string& expected) {

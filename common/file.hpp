@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace rigcal {
 
@@ -12,6 +14,10 @@ namespace rigcal {
 ///
 /// @throws WriteError  with path and reason; no partial file stays behind
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
+
+/// The same for several files: all are written before the first takes its place.
+void write_files_atomically(
+    const std::vector<std::pair<std::filesystem::path, std::string_view>>& files);
 
 /// The content of a regular file. Never waits for a pipe.
 ///

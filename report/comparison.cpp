@@ -66,22 +66,8 @@ Json comparison_warnings(const std::vector<Compared>& results) {
   return list;
 }
 
-}  // namespace
-
-Json comparison_json(const std::vector<Compared>& results, const Provenance& provenance) {
-  for (const Compared& compared : results) {
-    // Each on its own, so that the error can name the file.
-    try {
-      compared_result_json(compared);
-      compared_parameters({compared});
-      models_json({compared, compared});
-      compared_conditions({compared});
-    } catch (const Json::exception& error) {
-      throw InputError(
-          {compared.file.string()},
-          fmt::format("the result is not as this version writes it: {}", error.what()));
-    }
-  }
+/// @throws nlohmann::json::exception  a result is not what this version writes
+Json made_comparison(const std::vector<Compared>& results, const Provenance& provenance) {
   const auto usable = std::count_if(results.begin(), results.end(),
                                     [](const Compared& each) { return is_usable(each.result); });
   Json json;
@@ -100,6 +86,29 @@ Json comparison_json(const std::vector<Compared>& results, const Provenance& pro
   json["warnings"] = comparison_warnings(results);
   json["provenance"] = provenance_json(provenance);
   return json;
+}
+
+}  // namespace
+
+Json comparison_json(const std::vector<Compared>& results, const Provenance& provenance) {
+  const auto refuse = [](const Compared& result, const Json::exception& error) {
+    throw InputError({result.file.string()},
+                     fmt::format("the result is not as this version writes it: {}", error.what()));
+  };
+  try {
+    return made_comparison(results, provenance);
+  } catch (const Json::exception& error) {
+    // Each with itself, so that the error can name the file.
+    for (const Compared& result : results) {
+      try {
+        made_comparison({result, result}, provenance);
+      } catch (const Json::exception& of_result) {
+        refuse(result, of_result);
+      }
+    }
+    refuse(results.back(), error);  // which shows beside another alone
+    throw;
+  }
 }
 
 }  // namespace rigcal::report

@@ -120,8 +120,10 @@ Json compared_parameters(const std::vector<Compared>& results) {
     for (const Compared& compared : results) {
       const Json* parameter = find_parameter(compared.result, id);
       if (parameter != nullptr && !json.contains("name")) {
-        for (const char* key : {"name", "key", "symbol", "unit", "scope", "level"})
+        for (const char* key : {"name", "key", "symbol", "unit", "scope", "level"}) {
+          text_of(*parameter, key);  // or else it is not what this version writes
           json[key] = parameter->at(key);
+        }
       }
       estimates.push_back(estimate_json(parameter, is_usable(compared.result)));
     }

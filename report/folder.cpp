@@ -1,8 +1,14 @@
 #include "report/folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "common/error.hpp"
 #include "common/file.hpp"
@@ -24,14 +30,30 @@ std::vector<fs::path> missing_folders(const fs::path& path) {
 
 }  // namespace
 
-void require_writable(const fs::path& out) {
+HeldFolder::Made::~Made() {
+  std::error_code ignored;  // one that is not empty stays
+  for (const fs::path& folder : folders) fs::remove(folder, ignored);
+}
+
+HeldFolder::HeldFolder(const fs::path& out) {
   const fs::path folder = fs::absolute(out).lexically_normal();
-  const std::vector<fs::path> made = missing_folders(folder);
+  made_.folders = missing_folders(folder);
   const fs::path probe = folder / ".rigcal-probe";
   write_file_atomically(probe, "");
   std::error_code ignored;  // what cannot be removed again does no harm
   fs::remove(probe, ignored);
-  for (const fs::path& path : made) fs::remove(path, ignored);
+  descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    ::close(descriptor_);
+    throw UsageError(
+        fmt::format("--out {}: another run of rigcal writes into it; wait for its end, "
+                    "or choose another folder",
+                    out.string()));
+  }
+}
+
+HeldFolder::~HeldFolder() {
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void require_inputs_kept(const fs::path& out, const std::vector<fs::path>& results,
@@ -54,7 +76,9 @@ void write_results(const fs::path& out, const std::vector<ResultFile>& files,
   std::vector<fs::path> paths;
   for (const ResultFile& file : files) paths.push_back(file.path);
   require_inputs_kept(out, paths, inputs);
-  for (const ResultFile& file : files) write_file_atomically(out / file.path, file.content);
+  std::vector<std::pair<fs::path, std::string_view>> contents;
+  for (const ResultFile& file : files) contents.emplace_back(out / file.path, file.content);
+  write_files_atomically(contents);
 }
 
 void remove_stale(const fs::path& file) {

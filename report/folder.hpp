@@ -14,10 +14,27 @@ struct ResultFile {
   std::string content;
 };
 
-/// Tries whether files can be made in `out`, before any long work. Leaves no trace.
-///
-/// @throws WriteError  with path and reason
-void require_writable(const std::filesystem::path& out);
+/// The folder of a run's results, which is this run's alone as long as the object lives. Makes it
+/// and tries whether files can be made in it, before any long work; a folder that it made and that
+/// is still empty in the end goes again. Where the file system has no locks, none is held.
+class HeldFolder {
+ public:
+  /// @throws WriteError  with path and reason
+  /// @throws UsageError  another run holds it
+  explicit HeldFolder(const std::filesystem::path& out);
+  HeldFolder(const HeldFolder&) = delete;
+  HeldFolder& operator=(const HeldFolder&) = delete;
+  ~HeldFolder();
+
+ private:
+  /// Folders that go again where they are empty, innermost first.
+  struct Made {
+    std::vector<std::filesystem::path> folders;
+    ~Made();
+  };
+  Made made_;
+  int descriptor_ = -1;
+};
 
 /// Refuses a result that would replace one of the files it was made from.
 ///
@@ -26,7 +43,8 @@ void require_inputs_kept(const std::filesystem::path& out,
                          const std::vector<std::filesystem::path>& results,
                          const std::vector<InputFile>& inputs);
 
-/// Writes every file, each whole or not at all.
+/// Writes every file, each whole or not at all: all are written beside their places before the
+/// first is moved there, so that a full disk leaves the files of an earlier run as they were.
 ///
 /// @throws WriteError  with path and reason
 /// @throws UsageError  a file would replace one of `inputs`; then none is written

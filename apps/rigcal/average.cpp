@@ -16,7 +16,7 @@ namespace {
 
 ExitCode run_average(const CampaignOptions& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options);
-  report::require_writable(options.out);
+  const report::HeldFolder held(options.out);
   std::vector<datasets::Record> records;
   std::vector<report::ResultFile> files;
   std::string text;

@@ -20,25 +20,6 @@ struct CompareOptions {
   PrintOptions print;
 };
 
-/// The comparison, or an error that names the result which this version cannot read.
-report::Json compared(const std::vector<report::Compared>& results,
-                      const report::Provenance& provenance) {
-  try {
-    return report::comparison_json(results, provenance);
-  } catch (const report::Json::exception&) {
-    for (const report::Compared& each : results) {
-      try {
-        report::comparison_json({each, each}, provenance);
-      } catch (const report::Json::exception& error) {
-        throw InputError(
-            {each.file.string()},
-            fmt::format("the result is not as this version writes it: {}", error.what()));
-      }
-    }
-    throw;
-  }
-}
-
 ExitCode run_compare(const CompareOptions& options, const Invocation& invocation) {
   if (options.folders.size() < 2)
     throw UsageError("compare: expected two result folders or more, the one to compare with first");
@@ -50,12 +31,12 @@ ExitCode run_compare(const CompareOptions& options, const Invocation& invocation
       throw UsageError(fmt::format("compare: {} is given twice", folder->string()));
   }
   const std::vector<report::Compared> results = report::load_compared(options.folders);
-  report::require_writable(options.out);
+  const report::HeldFolder held(options.out);
   report::Provenance provenance;
   provenance.command = invocation.command;
   for (const report::Compared& each : results)
     provenance.inputs.push_back({each.file.string(), sha256_of_file(each.file)});
-  const report::Json json = compared(results, provenance);
+  const report::Json json = report::comparison_json(results, provenance);
   std::vector<report::ResultFile> files{{"comparison.json", report::json_text(json)}};
   add_page(options.out, hardware_threads(), files);
   report::write_results(options.out, files, provenance.inputs);

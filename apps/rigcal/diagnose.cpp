@@ -112,7 +112,7 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
   settings.cancel = &invocation.cancel;
   settings.truth = truth_beside(campaign);
   stop_if(invocation.cancel);
-  report::require_writable(options.common.out);
+  const report::HeldFolder held(options.common.out);
   const diagnosis::Diagnosable diagnosable = diagnosis::diagnosable(campaign);
   std::vector<datasets::RepeatRecords> records(diagnosable.conditions.size());
   parallel_for(records.size(), settings.threads, [&](std::size_t i) {

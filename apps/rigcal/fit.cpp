@@ -77,7 +77,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
                                 report::hash_inputs(campaign, records)};
   provenance.options.emplace_back("starts", fmt::format("{}", settings.starts));
   stop_if(invocation.cancel);
-  report::require_writable(options.common.out);
+  const report::HeldFolder held(options.common.out);
 
   CheckpointFile checkpoint(options.common.out, provenance);
   const auto earlier = options.resume ? checkpoint.read() : std::nullopt;

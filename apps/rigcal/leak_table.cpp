@@ -45,7 +45,7 @@ ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invoc
   LeakTableInput input = load_leak_table(options.common);
   choose_targets(options, input.settings);
   choose_signals(options, input.campaign, input.settings);
-  report::require_writable(options.common.out);
+  const report::HeldFolder held(options.common.out);
   stop_if(invocation.cancel);
   calib::LeakTableOptions settings = leak_table_options(options.common, input.campaign, invocation);
   const calib::LeakTable table = [&] {

@@ -36,7 +36,7 @@ ExitCode run_plan(const PlanRequest& options, const Invocation& invocation) {
       records.push_back(datasets::load_record(campaign, condition));
   }
   stop_if(invocation.cancel);
-  report::require_writable(options.common.out);
+  const report::HeldFolder held(options.common.out);
   const report::Provenance provenance{invocation.command, 1, recorded(options.common),
                                       report::hash_inputs(campaign, records, more_inputs)};
   const calib::Plan plan =

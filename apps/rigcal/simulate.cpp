@@ -124,7 +124,7 @@ ExitCode run_simulate(const SimulateRequest& options, const Invocation& invocati
     tasks.push_back(prepare(campaign, *condition));
     if (tasks.back().record) records.push_back(*tasks.back().record);
   }
-  report::require_writable(options.common.out);
+  const report::HeldFolder held(options.common.out);
 
   model::SimulationOptions settings;
   settings.method = campaign.simulation.method;

@@ -23,7 +23,7 @@ ExitCode run_synthesize(const SynthesizeRequest& options, const Invocation& invo
   const CampaignOptions& common = options.common;
   const datasets::Campaign campaign = load(common);
   report::require_inputs_kept(common.out, {"campaign.toml"}, report::hash_inputs(campaign, {}));
-  report::require_writable(common.out);
+  const report::HeldFolder held(common.out);
   stop_if(invocation.cancel);
   const datasets::SynthesisReport made =
       datasets::synthesize(campaign, options.seed, common.out, common.threads);

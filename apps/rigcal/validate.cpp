@@ -97,7 +97,7 @@ ExitCode run_validate(const ValidateRequest& options, const Invocation& invocati
   const report::Provenance provenance{invocation.command, settings.seed, recorded(options.common),
                                       report::hash_inputs(campaign, records, more_inputs)};
   stop_if(invocation.cancel);
-  report::require_writable(options.common.out);
+  const report::HeldFolder held(options.common.out);
 
   calib::Fit fit;
   {

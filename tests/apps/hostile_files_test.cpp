@@ -1,5 +1,8 @@
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -134,6 +137,10 @@ TEST_CASE("hostile files: a result of unheard-of numbers is no bug", "[apps]") {
   folder.write("bad/fit.json", replaced(whole, "\"conditions\": [", "\"conditions\": [7,"));
   check_no_input(folder, {"compare", "fit", "bad", "--out", "c"}, "bad/fit.json",
                  "not as this version writes it");
+  // Which shows only where parameters are compared.
+  folder.write("bad/fit.json", replaced(whole, "\"key\": \"damping\"", "\"key\": 0.5"));
+  check_no_input(folder, {"compare", "fit", "bad", "--out", "c"}, "bad/fit.json",
+                 "not as this version writes it");
 }
 
 TEST_CASE("hostile files: a table of a result that is cut short", "[apps]") {
@@ -180,6 +187,7 @@ TEST_CASE("rigcal: a limit of the size of files is an error of writing", "[apps]
   const CommandFolder folder;
   write_fitted_twin(folder);
   const std::string before = folder.read("fit/fit.json");
+  folder.write("fit/scorecard.csv", "of an earlier run");
   rlimit unlimited{};
   REQUIRE(::getrlimit(RLIMIT_FSIZE, &unlimited) == 0);
   rlimit small = unlimited;
@@ -191,6 +199,23 @@ TEST_CASE("rigcal: a limit of the size of files is an error of writing", "[apps]
   CHECK(outcome.exit_code == 5);
   CHECK_THAT(outcome.err, StartsWith("rigcal: fit/") && Contains("cannot be written"));
   CHECK(folder.read("fit/fit.json") == before);
+  CHECK(folder.read("fit/scorecard.csv") == "of an earlier run");
+}
+
+TEST_CASE("rigcal: two runs into one folder", "[apps]") {
+  const CommandFolder folder;
+  write_fitted_twin(folder);
+  // What a run does with its folder as long as it lasts.
+  const int other = ::open((folder.work() / "fit").c_str(), O_RDONLY | O_DIRECTORY);
+  REQUIRE(::flock(other, LOCK_EX | LOCK_NB) == 0);
+  const std::string before = folder.read("fit/fit.json");
+  for (const char* verb : {"fit", "validate", "average", "simulate", "plan"})
+    check_no_input(folder, {verb, "twin/campaign.toml", "--out", "fit"}, "--out fit",
+                   "another run of rigcal");
+  CHECK(folder.read("fit/fit.json") == before);
+  CHECK(folder.run({"plan", "twin/campaign.toml", "--out", "other", "--quiet"}).exit_code == 0);
+  ::close(other);
+  CHECK(folder.run({"plan", "twin/campaign.toml", "--out", "fit", "--quiet"}).exit_code == 0);
 }
 
 }  // namespace rigcal::test

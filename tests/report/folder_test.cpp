@@ -11,20 +11,51 @@ using namespace rigcal;
 using namespace rigcal::report;
 using Catch::Contains;
 
-TEST_CASE("require_writable: leaves no trace", "[report]") {
+TEST_CASE("HeldFolder: leaves no trace", "[report]") {
   const test::CommandFolder folder;
-  require_writable(folder.work() / "a" / "b");
+  {
+    const HeldFolder held(folder.work() / "a" / "b");
+    CHECK(std::filesystem::is_empty(folder.work() / "a" / "b"));
+  }
   CHECK(std::filesystem::is_empty(folder.work()));
-  require_writable(folder.work());
+  { const HeldFolder held(folder.work()); }
   CHECK(std::filesystem::is_empty(folder.work()));
+  {
+    const HeldFolder held(folder.work() / "a" / "b");
+    folder.write("a/result", "x");
+  }
+  CHECK(folder.read("a/result") == "x");
+  CHECK_FALSE(folder.has("a/b"));
 }
 
-TEST_CASE("require_writable: names what is in the way", "[report]") {
+TEST_CASE("HeldFolder: for one at a time", "[report]") {
+  const test::CommandFolder folder;
+  const auto out = folder.work() / "out";
+  {
+    const HeldFolder held(out);
+    CHECK_THROWS_AS(HeldFolder(out), UsageError);
+    CHECK_THROWS_WITH(HeldFolder(out), Contains("out: another run of rigcal writes into it"));
+    const HeldFolder other(folder.work() / "other");
+  }
+  const HeldFolder again(out);
+}
+
+TEST_CASE("HeldFolder: names what is in the way", "[report]") {
   const test::CommandFolder folder;
   folder.write("file", "content");
-  CHECK_THROWS_AS(require_writable(folder.work() / "file"), WriteError);
-  CHECK_THROWS_WITH(require_writable(folder.work() / "file" / "below"), Contains("file"));
+  CHECK_THROWS_AS(HeldFolder(folder.work() / "file"), WriteError);
+  CHECK_THROWS_WITH(HeldFolder(folder.work() / "file" / "below"), Contains("file"));
   CHECK(folder.read("file") == "content");
+}
+
+TEST_CASE("write_results: all or none", "[report]") {
+  const test::CommandFolder folder;
+  folder.write("first", "old");
+  std::filesystem::create_directory(folder.work() / "second");
+  CHECK_THROWS_AS(write_results(folder.work(), {{"first", "new"}, {"second", "new"}}, {}),
+                  WriteError);
+  CHECK(folder.read("first") == "old");
+  CHECK(folder.files() == std::set<std::string>{"first"});
 }
 
 TEST_CASE("write_results: never over an input, and then nothing", "[report]") {
