@@ -15,6 +15,7 @@
 #include "diagnosis/judgement.hpp"
 #include "diagnosis/obstacles.hpp"
 #include "diagnosis/residual_rms.hpp"
+#include "diagnosis/signal_name.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
@@ -34,16 +35,6 @@ struct Prepared {
 
   const std::vector<double>& time_s() const { return records->average.time_s; }
 };
-
-std::string signal_of(const Campaign& campaign, const Condition& condition) {
-  std::string text(to_string(condition.waveform));
-  if (condition.frequency_hz) text += fmt::format(" {:.6g} Hz", *condition.frequency_hz);
-  if (condition.end_frequency_hz) text += fmt::format(" to {:.6g} Hz", *condition.end_frequency_hz);
-  if (!condition.amplitude) return text;
-  if (campaign.rig.controller == model::ControllerKind::none)
-    return text + fmt::format(", {:.6g} V", *condition.amplitude);
-  return text + fmt::format(", {:.6g} mm", 1e3 * *condition.amplitude);
-}
 
 Prepared prepare(const LeakProblem& problem, const datasets::RepeatRecords& records,
                  const DiagnosisOptions& options) {
@@ -83,7 +74,7 @@ std::vector<Reference> references_of(const Campaign& campaign, const std::vector
   std::vector<Reference> references;
   for (const Prepared& each : all) {
     if (each.residuals.empty() || each.condition->waveform == datasets::Waveform::recorded ||
-        !each.is_healthy || signal_of(campaign, *each.condition) != signal)
+        !each.is_healthy || signal_name(campaign, *each.condition) != signal)
       continue;
     if (each.residuals.size() == 1) references.push_back({&each, 0});
     for (std::size_t i = 1; i < each.residuals.size(); ++i) references.push_back({&each, i});
@@ -97,7 +88,7 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
   const datasets::RepeatRecords& records = *prepared.records;
   RecordDiagnosis result;
   result.condition = prepared.condition->id;
-  result.signal = signal_of(problem.campaign, *prepared.condition);
+  result.signal = signal_name(problem.campaign, *prepared.condition);
   result.true_share = prepared.true_share;
   if (!prepared.failure.empty()) {
     result.fit.failure = prepared.failure;

@@ -125,6 +125,20 @@ Part diagnosis_part(const ReadFile& read, const std::string& where) {
   return part;
 }
 
+Part parity_part(const ReadFile& read, const std::string& where) {
+  const ParityFiles stored = load_parity(read, where);
+  Part part;
+  part.section = part.link = "parity";
+  part.name = "Parity residual";
+  part.campaign = text_of(stored.parity, "campaign");
+  part.synthetic = stored.parity.at("synthetic").get<bool>();
+  part.headline = parity_headline(stored.parity);
+  part.view["parity"] = parity_view(stored);
+  part.provenance = provenance_view(stored.parity, part.name, "parity.json");
+  part.nav = {{"parity", "Parity residual"}};
+  return part;
+}
+
 Part comparison_part(const ReadFile& read, const std::string& where) {
   const Json comparison = load_json(read, where, "comparison.json");
   Part part;
@@ -180,12 +194,13 @@ Parts parts_of(const ReadFile& read, const std::string& where, int threads) {
       [&] { return calibration_part(read, where, threads); });
   add(has("leak_table.json"), [&] { return leak_table_part(read, where); });
   add(has("diagnosis.json"), [&] { return diagnosis_part(read, where); });
+  add(has("parity.json"), [&] { return parity_part(read, where); });
   add(has("comparison.json"), [&] { return comparison_part(read, where); });
   if (!parts.drawn.empty()) return parts;
   if (first) std::rethrow_exception(first);
   throw InputError({where},
-                   "found neither fit.json nor validation.json, leak_table.json, diagnosis.json or "
-                   "comparison.json; expected a result folder");
+                   "found neither fit.json nor validation.json, leak_table.json, diagnosis.json, "
+                   "parity.json or comparison.json; expected a result folder");
 }
 
 /// The first part speaks for the page; the others say beside it what they found.
@@ -235,7 +250,7 @@ Json page_view(Parts parts) {
 
 std::string result_page(const ReadFile& read, const std::string& where, int threads) {
   std::vector<Partial> sections;
-  for (const std::string name : {"calibration", "leak_table", "diagnosis", "comparison"})
+  for (const std::string name : {"calibration", "leak_table", "diagnosis", "parity", "comparison"})
     sections.push_back({"section_" + name, asset(name + ".html")});
   return render(asset("report.html"), page_view(parts_of(read, where, threads)), sections);
 }
@@ -257,6 +272,7 @@ std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& rea
     }
     if (has("leak_table.json")) add(leak_table_figures(load_leak_table(read, where)));
     if (has("diagnosis.json")) add(diagnosis_figures(load_json(read, where, "diagnosis.json")));
+    if (has("parity.json")) add(parity_figures(load_parity(read, where)));
     if (has("comparison.json")) add(comparison_figures(load_json(read, where, "comparison.json")));
   });
   std::vector<std::pair<fs::path, std::string>> files;

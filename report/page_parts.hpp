@@ -114,6 +114,7 @@ std::vector<Figure> condition_figures(const Json& condition, const Table& series
 /// Those of the other results, likewise.
 std::vector<Figure> leak_table_figures(const LeakTableFiles& stored);
 std::vector<Figure> diagnosis_figures(const Json& diagnosis);
+std::vector<Figure> parity_figures(const ParityFiles& stored);
 std::vector<Figure> comparison_figures(const Json& comparison);
 
 /// leak_table.json against what was published.
@@ -123,6 +124,10 @@ Json leak_table_view(const LeakTableFiles& stored);
 /// diagnosis.json: classes, their probabilities, and how often they are right.
 Json diagnosis_headline(const Json& diagnosis);
 Json diagnosis_view(const Json& diagnosis);
+
+/// parity.json: alarms, thresholds, and the residuals.
+Json parity_headline(const Json& parity);
+Json parity_view(const ParityFiles& stored);
 
 /// comparison.json: estimates, scores and records side by side, and the leak's trend.
 Json comparison_headline(const Json& comparison);

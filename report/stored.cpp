@@ -83,6 +83,19 @@ LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
   return stored;
 }
 
+ParityFiles load_parity(const ReadFile& read, const std::string& where) {
+  ParityFiles stored;
+  stored.parity = load_json(read, where, "parity.json");
+  for (const Json& record : stored.parity.at("records")) {
+    const std::string condition = text_of(record, "condition");
+    if (stored.series.contains(condition)) continue;
+    const std::string name = "parity/" + condition + ".csv";
+    if (const auto series = read(name))
+      stored.series.emplace(condition, parse_table(*series, path_in(where, name)));
+  }
+  return stored;
+}
+
 std::string plain_name(const std::string& text) {
   std::string name;
   for (const char c : text) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -43,6 +44,13 @@ struct LeakTableFiles {
   std::vector<std::pair<std::string, Table>> levels;
 };
 LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where);
+
+/// Parity residuals, and the series of each condition, by its id.
+struct ParityFiles {
+  Json parity;
+  std::map<std::string, Table> series;
+};
+ParityFiles load_parity(const ReadFile& read, const std::string& where);
 
 /// A result in JSON, whose schema is that of the name of its file.
 Json load_json(const ReadFile& read, const std::string& where, const std::string& name);

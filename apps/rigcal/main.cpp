@@ -43,6 +43,8 @@ constexpr std::array kVerbs{
             rigcal::app::add_fit_tables},
     VerbRow{"diagnose", "Leak, share of the servo flow and fault class per record",
             rigcal::app::add_diagnose},
+    VerbRow{"parity", "Residuals against the healthy model, and alarms at a stated rate",
+            rigcal::app::add_parity},
     VerbRow{"plan", "What each record, and each planned one, tells about each parameter",
             rigcal::app::add_plan},
     VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},

@@ -26,6 +26,7 @@ Run add_validate(CLI::App& verb);
 Run add_leak_table(CLI::App& verb);
 Run add_fit_tables(CLI::App& verb);
 Run add_diagnose(CLI::App& verb);
+Run add_parity(CLI::App& verb);
 Run add_plan(CLI::App& verb);
 Run add_synthesize(CLI::App& verb);
 Run add_init(CLI::App& verb);

@@ -1,0 +1,119 @@
+#include "diagnosis/parity.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <memory>
+
+#include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/progress.hpp"
+#include "apps/rigcal/result_page.hpp"
+#include "apps/rigcal/verb.hpp"
+#include "common/parallel.hpp"
+#include "datasets/record_warnings.hpp"
+#include "datasets/short_records.hpp"
+#include "datasets/single_repeats.hpp"
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/obstacles.hpp"
+#include "report/folder.hpp"
+#include "report/json.hpp"
+#include "report/parity.hpp"
+
+namespace rigcal::app {
+namespace {
+
+struct ParityRequest {
+  CampaignOptions common;
+  std::filesystem::path fit;
+  double false_alarm_percent = 1.0;
+  std::vector<std::string> healthy;
+};
+
+ExitCode write_parity(const ParityRequest& options, const report::ParityResult& result) {
+  const report::Json json = report::parity_json(result);
+  std::vector<report::ResultFile> files = report::parity_series(result);
+  files.push_back({"parity.csv", report::parity_csv(result)});
+  files.push_back({"parity.json", report::json_text(json)});
+  add_page(options.common.out, options.common.threads, files);
+  report::write_results(options.common.out, files, result.provenance.inputs);
+  const std::string text =
+      report::parity_text(result, terminal_style()) +
+      fmt::format("files: {} {} {} {}\n", (options.common.out / "parity.json").string(),
+                  (options.common.out / "parity.csv").string(),
+                  (options.common.out / "parity/").string(),
+                  (options.common.out / "report.html").string());
+  print(options.common.print, text, json);
+  return report::status_of(result) == "done" ? ExitCode::done : ExitCode::no_result;
+}
+
+ExitCode run_parity(const ParityRequest& options, const Invocation& invocation) {
+  const datasets::Campaign campaign = load(options.common);
+  if (options.fit.empty())
+    throw UsageError("parity: --fit is missing: expected the fit.json of a fit to healthy records");
+  const double false_alarm = options.false_alarm_percent / 100.0;
+  if (!(false_alarm > 0.0 && false_alarm < 0.5)) {
+    throw UsageError(fmt::format("--false-alarms {:g}: expected a percentage above 0 and below 50",
+                                 options.false_alarm_percent));
+  }
+  const std::vector<std::string> reasons = diagnosis::obstacles(campaign, true);
+  auto recorded_options = recorded(options.common);
+  recorded_options.emplace_back("false_alarms_percent",
+                                fmt::format("{:g}", options.false_alarm_percent));
+  for (const std::string& level : options.healthy) recorded_options.emplace_back("healthy", level);
+  report::Provenance provenance{invocation.command, 0, recorded_options, {}};
+  diagnosis::Parity found;
+  if (!reasons.empty()) {
+    provenance.inputs = report::hash_inputs(campaign, {}, {options.fit});
+    return write_parity(options, {campaign, found, reasons, false_alarm, provenance});
+  }
+  const report::EarlierFit earlier = report::read_fit(options.fit, campaign.rig.plant);
+  stop_if(invocation.cancel);
+  report::require_writable(options.common.out);
+  const diagnosis::Diagnosable diagnosable = diagnosis::diagnosable(campaign);
+  std::vector<datasets::RepeatRecords> records(diagnosable.conditions.size());
+  parallel_for(records.size(), options.common.threads, [&](std::size_t i) {
+    records[i] = datasets::load_repeats(campaign, *diagnosable.conditions[i]);
+  });
+  std::vector<datasets::Record*> loaded;
+  for (datasets::RepeatRecords& each : records) loaded.push_back(&each.average);
+  datasets::warn_of_short_records(campaign, loaded);
+  std::vector<datasets::Record> averages;
+  std::vector<const datasets::Record*> doubted;
+  for (const datasets::RepeatRecords& each : records) averages.push_back(each.average);
+  for (const datasets::Record& each : averages) doubted.push_back(&each);
+  provenance.inputs = report::hash_inputs(campaign, averages, {options.fit});
+  {
+    CountProgress progress(options.common.print.quiet, "conditions");
+    diagnosis::ParityOptions settings;
+    settings.false_alarm = false_alarm;
+    settings.healthy_levels = options.healthy;
+    settings.threads = options.common.threads;
+    settings.cancel = &invocation.cancel;
+    settings.progress = std::ref(progress);
+    found = diagnosis::parity(campaign, records,
+                              {earlier.values, earlier.indices, earlier.covariance}, settings);
+  }
+  stop_if(invocation.cancel);
+  found.warnings = diagnosable.left_out;
+  for (const auto& warning : datasets::gathered_warnings(doubted))
+    found.warnings.push_back(warning.with_conditions());
+  if (earlier.status == calib::FitStatus::stopped)
+    found.warnings.push_back("the fit was stopped before it converged: " + earlier.message);
+  return write_parity(options, {campaign, found, reasons, false_alarm, provenance});
+}
+
+}  // namespace
+
+Run add_parity(CLI::App& verb) {
+  const auto options = std::make_shared<ParityRequest>();
+  add_campaign_options(verb, options->common);
+  verb.add_option("--fit", options->fit, "fit.json of a fit to healthy records of the rig");
+  verb.add_option("--false-alarms", options->false_alarm_percent,
+                  "percentage of healthy records that raise an alarm (default 1)");
+  verb.add_option("--healthy", options->healthy,
+                  "leak level that is healthy, besides those that the campaign knows; repeatable");
+  return [options](const Invocation& invocation) { return run_parity(*options, invocation); };
+}
+
+}  // namespace rigcal::app

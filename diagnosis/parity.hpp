@@ -1,0 +1,91 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/campaign.hpp"
+#include "datasets/single_repeats.hpp"
+#include "diagnosis/leak_fit.hpp"
+#include "metrics/residual_features.hpp"
+
+namespace rigcal::diagnosis {
+
+struct ParityOptions {
+  double false_alarm = 0.01;                ///< probability that a healthy record raises an alarm
+  std::vector<std::string> healthy_levels;  ///< besides those that the campaign knows as healthy
+  int threads = 1;                          ///< results are the same bits for any number
+  const std::atomic<bool>* cancel = nullptr;
+  std::function<void(int, int)> progress;  ///< conditions done, of how many; from any thread
+};
+
+/// Features of the source paper (Table 4) by which a record may exceed what healthy ones have.
+struct FeatureThresholds {
+  std::optional<double> mean, rms, std;  ///< [m]
+};
+
+/// The parity residual of one record: position minus that of the healthy model under the same
+/// reference (eq. 14), less the mean of that residual over healthy records of the signal, which is
+/// what the model lacks. A healthy record is compared with the others.
+struct ParityRecord {
+  std::string condition, signal;
+  std::optional<int> repeat;  ///< from 1; empty: a file that is averaged already
+  bool is_healthy = false;
+  /// One of the healthy records that the threshold rests on; it raises no alarm.
+  bool sets_threshold = false;
+  int reference_records = 0;           ///< healthy records whose mean was taken off
+  std::string failure;                 ///< why there is no residual; empty if there is one
+  std::vector<double> parity_m;        ///< shape (samples): nothing taken off
+  std::vector<double> residual_m;      ///< the same less the reference; NaN where it does not count
+  std::vector<double> moving_rms_m;    ///< over the window of the signal
+  metrics::ResidualFeatures features;  ///< of residual_m
+  double peak_m = 0.0;                 ///< largest moving_rms_m
+  bool alarm = false;                  ///< it exceeds the threshold of the signal
+  double alarm_time_s = 0.0;           ///< from the first sample to the first that exceeds it
+};
+
+/// Records of one condition on one time base.
+struct ParityCondition {
+  std::string condition;
+  std::vector<double> time_s;
+  std::vector<double> model_m;  ///< position of the healthy model; empty where it failed
+  std::vector<ParityRecord> records;
+};
+
+/// What healthy records of one signal say.
+struct ParitySignal {
+  std::string signal;
+  double window_s = 0.0;  ///< of the moving root mean square: a period, else a tenth of the record
+  int healthy_records = 0;            ///< that the thresholds rest on
+  std::optional<double> threshold_m;  ///< of peak_m
+  FeatureThresholds features;
+  std::string reason;  ///< why there is no threshold, in words
+};
+
+/// Healthy records on which no threshold rests: do they raise as many alarms as stated?
+struct FalseAlarmCheck {
+  int records = 0;
+  int alarms = 0;
+  double p = 1.0;  ///< probability of so many alarms or more at the stated rate (binomial)
+};
+
+struct Parity {
+  std::vector<ParityCondition> conditions;  ///< campaign order
+  std::vector<ParitySignal> signals;        ///< in order of their first appearance
+  FalseAlarmCheck check;
+  std::vector<std::string> warnings;
+  bool usable() const;  ///< there is a residual at least
+};
+
+/// Thresholds rest on the healthy records of use `fit` where there are enough of a signal, so that
+/// the others, of other days, check them; else on all healthy ones.
+///
+/// @param records  of the campaign's conditions that can be diagnosed (diagnosable())
+/// @throws InputError  records or campaign are wrong, a healthy level is not one of the campaign's
+Parity parity(const datasets::Campaign& campaign,
+              const std::vector<datasets::RepeatRecords>& records, const RigFit& rig,
+              const ParityOptions& options);
+
+}  // namespace rigcal::diagnosis

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <string>
+
+#include "datasets/campaign.hpp"
+
+namespace rigcal::diagnosis {
+
+/// What drives a condition, which is what makes records comparable: "sine 0.1 Hz, 50.8 mm".
+std::string signal_name(const datasets::Campaign& campaign, const datasets::Condition& condition);
+
+}  // namespace rigcal::diagnosis

@@ -1,0 +1,154 @@
+#include "diagnosis/parity.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "datasets/synthetic_repeat.hpp"
+
+using namespace rigcal;
+using datasets::Campaign;
+using datasets::Condition;
+using diagnosis::Parity;
+
+namespace {
+
+int leak_row(const Campaign& campaign) {
+  return model::parameter_index(campaign.rig.plant, "leakage_coefficient");
+}
+
+/// Sines of 1 Hz for three seconds: healthy ones to be fitted, healthy ones of another day, and a
+/// leak of this coefficient.
+Campaign three_conditions(double coefficient) {
+  Campaign campaign =
+      datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/uis_shake_table/diagnosis.toml");
+  std::erase_if(campaign.conditions, [](const Condition& c) {
+    return c.waveform != datasets::Waveform::sine || c.frequency_hz != 1.0;
+  });
+  campaign.conditions.resize(3);
+  const Condition healthy = campaign.conditions[0];
+  campaign.conditions[0].use = datasets::Use::fit;
+  campaign.conditions[1] = healthy;
+  campaign.conditions[1].id = "another_day";
+  campaign.conditions[1].use = datasets::Use::validate;
+  campaign.conditions[2].use = datasets::Use::diagnose;
+  campaign.conditions[2].overrides = {{leak_row(campaign), coefficient}};
+  for (Condition& condition : campaign.conditions) {
+    condition.duration_s = 3.0;
+    condition.sample_rate_hz = 250.0;
+  }
+  campaign.synthetic_settings->repeats = 5;
+  return campaign;
+}
+
+std::vector<datasets::RepeatRecords> made(const Campaign& campaign, std::uint64_t seed) {
+  const Campaign truth = datasets::true_campaign(campaign);
+  std::vector<datasets::RepeatRecords> records;
+  for (const Condition& condition : truth.conditions) {
+    std::vector<datasets::Repeat> repeats;
+    for (auto& each : datasets::synthetic_repeats(truth, condition, nullptr, seed))
+      repeats.push_back(std::move(each.record));
+    records.push_back(datasets::repeat_records(campaign, *campaign.find(condition.id), repeats));
+  }
+  return records;
+}
+
+diagnosis::RigFit true_rig(const Campaign& campaign) {
+  diagnosis::RigFit rig;
+  for (const auto& [index, value] : campaign.synthetic_settings->parameters)
+    rig.values.push_back({index, datasets::Scope::rig, "", value});
+  return rig;
+}
+
+}  // namespace
+
+TEST_CASE("parity: a leak raises an alarm within a period, healthy records do not", "[diagnosis]") {
+  const Campaign campaign = three_conditions(0.1);
+  const auto records = made(campaign, 1);
+  const Parity found = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  REQUIRE(found.conditions.size() == 3);
+  REQUIRE(found.signals.size() == 1);
+  const diagnosis::ParitySignal& signal = found.signals.front();
+  CHECK(signal.healthy_records == 5);
+  CHECK(signal.window_s == 1.0);
+  REQUIRE(signal.threshold_m);
+  // White noise of 0.05 mm less the mean of five others of it; the largest of several windows.
+  CHECK(*signal.threshold_m > 0.05e-3 * std::sqrt(1.2));
+  CHECK(*signal.threshold_m < 0.07e-3);
+  for (const auto& condition : found.conditions) {
+    CHECK(condition.model_m.size() == condition.time_s.size());
+    for (const auto& record : condition.records) {
+      CAPTURE(record.condition, *record.repeat);
+      REQUIRE(record.failure.empty());
+      CHECK(record.is_healthy == (condition.condition != found.conditions[2].condition));
+      CHECK(record.sets_threshold == (&condition == &found.conditions[0]));
+      CHECK(record.reference_records == (record.sets_threshold ? 4 : 5));
+      CHECK(record.alarm == !record.is_healthy);
+      if (!record.alarm) continue;
+      CHECK(record.peak_m > *signal.threshold_m);
+      CHECK(record.alarm_time_s > 0.0);
+      CHECK(record.alarm_time_s < 1.2);
+      CHECK(record.features.rms > *signal.features.rms);
+    }
+  }
+  CHECK(found.check.records == 5);
+  CHECK(found.check.alarms == 0);
+}
+
+TEST_CASE("parity: what the model lacks is taken off", "[diagnosis]") {
+  Campaign campaign = three_conditions(0.1);
+  const int friction = model::parameter_index(campaign.rig.plant, "coulomb_friction");
+  campaign.synthetic_settings->parameters.emplace_back(friction, 600.0);
+  const auto records = made(campaign, 2);
+  campaign.synthetic_settings->parameters.pop_back();
+  const Parity found = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  const auto& healthy = found.conditions[1].records.front();
+  double squares = 0.0;
+  for (const double value : healthy.parity_m) squares += value * value;
+  const double parity_rms = std::sqrt(squares / static_cast<double>(healthy.parity_m.size()));
+  CHECK(parity_rms > 3.0 * healthy.features.rms);
+  CHECK_FALSE(healthy.alarm);
+  CHECK(found.conditions[2].records.front().alarm);
+}
+
+TEST_CASE("parity: false alarms on another day are as many as stated", "[diagnosis]") {
+  Campaign campaign = three_conditions(0.1);
+  campaign.conditions.resize(2);
+  diagnosis::ParityOptions options;
+  options.false_alarm = 0.1;
+  options.threads = 2;
+  int alarms = 0;
+  int records = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const auto found =
+        diagnosis::parity(campaign, made(campaign, seed), true_rig(campaign), options);
+    alarms += found.check.alarms;
+    records += found.check.records;
+  }
+  CAPTURE(alarms);
+  CHECK(records == 300);
+  // Five records share one threshold, so they scatter more than 300 independent ones would:
+  // 0.1 +- 0.05 is three standard errors.
+  CHECK(alarms > 15);
+  CHECK(alarms < 45);
+}
+
+TEST_CASE("parity: without enough healthy records nothing is judged, and why", "[diagnosis]") {
+  Campaign campaign = three_conditions(0.1);
+  campaign.conditions.erase(campaign.conditions.begin(), campaign.conditions.begin() + 2);
+  const auto records = made(campaign, 1);
+  const Parity found = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  CHECK(found.usable());
+  CHECK_FALSE(found.signals.front().threshold_m);
+  CHECK_THAT(found.signals.front().reason, Catch::Contains("0 healthy records of this signal"));
+  CHECK_FALSE(found.conditions.front().records.front().alarm);
+  CHECK(found.conditions.front().records.front().peak_m > 0.0);
+  diagnosis::ParityOptions options;
+  options.healthy_levels = {"no such level"};
+  CHECK_THROWS_AS(diagnosis::parity(campaign, records, true_rig(campaign), options), InputError);
+  // Said to be healthy, it is its own reference.
+  options.healthy_levels = {*campaign.conditions.front().leak_level};
+  CHECK(diagnosis::parity(campaign, records, true_rig(campaign), options)
+            .signals.front()
+            .threshold_m.has_value());
+}
