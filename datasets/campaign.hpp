@@ -14,6 +14,7 @@
 #include "common/quantity.hpp"
 #include "datasets/diagnosis_settings.hpp"
 #include "datasets/record.hpp"
+#include "datasets/report_settings.hpp"
 #include "model/parameter.hpp"
 #include "model/simulate.hpp"
 
@@ -183,6 +184,7 @@ struct Campaign {
   FitSettings fit;
   SimulationSettings simulation;
   DiagnosisSettings diagnosis;
+  ReportSettings report;
   std::optional<SyntheticSettings> synthetic_settings;
   std::vector<Condition> conditions;
 

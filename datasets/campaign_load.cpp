@@ -124,7 +124,8 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   const TomlNode root(parsed, file.string(), "");
   check_schema(root);
   root.allow_only({"schema", "name", "synthetic", "rig", "leak_level", "recording", "averaging",
-                   "acceptance", "fit", "simulation", "leak_table", "diagnosis", "condition"});
+                   "acceptance", "fit", "simulation", "leak_table", "diagnosis", "report",
+                   "condition"});
   Campaign campaign;
   campaign.file = file;
   campaign.data_dir = data_dir.empty() ? file.parent_path() : data_dir;
@@ -137,6 +138,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   if (const auto node = root.find("averaging")) campaign.alignment = read_alignment(*node);
   if (const auto node = root.find("acceptance")) read_acceptance(*node, campaign);
   if (const auto node = root.find("fit")) campaign.fit = read_fit(*node, campaign);
+  if (const auto node = root.find("report")) campaign.report = read_report(*node);
   if (const auto node = root.find("simulation")) campaign.simulation = read_simulation(*node);
   if (const auto node = root.find("diagnosis")) campaign.diagnosis = read_diagnosis(*node);
   if (const auto node = root.find("synthetic")) read_synthetic_entry(*node, campaign);

@@ -25,6 +25,9 @@ FitSettings read_fit(const TomlNode& node, const Campaign& campaign);
 /// [diagnosis]
 DiagnosisSettings read_diagnosis(const TomlNode& node);
 
+/// [report]
+ReportSettings read_report(const TomlNode& node);
+
 /// [simulation]
 SimulationSettings read_simulation(const TomlNode& node);
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "report/csv_fields.hpp"
+#include "report/identity.hpp"
 #include "report/text_table.hpp"
 
 namespace rigcal::report {
@@ -273,6 +274,7 @@ Json diagnosis_json(const DiagnosisResult& result) {
   json["reasons"] = result.reasons;
   json["campaign"] = result.campaign.name;
   json["synthetic"] = result.campaign.synthetic;
+  json["report"] = identity_json(result.campaign);
   json["settings"] = class_settings_json(result.campaign.diagnosis);
   json["records"] = Json::array();
   for (const RecordDiagnosis& record : found.records)

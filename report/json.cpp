@@ -9,6 +9,7 @@
 #include "datasets/repeatability.hpp"
 #include "metrics/metric_table.hpp"
 #include "report/groups.hpp"
+#include "report/identity.hpp"
 #include "report/residual_tests_json.hpp"
 #include "report/trust_json.hpp"
 #include "report/weights_json.hpp"
@@ -351,6 +352,7 @@ Json result_json(const Result& result) {
   json["message"] = fit.message;
   json["campaign"] = result.campaign.name;
   json["synthetic"] = result.campaign.synthetic;
+  json["report"] = identity_json(result.campaign);
   json["model"] = std::string(to_string(result.campaign.rig.plant));
   // Without a start nothing was estimated. A cost of zero would look like a perfect fit.
   const bool has_cost = status_of(fit) != calib::FitStatus::failed && !fit.starts.empty();

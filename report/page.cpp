@@ -54,6 +54,7 @@ struct Part {
   std::string name;     ///< "Calibration"
   Json headline;        ///< as headline_view() makes it
   Json view;
+  Json identity = {{"there", false}};  ///< as identity_view() makes it
   Json provenance;
   std::vector<std::pair<const char*, const char*>> nav;  ///< id and name of its sections
   bool synthetic = false;
@@ -69,6 +70,7 @@ Part calibration_part(const ReadFile& read, const std::string& where, int thread
   part.link = "parameters";
   part.name = is_fit ? "Calibration" : "Validation";
   part.campaign = text_of(result, "campaign");
+  part.identity = identity_view(result);
   part.provenance = provenance_view(result, part.name, stored.file);
   part.view["parameters"] = parameters_view(result);
   part.view["has_records"] = !stored.of_tables;
@@ -118,6 +120,7 @@ Part diagnosis_part(const ReadFile& read, const std::string& where) {
   part.name = "Diagnosis";
   part.campaign = text_of(diagnosis, "campaign");
   part.synthetic = diagnosis.at("synthetic").get<bool>();
+  part.identity = identity_view(diagnosis);
   part.headline = diagnosis_headline(diagnosis);
   part.view["diagnosis"] = diagnosis_view(diagnosis);
   part.provenance = provenance_view(diagnosis, part.name, "diagnosis.json");
@@ -132,6 +135,7 @@ Part parity_part(const ReadFile& read, const std::string& where) {
   part.name = "Parity residual";
   part.campaign = text_of(stored.parity, "campaign");
   part.synthetic = stored.parity.at("synthetic").get<bool>();
+  part.identity = identity_view(stored.parity);
   part.headline = parity_headline(stored.parity);
   part.view["parity"] = parity_view(stored);
   part.provenance = provenance_view(stored.parity, part.name, "parity.json");
@@ -209,6 +213,7 @@ Json page_view(Parts parts) {
   Part& first = parts.drawn.front();
   view["kind"] = first.name;
   view["campaign"] = first.campaign;
+  view["identity"] = first.identity;
   view["headline"] = first.headline;
   view["page_class"] = first.headline.at("class");
   view["problems"] = std::move(parts.problems);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMillimetres = 1e3;
 constexpr std::size_t kPoints = 1200;  ///< of one line of a picture
-constexpr int kDigits = 3;
+constexpr int kLengthDigits = 3;
 
 const Json* signal_of(const Json& parity, const Json& record) {
   for (const Json& signal : parity.at("signals"))
@@ -190,9 +190,9 @@ Json parity_view(const ParityFiles& stored) {
          {"level", each.level},
          {"healthy", each.healthy},
          {"badge", alarm_badge(each)},
-         {"largest", shown_in(Json(each.largest_m), 1.0 / kMillimetres, kDigits)},
-         {"threshold", shown_in(threshold, 1.0 / kMillimetres, kDigits)},
-         {"first", shown_in(each.first_s ? Json(*each.first_s) : Json(), 1.0, kDigits)},
+         {"largest", shown_in(Json(each.largest_m), 1.0 / kMillimetres, kLengthDigits)},
+         {"threshold", shown_in(threshold, 1.0 / kMillimetres, kLengthDigits)},
+         {"first", shown_in(each.first_s ? Json(*each.first_s) : Json(), 1.0, kLengthDigits)},
          {"failure", each.failure},
          {"failed", !each.failure.empty()}});
     const auto series = stored.series.find(each.condition);
@@ -206,12 +206,12 @@ Json parity_view(const ParityFiles& stored) {
   view["signals"] = Json::array();
   for (const Json& signal : parity.at("signals")) {
     const auto millimetres = [&](const Json& value) {
-      return shown_in(value, 1.0 / kMillimetres, kDigits);
+      return shown_in(value, 1.0 / kMillimetres, kLengthDigits);
     };
     const Json& features = signal.at("feature_thresholds");
     view["signals"].push_back(
         {{"signal", text_of(signal, "signal")},
-         {"window", shown_in(signal.at("window_s"), 1.0, kDigits)},
+         {"window", shown_in(signal.at("window_s"), 1.0, kLengthDigits)},
          {"healthy", fmt::format("{}", signal.at("healthy_records").get<int>())},
          {"threshold", millimetres(signal.at("threshold_m"))},
          {"mean", millimetres(features.at("mean_m"))},

@@ -71,6 +71,8 @@ Json make_headline(const std::string& word, const std::string& mark, const std::
 /// Adds a reason that leads to a section (`link` its id, or empty); only the first three are shown.
 void add_reason(Json& headline, const std::string& text, const std::string& link);
 
+/// What the campaign states about the test and its report; {"there": false} where nothing.
+Json identity_view(const Json& result);
 /// Headline, the four aspects of the assessment, and the range that is covered.
 Json headline_view(const Json& result);
 /// The aspects of an assessment, each with what speaks against it and what for it; empty for a

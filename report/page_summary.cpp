@@ -154,6 +154,7 @@ Json headline_view(const Json& result) {
     add_reason(view, text_of(result, "message"), "starts");
   view["aspects"] = assessment_view(result);
   view["has_aspects"] = !view["aspects"].empty();
+  view["has_rule"] = !result.at("acceptance").empty();
   view["coverage"] = coverage_rows(result.at("validity"));
   view["levels"] = joined(result.at("validity").at("leak_levels"));
   view["has_levels"] = !result.at("validity").at("leak_levels").empty();

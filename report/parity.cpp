@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "report/csv_fields.hpp"
+#include "report/identity.hpp"
 #include "report/readable.hpp"
 #include "report/text_table.hpp"
 
@@ -18,7 +19,7 @@ using diagnosis::ParityRecord;
 using diagnosis::ParitySignal;
 using Align = TextTable::Align;
 
-constexpr int kDigits = 3;
+constexpr int kTextDigits = 3;
 
 Json or_null(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
 
@@ -100,7 +101,7 @@ std::string series_csv(const ParityCondition& condition) {
 }
 
 std::string length_text(const std::optional<double>& value_m) {
-  return value_m ? readable(*value_m, "m", kDigits) : std::string("-");
+  return value_m ? readable(*value_m, "m", kTextDigits) : std::string("-");
 }
 
 std::string condition_table(const ParityResult& result) {
@@ -135,7 +136,7 @@ std::string condition_table(const ParityResult& result) {
                                         : fmt::format("{} of {}", alarms, judged),
                judged + references == 0 ? "-" : length_text(largest),
                has_threshold ? length_text(signal->threshold_m) : "-",
-               first_s ? readable(*first_s, "s", kDigits) : "-"});
+               first_s ? readable(*first_s, "s", kTextDigits) : "-"});
   }
   return table.text();
 }
@@ -166,6 +167,7 @@ Json parity_json(const ParityResult& result) {
   json["reasons"] = result.reasons;
   json["campaign"] = result.campaign.name;
   json["synthetic"] = result.campaign.synthetic;
+  json["report"] = identity_json(result.campaign);
   json["false_alarm_probability"] = number(result.false_alarm);
   json["signals"] = Json::array();
   for (const ParitySignal& signal : result.parity.signals)

@@ -90,6 +90,25 @@ TEST_CASE("page: whatever a file names is shown as text", "[report]") {
   CHECK_THAT(html, Contains("\xc3\xbc"));
 }
 
+TEST_CASE("page: opens with what the report is of, and who signs it", "[report]") {
+  CHECK_THAT(page(stored_result()), !Contains("<dl class=\"identity\">") &&
+                                        Contains("Decision rule: simple acceptance"));
+  Json json = stored_result();
+  json["report"] = {{"number", "2026-041"},
+                    {"laboratory", kNasty},
+                    {"operator", "O. Perator"},
+                    {"test_dates", {"2026-03-01", "2026-03-04"}},
+                    {"sensors", {{{"channel", "position"}, {"certificate", "DKD 17"}}}}};
+  const std::string html = page(json);
+  CHECK_THAT(html, Contains("<dt>Report number</dt><dd>2026-041</dd>") &&
+                       Contains("<dt>Tested</dt><dd>2026-03-01 to 2026-03-04</dd>") &&
+                       Contains("DKD 17") && Contains("Tested by O. Perator"));
+  CHECK(html.find("2026-041") < html.find("class=\"verdict"));
+  CHECK_THAT(html, !Contains("<script>alert"));
+  json["acceptance"] = Json::array();
+  CHECK_THAT(page(json), !Contains("Decision rule"));
+}
+
 TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
   CHECK_THAT(word_of(page(stored_result())), Contains("PASS"));
   Json json = stored_result();

@@ -1,0 +1,52 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace rigcal::datasets {
+
+/// A key of [report] and what it is called on the page.
+struct ReportField {
+  std::string_view key, label;
+};
+
+/// What a test report states beside its results (ISO/IEC 17025:2017, 7.8.2), in the order of the
+/// page.
+inline constexpr std::array kReportFields{
+    ReportField{"number", "Report number"},
+    ReportField{"issued", "Date of issue"},
+    ReportField{"laboratory", "Laboratory"},
+    ReportField{"customer", "Customer"},
+    ReportField{"rig", "Rig"},
+    ReportField{"specimen", "Specimen"},
+    ReportField{"serial_number", "Serial number"},
+    ReportField{"method", "Method"},
+    ReportField{"operator", "Operator"},
+    ReportField{"approver", "Approved by"},
+    ReportField{"remarks", "Remarks"},
+};
+
+/// One [[report.sensor]].
+inline constexpr std::array kSensorFields{
+    ReportField{"channel", "Channel"},
+    ReportField{"instrument", "Instrument"},
+    ReportField{"serial_number", "Serial number"},
+    ReportField{"calibrated", "Calibrated"},
+    ReportField{"due", "Due"},
+    ReportField{"certificate", "Certificate"},
+    ReportField{"uncertainty", "Uncertainty"},
+};
+
+/// [report]: texts as the campaign gives them, dates as ISO 8601.
+struct ReportSettings {
+  using Fields = std::vector<std::pair<std::string, std::string>>;  ///< key, text
+  Fields fields;                ///< those that are given, in the order of kReportFields
+  std::vector<Fields> sensors;  ///< likewise
+
+  bool empty() const { return fields.empty() && sensors.empty(); }
+};
+
+}  // namespace rigcal::datasets
