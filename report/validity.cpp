@@ -49,7 +49,8 @@ double value_in(const Campaign& campaign, const Condition& condition, const cali
     if (p.scope == datasets::Scope::leak_level && p.level != condition.leak_level) continue;
     if (p.scope == datasets::Scope::condition && p.level != condition.id) continue;
     narrowest = p.scope;
-    value = p.value;
+    // What cannot be told from zero covers zero, not 8.8e-07.
+    value = p.identifiability == calib::Identifiability::bounded ? 0.0 : p.value;
   }
   return value;
 }

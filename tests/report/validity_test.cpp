@@ -81,6 +81,9 @@ TEST_CASE("coverage: what conditions and the narrower scope of a fit tell", "[re
   std::swap(fit.parameters.front(), fit.parameters.back());
   is(coverage(campaign, {record}, fit, {Use::fit}).leakage_coefficient, 0.2, 0.7);
   is(coverage(campaign, {record}, fit, {Use::fit, Use::validate}).frequency_hz, 0.5, 50.0);
+  for (auto& p : fit.parameters)
+    if (p.value == 0.2) p.identifiability = rigcal::calib::Identifiability::bounded;
+  is(coverage(campaign, {record}, fit, {Use::fit}).leakage_coefficient, 0.0, 0.7);
 }
 
 TEST_CASE("outside: a tenth beyond the covered range is let pass", "[report]") {
