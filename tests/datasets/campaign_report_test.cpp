@@ -52,7 +52,6 @@ TEST_CASE("load_campaign: a wrong report names key and line", "[datasets]") {
       CHECK_THAT(error.what(), Catch::Contains(row.says));
     }
   }
-  CHECK_THROWS_WITH(
-      load_text(test::replaced(kExample + kReport, "channel = \"position\"\n", "")),
-      Catch::Contains("the channel that the sensor is of"));
+  CHECK_THROWS_WITH(load_text(test::replaced(kExample + kReport, "channel = \"position\"\n", "")),
+                    Catch::Contains("the channel that the sensor is of"));
 }

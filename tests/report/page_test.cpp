@@ -91,8 +91,8 @@ TEST_CASE("page: whatever a file names is shown as text", "[report]") {
 }
 
 TEST_CASE("page: opens with what the report is of, and who signs it", "[report]") {
-  CHECK_THAT(page(stored_result()), !Contains("<dl class=\"identity\">") &&
-                                        Contains("Decision rule: simple acceptance"));
+  CHECK_THAT(page(stored_result()),
+             !Contains("<dl class=\"identity\">") && Contains("Decision rule: simple acceptance"));
   Json json = stored_result();
   json["report"] = {{"number", "2026-041"},
                     {"laboratory", kNasty},
