@@ -211,6 +211,11 @@ TEST_CASE("known values: their uncertainty is carried into the errors", "[calib]
   CHECK_THAT(gain.standard_error.value(), WithinRel(0.05 * gain.value, 0.2));
   CHECK_THAT(gain.robust_standard_error.value(), WithinRel(0.05 * gain.value, 0.2));
   CHECK_THAT(carried.interval_advice, Contains("supply_pressure_pa"));
+  // What a condition knows by itself is certain there.
+  Twin own = twin;
+  own.campaign.conditions[0].overrides.emplace_back(Twin::index("supply_pressure"), 6.2e6);
+  CHECK_THAT(parameter(fit(own.campaign, records, {}), "valve_gain").standard_error.value(),
+             WithinRel(alone, 1e-3));
   // So uncertain that it decides: no record would help, an estimate of the supply pressure may.
   twin.setting("supply_pressure").prior = datasets::Prior{6.2e6, 15e6};
   const Fit open = fit(twin.campaign, records, {});
