@@ -1,4 +1,4 @@
-#include <algorithm>
+#include <fmt/format.h>
 
 #include "datasets/report_settings.hpp"
 #include "report/page_parts.hpp"
@@ -20,7 +20,7 @@ Json identity_view(const Json& result) {
       if (dates.is_array()) {
         const std::string first = dates[0].get<std::string>();
         const std::string last = dates[1].get<std::string>();
-        add("Tested", first == last ? first : first + " to " + last);
+        add("Tested", first == last ? first : fmt::format("{} to {}", first, last));
       }
     }
     add(field.label, text_of(identity, std::string(field.key)));
