@@ -2,11 +2,12 @@
 """Tables of a result folder of `rigcal fit` or `rigcal validate`.
 
     docs/result.py scores RESULT_DIR [CONDITION...]    agreement by condition and signal
-    docs/result.py outcome RESULT_DIR...               iterations, verdict and what it rests on
+    docs/result.py outcome RESULT_DIR...               verdict and what it rests on
     docs/result.py verdict RESULT_DIR...               of that the first line
     docs/result.py parameters RESULT_DIR...            estimates; several folders stand side by side
 """
 import pathlib
+import re
 import sys
 
 from result_files import SIGNALS, fitted_parameters, in_steps_of, print_table, read_json, scaled, scorecard
@@ -35,11 +36,22 @@ def verdict_of(result):
     return {"WARN": "WARN (passed with reservations)", None: "none"}.get(result["verdict"], result["verdict"])
 
 
+def message_of(result):
+    """Without the number of iterations, which the last bits may change."""
+    return re.sub(r" after \d+ iterations?", "", result["message"])
+
+
+def reason_text(reason):
+    numbers = ", ".join(f"{name.replace('_', ' ')} {value:.3g}" for name, value in reason["numbers"].items() if name != "p")
+    told = [f"`{reason['code']}`", *([f"`{reason['subject']}`"] if reason["subject"] else [])]
+    return " of ".join(told) + (f": {numbers}" if numbers else "")
+
+
 def outcome(*folders):
     for folder in folders:
         result = read_json(folder, *RESULTS)
-        rows = [["**verdict**", f"**{verdict_of(result)}**", result["message"]]]
-        rows += [[aspect, reason["state"].replace("_", " "), reason["words"]]
+        rows = [["**verdict**", f"**{verdict_of(result)}**", message_of(result)]]
+        rows += [[aspect, reason["state"].replace("_", " "), reason_text(reason)]
                  for aspect, told in result["assessment"].items() for reason in told["reasons"]]
         print_table(["", "", ""], rows)
 
@@ -48,7 +60,7 @@ def verdict(*folders):
     for folder in folders:
         result = read_json(folder, *RESULTS)
         states = "; ".join(f"{aspect}: {told['state'].replace('_', ' ')}" for aspect, told in result["assessment"].items())
-        print(f"**{verdict_of(result)}**, {result['message']} ({states}).")
+        print(f"**{verdict_of(result)}**, {message_of(result)} ({states}).")
 
 
 def estimate(parameter):

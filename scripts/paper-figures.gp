@@ -32,12 +32,13 @@ plot "figure8.csv" using 1:2 with lines lw 1.5 dt 3 lc rgb grey title "reference
 
 set output "figure9.svg"
 set title "Figure 9: flows with 30 % of the servo flow leaking (C = 0.6), sine 0.1 Hz"
-set ylabel "flow / (L/min)"
+set ylabel "flow / (L/min)"; set yrange [-4.5:4.5]
 plot "figure9.csv" using 1:2 with lines lw 2 lc rgb blue title "servo valve", \
      "" using 1:3 with lines lw 2 dt 2 lc rgb red title "leakage", \
      "" using 1:4 with lines lw 2 dt 4 lc rgb green title "work"
 
 set output "figure10.svg"
+set autoscale y
 set title "Figure 10: position at five leak levels, sine 0.1 Hz"
 set ylabel "position / % of the amplitude"
 plot "figure10.csv" using 1:2 with lines lw 1.5 dt 3 lc rgb grey title "reference", \

@@ -38,6 +38,16 @@ class Numbers(unittest.TestCase):
         self.assertEqual((code, left), (0, STALE.replace("6 of 9", "7 of 9")))
         self.assertEqual(self.numbers(left)[:2], (0, ""))
 
+    def test_the_last_digit_of_a_decimal_may_differ_by_one(self):
+        printed = "echo x = 12.34 to -0.50e-3, 7 of 9"
+        for shown, code in (("x = 12.35 to -0.51e-3, 7 of 9", 0), ("x = 12.33 to -0.49e-3, 7 of 9", 0),
+                            ("x = 12.36 to -0.50e-3, 7 of 9", 1), ("x = 12.34 to -0.50e-4, 7 of 9", 1),
+                            ("x = 12.3 to -0.50e-3, 7 of 9", 1), ("x = 12.34 to 0.50e-3, 7 of 9", 1),
+                            ("x = 12.34 to -0.50e-3, 6 of 9", 1), ("y = 12.34 to -0.50e-3, 7 of 9", 1)):
+            text = document_with(printed, f"\n{shown}\n\n")
+            self.assertEqual(self.numbers(text)[0], code, shown)
+            self.assertEqual(self.numbers(text, "--write")[3] == text, code == 0, shown)
+
     def test_a_fence_stays(self):
         text = document_with("echo 7", "\n```text\n6\n```\n\n")
         self.assertEqual(self.numbers(text, "--write")[3], text.replace("6", "7"))

@@ -48,13 +48,14 @@ class Scripts(unittest.TestCase):
         self.programs = self.tree / "programs"  # before all others
         self.programs.mkdir()
 
-    def run_script(self, name, *arguments):
+    def run_script(self, name, *arguments, fails=False):
+        """What it prints; where it is to fail, what it says on standard error."""
         path = f"{self.programs}:{os.environ['PATH']}"
         environment = {key: value for key, value in os.environ.items() if key != "RIGCAL"} | {"PATH": path}
         done = subprocess.run([self.tree / "scripts" / name, *arguments], cwd=self.tree, capture_output=True, text=True,
                               check=False, env=environment)
-        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
-        return done.stdout
+        self.assertEqual(done.returncode != 0, fails, done.stdout + done.stderr)
+        return done.stderr if fails else done.stdout
 
     def test_coverage_study(self):
         self.assertEqual(self.run_script("coverage-study", "7", "2"), "rigcal_coverage_study 7 2\n")
@@ -86,6 +87,14 @@ class Scripts(unittest.TestCase):
                               check=False)
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("mat: found something, see build/fuzz/found/mat.log", done.stderr)
+
+    def test_fuzz(self):
+        program = self.tree / "build" / "fuzz" / "tests" / "fuzz" / "csv_fuzz"
+        make_program(program, "#!/bin/sh\necho stat::number_of_executed_units: 12\n")
+        printed = self.run_script("fuzz", "--seconds", "1", "csv")
+        self.assertEqual(printed, "build fuzz --target csv_fuzz\ncsv: 12 executions, nothing found\n")
+        make_program(program, "#!/bin/sh\necho ERROR: found\nexit 77\n")
+        self.assertIn("csv: found something", self.run_script("fuzz", "--seconds", "1", "csv", fails=True))
 
     def test_paper_figures(self):
         if not shutil.which("gnuplot"):
