@@ -69,7 +69,7 @@ ExitCode run_parity(const ParityRequest& options, const Invocation& invocation) 
   }
   const report::EarlierFit earlier = report::read_fit(options.fit, campaign.rig.plant);
   stop_if(invocation.cancel);
-  report::require_writable(options.common.out);
+  const report::HeldFolder held(options.common.out);
   const diagnosis::Diagnosable diagnosable = diagnosis::diagnosable(campaign);
   std::vector<datasets::RepeatRecords> records(diagnosable.conditions.size());
   parallel_for(records.size(), options.common.threads, [&](std::size_t i) {
