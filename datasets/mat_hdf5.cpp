@@ -16,13 +16,6 @@ namespace {
 constexpr std::size_t kMostHdf5Arrays = 200'000;
 constexpr int kDeepestHdf5Struct = 32;
 
-struct CloseMat {
-  void operator()(mat_t* file) const { Mat_Close(file); }
-};
-struct FreeVariable {
-  void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
-};
-
 /// Why HDF5 cannot open a file: the outermost entry of its error stack.
 std::string hdf5_reason() {
   std::string reason = "no reason given";
@@ -57,6 +50,13 @@ MatKind kind_of_class(matio_classes type) {
 }  // namespace
 
 struct Hdf5Source::Open {
+  struct CloseMat {
+    void operator()(mat_t* file) const { Mat_Close(file); }
+  };
+  struct FreeVariable {
+    void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
+  };
+
   std::string name;
   std::unique_ptr<mat_t, CloseMat> file;
   std::vector<std::unique_ptr<matvar_t, FreeVariable>> roots;

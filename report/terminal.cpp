@@ -262,7 +262,10 @@ std::string verdict_text(const Result& result, const Style& style) {
   const auto say = [&](const std::string& line, std::size_t indent) {
     text += wrapped(line, style.columns, indent) + "\n";
   };
-  const std::string word = coloured(std::string(to_string(status)), code, style);
+  // Where nothing was estimated nothing converged.
+  const bool only_scored = status == FitStatus::converged && fit.starts.empty();
+  const std::string word =
+      coloured(only_scored ? "done" : std::string(to_string(status)), code, style);
   say(fit.message.empty() ? "status: " + word : fmt::format("status: {}: {}", word, fit.message),
       2);
   say(fit.verdict ? "verdict: " + coloured(*fit.verdict, style) +
