@@ -51,7 +51,7 @@ MatKind kind_of_class(matio_classes type) {
 
 struct Hdf5Source::Open {
   struct CloseMat {
-    void operator()(mat_t* file) const { Mat_Close(file); }
+    void operator()(mat_t* opened) const { Mat_Close(opened); }
   };
   struct FreeVariable {
     void operator()(matvar_t* variable) const { Mat_VarFree(variable); }
