@@ -1,10 +1,13 @@
 // How well leaks are told on synthetic campaigns of known truth: the numbers of docs/diagnosis.md.
+//   rigcal_diagnosis_study coverage RECORDS [THREADS]  intervals and classes at random leaks
 //   rigcal_diagnosis_study classes FIRST LAST     classes, seeds FIRST to LAST, both rigs
 //   rigcal_diagnosis_study clean|disturbed ...    the same of one rig
 //   rigcal_diagnosis_study smallest FIRST LAST    smallest leak on a 0.1 Hz sine
 //   rigcal_diagnosis_study coefficients           coefficients of the campaign's leaks
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -17,15 +20,17 @@
 #include "datasets/single_repeats.hpp"
 #include "datasets/synthetic_repeat.hpp"
 #include "diagnosis/diagnose.hpp"
+#include "diagnosis/steady_leak.hpp"
 
 namespace {
 
 using namespace rigcal;
 using datasets::Campaign;
 using datasets::Condition;
+using datasets::LeakClass;
 using datasets::RepeatRecords;
 
-const int kThreads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+int threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
 constexpr double kLitresPerMinute = 60e3;
 
 int row_of(const Campaign& campaign, const char* key) {
@@ -59,11 +64,14 @@ class TrueLeak {
     record_.channels[datasets::Channel::position] = series;
     problem_.emplace(calib::make_problem(truth_, records_ = {record_}, {&own}, true, nullptr));
   }
-  diagnosis::LeakPoint at(double coefficient) const {
-    return diagnosis::simulate_leak(*problem_, problem_->conditions.front(), coefficient);
+  diagnosis::SteadyLeak at(double coefficient) const {
+    const calib::ProblemCondition& condition = problem_->conditions.front();
+    model::ParameterValues values = condition.values;
+    values.set("leakage_coefficient", coefficient);
+    return diagnosis::steady_leak(*problem_, condition, values, {});
   }
   /// The least coefficient at which `value` reaches the target, by bisection.
-  double solve(double diagnosis::LeakPoint::*value, double target) const {
+  double solve(double diagnosis::SteadyLeak::*value, double target) const {
     if (target == 0.0) return 0.0;
     double low = 0.0;
     double high = 1e-3;
@@ -91,10 +99,10 @@ double target_share(const Condition& condition) {
 /// Sets the leak of every condition so that its level's share of the servo flow leaks.
 void set_shares(Campaign& campaign) {
   std::vector<double> found(campaign.conditions.size());
-  parallel_for(found.size(), kThreads, [&](std::size_t i) {
+  parallel_for(found.size(), threads, [&](std::size_t i) {
     const Condition& condition = campaign.conditions[i];
     found[i] =
-        TrueLeak(campaign, condition).solve(&diagnosis::LeakPoint::share, target_share(condition));
+        TrueLeak(campaign, condition).solve(&diagnosis::SteadyLeak::share, target_share(condition));
   });
   for (std::size_t i = 0; i < found.size(); ++i)
     set_leak(campaign, campaign.conditions[i], found[i]);
@@ -103,7 +111,7 @@ void set_shares(Campaign& campaign) {
 std::vector<RepeatRecords> make_records(const Campaign& campaign, std::uint64_t seed) {
   const Campaign truth = datasets::true_campaign(campaign);
   std::vector<RepeatRecords> records(campaign.conditions.size());
-  parallel_for(records.size(), kThreads, [&](std::size_t i) {
+  parallel_for(records.size(), threads, [&](std::size_t i) {
     std::vector<datasets::Repeat> repeats;
     for (auto& made : datasets::synthetic_repeats(truth, truth.conditions[i], nullptr, seed))
       repeats.push_back(std::move(made.record));
@@ -121,7 +129,7 @@ std::vector<datasets::Record> averages_of(const std::vector<RepeatRecords>& reco
 /// The rig by a fit to the healthy records.
 diagnosis::RigFit healthy_fit(const Campaign& campaign, const std::vector<RepeatRecords>& records) {
   calib::FitOptions options;
-  options.threads = kThreads;
+  options.threads = threads;
   const calib::Fit fit = calib::fit(campaign, averages_of(records), options);
   if (!fit.usable()) throw std::runtime_error("the healthy fit failed: " + fit.message);
   return diagnosis::rig_fit_of(fit);
@@ -130,7 +138,7 @@ diagnosis::RigFit healthy_fit(const Campaign& campaign, const std::vector<Repeat
 diagnosis::Diagnosis diagnose(const Campaign& campaign, const std::vector<RepeatRecords>& records,
                               const diagnosis::RigFit& rig) {
   diagnosis::DiagnosisOptions options;
-  options.threads = kThreads;
+  options.threads = threads;
   return diagnosis::diagnose(campaign, records, rig, options);
 }
 
@@ -262,7 +270,7 @@ void print_estimates(const std::string& name, const Estimates& e) {
 void study_smallest(const Campaign& base, int first, int last) {
   const TrueLeak true_leak(base, *base.find(kSine));
   const double leak =
-      true_leak.solve(&diagnosis::LeakPoint::leak_flow_m3_per_s, kSmallLeak / kLitresPerMinute);
+      true_leak.solve(&diagnosis::SteadyLeak::leak_flow_m3_per_s, kSmallLeak / kLitresPerMinute);
   const Campaign campaign = two_days(base, leak);
   Campaign no_reference = campaign;
   no_reference.diagnosis.level_class.clear();
@@ -298,6 +306,183 @@ void study_smallest(const Campaign& base, int first, int last) {
   for (const auto& [name, estimates] : rows) print_estimates(name, estimates);
 }
 
+/// Conditions of random leak per signal and campaign, of two repeats each.
+constexpr int kRandomLeaks = 4;
+constexpr int kRandomRepeats = 2;
+constexpr int kHealthyRepeats = 5;
+constexpr double kLeastShare = 0.001;
+constexpr const char* kSmall = "0.1 to 1 %, all";
+constexpr double kLargestShare = 0.60;
+constexpr double kCounted = 0.01;  ///< shares from here on count as covered or not
+
+/// Healthy conditions of the six signals, sampled no more finely than they need.
+Campaign six_signals(Campaign campaign) {
+  std::erase_if(campaign.conditions,
+                [](const Condition& c) { return c.leak_level.value() != "0 %"; });
+  for (Condition& condition : campaign.conditions) {
+    const double frequency_hz = *condition.frequency_hz;
+    condition.sample_rate_hz = frequency_hz < 0.5 ? 100.0 : frequency_hz < 5.0 ? 250.0 : 1000.0;
+    condition.duration_s = frequency_hz < 0.5 ? 20.0 : frequency_hz < 5.0 ? 4.0 : 1.0;
+  }
+  campaign.synthetic_settings->repeats = kHealthyRepeats;
+  return campaign;
+}
+
+/// The coefficients of the least and the largest share, per signal.
+struct LeakRange {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// The next of a sequence that looks random in (0, 1): splitmix64.
+double uniform(std::uint64_t& state) {
+  std::uint64_t z = (state += 0x9e3779b97f4a7c15ULL);
+  z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9ULL;
+  z = (z ^ (z >> 27U)) * 0x94d049bb133111ebULL;
+  z ^= z >> 31U;
+  return (static_cast<double>(z >> 11U) + 0.5) * 0x1p-53;
+}
+
+struct Coverage {
+  int records = 0;
+  int coefficient = 0;
+  int share = 0;
+  int share_below = 0;  ///< truth below the interval
+  int share_above = 0;
+  int limits = 0;  ///< one-sided
+  int limits_hold = 0;
+};
+
+/// Records by the probability that was given to the class that was found.
+struct Calibration {
+  int records = 0;
+  int right = 0;
+  double probability = 0.0;
+};
+
+/// The leak of every condition is random in ln C between the coefficients of 0.1 and 60 %.
+void study_coverage(const Campaign& base, int records_wanted) {
+  const Campaign healthy = six_signals(base);
+  std::vector<LeakRange> ranges(healthy.conditions.size());
+  parallel_for(ranges.size(), threads, [&](std::size_t i) {
+    const TrueLeak leak(healthy, healthy.conditions[i]);
+    ranges[i] = {leak.solve(&diagnosis::SteadyLeak::share, kLeastShare),
+                 leak.solve(&diagnosis::SteadyLeak::share, kLargestShare)};
+  });
+  std::map<std::string, Coverage> by_signal;
+  std::vector<Calibration> calibration(5);
+  Total single;
+  Coverage all;
+  Coverage small;
+  std::map<LeakClass, Total> by_class;
+  int healthy_records = 0;
+  int alarms = 0;
+  std::vector<double> limits;
+  for (std::uint64_t seed = 1; all.records < records_wanted; ++seed) {
+    Campaign campaign = healthy;
+    std::uint64_t state = seed;
+    std::vector<datasets::FittedValue> truth;
+    for (const auto& [index, value] : campaign.synthetic_settings->parameters)
+      truth.push_back({index, datasets::Scope::rig, "", value});
+    for (std::size_t i = 0; i < ranges.size(); ++i) {
+      for (int k = 0; k < kRandomLeaks; ++k) {
+        Condition condition = healthy.conditions[i];
+        condition.id += fmt::format("_leak_{}", k);
+        condition.leak_level = condition.id;
+        condition.use = datasets::Use::diagnose;
+        const double coefficient =
+            ranges[i].low * std::pow(ranges[i].high / ranges[i].low, uniform(state));
+        set_leak(campaign, condition, coefficient);
+        truth.push_back({row_of(campaign, "leakage_coefficient"), datasets::Scope::condition,
+                         condition.id, coefficient});
+        campaign.conditions.push_back(condition);
+      }
+    }
+    auto records = make_records(campaign, seed);
+    const auto rig = healthy_fit(campaign, records);
+    for (RepeatRecords& each : records) {
+      if (each.average.condition.find("_leak_") == std::string::npos) continue;
+      each.singles.resize(kRandomRepeats);
+      each.covered.resize(kRandomRepeats);
+    }
+    diagnosis::DiagnosisOptions options;
+    options.threads = threads;
+    options.truth = truth;
+    for (const auto& record : diagnosis::diagnose(campaign, records, rig, options).records) {
+      if (record.is_reference || !record.repeat) continue;
+      const auto& e = record.estimate;
+      if (record.condition.find("_leak_") == std::string::npos) {
+        ++healthy_records;
+        alarms += e.leak_detected ? 1 : 0;
+        if (e.share_upper_limit) limits.push_back(*e.share_upper_limit);
+        continue;
+      }
+      const bool counted = *record.true_share >= kCounted;
+      for (Coverage* each :
+           {counted ? &all : &small, &by_signal[counted ? record.signal : kSmall]}) {
+        ++each->records;
+        if (!record.fit.ok()) continue;
+        const double share = *record.true_share;
+        const double c = std::find_if(truth.begin(), truth.end(), [&](const auto& value) {
+                           return value.level == record.condition;
+                         })->value;
+        each->coefficient += c >= e.ci95.first && c <= e.ci95.second ? 1 : 0;
+        if (e.share_upper_limit) {
+          ++each->limits;
+          each->limits_hold += share <= *e.share_upper_limit ? 1 : 0;
+        }
+        each->share += share >= e.share_ci95.first && share <= e.share_ci95.second ? 1 : 0;
+        each->share_below += share < e.share_ci95.first ? 1 : 0;
+        each->share_above += share > e.share_ci95.second ? 1 : 0;
+      }
+      const bool right = record.leak_class == record.truth;
+      Total& own = by_class[*record.truth];
+      ++own.records;
+      own.right += right ? 1 : 0;
+      own.undecided += record.leak_class ? 0 : 1;
+      if (!record.leak_class) continue;
+      const double p = e.probability[static_cast<std::size_t>(*record.leak_class)];
+      const std::size_t bin = p < 0.7 ? 0 : p < 0.9 ? 1 : p < 0.99 ? 2 : p < 0.999 ? 3 : 4;
+      ++calibration[bin].records;
+      calibration[bin].right += right ? 1 : 0;
+      calibration[bin].probability += p;
+    }
+  }
+  const auto percent = [](int part, int of) { return 100.0 * part / std::max(1, of); };
+  fmt::print(
+      "| signal | records | C in its interval, % | share in its interval, % | truth below | above "
+      "|\n| --- | --- | --- | --- | --- | --- |\n");
+  by_signal["1 to 60 %, all"] = all;
+  for (const auto& [signal, each] : by_signal) {
+    fmt::print("| {} | {} | {:.1f} | {:.1f} | {} | {} |\n", signal, each.records,
+               percent(each.coefficient, each.records), percent(each.share, each.records),
+               each.share_below, each.share_above);
+  }
+  std::sort(limits.begin(), limits.end());
+  fmt::print(
+      "\nhealthy repeats: {}, of which {} alarms (1 % meant); upper limit of the share: median "
+      "{:.3f} %\n",
+      healthy_records, alarms, limits.empty() ? 0.0 : 100.0 * limits[limits.size() / 2]);
+  fmt::print("leaks not detected: {}, of which the upper limit holds {}\n\n",
+             all.limits + small.limits, all.limits_hold + small.limits_hold);
+  fmt::print("| true class | records | right | % | undecided |\n| --- | --- | --- | --- | --- |\n");
+  for (const auto& [leak_class, each] : by_class) {
+    fmt::print("| {} | {} | {} | {:.1f} | {} |\n", to_string(leak_class), each.records, each.right,
+               percent(each.right, each.records), each.undecided);
+  }
+  fmt::print(
+      "\n| probability of the class | records | mean probability, % | right, % |\n"
+      "| --- | --- | --- | --- |\n");
+  constexpr std::array kBins{"50 to 70 %", "70 to 90 %", "90 to 99 %", "99 to 99.9 %",
+                             "above 99.9 %"};
+  for (std::size_t i = 0; i < calibration.size(); ++i) {
+    const Calibration& each = calibration[i];
+    fmt::print("| {} | {} | {:.1f} | {:.1f} |\n", kBins.at(i), each.records,
+               100.0 * each.probability / std::max(1, each.records),
+               percent(each.right, each.records));
+  }
+}
+
 void print_coefficients(Campaign campaign) {
   set_shares(campaign);
   for (const Condition& condition : campaign.conditions) {
@@ -324,6 +509,11 @@ int main(int argc, char** argv) {
       study_classes(disturbed, "with friction, lag, varying supply", first, last);
     return 0;
   }
+  if (what == "coverage") {
+    if (argc > 3) threads = std::max(1, std::atoi(argv[3]));
+    study_coverage(campaign, first);
+    return 0;
+  }
   if (what == "smallest") {
     study_smallest(campaign, first, last);
     return 0;
@@ -333,7 +523,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   fmt::print(stderr,
-             "usage: rigcal_diagnosis_study classes|clean|disturbed|smallest FIRST LAST, or "
+             "usage: rigcal_diagnosis_study coverage RECORDS [THREADS], "
+             "classes|clean|disturbed|smallest FIRST LAST, or "
              "coefficients\n");
   return 2;
 }

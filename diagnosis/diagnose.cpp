@@ -23,11 +23,15 @@ namespace {
 using datasets::Campaign;
 using datasets::Condition;
 
+/// Half the width of a curve is at least this part of the largest coefficient that was simulated:
+/// where a record is its own reference there is no error, and any width will do that leaks at all.
+constexpr double kLeastReach = 1e-2;
+
 /// A condition with its records and what a leak does in it.
 struct Prepared {
   const Condition* condition = nullptr;
   const datasets::RepeatRecords* records = nullptr;
-  std::optional<LeakCurve> curve;
+  LeakScan scan;
   Residuals residuals;  ///< of the average, then of each repeat
   std::string failure;
   std::optional<double> true_share;
@@ -44,7 +48,7 @@ Prepared prepare(const LeakProblem& problem, const datasets::RepeatRecords& reco
     throw std::invalid_argument("diagnose: no condition " + records.average.condition);
   result.records = &records;
   try {
-    result.curve = leak_curve_of(problem, *result.condition, records.average);
+    result.scan = leak_scan_of(problem, *result.condition, records.average);
     std::vector<const datasets::Record*> all{&records.average};
     for (const datasets::Record& single : records.singles) all.push_back(&single);
     result.residuals = healthy_residuals(problem, *result.condition, records.average, all);
@@ -109,9 +113,10 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
 
   std::vector<Reference> references = references_of(problem.campaign, all, result.signal);
   if (is_single || references.size() > prepared.residuals.size() - 1) {
-    std::erase_if(references, [&](const Reference& each) {
+    const auto own = std::erase_if(references, [&](const Reference& each) {
       return each.prepared == &prepared && (!is_single || each.index == index);
     });
+    result.corrects_others = is_single && own > 0;
   } else {
     result.is_reference =
         std::any_of(references.begin(), references.end(),
@@ -125,15 +130,16 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
   }
   result.reference_repeats = static_cast<int>(references.size());
 
-  const LeakProblem bounded = problem.up_to(2.0 * prepared.curve->points().back().coefficient);
-  result.fit = fit_leak(bounded, rig, *prepared.condition, record, covered, !references.empty(),
-                        &*prepared.curve, options.cancel);
+  const LeakProblem bounded = problem.up_to(2.0 * prepared.scan.largest_coefficient);
+  result.fit = fit_leak(bounded, rig, *prepared.condition, record, covered,
+                        result.reference_repeats, &prepared.scan, options.cancel);
   return result;
 }
 
 struct SignalRecords {
   std::map<std::string, std::vector<RecordDiagnosis*>> singles;  ///< by condition
   std::vector<RecordDiagnosis*> healthy;                         ///< averages and singles
+  std::vector<const LeakFit*> averages;                          ///< but for references
 };
 
 std::map<std::string, SignalRecords> by_signal(const Campaign& campaign,
@@ -143,22 +149,24 @@ std::map<std::string, SignalRecords> by_signal(const Campaign& campaign,
     if (!record.fit.ok()) continue;
     SignalRecords& own = signals[record.signal];
     if (record.repeat) own.singles[record.condition].push_back(&record);
+    if (!record.repeat && !record.is_reference) own.averages.push_back(&record.fit);
     if (is_healthy(campaign, *campaign.find(record.condition))) own.healthy.push_back(&record);
   }
   return signals;
 }
 
 SignalErrors errors_of(const SignalRecords& records) {
-  std::vector<std::vector<const LeakFit*>> singles;
+  std::vector<std::vector<SingleFit>> singles;
   for (const auto& [condition, members] : records.singles) {
     auto& own = singles.emplace_back();
-    for (const RecordDiagnosis* each : members) own.push_back(&each->fit);
+    for (const RecordDiagnosis* each : members)
+      own.push_back({&each->fit, each->corrects_others ? each->reference_repeats : 0});
   }
   std::vector<const LeakFit*> healthy;
   for (const RecordDiagnosis* each : records.healthy) {
     if (!each->repeat) healthy.push_back(&each->fit);
   }
-  return signal_errors(singles, healthy);
+  return signal_errors(singles, healthy, records.averages);
 }
 
 /// Structured parity residual that the healthy model leaves in healthy records of the signal [m].
@@ -210,20 +218,43 @@ Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bo
   return accuracy_of(judged);
 }
 
-SignalDiagnosis limits_of(const Campaign& campaign, const SignalRecords& records,
-                          const SignalErrors& errors,
-                          const std::map<std::string, const LeakCurve*>& curves,
+/// What the share of each record is, and of the smallest leak in healthy ones. A share that cannot
+/// be simulated is a record that was not diagnosed.
+void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& prepared,
+              const SignalErrors& errors, RecordDiagnosis& record) {
+  const CoefficientError error =
+      coefficient_error(record.fit, errors, record.repeats, record.reference_repeats);
+  const datasets::Record& average = prepared.records->average;
+  const double least = kLeastReach * prepared.scan.largest_coefficient;
+  try {
+    const LeakCurve curve =
+        leak_curve_of(problem, *prepared.condition, average, record.fit.coefficient,
+                      std::max(error.half_width(), least));
+    const double share_rig_se =
+        share_rig_error(problem, rig, *prepared.condition, average, record.fit,
+                        curve.share_slope(record.fit.coefficient));
+    record.estimate = estimate_leak(record.fit.coefficient, error, curve, share_rig_se,
+                                    problem.campaign.diagnosis);
+    if (!prepared.is_healthy) return;
+    const double limit = detection_limit(record.estimate, problem.campaign.diagnosis);
+    const LeakCurve beyond =
+        leak_curve_of(problem, *prepared.condition, average, limit, std::max(limit, least));
+    record.smallest_leak = {limit, beyond.leak_flow_m3_per_s(limit), beyond.share(limit)};
+  } catch (const NoResultError& failure) {
+    record.fit.failure = failure.what();
+  }
+}
+
+SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& errors,
                           const std::string& signal) {
   SignalDiagnosis result;
   result.signal = signal;
   result.errors = errors;
   for (const RecordDiagnosis* each : records.healthy) {
-    const DetectionLimit limit =
-        detection_limit(each->estimate, *curves.at(each->condition), campaign.diagnosis);
-    std::optional<DetectionLimit>& kept =
-        each->repeat ? result.smallest_single_leak : result.smallest_leak;
+    if (!each->fit.ok()) continue;
     if (!each->repeat) result.repeats = each->repeats;
-    keep_larger(limit, kept);
+    keep_larger(each->smallest_leak,
+                each->repeat ? result.smallest_single_leak : result.smallest_leak);
   }
   if (records.healthy.empty()) result.reason = "no healthy record of this signal";
   return result;
@@ -273,20 +304,24 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     if (options.progress) options.progress(finished, static_cast<int>(tasks.size()));
   });
 
-  std::map<std::string, const LeakCurve*> curves;
-  for (const Prepared& each : prepared) {
-    if (each.curve) curves[each.condition->id] = &*each.curve;
-  }
-  for (const auto& [signal, members] : by_signal(campaign, result.records)) {
-    const SignalErrors errors = errors_of(members);
+  const auto signals = by_signal(campaign, result.records);
+  std::map<std::string, SignalErrors> errors;
+  std::vector<SignalErrors*> all_errors;
+  for (const auto& [signal, members] : signals)
+    all_errors.push_back(&(errors[signal] = errors_of(members)));
+  separate_noise(all_errors);
+  parallel_for(tasks.size(), options.threads, [&](std::size_t i) {
+    RecordDiagnosis& record = result.records[i];
+    if (record.fit.ok())
+      estimate(problem, rig, *tasks[i].prepared, errors.at(record.signal), record);
+  });
+  for (const auto& [signal, members] : signals) {
     const double healthy_m = healthy_misfit(members);
     for (RecordDiagnosis& record : result.records) {
-      if (!record.fit.ok() || record.signal != signal) continue;
-      record.estimate = estimate_leak(record.fit, *curves.at(record.condition), errors,
-                                      record.repeats, record.reference_repeats, campaign.diagnosis);
-      judge(record, errors, healthy_m, campaign.diagnosis);
+      if (record.fit.ok() && record.signal == signal)
+        judge(record, errors.at(signal), healthy_m, campaign.diagnosis);
     }
-    result.signals.push_back(limits_of(campaign, members, errors, curves, signal));
+    result.signals.push_back(limits_of(members, errors.at(signal), signal));
   }
   for (RecordDiagnosis& record : result.records) set_truth(campaign, record);
   classify_by_features(result.records);

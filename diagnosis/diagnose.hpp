@@ -31,11 +31,14 @@ struct RecordDiagnosis {
   int repeats = 1;            ///< that the record is the mean of
   /// Healthy repeats of the same signal whose parity residual was taken off the record; 0: none.
   int reference_repeats = 0;
+  /// A repeat of a healthy condition that was corrected by the other healthy repeats.
+  bool corrects_others = false;
   /// It is itself that reference, so that its leak is zero by construction.
   bool is_reference = false;
   LeakFit fit;                         ///< says why where nothing was found
   metrics::ResidualFeatures features;  ///< of the parity residual, eq. 14, nothing taken off [m]
   LeakEstimate estimate;               ///< means nothing unless fit.ok()
+  DetectionLimit smallest_leak;        ///< of a healthy record
   /// A leak leaves more than a third of the difference from the healthy model: some other fault.
   bool unexplained = false;
   std::optional<LeakClass> leak_class;  ///< empty: undecided

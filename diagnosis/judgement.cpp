@@ -39,7 +39,7 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m)
         fit.coefficient));
   }
   const double log_slope =
-      estimate.share > 0.0 ? fit.share_slope * fit.coefficient / estimate.share : 1.0;
+      estimate.share > 0.0 ? estimate.share_slope * fit.coefficient / estimate.share : 1.0;
   if (std::abs(log_slope) < kFlat) {
     record.warnings.push_back(fmt::format(
         "the share hardly depends on the coefficient here (d ln share / d ln C = {:.2g}): a "

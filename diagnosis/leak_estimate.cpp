@@ -5,12 +5,14 @@
 #include <numeric>
 #include <vector>
 
+#include "diagnosis/exceeds_noise.hpp"
 #include "metrics/distributions.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
 
 constexpr int kDraws = 401;
+constexpr int kBlurs = 15;
 /// Below this an error is that of the arithmetic.
 constexpr double kLeastShareError = 1e-7;
 
@@ -55,6 +57,17 @@ class ShareDistribution {
     return none < 1.0 ? (raw_below(x) - none) / (1.0 - none) : 1.0;
   }
 
+  /// Calls with equally probable shares, blurred ones too, which may be negative.
+  template <typename Take>
+  void for_each(Take take) const {
+    std::array<double, kBlurs> blurs{};
+    for (std::size_t k = 0; k < blurs.size(); ++k)
+      blurs.at(k) = blur_ * metrics::normal_quantile((static_cast<double>(k) + 0.5) / kBlurs);
+    for (const double share : shares_) {
+      for (const double blur : blurs) take(share + blur);
+    }
+  }
+
   double quantile(double p) const {
     double low = 0.0;
     double high = *std::max_element(shares_.begin(), shares_.end()) + 10.0 * blur_;
@@ -78,18 +91,31 @@ class ShareDistribution {
 
 double squared(double x) { return x * x; }
 
-/// Beforehand a normal machine is as probable as one with a slight leak; apart from that every
-/// share is as probable as any other.
+/// How probable a share is beforehand, but for a factor: 1 / (offset + share), the less the larger
+/// it is, without a step at any limit. The offset is that by which a normal machine is as probable
+/// as one with a slight leak: (offset + first)^2 = offset (offset + second). Where the second limit
+/// is less than twice the first no offset does that, and every share is as probable as any other.
+class Prior {
+ public:
+  explicit Prior(const datasets::DiagnosisSettings& settings) {
+    const double first = settings.limits[0];
+    const double room = settings.limits[1] - 2.0 * first;
+    if (room > 0.0) offset_ = first * first / room;
+  }
+  double density(double share) const { return offset_ ? *offset_ / (*offset_ + share) : 1.0; }
+
+ private:
+  std::optional<double> offset_;
+};
+
 std::array<double, kClassCount> class_probabilities(const ShareDistribution& shares,
                                                     const datasets::DiagnosisSettings& settings) {
+  const Prior prior(settings);
   std::array<double, kClassCount> probability{};
-  double before = 0.0;
-  for (std::size_t i = 0; i < kClassCount; ++i) {
-    const double up_to = i < settings.limits.size() ? shares.below(settings.limits[i]) : 1.0;
-    probability[i] = std::max(0.0, up_to - before);
-    before = up_to;
-  }
-  probability[0] *= (settings.limits[1] - settings.limits[0]) / settings.limits[0];
+  shares.for_each([&](double share) {
+    if (share >= 0.0)
+      probability[static_cast<std::size_t>(class_of(settings, share))] += prior.density(share);
+  });
   const double sum = std::accumulate(probability.begin(), probability.end(), 0.0);
   for (double& each : probability) each /= sum;
   return probability;
@@ -97,13 +123,25 @@ std::array<double, kClassCount> class_probabilities(const ShareDistribution& sha
 
 }  // namespace
 
-LeakEstimate estimate_leak(const LeakFit& fit, const LeakCurve& curve, const SignalErrors& errors,
-                           int repeats, int reference,
-                           const datasets::DiagnosisSettings& settings) {
-  std::vector<ErrorPart> parts{{squared(fit.scatter_se), static_cast<double>(fit.scatter_freedom)}};
-  if (errors.repeat_m && fit.effect_m > 0.0) {
+double CoefficientError::total() const { return std::hypot(own_se, rig_se); }
+
+double CoefficientError::half_width() const {
+  return metrics::student_t_quantile(0.975, freedom) * total();
+}
+
+CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& errors, int repeats,
+                                   int reference) {
+  const bool coloured = errors.misfit && exceeds_noise(squared(fit.cluster_se),
+                                                       squared(fit.white_se), fit.cluster_freedom);
+  std::vector<ErrorPart> parts;
+  if (coloured) {
+    parts.push_back({squared(fit.cluster_se), static_cast<double>(fit.cluster_freedom)});
+  } else {
+    parts.push_back({squared(fit.white_se), static_cast<double>(fit.white_freedom)});
+  }
+  if (errors.between_m && fit.effect_m > 0.0) {
     const double means = 1.0 / repeats + (reference > 0 ? 1.0 / reference : 0.0);
-    parts.push_back({squared(*errors.repeat_m / fit.effect_m) * means,
+    parts.push_back({squared(*errors.between_m / fit.effect_m) * means,
                      static_cast<double>(std::max(1, errors.repeat_freedom))});
   }
   if (errors.healthy_m && reference == 0 && fit.effect_m > 0.0)
@@ -111,18 +149,23 @@ LeakEstimate estimate_leak(const LeakFit& fit, const LeakCurve& curve, const Sig
   double own_variance = 0.0;
   for (const ErrorPart& part : parts) own_variance += part.variance;
   parts.push_back({squared(fit.rig_se)});
+  return {std::sqrt(own_variance), fit.rig_se, effective_freedom(parts)};
+}
 
+LeakEstimate estimate_leak(double coefficient, const CoefficientError& error,
+                           const LeakCurve& curve, double share_rig_se,
+                           const datasets::DiagnosisSettings& settings) {
   LeakEstimate estimate;
-  estimate.coefficient = fit.coefficient;
-  estimate.standard_error = std::sqrt(own_variance + squared(fit.rig_se));
-  estimate.freedom = effective_freedom(parts);
-  const double half =
-      metrics::student_t_quantile(0.975, estimate.freedom) * estimate.standard_error;
-  estimate.ci95 = {std::max(0.0, fit.coefficient - half), std::max(0.0, fit.coefficient + half)};
-  estimate.share = curve.share(fit.coefficient);
-  estimate.leak_flow_m3_per_s = curve.leak_flow_m3_per_s(fit.coefficient);
+  estimate.coefficient = coefficient;
+  estimate.standard_error = error.total();
+  estimate.freedom = error.freedom;
+  const double half = error.half_width();
+  estimate.ci95 = {std::max(0.0, coefficient - half), std::max(0.0, coefficient + half)};
+  estimate.share = curve.share(coefficient);
+  estimate.leak_flow_m3_per_s = curve.leak_flow_m3_per_s(coefficient);
+  estimate.share_slope = curve.share_slope(coefficient);
 
-  const ShareDistribution shares(estimate, std::sqrt(own_variance), fit.share_rig_se, curve);
+  const ShareDistribution shares(estimate, error.own_se, share_rig_se, curve);
   estimate.share_ci95 = {shares.quantile(0.025), shares.quantile(0.975)};
   estimate.probability = class_probabilities(shares, settings);
   const auto best = std::max_element(estimate.probability.begin(), estimate.probability.end());
@@ -134,18 +177,17 @@ LeakEstimate estimate_leak(const LeakFit& fit, const LeakCurve& curve, const Sig
         estimate.leak_score >
         metrics::student_t_quantile(1.0 - settings.false_alarms, estimate.freedom);
   }
+  if (!estimate.leak_detected) {
+    estimate.share_upper_limit = shares.quantile(0.95);
+    estimate.share_ci95 = {0.0, *estimate.share_upper_limit};
+  }
   return estimate;
 }
 
-DetectionLimit detection_limit(const LeakEstimate& healthy, const LeakCurve& curve,
-                               const datasets::DiagnosisSettings& settings) {
-  const double errors = metrics::student_t_quantile(1.0 - settings.false_alarms, healthy.freedom) +
-                        metrics::student_t_quantile(settings.detection, healthy.freedom);
-  DetectionLimit limit;
-  limit.coefficient = errors * healthy.standard_error;
-  limit.leak_flow_m3_per_s = curve.leak_flow_m3_per_s(limit.coefficient);
-  limit.share = curve.share(limit.coefficient);
-  return limit;
+double detection_limit(const LeakEstimate& healthy, const datasets::DiagnosisSettings& settings) {
+  return healthy.standard_error *
+         (metrics::student_t_quantile(1.0 - settings.false_alarms, healthy.freedom) +
+          metrics::student_t_quantile(settings.detection, healthy.freedom));
 }
 
 void keep_larger(const DetectionLimit& limit, std::optional<DetectionLimit>& kept) {

@@ -11,6 +11,7 @@
 #include "calib/triangle.hpp"
 #include "diagnosis/phase_clusters.hpp"
 #include "diagnosis/residual_rms.hpp"
+#include "diagnosis/steady_leak.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
@@ -101,37 +102,6 @@ Solved least_squares(const Linear& linear) {
   return solved;
 }
 
-/// Share over the steady part and its derivatives by every free parameter.
-struct ShareAt {
-  double share = 0.0;
-  Eigen::VectorXd gradient;
-};
-
-ShareAt share_gradient(const model::Simulation& run, std::size_t servo, std::size_t leak,
-                       const SteadyPart& part) {
-  const auto first = static_cast<Eigen::Index>(part.first);
-  const auto count = static_cast<Eigen::Index>(part.count);
-  const auto mean_of = [&](std::size_t output) {
-    const auto flow = run.outputs.col(static_cast<Eigen::Index>(output)).segment(first, count);
-    const auto slopes = run.sensitivities[output].middleRows(first, count);
-    Eigen::VectorXd gradient = Eigen::VectorXd::Zero(slopes.cols());
-    for (Eigen::Index i = 0; i < count; ++i) {
-      if (flow(i) == 0.0) {  // |C q| at C = 0
-        gradient += slopes.row(i).cwiseAbs().transpose();
-      } else {
-        gradient += (flow(i) > 0.0 ? 1.0 : -1.0) * slopes.row(i).transpose();
-      }
-    }
-    const double n = static_cast<double>(count);
-    return std::pair<double, Eigen::VectorXd>{flow.cwiseAbs().sum() / n, gradient / n};
-  };
-  const auto [servo_mean, servo_gradient] = mean_of(servo);
-  const auto [leak_mean, leak_gradient] = mean_of(leak);
-  if (!(servo_mean > 0.0)) return {0.0, Eigen::VectorXd::Zero(servo_gradient.size())};
-  const double share = leak_mean / servo_mean;
-  return {share, (leak_gradient - share * servo_gradient) / servo_mean};
-}
-
 model::SimulationOptions options_of(const calib::Problem& problem,
                                     const std::atomic<bool>* cancel) {
   model::SimulationOptions options;
@@ -158,7 +128,7 @@ std::string in_words(const model::Simulation& run) {
 }
 
 /// Everything that simulations at the end of the fit, with and without the leak, tell.
-void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, bool corrected,
+void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, int reference,
               const model::ParameterValues& values, const std::atomic<bool>* cancel, LeakFit& fit) {
   const calib::ProblemCondition& condition = problem.conditions.front();
   std::vector<int> free = condition.free;
@@ -170,8 +140,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, bo
   }
   std::vector<model::Output> outputs = condition.outputs;
   const std::size_t position = outputs.size();
-  outputs.insert(outputs.end(),
-                 {model::Output::position, model::Output::servo_flow, model::Output::leakage_flow});
+  outputs.push_back(model::Output::position);
   const auto simulated = [&](double coefficient) {
     model::ParameterValues at = values;
     at.set(leak_row, coefficient);
@@ -193,33 +162,37 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, bo
   }
   fit.coefficient = values[kLeak] + step(leak);
   const Eigen::MatrixXd bread = root.lazyProduct(root.transpose());
-  const auto [covariance, freedom] = cluster_sandwich(
-      linear.jacobian, linear.residual + linear.jacobian * step, bread, clusters_of(condition));
-  fit.scatter_se = std::sqrt(covariance(leak, leak));
-  fit.scatter_freedom = freedom;
+  const Eigen::VectorXd left = linear.residual + linear.jacobian * step;
+  const auto [covariance, freedom] =
+      cluster_sandwich(linear.jacobian, left, bread, clusters_of(condition));
+  const double noise_se =
+      root.row(leak).norm() * noise_rms(std::vector<double>(left.begin(), left.end()));
+  fit.white_se = noise_se;
+  fit.white_freedom = std::max(1, static_cast<int>(left.size() - step.size()));
+  fit.cluster_se = std::sqrt(covariance(leak, leak));
+  fit.cluster_freedom = freedom;
+  // The mean of the healthy repeats has noise too, which the residuals show but is not the
+  // record's.
+  fit.noise_se = noise_se / std::sqrt(1.0 + (reference > 0 ? 1.0 / reference : 0.0));
   // Whether the optimiser is content does not matter: the last step is taken here, by linear
   // continuation, which a long one would overstretch. The scatter may be nothing where the record
   // is its own reference, so the error that white noise alone gives is granted too.
-  const double error = std::max(fit.scatter_se, root.row(leak).norm());
+  const double error = std::max({fit.white_se, fit.cluster_se, root.row(leak).norm()});
   if (values[kLeak] > 0.0 && std::abs(step(leak)) > error + 1e-3 * values[kLeak]) {
     fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
                               std::abs(step(leak)) / error);
     return;
   }
 
-  const ShareAt share = share_gradient(run, position + 1, position + 2, steady_part(condition));
-  fit.share_slope = share.gradient(leak);
+  fit.rig_moves = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rig.indices.size()));
   if (!rig_columns.empty()) {
     // What the rig's parameters change without a leak too is in the healthy reference already.
     Eigen::MatrixXd rig_jacobian = linear.rig_jacobian;
-    if (corrected)
+    if (reference > 0)
       rig_jacobian -= linearise(condition, healthy, condition.free.size()).rig_jacobian;
     const Eigen::VectorXd weight = linear.jacobian * bread.col(leak);
-    const Eigen::VectorXd moves = -(rig_jacobian.transpose() * weight);
-    const Eigen::VectorXd share_moves = share.gradient.tail(moves.size()) + fit.share_slope * moves;
-    const Eigen::MatrixXd spread = rig.covariance(rig_columns, rig_columns);
-    fit.rig_se = std::sqrt(std::max(0.0, moves.dot(spread * moves)));
-    fit.share_rig_se = std::sqrt(std::max(0.0, share_moves.dot(spread * share_moves)));
+    fit.rig_moves(rig_columns) = -(rig_jacobian.transpose() * weight);
+    fit.rig_se = std::sqrt(std::max(0.0, fit.rig_moves.dot(rig.covariance * fit.rig_moves)));
   }
   const Eigen::VectorXd effect = run.sensitivities[position].col(leak);
   double squares = 0.0;
@@ -313,7 +286,7 @@ LeakProblem LeakProblem::up_to(double coefficient) const {
 
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condition& condition,
                  const Record& record, const std::optional<datasets::TimeWindow>& covered,
-                 bool corrected, const LeakCurve* curve, const std::atomic<bool>* cancel) {
+                 int reference, const LeakScan* scan, const std::atomic<bool>* cancel) {
   LeakFit fit;
   const Condition counted = within(own_condition(leak_problem, condition), record, covered);
   const std::vector<Record> records{record};
@@ -323,8 +296,8 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
   calib::Evaluator evaluator(problem, options);
   std::vector<double> z = problem.start();
   for (std::size_t j = 0; j < z.size(); ++j) {
-    if (curve != nullptr && problem.map.unknowns()[j].index == leak_problem.leak)
-      z[j] = problem.map.to_unit(static_cast<int>(j), curve->best_coefficient());
+    if (scan != nullptr && problem.map.unknowns()[j].index == leak_problem.leak)
+      z[j] = problem.map.to_unit(static_cast<int>(j), scan->best_coefficient);
   }
   const calib::SolveResult solved =
       calib::solve(problem, evaluator, z, kIterations, 1, calib::FitOptions{});
@@ -334,17 +307,50 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
     return fit;
   }
   const model::ParameterValues values = problem.values_at(0, best.z);
-  describe(problem, rig, leak_problem.leak, corrected, values, cancel, fit);
+  describe(problem, rig, leak_problem.leak, reference, values, cancel, fit);
   return fit;
 }
 
-LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condition,
-                        const Record& average) {
+LeakScan leak_scan_of(const LeakProblem& leak_problem, const Condition& condition,
+                      const Record& average) {
   const std::vector<Record> records{average};
   const calib::Problem problem =
       problem_of(leak_problem, own_condition(leak_problem, condition), records);
   const double beyond = 1.3 * leak_problem.campaign.diagnosis.limits.back();
-  return leak_curve(problem, problem.conditions.front(), beyond);
+  return scan_leaks(problem, problem.conditions.front(), beyond);
+}
+
+LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condition,
+                        const Record& average, double coefficient, double reach) {
+  const std::vector<Record> records{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), records);
+  const calib::ProblemCondition& prepared = problem.conditions.front();
+  const auto leak_at = [&](double each) {
+    model::ParameterValues values = prepared.values;
+    values.set(leak_problem.leak, each);
+    const SteadyLeak leak = steady_leak(problem, prepared, values, std::array{leak_problem.leak});
+    return LeakPoint{each, leak.share, leak.leak_flow_m3_per_s, leak.share_slope(0),
+                     leak.flow_slope(0)};
+  };
+  return curve_about(leak_at, coefficient, reach);
+}
+
+double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
+                       const Condition& condition, const Record& average, const LeakFit& fit,
+                       double share_slope) {
+  if (rig.indices.empty()) return 0.0;
+  Eigen::VectorXd moves = share_slope * fit.rig_moves;
+  if (fit.coefficient > 0.0) {  // else nothing leaks, whatever the rig
+    const std::vector<Record> records{average};
+    const calib::Problem problem =
+        problem_of(leak_problem, own_condition(leak_problem, condition), records);
+    const calib::ProblemCondition& prepared = problem.conditions.front();
+    model::ParameterValues values = prepared.values;
+    values.set(leak_problem.leak, fit.coefficient);
+    moves += steady_leak(problem, prepared, values, rig.indices).share_slope;
+  }
+  return std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)));
 }
 
 Residuals healthy_residuals(const LeakProblem& leak_problem, const Condition& condition,
@@ -386,7 +392,7 @@ double share_at(const Campaign& campaign, const Condition& condition, const Reco
                                           : condition.leak_level.value_or(""));
     if (here) prepared.values.set(value.index, value.value);
   }
-  return simulate_leak(problem, prepared, prepared.values["leakage_coefficient"]).share;
+  return steady_leak(problem, prepared, prepared.values, {}).share;
 }
 
 }  // namespace rigcal::diagnosis

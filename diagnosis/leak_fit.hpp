@@ -11,6 +11,7 @@
 #include "datasets/campaign.hpp"
 #include "datasets/single_repeats.hpp"
 #include "diagnosis/leak_curve.hpp"
+#include "diagnosis/leak_scan.hpp"
 
 namespace rigcal::diagnosis {
 
@@ -43,12 +44,17 @@ struct LeakFit {
   /// Least-squares estimate. Where a leak that is not negative fits best at 0, the linear
   /// continuation below it, so that the scatter about 0 is not cut off.
   double coefficient = 0.0;
-  double scatter_se = 0.0;    ///< standard error of it from the residuals (see fit_leak)
-  int scatter_freedom = 1;    ///< degrees of freedom of that error
-  double rig_se = 0.0;        ///< from the uncertainty of the rig's parameters
-  double share_rig_se = 0.0;  ///< standard error of the share from the same, C fitted again
+  /// Standard errors of it from the residuals, with their degrees of freedom (see fit_leak()): by
+  /// clusters of samples, and as white noise.
+  double cluster_se = 0.0;
+  int cluster_freedom = 1;
+  double white_se = 0.0;
+  int white_freedom = 1;
+  double noise_se = 0.0;  ///< the part of white_se that is the record's own, not its reference's
+  double rig_se = 0.0;    ///< from the uncertainty of the rig's parameters
+  /// How the coefficient moves per unit of each of the rig's parameters, shape (RigFit::indices).
+  Eigen::VectorXd rig_moves;
   double effect_m = 0.0;      ///< rms change of position per unit of the coefficient [m]
-  double share_slope = 0.0;   ///< d share / d coefficient
   double parity_rms_m = 0.0;  ///< of record (corrected, if it was) minus healthy model
   double misfit_rms_m = 0.0;  ///< of record minus leaking model
   double noise_rms_m = 0.0;   ///< part of it that is new in each sample
@@ -63,17 +69,22 @@ struct LeakFit {
 /// the whole record, and these sums are taken for independent: a sandwich by clusters, which is
 /// right for white noise and honest for a misfit that repeats.
 ///
-/// Rig parameters: C moves by -(J^T J)^-1 J^T J_rig per unit of each, the share by that times its
-/// slope plus its own derivative; both with the covariance of the fit.
+/// Beside it stands the error that white noise of the residuals' own scatter from sample to sample
+/// makes: ten sums are a poor estimate, and where a square wave tells its leak in one or two of the
+/// classes alone they are next to nothing at the least squares.
 ///
-/// @param corrected  whether what the healthy model lacks was taken off the record: then the rig's
-///                   parameters act through the difference that a leak makes alone
-/// @param curve  of the same condition: where to start
+/// Rig parameters: C moves by -(J^T J)^-1 J^T J_rig per unit of each.
+///
+/// @param reference  how many healthy repeats had what the healthy model lacks taken off the
+/// record:
+///                   then the rig's parameters act through the difference that a leak makes alone;
+///                   0: none
+/// @param scan  of the same condition: where to start; may be null
 /// @param covered  times of the record that count, within the condition's windows
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
                  const datasets::Condition& condition, const datasets::Record& record,
-                 const std::optional<datasets::TimeWindow>& covered, bool corrected,
-                 const LeakCurve* curve, const std::atomic<bool>* cancel);
+                 const std::optional<datasets::TimeWindow>& covered, int reference,
+                 const LeakScan* scan, const std::atomic<bool>* cancel);
 
 /// Per record and channel: record minus healthy model.
 using Residuals = std::vector<std::map<datasets::Channel, std::vector<double>>>;
@@ -87,9 +98,23 @@ Residuals healthy_residuals(const LeakProblem& leak_problem, const datasets::Con
                             const datasets::Record& average,
                             const std::vector<const datasets::Record*>& records);
 
-/// Curve of a condition by its average record.
+/// Scan of a condition by its average record.
+LeakScan leak_scan_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
+                      const datasets::Record& average);
+
+/// Share over the coefficient in one condition of the rig, about an estimate.
+///
+/// @param coefficient  of the record; may be negative
+/// @param reach        half the width of the interval that matters, above 0
+/// @throws NoResultError  as steady_leak()
 LeakCurve leak_curve_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
-                        const datasets::Record& average);
+                        const datasets::Record& average, double coefficient, double reach);
+
+/// Standard error of the share from the rig's parameters, the coefficient being fitted again: their
+/// own effect on it, and that of the coefficient which moves with them.
+double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
+                       const datasets::Condition& condition, const datasets::Record& average,
+                       const LeakFit& fit, double share_slope);
 
 /// Share of the servo flow that leaks in a condition at given values: of a truth that is known.
 double share_at(const datasets::Campaign& campaign, const datasets::Condition& condition,

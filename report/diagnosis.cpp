@@ -49,6 +49,8 @@ Json diagnosed_json(const RecordDiagnosis& record) {
   json["unbounded_leakage_coefficient"] = value(e.coefficient);
   json["leak_share_percent"] = value(kPercent * e.share);
   json["leak_share_ci95_percent"] = ok ? interval_json(e.share_ci95, kPercent) : Json(nullptr);
+  json["leak_share_upper_limit_percent"] =
+      ok && e.share_upper_limit ? value(kPercent * *e.share_upper_limit) : Json(nullptr);
   json["leak_flow_l_per_min"] = value(kLitresPerMinute * e.leak_flow_m3_per_s);
   json["leak_detected"] = ok ? Json(e.leak_detected) : Json(nullptr);
   json["class"] = class_or_null(record.leak_class);
@@ -65,8 +67,8 @@ Json diagnosed_json(const RecordDiagnosis& record) {
   json["parity_rms_m"] = value(record.fit.parity_rms_m);
   json["misfit_rms_m"] = value(record.fit.misfit_rms_m);
   json["noise_rms_m"] = value(record.fit.noise_rms_m);
-  json["log_slope"] = ok && e.share > 0.0 ? number(record.fit.share_slope * e.coefficient / e.share)
-                                          : Json(nullptr);
+  json["log_slope"] =
+      ok && e.share > 0.0 ? number(e.share_slope * e.coefficient / e.share) : Json(nullptr);
   json["class_by_features"] = class_or_null(record.by_features);
   json["class_by_features_of_other_signals"] = class_or_null(record.by_features_of_other_signals);
   json["true_class"] = class_or_null(record.truth);

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "calib/leak_table.hpp"
 #include "datasets/single_repeats.hpp"
 #include "datasets/synthetic_repeat.hpp"
 
@@ -104,6 +105,49 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
   for (std::size_t i = 0; i < found.records.size(); ++i) {
     CHECK(again.records[i].fit.coefficient == found.records[i].fit.coefficient);
     CHECK(again.records[i].estimate.probability == found.records[i].estimate.probability);
+  }
+}
+
+TEST_CASE("diagnose: a coefficient of the leak table has the table's share", "[diagnosis]") {
+  // Two periods from rest: the first is transient, and a share of the record would be another.
+  for (const auto waveform : {datasets::Waveform::sine, datasets::Waveform::square}) {
+    Campaign campaign =
+        datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/uis_shake_table/diagnosis.toml");
+    std::erase_if(campaign.conditions, [&](const Condition& c) {
+      return c.waveform != waveform || c.frequency_hz != 0.1 ||
+             (c.leak_level != "0 %" && c.leak_level != "66.66 %");
+    });
+    REQUIRE(campaign.conditions.size() == 2);
+    datasets::LeakTableSettings table;
+    table.signals.resize(1);
+    table.signals[0].waveform = waveform;
+    table.signals[0].frequency_hz = 0.1;
+    table.signals[0].amplitude = *campaign.conditions[0].amplitude;
+    table.targets_percent = {10.0};
+    const auto entry =
+        calib::leak_table(datasets::true_campaign(campaign), table, {}).entries.at(0);
+    REQUIRE(entry.roots.size() == 1);
+    for (Condition& condition : campaign.conditions) condition.sample_rate_hz = 100.0;
+    campaign.conditions[1].overrides = {
+        {row_of(campaign, "leakage_coefficient"), entry.roots[0].coefficient}};
+    campaign.synthetic_settings->repeats = 3;
+    diagnosis::DiagnosisOptions options;
+    options.truth.emplace();
+    for (const auto& [index, value] : campaign.synthetic_settings->parameters)
+      options.truth->push_back({index, datasets::Scope::rig, "", value});
+    options.truth->push_back({row_of(campaign, "leakage_coefficient"), datasets::Scope::condition,
+                              campaign.conditions[1].id, entry.roots[0].coefficient});
+    const auto found =
+        diagnosis::diagnose(campaign, records_of(campaign, 1, 3000), known_rig(campaign), options);
+    const auto& average = found.records.at(4);
+    REQUIRE(average.condition == campaign.conditions[1].id);
+    REQUIRE(average.fit.ok());
+    CHECK(std::abs(*average.true_share - 0.10) < 2e-5);  // the table's own tolerance
+    CAPTURE(average.estimate.share, average.estimate.share_ci95.first,
+            average.estimate.share_ci95.second);
+    CHECK(average.estimate.share_ci95.first < 0.10);
+    CHECK(average.estimate.share_ci95.second > 0.10);
+    CHECK(average.estimate.share_ci95.second - average.estimate.share_ci95.first < 0.01);
   }
 }
 

@@ -14,7 +14,7 @@ namespace {
 RecordDiagnosis sure_record() {
   RecordDiagnosis record;
   record.fit.coefficient = 0.4;
-  record.fit.share_slope = 0.375;
+  record.estimate.share_slope = 0.375;
   record.fit.parity_rms_m = 1e-3;
   record.fit.misfit_rms_m = 1e-5;
   record.fit.noise_rms_m = 1e-5;
@@ -103,7 +103,7 @@ TEST_CASE("judge: a plateau is told of by the relative slope", "[diagnosis]") {
   flat.fit.coefficient = 0.06;  // 0.15
   CHECK(told(judged(flat)).empty());
   // A share that falls by as much is no plateau, and one of nothing is not judged.
-  flat.fit.share_slope = -0.375;
+  flat.estimate.share_slope = -0.375;
   CHECK(told(judged(flat)).empty());
   flat.estimate.share = 0.0;
   CHECK(told(judged(flat)).empty());

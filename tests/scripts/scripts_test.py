@@ -67,7 +67,8 @@ class Scripts(unittest.TestCase):
             self.assertTrue((self.tree / "demo" / name).is_file(), name)
 
     def test_diagnosis_study(self):
-        printed = self.run_script("diagnosis-study", "3", "4")
+        printed = self.run_script("diagnosis-study", "3", "4", "50")
+        self.assertIn("rigcal_diagnosis_study coverage 50\n", printed)
         self.assertIn("rigcal_diagnosis_study classes 3 4\n", printed)
         self.assertIn("rigcal_diagnosis_study smallest 3 4\n", printed)
 

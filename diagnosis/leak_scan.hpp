@@ -1,0 +1,21 @@
+#pragma once
+
+#include "calib/problem.hpp"
+
+namespace rigcal::diagnosis {
+
+/// Where the search for the leak of a record begins and ends.
+struct LeakScan {
+  double best_coefficient = 0.0;     ///< of least cost among the simulated ones
+  double largest_coefficient = 0.0;  ///< that was simulated
+};
+
+/// Simulates a record without a leak and over a geometric range of coefficients, until the share
+/// passes `share_above` and a larger leak fits worse, or no more flow can leak.
+///
+/// @param condition    whose unknowns keep their start values
+/// @throws NoResultError  a run fails, moves no oil, or has a single sample that counts
+LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition& condition,
+                    double share_above);
+
+}  // namespace rigcal::diagnosis
