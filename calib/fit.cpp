@@ -161,7 +161,7 @@ Evaluator::Options evaluator_options(const FitOptions& options, const Budget& bu
 /// is -2 ln(likelihood) but for a constant, of which correlated residuals tell only their share.
 void rate_model(const Uncertainty& spread, Fit& fit) {
   const double residuals = std::max(1.0, static_cast<double>(fit.residual_count));
-  const double effective = spread.scatter.empty() ? residuals : spread.effective_samples;
+  const double effective = spread.scatter.empty() ? residuals : spread.independent_residuals;
   const double weighed = 2.0 * fit.cost * std::min(1.0, effective / residuals);
   fit.aic = weighed + 2.0 * spread.rank;
   fit.bic = weighed + spread.rank * std::log(std::max(1.0, effective));
@@ -170,7 +170,7 @@ void rate_model(const Uncertainty& spread, Fit& fit) {
 /// What the residuals say of the noise, and of the intervals that rest on it.
 void judge_residuals(const Problem& problem, const OptimumCheck& check, const Uncertainty& spread,
                      Fit& fit) {
-  fit.effective_samples = spread.effective_samples;
+  fit.independent_residuals = spread.independent_residuals;
   fit.lack_of_fit = lack_of_fit(problem, spread);
   fit.misfit = misfit(fit.lack_of_fit);
   fit.interval_advice = interval_advice(problem, check, spread, fit.lack_of_fit);

@@ -244,9 +244,10 @@ struct Fit {
   double reduced_chi_square = 0.0;  ///< 2 cost / (residuals - rank); about 1 if the noise is all
   long evaluations = 0;             ///< of all residuals
   double wall_seconds = 0.0;
-  double tolerance = 0.0;          ///< of the simulations
-  double effective_samples = 0.0;  ///< residuals in independent ones; 0: not known
-  double aic = 0.0, bic = 0.0;  ///< with the effective samples; to compare models of one campaign
+  double tolerance = 0.0;              ///< of the simulations
+  double independent_residuals = 0.0;  ///< what they are worth in the noise model; 0: not known
+  double aic = 0.0,
+         bic = 0.0;  ///< with the independent residuals; to compare models of one campaign
   std::vector<FittedParameter> parameters;
   std::vector<LackOfFit> lack_of_fit;  ///< channels of known noise
   std::optional<bool> misfit;          ///< significant lack of fit; absent: cannot be judged

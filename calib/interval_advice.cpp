@@ -79,7 +79,7 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
     return "only the plain standard errors exist: too few residuals to tell their correlation, or "
            "a record that could not be simulated again";
   }
-  const double share = found.effective_samples / static_cast<double>(problem.residual_count());
+  const double share = found.independent_residuals / static_cast<double>(problem.residual_count());
   std::string text =
       share < kCorrelated
           ? "residuals are autocorrelated: use the robust errors; the plain ones are too small"

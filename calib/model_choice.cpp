@@ -13,15 +13,15 @@ namespace rigcal::calib {
 
 namespace {
 
-/// Variance of what a model leaves, in units of its weights, per effective sample.
+/// Variance of what a model leaves, in units of its weights, per independent residual.
 struct Noise {
   double variance = 0.0;
-  double effective_samples = 1.0;
+  double independent_residuals = 1.0;
 
   explicit Noise(const Candidate& model)
-      : effective_samples(std::clamp(model.effective_samples, 1.0, model.residuals)) {
+      : independent_residuals(std::clamp(model.independent_residuals, 1.0, model.residuals)) {
     const double left = model.residuals - model.parameters;
-    const double share = effective_samples / model.residuals;
+    const double share = independent_residuals / model.residuals;
     variance = left > 0.0 ? 2.0 * model.cost / left / share : 0.0;
   }
 
@@ -61,7 +61,7 @@ InformationDifference compare_information(const Candidate& first, const Candidat
   const double more = other.parameters - first.parameters;
   InformationDifference result;
   result.aic = 2.0 * more + gain;
-  result.bic = more * std::log(noise.effective_samples) + gain;
+  result.bic = more * std::log(noise.independent_residuals) + gain;
   const auto choice = [&](double difference) {
     if (std::abs(difference) < kNoDifference) return 0;
     return difference < 0.0 ? 1 : -1;
@@ -96,7 +96,8 @@ ModelChoice choose(const Candidate& smaller, const Candidate& larger) {
   result.likelihood_ratio = noise.weighed(std::max(0.0, smaller.deviance() - larger.deviance()));
   result.p = metrics::chi_squared_exceedance(result.likelihood_ratio, result.freedom);
   result.delta_aic = 2.0 * result.freedom - result.likelihood_ratio;
-  result.delta_bic = result.freedom * std::log(noise.effective_samples) - result.likelihood_ratio;
+  result.delta_bic =
+      result.freedom * std::log(noise.independent_residuals) - result.likelihood_ratio;
   constexpr double kLevel = 0.05;
   result.larger = result.p < kLevel;
   const bool bic_agrees = (result.delta_bic < 0.0) == result.larger;
@@ -104,7 +105,8 @@ ModelChoice choose(const Candidate& smaller, const Candidate& larger) {
       "{} is {} by {} (likelihood ratio {} for {} parameter{}, {}; AIC {}, BIC {} of {} against "
       "{}){}",
       result.larger ? larger.name : smaller.name, result.larger ? "preferred" : "good enough",
-      larger.effective_samples < larger.residuals ? "the effective samples" : "all residuals",
+      larger.independent_residuals < larger.residuals ? "the independent residuals"
+                                                      : "all residuals",
       signed_text(result.likelihood_ratio).substr(1), result.freedom,
       result.freedom == 1 ? "" : "s", p_text(result.p), signed_text(result.delta_aic),
       signed_text(result.delta_bic), larger.name, smaller.name,

@@ -10,7 +10,7 @@ struct Candidate {
   double cost = 0.0;  ///< half the sum of squared weighted residuals
   int parameters = 0;
   double residuals = 0.0;
-  double effective_samples = 0.0;
+  double independent_residuals = 0.0;
   /// Sum over the residuals of ln(sd) where the fit itself estimated what they are divided by; sd
   /// in any unit, the same for all candidates. 0 where the weights are the same for all.
   double log_sd = 0.0;
@@ -20,7 +20,7 @@ struct Candidate {
 };
 
 /// Two models, neither of which need contain the other. The noise is what the one that comes nearer
-/// to the records leaves, D its deviance, n_e of n residuals its effective samples:
+/// to the records leaves, D its deviance, n_e of n residuals its independent ones:
 ///
 ///   delta AIC = 2 (p_other - p_first) + (D_other - D_first) / (2 cost / (n - p)) * n_e / n
 ///
@@ -36,7 +36,7 @@ struct InformationDifference {
 InformationDifference compare_information(const Candidate& first, const Candidate& other);
 
 /// Two models, the smaller one nested in the larger: with the variance of the larger model's
-/// residuals as noise, and its effective samples n_e of n residuals,
+/// residuals as noise, and its n_e independent ones of n residuals,
 ///
 ///   L = (D_small - D_large) / (2 cost_large / (n - p_large)) * n_e / n
 ///

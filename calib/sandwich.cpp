@@ -203,7 +203,7 @@ ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise
     const RowMajor combined = filtered * combinations.transpose();
     own += each.own.cwiseProduct(combined);
     weights += model.variance * combined.cwiseAbs2();
-    result.effective_samples += model.effective_samples(static_cast<double>(samples));
+    result.independent_residuals += model.effective_samples(static_cast<double>(samples));
   }
   const double width = bandwidth(scores);
   result.covariance = kernel_covariance(scores, width);
@@ -219,7 +219,7 @@ ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise
       result.own(j) = kernel_covariance(own.col(j), width)(0, 0) / all;
     const double terms = weights.col(j).sum() * weights.col(j).sum() / squares;
     result.freedom(j) = 1.0 / (std::max(1.0, kParzenSquare * width) / terms +
-                               (whitening ? 2.0 / result.effective_samples : 0.0));
+                               (whitening ? 2.0 / result.independent_residuals : 0.0));
   }
   result.noise = std::move(noise);
   return result;

@@ -26,7 +26,7 @@ struct ScoreScatter {
   /// large, over the expected variance of all conditions; empty: nothing.
   Eigen::VectorXd own;
   std::vector<metrics::Autoregression> noise;  ///< of the weighted residuals, per channel
-  double effective_samples = 0.0;              ///< of all channels
+  double independent_residuals = 0.0;          ///< of all channels
 };
 
 /// Covariance of the score of every condition where residuals may be correlated in time and between
@@ -44,7 +44,7 @@ struct ScoreScatter {
 /// Sigma found, H = J J^T.
 ///
 /// Degrees of freedom: Satterthwaite's, from the scatter of a sum of squares with the weights of
-/// each combination, and 4 / effective samples of a whitened long-run variance.
+/// each combination, and 4 / independent residuals of a whitened long-run variance.
 ///
 /// Under correlated noise least squares is not the best estimate, and the residuals still hold a
 /// part of its error: what is far from its truth also looks uncertain. `own` is how much, by the

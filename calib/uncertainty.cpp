@@ -123,7 +123,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
       result.noiseless += static_cast<int>(std::count(channels.begin(), channels.end(), true));
     if (result.noiseless > 0) coherent = coherent_errors(scores, noiseless, root);
     for (const ScoreScatter& each : result.scatter)
-      result.effective_samples += each.effective_samples;
+      result.independent_residuals += each.independent_residuals;
   }
 
   // A parameter is named with those that share a null direction with it.

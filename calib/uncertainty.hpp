@@ -39,9 +39,9 @@ struct Uncertainty {
   /// R with R R^T = (J^T J)^-1 on the directions that the data determine, shape (unknowns, rank);
   /// `scatter` is in its coordinates.
   Eigen::MatrixXd root;
-  KnownUncertainty known;             ///< is in all errors
-  std::vector<ScoreScatter> scatter;  ///< per condition; empty: no robust errors
-  double effective_samples = 0.0;     ///< of all conditions and channels
+  KnownUncertainty known;              ///< is in all errors
+  std::vector<ScoreScatter> scatter;   ///< per condition; empty: no robust errors
+  double independent_residuals = 0.0;  ///< of all conditions and channels
 
   /// Whether repeats differ by more than the residuals tell, at 5 % for all unknowns together
   /// (Bonferroni).

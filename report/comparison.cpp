@@ -19,7 +19,7 @@ Json compared_result_json(const Compared& compared) {
   json["file"] = compared.file.string();
   for (const char* key :
        {"schema", "status", "verdict", "message", "campaign", "synthetic", "model", "cost",
-        "residual_count", "reduced_chi_square", "effective_samples"}) {
+        "residual_count", "reduced_chi_square", "independent_residuals"}) {
     const auto found = result.find(key);
     json[key] = found == result.end() ? Json(nullptr) : *found;
   }

@@ -70,8 +70,8 @@ Candidate candidate_of(const Compared& compared) {
   candidate.cost = result.at("cost").get<double>();
   candidate.parameters = static_cast<int>(count_of(compared, "rank"));
   candidate.residuals = count_of(compared, "residual_count");
-  candidate.effective_samples =
-      number_of(result, "effective_samples").value_or(candidate.residuals);
+  candidate.independent_residuals =
+      number_of(result, "independent_residuals").value_or(candidate.residuals);
   take_likeliest_noise(result.at("weights"), candidate);
   return candidate;
 }
@@ -79,7 +79,8 @@ Candidate candidate_of(const Compared& compared) {
 /// Why two fits cannot be compared as models; empty if they can.
 std::string obstacle(const Compared& a, const Compared& b) {
   for (const Compared* each : {&a, &b}) {
-    if (!each->result.contains("weights") || text_of(each->result, "schema") != "rigcal.fit/1")
+    if (!each->result.contains("weights") || !each->result.contains("independent_residuals") ||
+        text_of(each->result, "schema") != "rigcal.fit/1")
       return fmt::format("{} is no fit of records by this version", each->name);
     if (text_of(each->result, "status") != "converged")
       return fmt::format("{} did not converge", each->name);

@@ -100,8 +100,8 @@ void add_intervals(const calib::FittedParameter& parameter, Json& json) {
 
 void add_trust(const calib::Fit& fit, Json& json) {
   const bool solved = fit.rank > 0;
-  json["effective_samples"] =
-      fit.effective_samples > 0.0 ? number(fit.effective_samples) : Json(nullptr);
+  json["independent_residuals"] =
+      fit.independent_residuals > 0.0 ? number(fit.independent_residuals) : Json(nullptr);
   json["interval_advice"] = fit.interval_advice;
   json["combinations"] = fit.combinations;
   json["lack_of_fit"] = lack_of_fit_json(fit);

@@ -136,7 +136,7 @@ TEST_CASE("lack of fit: noise alone, white or not, is no misfit", "[calib]") {
     CHECK_FALSE(found.misfit.value());
     CHECK(test.outcome == metrics::TestOutcome::passed);
     CHECK_THAT(test.pure_freedom, WithinRel(4.0 * test.freedom, 1e-12));
-    CHECK((rho > 0.0) == (found.effective_samples < 400.0));
+    CHECK((rho > 0.0) == (found.independent_residuals < 400.0));
     CHECK_THAT(found.interval_advice, Contains(rho > 0.0 ? "use the robust errors" : "agree"));
   }
 }

@@ -29,7 +29,7 @@ TEST_CASE("golden: covariance of the score, its freedom and what the error adds"
   CHECK_THAT(noise.variance, WithinRel(model[0], 1e-9));
   for (std::size_t k = 0; k < noise.phi.size(); ++k)
     CHECK_THAT(noise.phi[k], WithinRel(model[k + 1], 1e-9));
-  CHECK_THAT(scatter[0].effective_samples,
+  CHECK_THAT(scatter[0].independent_residuals,
              WithinRel(golden("sandwich.effective_samples")[0], 1e-9));
   const std::vector<double> covariance = golden("sandwich.covariance");
   for (Eigen::Index i = 0; i < 4; ++i) {

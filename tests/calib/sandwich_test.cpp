@@ -113,7 +113,7 @@ TEST_CASE("sandwich: white noise gives the plain covariance", "[calib]") {
   // A sum of 4000 squares scatters by 2 %; the kernel doubles that; four times.
   CHECK((scatter[0].covariance - MatrixXd::Identity(3, 3)).cwiseAbs().maxCoeff() < 0.16);
   CHECK(scatter[0].noise.at(0).phi.empty());
-  CHECK(scatter[0].effective_samples == 4000.0);
+  CHECK(scatter[0].independent_residuals == 4000.0);
   CHECK(scatter[0].freedom.minCoeff() > 500.0);
 }
 
@@ -197,7 +197,7 @@ TEST_CASE("sandwich: residuals of zero and records of few samples stay finite", 
   const auto drift =
       score_scatter({{slow_model(200), VectorXd::LinSpaced(200, -1.0, 1.0), 1}}, none, each);
   CHECK(drift[0].covariance.allFinite());
-  CHECK(drift[0].effective_samples >= 1.0);
+  CHECK(drift[0].independent_residuals >= 1.0);
 }
 
 TEST_CASE("sandwich: far from an optimum, one record much further than the other, it stays finite",

@@ -21,7 +21,7 @@ Compared mass_alone(const std::string& name, double cost) {
   result["model"] = "load_pressure";
   result["cost"] = cost;
   result["residual_count"] = 1000;
-  result["effective_samples"] = 1000.0;
+  result["independent_residuals"] = 1000.0;
   result["rank"] = 1;
   result["weights"] = {{{"condition", "sine"},
                         {"channel", "position"},
@@ -68,7 +68,7 @@ TEST_CASE("models: a term that explains more than noise is preferred", "[report]
 
 TEST_CASE("models: the share of independent residuals is that of the better one", "[report]") {
   Compared plain = mass_alone("plain", 5000.0);
-  plain.result["effective_samples"] = 20.0;
+  plain.result["independent_residuals"] = 20.0;
   const Json json = models_json({plain, with_friction("friction", 499.0)});
   // With shares of their own the worse model would have 5000 * 2 / 50 against 998.
   CHECK_THAT(json[1]["delta_aic"].get<double>(), WithinRel(2.0 - 9002.0, 1e-12));
@@ -135,5 +135,8 @@ TEST_CASE("models: what cannot be compared at all, and why", "[report]") {
   CHECK_THAT(reason(plain, other), Contains("other did not converge"));
   other = with_friction("other", 499.0);
   other.result.erase("weights");
+  CHECK_THAT(reason(plain, other), Contains("by this version"));
+  other = with_friction("other", 499.0);
+  other.result.erase("independent_residuals");
   CHECK_THAT(reason(plain, other), Contains("by this version"));
 }
