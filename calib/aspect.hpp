@@ -25,11 +25,17 @@ struct Reason {
   std::string words;
 };
 
+Reason reason(AspectState state, std::string code, std::string words, std::string subject = {},
+              std::vector<std::pair<std::string, double>> numbers = {});
+
 /// One aspect with everything that speaks for and against it.
 struct Aspect {
   AspectState state = AspectState::not_assessed;
   std::vector<Reason> reasons;  ///< the gravest first
 };
+
+/// The gravest reason makes the state; reasons of one state stay in their order.
+Aspect aspect_of(std::vector<Reason> reasons);
 
 /// The four things that are judged apart. A verdict follows from them (verdict_of).
 struct Assessment {

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+
+#include "calib/acceptance.hpp"
+#include "calib/assessment.hpp"
+
+namespace rigcal::calib {
+
+/// A result that passes all four: one condition fitted, one not.
+struct AssessmentScene {
+  datasets::Campaign campaign;
+  Fit fit;
+  std::set<std::string> fitted{"fitted"};
+
+  AssessmentScene() {
+    campaign.acceptance = {{datasets::Channel::position, "rho2", 0.99, 0.995}};
+    add("fitted", datasets::Use::fit, 0.999);
+    add("other", datasets::Use::validate, 0.998);
+    fit.status = FitStatus::converged;
+    FittedParameter mass;
+    mass.index = model::parameter_index(model::PlantKind::load_pressure, "mass");
+    mass.value = 85.0;
+    mass.fitted = true;
+    mass.ci95 = {84.0, 86.0};
+    fit.parameters = {mass};
+    for (const char* id : {"fitted", "other"}) {
+      LackOfFit test;
+      test.condition = id;
+      test.ratio = 1.0;
+      test.outcome = metrics::TestOutcome::passed;
+      test.by_repeats = true;
+      fit.lack_of_fit.push_back(test);
+    }
+  }
+
+  void add(const std::string& id, datasets::Use use, double rho2) {
+    datasets::Condition condition;
+    condition.id = id;
+    condition.use = use;
+    campaign.conditions.push_back(condition);
+    ConditionScore score;
+    score.id = id;
+    score.use = use;
+    ChannelScore channel;
+    channel.channel = datasets::Channel::position;
+    channel.agreement.emplace();
+    channel.agreement->rho2 = rho2;
+    score.channels = {channel};
+    judge(campaign.acceptance, score);
+    fit.conditions.push_back(score);
+  }
+
+  void rejudge(std::size_t condition, double rho2) {
+    ConditionScore& score = fit.conditions.at(condition);
+    score.channels[0].agreement->rho2 = rho2;
+    score.checks.clear();
+    score.reasons.clear();
+    score.verdict.reset();
+    judge(campaign.acceptance, score);
+  }
+
+  Assessment assessed() const { return assess(campaign, fit, fitted); }
+  std::optional<Verdict> verdict() const { return verdict_of(assessed()); }
+};
+
+/// The reason of this code, or none.
+inline const Reason* find(const Aspect& aspect, std::string_view code) {
+  for (const Reason& reason : aspect.reasons) {
+    if (reason.code == code) return &reason;
+  }
+  return nullptr;
+}
+
+}  // namespace rigcal::calib
