@@ -16,8 +16,6 @@
 #include <fstream>
 #include <mutex>
 
-#undef si_value  // a macro of <csignal>, and a name of ours elsewhere
-
 namespace rigcal {
 namespace {
 

@@ -24,8 +24,8 @@ std::string record_path(const std::string& condition, int repeat) {
   return fmt::format("records/{}_r{}.csv", condition, repeat);
 }
 
-double in_file_unit(double si_value, const UnitConversion& to_si) {
-  return (si_value - to_si.offset) / to_si.scale;
+double in_file_unit(double value_si, const UnitConversion& to_si) {
+  return (value_si - to_si.offset) / to_si.scale;
 }
 
 /// For whom the true value of one parameter holds.

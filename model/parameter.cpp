@@ -97,12 +97,12 @@ bool ParameterValues::is_given(std::string_view key) const {
   return given[static_cast<std::size_t>(checked_index(plant, key))];
 }
 
-void ParameterValues::set(std::string_view key, double si_value) {
-  set(checked_index(plant, key), si_value);
+void ParameterValues::set(std::string_view key, double value_si) {
+  set(checked_index(plant, key), value_si);
 }
 
-void ParameterValues::set(int index, double si_value) {
-  value.at(static_cast<std::size_t>(index)) = si_value;
+void ParameterValues::set(int index, double value_si) {
+  value.at(static_cast<std::size_t>(index)) = value_si;
   given.at(static_cast<std::size_t>(index)) = true;
 }
 

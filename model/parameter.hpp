@@ -61,8 +61,8 @@ struct ParameterValues {
   /// @throws std::invalid_argument  unknown key
   double operator[](std::string_view key) const;
   bool is_given(std::string_view key) const;
-  void set(std::string_view key, double si_value);
-  void set(int index, double si_value);
+  void set(std::string_view key, double value_si);
+  void set(int index, double value_si);
 
   /// Keys of plant parameters without a value.
   std::vector<std::string> missing() const;
