@@ -1,16 +1,15 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 
 #include "datasets/campaign_parameters.hpp"
 #include "datasets/campaign_sections.hpp"
+#include "datasets/condition_id.hpp"
 
 namespace rigcal::datasets {
 namespace {
 
-constexpr std::size_t kLongestId = 200;
 constexpr long kMostRepeats = 10'000;
 constexpr double kMostSamples = 1e8;
 constexpr std::string_view kPlaceholder = "{n}";
@@ -19,18 +18,9 @@ bool contains(std::string_view text, std::string_view part) {
   return text.find(part) != std::string_view::npos;
 }
 
-/// The id names files of the results.
 std::string read_id(const TomlNode& node) {
   const std::string id = node.name("an id of letters, digits, '.', '_' and '-'");
-  const bool allowed = std::all_of(id.begin(), id.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' ||
-           c == '_' || c == '-';
-  });
-  if (!allowed || id == "." || id == ".." || id.size() > kLongestId) {
-    node.fail_type(fmt::format(
-        "an id of letters, digits, '.', '_' and '-' (it names files), at most {} of them",
-        kLongestId));
-  }
+  if (!is_condition_id(id)) node.fail_type(std::string(condition_id_rule()));
   return id;
 }
 

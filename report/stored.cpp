@@ -7,6 +7,7 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/parallel.hpp"
+#include "datasets/condition_id.hpp"
 #include "report/page_parts.hpp"
 #include "report/read_json.hpp"
 
@@ -25,6 +26,15 @@ Json parsed(const ReadFile& read, const std::string& where, const std::string& n
   if (!text)
     throw InputError({path_in(where, name)}, "is missing; make the result again with this version");
   return parse_json(*text, path_in(where, name));
+}
+
+/// The id of a condition, by which its file is found: whoever made the result, that is no way
+/// elsewhere.
+std::string checked_id(const Json& entry, const char* key, const std::string& file) {
+  const std::string id = text_of(entry, key);
+  if (datasets::is_condition_id(id)) return id;
+  throw InputError({file}, fmt::format("key '{}' of a condition: found \"{}\", expected {}", key,
+                                       id.substr(0, 40), datasets::condition_id_rule()));
 }
 
 }  // namespace
@@ -65,7 +75,8 @@ Calibration load_calibration(const ReadFile& read, const std::string& where, int
   const Json& conditions = stored.result.at("conditions");
   stored.series.resize(conditions.size());
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    const std::string name = "residuals/" + text_of(conditions.at(i), "id") + ".csv";
+    const std::string id = checked_id(conditions.at(i), "id", path_in(where, stored.file));
+    const std::string name = "residuals/" + id + ".csv";
     if (const auto text = read(name)) stored.series[i] = parse_table(*text, path_in(where, name));
   });
   return stored;
@@ -87,7 +98,7 @@ ParityFiles load_parity(const ReadFile& read, const std::string& where) {
   ParityFiles stored;
   stored.parity = load_json(read, where, "parity.json");
   for (const Json& record : stored.parity.at("records")) {
-    const std::string condition = text_of(record, "condition");
+    const std::string condition = checked_id(record, "condition", path_in(where, "parity.json"));
     if (stored.series.contains(condition)) continue;
     const std::string name = "parity/" + condition + ".csv";
     if (const auto series = read(name))
