@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
+#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -59,10 +60,13 @@ bool write_all(int descriptor, const char* bytes, std::size_t count) {
 
 /// The child's part: never returns.
 [[noreturn]] void work_in_child(const std::function<std::string()>& work,
-                                const Confinement& confinement, std::size_t addresses, int out) {
-  // The parent decides what a signal from the terminal means.
+                                const Confinement& confinement, std::size_t addresses, pid_t parent,
+                                int out) {
+  // The parent decides what a signal from the terminal means, and what it ends this goes with it.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (::getppid() != parent) ::_exit(1);  // it was gone before that
   const int nothing = ::open("/dev/null", O_RDWR);
   if (nothing >= 0) {
     ::dup2(nothing, STDOUT_FILENO);
@@ -84,8 +88,9 @@ pid_t start_child(const std::function<std::string()>& work, const Confinement& c
   std::array<int, 2> ends{};
   if (::pipe2(ends.data(), O_CLOEXEC) != 0)
     throw ConfinedFailure(fmt::format("no process for it: {}", std::strerror(errno)));
+  const pid_t parent = ::getpid();
   const pid_t child = ::fork();
-  if (child == 0) work_in_child(work, confinement, addresses, ends[1]);
+  if (child == 0) work_in_child(work, confinement, addresses, parent, ends[1]);
   const int error = errno;
   ::close(ends[1]);
   from_child = ends[0];

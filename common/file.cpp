@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/uninterrupted.hpp"
 
 namespace rigcal {
 namespace {
@@ -144,6 +145,7 @@ void write_file_atomically(const fs::path& path, std::string_view content) {
 }
 
 void write_files_atomically(const std::vector<std::pair<fs::path, std::string_view>>& files) {
+  const Uninterrupted whole;
   std::vector<std::unique_ptr<TemporaryFile>> written;
   for (const auto& [path, content] : files) {
     std::error_code error;

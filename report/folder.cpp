@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cerrno>
 #include <string_view>
 #include <system_error>
@@ -12,6 +13,7 @@
 
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "common/uninterrupted.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -28,16 +30,29 @@ std::vector<fs::path> missing_folders(const fs::path& path) {
   return missing;
 }
 
+// A signal handler can reach nothing but a global.
+std::atomic<const std::vector<fs::path>*> made_now{nullptr};
+
 }  // namespace
 
+void HeldFolder::remove_if_empty() {
+  const std::vector<fs::path>* folders = made_now;
+  if (folders == nullptr) return;
+  for (const fs::path& folder : *folders) ::rmdir(folder.c_str());
+}
+
 HeldFolder::Made::~Made() {
+  const Uninterrupted whole;
+  made_now = nullptr;
   std::error_code ignored;  // one that is not empty stays
   for (const fs::path& folder : folders) fs::remove(folder, ignored);
 }
 
 HeldFolder::HeldFolder(const fs::path& out) {
   const fs::path folder = fs::absolute(out).lexically_normal();
+  const Uninterrupted whole;
   made_.folders = missing_folders(folder);
+  made_now = &made_.folders;
   const fs::path probe = folder / ".rigcal-probe";
   write_file_atomically(probe, "");
   std::error_code ignored;  // what cannot be removed again does no harm

@@ -26,6 +26,10 @@ class HeldFolder {
   HeldFolder& operator=(const HeldFolder&) = delete;
   ~HeldFolder();
 
+  /// Removes what the one that lives has made, if it is empty: for a handler of signals, which ends
+  /// the process before the destructor can. Safe within one.
+  static void remove_if_empty();
+
  private:
   /// Folders that go again where they are empty, innermost first.
   struct Made {

@@ -2,7 +2,6 @@
 
 #include <memory>
 
-#include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/load_record.hpp"
@@ -14,7 +13,7 @@
 namespace rigcal::app {
 namespace {
 
-ExitCode run_average(const CampaignOptions& options, const Invocation& invocation) {
+ExitCode run_average(const CampaignOptions& options) {
   const datasets::Campaign campaign = load(options);
   const report::HeldFolder held(options.out);
   std::vector<datasets::Record> records;
@@ -25,7 +24,6 @@ ExitCode run_average(const CampaignOptions& options, const Invocation& invocatio
   json["records"] = report::Json::array();
   for (const datasets::Condition& condition : campaign.conditions) {
     if (!condition.has_record() || condition.use == datasets::Use::ignore) continue;
-    stop_if(invocation.cancel);
     records.push_back(datasets::load_record(campaign, condition));
   }
   std::vector<datasets::Record*> all;
@@ -55,7 +53,7 @@ ExitCode run_average(const CampaignOptions& options, const Invocation& invocatio
 Run add_average(CLI::App& verb) {
   const auto options = std::make_shared<CampaignOptions>();
   add_campaign_options(verb, *options);
-  return [options](const Invocation& invocation) { return run_average(*options, invocation); };
+  return [options](const Invocation&) { return run_average(*options); };
 }
 
 }  // namespace rigcal::app

@@ -3,7 +3,6 @@
 
 #include <memory>
 
-#include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/load_record.hpp"
@@ -13,7 +12,7 @@
 namespace rigcal::app {
 namespace {
 
-ExitCode run_check(const CampaignOptions& options, const Invocation& invocation) {
+ExitCode run_check(const CampaignOptions& options) {
   const datasets::Campaign campaign = load(options);
   report::Json json;
   json["campaign"] = campaign.name;
@@ -24,7 +23,6 @@ ExitCode run_check(const CampaignOptions& options, const Invocation& invocation)
   std::vector<datasets::RecordLength> lengths;  // of those with a record
   std::vector<std::size_t> places;              // of these, in `texts`
   for (const datasets::Condition& condition : campaign.conditions) {
-    stop_if(invocation.cancel);
     if (!condition.has_record()) {
       texts.push_back(fmt::format("{}: {}, no record\n", condition.id, to_string(condition.use)));
       json["without_record"].push_back(condition.id);
@@ -54,7 +52,7 @@ ExitCode run_check(const CampaignOptions& options, const Invocation& invocation)
 Run add_check(CLI::App& verb) {
   const auto options = std::make_shared<CampaignOptions>();
   add_campaign_options(verb, *options);
-  return [options](const Invocation& invocation) { return run_check(*options, invocation); };
+  return [options](const Invocation&) { return run_check(*options); };
 }
 
 }  // namespace rigcal::app

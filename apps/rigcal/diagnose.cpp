@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 
-#include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/result_page.hpp"
@@ -109,9 +108,7 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
   const report::EarlierFit earlier = report::read_fit(options.fit, campaign.rig.plant);
   diagnosis::DiagnosisOptions settings;
   settings.threads = options.common.threads;
-  settings.cancel = &invocation.cancel;
   settings.truth = truth_beside(campaign);
-  stop_if(invocation.cancel);
   const report::HeldFolder held(options.common.out);
   const diagnosis::Diagnosable diagnosable = diagnosis::diagnosable(campaign);
   std::vector<datasets::RepeatRecords> records(diagnosable.conditions.size());
@@ -132,7 +129,6 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
   }
   found.warnings.insert(found.warnings.end(), diagnosable.left_out.begin(),
                         diagnosable.left_out.end());
-  stop_if(invocation.cancel);
   warn_of_validity(campaign, earlier.validity, found);
   warn_of_recordings(records, found);
   if (earlier.status == calib::FitStatus::stopped)

@@ -76,7 +76,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   report::Provenance provenance{invocation.command, options.seed, recorded(options.common),
                                 report::hash_inputs(campaign, records)};
   provenance.options.emplace_back("starts", fmt::format("{}", settings.starts));
-  stop_if(invocation.cancel);
+  const Kept kept;
   const report::HeldFolder held(options.common.out);
 
   CheckpointFile checkpoint(options.common.out, provenance);

@@ -20,8 +20,8 @@ using calib::FitStatus;
 
 ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invocation) {
   const LeakTableInput input = load_leak_table(options);
+  const Kept kept;
   const report::HeldFolder held(options.out);
-  stop_if(invocation.cancel);
   const calib::LeakTableOptions settings = leak_table_options(options, input.campaign, invocation);
   const calib::TablesFit fit = calib::fit_tables(input.campaign, input.settings, settings);
 

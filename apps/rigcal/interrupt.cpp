@@ -1,20 +1,40 @@
 #include "apps/rigcal/interrupt.hpp"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <string_view>
 
 #include "common/error.hpp"
+#include "common/uninterrupted.hpp"
+#include "report/folder.hpp"
 
 namespace rigcal::app {
 namespace {
 
 // A signal handler can reach nothing but a global.
 std::atomic<bool> interrupted{false};
+std::atomic<int> keeping{0};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-extern "C" void on_signal(int) {
-  interrupted.store(true);
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
+/// Nothing in here locks or asks for memory: the signal may have come in the middle of either.
+[[noreturn]] void end_at_once() {
+  constexpr std::string_view kWords = "rigcal: stopped by a signal before its end\n";
+  report::HeldFolder::remove_if_empty();
+  if (::write(STDERR_FILENO, kWords.data(), kWords.size()) < 0) {
+    // Nobody is left to be told.
+  }
+  ::_exit(static_cast<int>(ExitCode::stopped));
+}
+
+extern "C" void on_signal(int signal) {
+  if (keeping > 0) {
+    interrupted = true;
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+    return;
+  }
+  if (!Uninterrupted::postpones(signal)) end_at_once();
 }
 
 }  // namespace
@@ -27,11 +47,8 @@ const std::atomic<bool>& watch_signals() {
   return interrupted;
 }
 
-void stop_if(const std::atomic<bool>& cancel) {
-  if (cancel.load()) {
-    throw Error(ExitCode::stopped,
-                "stopped by a signal before there was a result; nothing written");
-  }
-}
+Kept::Kept() { ++keeping; }
+
+Kept::~Kept() { --keeping; }
 
 }  // namespace rigcal::app

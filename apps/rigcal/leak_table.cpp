@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/leak_table_files.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/result_page.hpp"
@@ -46,16 +45,8 @@ ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invoc
   choose_targets(options, input.settings);
   choose_signals(options, input.campaign, input.settings);
   const report::HeldFolder held(options.common.out);
-  stop_if(invocation.cancel);
   calib::LeakTableOptions settings = leak_table_options(options.common, input.campaign, invocation);
-  const calib::LeakTable table = [&] {
-    try {
-      return calib::leak_table(input.campaign, input.settings, settings);
-    } catch (const NoResultError&) {
-      stop_if(invocation.cancel);  // what failed is what was stopped
-      throw;
-    }
-  }();
+  const calib::LeakTable table = calib::leak_table(input.campaign, input.settings, settings);
   report::Provenance provenance;
   provenance.command = invocation.command;
   provenance.options = recorded(options.common);

@@ -5,7 +5,6 @@
 #include <functional>
 #include <memory>
 
-#include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/result_page.hpp"
@@ -68,7 +67,6 @@ ExitCode run_parity(const ParityRequest& options, const Invocation& invocation) 
     return write_parity(options, {campaign, found, reasons, false_alarm, provenance});
   }
   const report::EarlierFit earlier = report::read_fit(options.fit, campaign.rig.plant);
-  stop_if(invocation.cancel);
   const report::HeldFolder held(options.common.out);
   const diagnosis::Diagnosable diagnosable = diagnosis::diagnosable(campaign);
   std::vector<datasets::RepeatRecords> records(diagnosable.conditions.size());
@@ -89,12 +87,10 @@ ExitCode run_parity(const ParityRequest& options, const Invocation& invocation) 
     settings.false_alarm = false_alarm;
     settings.healthy_levels = options.healthy;
     settings.threads = options.common.threads;
-    settings.cancel = &invocation.cancel;
     settings.progress = std::ref(progress);
     found = diagnosis::parity(campaign, records,
                               {earlier.values, earlier.indices, earlier.covariance}, settings);
   }
-  stop_if(invocation.cancel);
   found.warnings = diagnosable.left_out;
   for (const auto& warning : datasets::gathered_warnings(doubted))
     found.warnings.push_back(warning.with_conditions());

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 
-#include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/load_record.hpp"
@@ -35,7 +34,6 @@ ExitCode run_plan(const PlanRequest& options, const Invocation& invocation) {
     if (taken && condition.has_record())
       records.push_back(datasets::load_record(campaign, condition));
   }
-  stop_if(invocation.cancel);
   const report::HeldFolder held(options.common.out);
   const report::Provenance provenance{invocation.command, 1, recorded(options.common),
                                       report::hash_inputs(campaign, records, more_inputs)};

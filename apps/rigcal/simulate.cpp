@@ -120,10 +120,10 @@ ExitCode run_simulate(const SimulateRequest& options, const Invocation& invocati
   std::vector<Task> tasks;
   std::vector<Record> records;
   for (const Condition* condition : wanted(campaign, options.conditions)) {
-    stop_if(invocation.cancel);
     tasks.push_back(prepare(campaign, *condition));
     if (tasks.back().record) records.push_back(*tasks.back().record);
   }
+  const Kept kept;
   const report::HeldFolder held(options.common.out);
 
   model::SimulationOptions settings;

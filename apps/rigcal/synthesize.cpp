@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 
-#include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "report/folder.hpp"
@@ -19,12 +18,11 @@ struct SynthesizeRequest {
   std::uint64_t seed = 1;
 };
 
-ExitCode run_synthesize(const SynthesizeRequest& options, const Invocation& invocation) {
+ExitCode run_synthesize(const SynthesizeRequest& options) {
   const CampaignOptions& common = options.common;
   const datasets::Campaign campaign = load(common);
   report::require_inputs_kept(common.out, {"campaign.toml"}, report::hash_inputs(campaign, {}));
   const report::HeldFolder held(common.out);
-  stop_if(invocation.cancel);
   const datasets::SynthesisReport made =
       datasets::synthesize(campaign, options.seed, common.out, common.threads);
   report::Json json;
@@ -47,7 +45,7 @@ Run add_synthesize(CLI::App& verb) {
   verb.add_option("--seed", options->seed, "Seed of the noise")
       ->required()
       ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()));
-  return [options](const Invocation& invocation) { return run_synthesize(*options, invocation); };
+  return [options](const Invocation&) { return run_synthesize(*options); };
 }
 
 }  // namespace rigcal::app

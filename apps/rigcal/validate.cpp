@@ -96,7 +96,7 @@ ExitCode run_validate(const ValidateRequest& options, const Invocation& invocati
   calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
   const report::Provenance provenance{invocation.command, settings.seed, recorded(options.common),
                                       report::hash_inputs(campaign, records, more_inputs)};
-  stop_if(invocation.cancel);
+  const Kept kept;
   const report::HeldFolder held(options.common.out);
 
   calib::Fit fit;

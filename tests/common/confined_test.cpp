@@ -1,8 +1,11 @@
 #include "common/confined.hpp"
 
+#include <poll.h>
 #include <sys/resource.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdio>
@@ -37,6 +40,23 @@ TEST_CASE("confined: nothing of it stays behind", "[common]") {
   CHECK(changed == 0);
 }
 
+TEST_CASE("confined: what the work prints is dropped", "[common]") {
+  std::array<int, 2> ends{};
+  REQUIRE(::pipe(ends.data()) == 0);
+  std::fflush(stdout);
+  const int terminal = ::dup(STDOUT_FILENO);
+  ::dup2(ends[1], STDOUT_FILENO);
+  ::close(ends[1]);
+  const std::string text = run_confined(
+      [] { return std::string(::write(STDOUT_FILENO, "seen", 4) == 4 ? "y" : "n"); }, {});
+  ::dup2(terminal, STDOUT_FILENO);
+  ::close(terminal);
+  CHECK(text == "y");
+  char byte = 0;
+  CHECK(::read(ends[0], &byte, 1) == 0);
+  ::close(ends[0]);
+}
+
 TEST_CASE("confined: a crash ends the child alone", "[common]") {
   for (const int signal : {SIGSEGV, SIGABRT}) {
     const auto crash = [signal] {
@@ -64,6 +84,33 @@ TEST_CASE("confined: what never ends is ended", "[common]") {
     return std::string();
   };
   CHECK_THROWS_WITH(run_confined(wait, short_time), Contains("it took more than 1 s"));
+}
+
+TEST_CASE("confined: what ends the process ends the work", "[common]") {
+  std::array<int, 2> ends{};
+  REQUIRE(::pipe(ends.data()) == 0);
+  const pid_t process = ::fork();
+  if (process == 0) {
+    const auto wait = [&]() -> std::string {
+      if (::write(ends[1], "x", 1) != 1) ::_exit(1);
+      for (;;) ::pause();
+    };
+    try {
+      run_confined(wait, {});
+    } catch (const ConfinedFailure&) {
+    }
+    ::_exit(0);
+  }
+  ::close(ends[1]);
+  char byte = 0;
+  CHECK(::read(ends[0], &byte, 1) == 1);
+  ::kill(process, SIGKILL);
+  ::waitpid(process, nullptr, 0);
+  // It held the other end of the pipe.
+  pollfd closed{ends[0], POLLIN, 0};
+  REQUIRE(::poll(&closed, 1, 60'000) == 1);
+  CHECK(::read(ends[0], &byte, 1) == 0);
+  ::close(ends[0]);
 }
 
 TEST_CASE("confined: memory is limited", "[common]") {

@@ -28,6 +28,20 @@ TEST_CASE("HeldFolder: leaves no trace", "[report]") {
   CHECK_FALSE(folder.has("a/b"));
 }
 
+TEST_CASE("HeldFolder: what it made goes when a signal ends the process", "[report]") {
+  const test::CommandFolder folder;
+  const auto out = folder.work() / "a" / "b";
+  {
+    const HeldFolder held(out);
+    HeldFolder::remove_if_empty();
+    CHECK_FALSE(folder.has("a"));
+  }
+  const HeldFolder held(out);
+  folder.write("a/b/result", "kept");
+  HeldFolder::remove_if_empty();
+  CHECK(folder.has("a/b/result"));
+}
+
 TEST_CASE("HeldFolder: for one at a time", "[report]") {
   const test::CommandFolder folder;
   const auto out = folder.work() / "out";

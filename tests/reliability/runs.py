@@ -1,0 +1,91 @@
+"""What the parts of scripts/reliability share: running the program, and counting how it ends."""
+import collections
+import json
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+SMALL_RIG = ROOT / "tests" / "golden" / "resume_study.toml"
+DEMO = ROOT / "datasets" / "uis_shake_table" / "campaign.toml"
+HANGS_S = 60.0
+DOCUMENTED = (1, 2, 3, 4, 5)  # exit codes of a refusal, docs/command-line.md
+
+
+class Count:
+    """One row of the table."""
+
+    def __init__(self, name):
+        self.name, self.tried, self.refused, self.crashed, self.hung, self.wrong = name, 0, 0, 0, 0, 0
+        self.remarks = []
+
+    def ended(self, code, text):
+        """How one run ended; None: it did not."""
+        self.tried += 1
+        if code is None:
+            self.hung += 1
+            self.remarks.append(f"hung: {text}")
+        elif code < 0 or code > 5:
+            self.crashed += 1
+            self.remarks.append(f"crashed ({code}): {text}")
+        elif code in DOCUMENTED:
+            self.refused += 1
+
+    def is_wrong(self, text):
+        self.wrong += 1
+        self.remarks.append(f"wrong: {text}")
+
+    def bad(self):
+        return self.crashed + self.hung + self.wrong
+
+
+def start(rigcal, arguments, **more):
+    return subprocess.Popen([rigcal, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                            **{"start_new_session": True, **more})
+
+
+def finish(process, limit_s=HANGS_S):
+    """(exit code or None, stdout, stderr)"""
+    try:
+        out, err = process.communicate(timeout=limit_s)
+        return process.returncode, out, err
+    except subprocess.TimeoutExpired:
+        process.kill()
+        out, err = process.communicate()
+        return None, out, err
+
+
+def run(rigcal, arguments, limit_s=HANGS_S, **more):
+    return finish(start(rigcal, arguments, **more), limit_s)
+
+
+def must(rigcal, arguments):
+    code, _, err = run(rigcal, arguments, 600.0)
+    if code != 0:
+        raise SystemExit(f"reliability: rigcal {' '.join(map(str, arguments))}: exit {code}: {err.decode()}")
+
+
+def comparable(file):
+    """A result in JSON without what may differ between two runs of the same."""
+    result = json.loads(file.read_text())
+    for key in ("wall_seconds", "provenance"):
+        result.pop(key, None)
+    return result
+
+
+def left_behind(folder):
+    """What no run may leave: files that are not in their places yet, and results that are no JSON."""
+    found = []
+    for path in folder.rglob("*"):
+        if path.name.endswith(".tmp") or path.name == ".rigcal-probe":
+            found.append(str(path.relative_to(folder)))
+        elif path.suffix == ".json":
+            try:
+                json.loads(path.read_text())
+            except ValueError:
+                found.append(f"{path.relative_to(folder)} is no JSON")
+    return found
