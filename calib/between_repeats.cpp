@@ -1,9 +1,11 @@
 #include "calib/between_repeats.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
 #include "calib/known_uncertainty.hpp"
+#include "calib/repeat_inputs.hpp"
 #include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
@@ -72,6 +74,50 @@ MatrixXd cause_scores(const Problem& problem, std::size_t condition, std::span<c
   return result;
 }
 
+/// Parameters that are declared to differ between repeats and act in a condition.
+std::vector<datasets::ParameterSetting> declared_in(const Problem& problem, std::size_t condition) {
+  std::vector<datasets::ParameterSetting> result;
+  for (const int j : problem.map.acting(condition)) {
+    const int index = problem.map.unknowns()[static_cast<std::size_t>(j)].index;
+    const auto* setting = problem.campaign->setting(index);
+    if (setting != nullptr && setting->between_repeats) result.push_back(*setting);
+  }
+  return result;
+}
+
+/// Change of the weighted outputs per unit of a cause: relative, of the start per second.
+VectorXd effect_of(const Problem& problem, std::size_t condition, std::span<const double> z,
+                   const std::string& cause) {
+  if (cause == "start") return -slopes(problem.conditions[condition]);
+  const int index = model::parameter_index(problem.campaign->rig.plant, cause);
+  const MatrixXd felt = known_sensitivities(problem, condition, z, {index});
+  return felt.size() > 0 ? VectorXd(felt.col(0)) : VectorXd();
+}
+
+/// Squares of deviations along a direction, and by what noise they would be as large on average.
+struct AlongCause {
+  double squares = 0.0;
+  double noise = 0.0;
+};
+
+constexpr Index kStretches = 20;
+
+AlongCause along(const VectorXd& direction, const MatrixXd& deviations) {
+  const VectorXd unit = direction.normalized();
+  const Eigen::RowVectorXd size = unit.transpose() * deviations;
+  const MatrixXd left = deviations - unit * size;
+  AlongCause result;
+  result.squares = size.squaredNorm();
+  for (Index k = 0; k < kStretches; ++k) {
+    const Index first = k * unit.size() / kStretches;
+    const Index count = (k + 1) * unit.size() / kStretches - first;
+    result.noise +=
+        (unit.segment(first, count).transpose() * left.middleRows(first, count)).squaredNorm();
+  }
+  result.noise *= static_cast<double>(kStretches) / static_cast<double>(kStretches - 1);
+  return result;
+}
+
 }  // namespace
 
 MatrixXd repeat_deviations(const ProblemCondition& condition, const MatrixXd& explained) {
@@ -98,6 +144,22 @@ MatrixXd repeat_deviations(const ProblemCondition& condition, const MatrixXd& ex
   for (std::size_t r = 0; r < repeats; ++r)
     result.col(static_cast<Index>(r)) -= record.repeat_reports[r].shifted_s * per_second;
   return result;
+}
+
+MatrixXd explained_by_declared(const Problem& problem, std::size_t condition,
+                               std::span<const double> z, const MatrixXd& deviations) {
+  const std::vector<datasets::ParameterSetting> declared = declared_in(problem, condition);
+  if (declared.empty() || deviations.cols() == 0) return {};
+  std::vector<int> indices;
+  for (const auto& setting : declared) indices.push_back(setting.index);
+  MatrixXd felt = known_sensitivities(problem, condition, z, indices);
+  if (felt.size() == 0) return {};
+  for (std::size_t j = 0; j < declared.size(); ++j)
+    felt.col(static_cast<Index>(j)) *= declared[j].prior->sd;
+  MatrixXd normal = felt.transpose() * felt;
+  // The weights are those of the mean: a single repeat is as many times noisier.
+  normal.diagonal().array() += static_cast<double>(deviations.cols());
+  return felt * normal.llt().solve(felt.transpose() * deviations);
 }
 
 MatrixXd repeat_scores(const MatrixXd& jacobian, const MatrixXd& deviations) {
@@ -145,7 +207,8 @@ std::optional<LikelyDifference> likely_difference(const Problem& problem, std::s
   std::vector<int> indices;
   for (const char* key : {"supply_pressure", "bulk_modulus"}) {
     const int index = model::parameter_index(problem.campaign->rig.plant, key);
-    if (index < 0) continue;
+    const auto* setting = problem.campaign->setting(index);
+    if (index < 0 || (setting != nullptr && setting->between_repeats)) continue;
     causes.emplace_back(key);
     indices.push_back(index);
   }
@@ -170,6 +233,27 @@ std::optional<LikelyDifference> likely_difference(const Problem& problem, std::s
   if (!(all > 0.0) || !(explained.maxCoeff(&best) > kMostlyExplained * all)) return std::nullopt;
   return LikelyDifference{causes[static_cast<std::size_t>(best)],
                           std::sqrt(explained(best) / size(best)), explained(best) / all};
+}
+
+double difference_by_noise(const Problem& problem, std::span<const double> z,
+                           const std::string& cause) {
+  double ratios = 0.0;
+  double freedom = 0.0;
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    const MatrixXd deviations =
+        repeat_deviations(problem.conditions[i], explained_by_inputs(problem, i, z));
+    if (deviations.rows() < kStretches || deviations.cols() < 2) continue;
+    const VectorXd direction = effect_of(problem, i, z, cause);
+    if (direction.size() != deviations.rows() || !(direction.squaredNorm() > 0.0)) continue;
+    const AlongCause found = along(direction, deviations);
+    if (!(found.noise > 0.0)) continue;  // repeats that are equal, or differ by this alone
+    const auto own = static_cast<double>(deviations.cols() - 1);
+    ratios += own * found.squares / found.noise;
+    freedom += own;
+  }
+  if (!(freedom > 0.0)) return 1.0;
+  return metrics::fisher_f_exceedance(ratios / freedom, freedom,
+                                      freedom * static_cast<double>(kStretches - 1));
 }
 
 }  // namespace rigcal::calib

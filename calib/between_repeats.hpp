@@ -22,6 +22,12 @@ namespace rigcal::calib {
 Eigen::MatrixXd repeat_deviations(const ProblemCondition& condition,
                                   const Eigen::MatrixXd& explained);
 
+/// What parameters that the campaign declares to differ between repeats
+/// (datasets::ParameterSetting::between_repeats) explain of these deviations, by their linear
+/// effect with their prior; shape of `deviations`.
+Eigen::MatrixXd explained_by_declared(const Problem& problem, std::size_t condition,
+                                      std::span<const double> z, const Eigen::MatrixXd& deviations);
+
 /// J^T of these deviations: shape (directions, repeats).
 Eigen::MatrixXd repeat_scores(const Eigen::MatrixXd& jacobian, const Eigen::MatrixXd& deviations);
 
@@ -60,6 +66,7 @@ struct LikelyDifference {
   std::string cause;       ///< key of a parameter, or "start": when the run began
   double sd = 0.0;         ///< of it between repeats: relative, of the start in s
   double explained = 0.0;  ///< share of the squared scores of the repeats, 0 to 1
+  double p = 1.0;          ///< of such a difference by noise alone, see difference_by_noise()
 };
 
 /// The cause, of supply pressure, bulk modulus and start, whose scores explain most of those of the
@@ -71,5 +78,12 @@ struct LikelyDifference {
 std::optional<LikelyDifference> likely_difference(const Problem& problem, std::span<const double> z,
                                                   const std::vector<ScoreRows>& rows,
                                                   const std::vector<Eigen::MatrixXd>& scores);
+
+/// Probability that repeats differ in the direction of a cause as much as they do by their own
+/// noise: F of the deviations along it against those of twenty stretches of what is left of them,
+/// over all conditions. Whether the mean fits the model does not matter here, as it does for the
+/// residuals against which rests_on_repeats() holds the repeats.
+double difference_by_noise(const Problem& problem, std::span<const double> z,
+                           const std::string& cause);
 
 }  // namespace rigcal::calib

@@ -121,8 +121,9 @@ std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Unce
   }
   if (!(result.ratio > 0.0)) return std::nullopt;
   result.p = std::min(1.0, result.p * static_cast<double>(found.repeats_p.size()));
-  result.differ = found.repeats_differ();
+  result.differ = found.repeats_differ() || found.difference;
   if (found.difference) {
+    if (!found.repeats_differ()) result.p = found.difference->p;
     result.cause = found.difference->cause;
     result.cause_sd = found.difference->sd;
     result.cause_explains = found.difference->explained;
@@ -133,11 +134,12 @@ std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Unce
 std::string between_repeats_warning(const BetweenRepeats& repeats) {
   if (!repeats.differ) return {};
   std::string text = fmt::format(
-      "repeats differ from one another by more than their noise: errors by their spread are up to "
-      "{:.2g} times those by the residuals of their mean (p = {:.2g}), and the intervals of {} "
-      "rest "
-      "on the spread",
-      repeats.ratio, repeats.p, fmt::join(repeats.parameters, ", "));
+      "repeats differ from one another by more than their noise (p = {:.2g}): errors by their "
+      "spread are up to {:.2g} times those by the residuals of their mean",
+      repeats.p, repeats.ratio);
+  if (!repeats.parameters.empty())
+    text += fmt::format(", and the intervals of {} rest on the spread",
+                        fmt::join(repeats.parameters, ", "));
   if (repeats.cause.empty()) return text;
   if (repeats.cause == "start") {
     return text + fmt::format(
@@ -148,9 +150,13 @@ std::string between_repeats_warning(const BetweenRepeats& repeats) {
   }
   text += fmt::format("; they differ as if {} varied by {:.2g} % from repeat to repeat",
                       repeats.cause, 100.0 * repeats.cause_sd);
+  text += ": ";
   if (repeats.cause == "supply_pressure")
-    text += ": a recorded supply pressure (channel `supply_pressure`) would account for it";
-  return text;
+    text += "a recorded supply pressure (channel `supply_pressure`) would account for it, or ";
+  return text + fmt::format(
+                    "`between_repeats` of {} in [rig.parameters], with this standard "
+                    "deviation, estimates it for every condition",
+                    repeats.cause);
 }
 
 std::string noiseless_warning(const Problem& problem, const Uncertainty& found) {

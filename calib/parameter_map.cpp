@@ -85,7 +85,7 @@ std::string level_in(const Condition& condition, Scope scope, std::string_view p
 
 ParameterMap::ParameterMap(const Campaign& campaign,
                            const std::vector<const Condition*>& conditions, bool nuisance_only,
-                           const std::vector<Unknown>& extra) {
+                           const std::vector<Unknown>& extra, const std::vector<int>& repeats) {
   const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<ParameterSetting> settings = campaign.parameters;
   std::stable_sort(settings.begin(), settings.end(),
@@ -94,13 +94,17 @@ ParameterMap::ParameterMap(const Campaign& campaign,
     if (!setting.fit || (nuisance_only && !setting.nuisance)) continue;
     const auto key = table[static_cast<std::size_t>(setting.index)].key;
     const std::size_t first = unknowns_.size();
-    for (const Condition* condition : conditions) {
+    for (std::size_t i = 0; i < conditions.size(); ++i) {
+      const Condition* condition = conditions[i];
       if (known_in(campaign, *condition, setting.index)) continue;
       std::string level = level_in(*condition, setting.scope, key);
       const bool present =
           std::any_of(unknowns_.begin() + static_cast<std::ptrdiff_t>(first), unknowns_.end(),
                       [&](const Unknown& unknown) { return unknown.level == level; });
-      if (!present) unknowns_.push_back(unknown_of(setting, std::move(level)));
+      if (present) continue;
+      unknowns_.push_back(unknown_of(setting, std::move(level)));
+      if (setting.between_repeats && !repeats.empty())
+        unknowns_.back().prior->sd /= std::sqrt(static_cast<double>(repeats[i]));
     }
     if (unknowns_.size() > first) check(unknowns_.back(), key, setting.where);
   }

@@ -42,11 +42,12 @@ class ParameterMap {
   /// @param conditions     those that take part
   /// @param nuisance_only  true in validation: everything but nuisance parameters keeps its value
   /// @param extra          unknowns beside those of the campaign (initial states of conditions)
+  /// @param repeats        of how many the record of each condition is the mean; empty: 1
   /// @throws InputError    a start outside its bounds, bounds that are not finite or empty, a
   ///                       condition without the leak level that a scope asks for
   ParameterMap(const datasets::Campaign& campaign,
                const std::vector<const datasets::Condition*>& conditions, bool nuisance_only,
-               const std::vector<Unknown>& extra = {});
+               const std::vector<Unknown>& extra = {}, const std::vector<int>& repeats = {});
 
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   /// Positions in unknowns() that act in condition i, in the order of their table index.

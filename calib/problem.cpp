@@ -334,8 +334,11 @@ Problem make_problem(const Campaign& campaign, const std::vector<Record>& record
     initial_unknowns.insert(initial_unknowns.end(), plan.unknowns.begin(), plan.unknowns.end());
   }
   guess_unknown_sd(prepared);
+  std::vector<int> repeats;
+  for (const ProblemCondition& each : prepared) repeats.push_back(each.record->repeats);
 
-  Problem problem{&campaign, ParameterMap(campaign, conditions, nuisance_only, initial_unknowns),
+  Problem problem{&campaign,
+                  ParameterMap(campaign, conditions, nuisance_only, initial_unknowns, repeats),
                   std::move(prepared), campaign.simulation.tolerance.value_or(0.0),
                   campaign.simulation.tolerance.has_value()};
   if (!problem.tolerance_fixed) problem.tolerance = tolerance_from_noise(problem.conditions, false);

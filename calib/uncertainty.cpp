@@ -38,8 +38,10 @@ std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span
                                                const std::vector<ScoreRows>& rows, int threads) {
   std::vector<Eigen::MatrixXd> result(rows.size());
   parallel_for(rows.size(), threads, [&](std::size_t i) {
-    const Eigen::MatrixXd deviations =
+    Eigen::MatrixXd deviations =
         repeat_deviations(problem.conditions[i], explained_by_inputs(problem, i, z));
+    const Eigen::MatrixXd declared = explained_by_declared(problem, i, z, deviations);
+    if (declared.size() > 0) deviations -= declared;
     result[i] = repeat_scores(rows[i].jacobian, deviations);
   });
   return result;
@@ -70,6 +72,13 @@ std::string null_reason(const Problem& problem, const std::vector<std::size_t>& 
   return fmt::format("these conditions determine {} only in a combination with {}, not by itself",
                      problem.name(unknown), fmt::join(partners, ", "));
 }
+
+}  // namespace
+
+namespace {
+
+/// Of a nameable difference between repeats, which is looked for in every fit.
+constexpr double kDifferenceLevel = 0.01;
 
 }  // namespace
 
@@ -184,8 +193,10 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
         result.correlation(j, k) = std::clamp(inverse(j, k) / scale, -1.0, 1.0);
     }
   }
-  if (result.repeats_differ())
-    result.difference = likely_difference(problem, optimum.z, scores, repeats);
+  auto difference = likely_difference(problem, optimum.z, scores, repeats);
+  if (difference) difference->p = difference_by_noise(problem, optimum.z, difference->cause);
+  if (difference && (difference->p < kDifferenceLevel || result.repeats_differ()))
+    result.difference = difference;
   return result;
 }
 

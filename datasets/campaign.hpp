@@ -41,6 +41,9 @@ struct ParameterSetting {
   Scope scope = Scope::rig;
   std::optional<Prior> prior;
   bool nuisance = false;  ///< estimated again in validation
+  /// It differs at random from one repeat to the next: one unknown per condition, whose prior is
+  /// that of a single repeat; in the mean of R repeats its standard deviation is over sqrt(R).
+  bool between_repeats = false;
   Location where;
 };
 

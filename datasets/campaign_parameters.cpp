@@ -57,10 +57,19 @@ std::optional<Prior> read_prior(const TomlNode& node, const model::ParameterSpec
   return prior;
 }
 
+void read_between_repeats(const TomlNode& node, const model::ParameterSpec& spec,
+                          ParameterSetting& setting) {
+  if (const auto problem = cannot_be_fitted(spec)) node.fail(*problem);
+  const double sd = node.difference(spec.unit);
+  if (!(sd > 0.0)) node.fail_type("a standard deviation above zero");
+  differ_between_repeats(spec, sd, setting);
+}
+
 /// { start = ..., lower = ..., ... }
 void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
                         ParameterSetting& setting) {
-  node.allow_only({"start", "lower", "upper", "fit", "scope", "prior", "prior_sd", "nuisance"});
+  node.allow_only({"start", "lower", "upper", "fit", "scope", "prior", "prior_sd", "nuisance",
+                   "between_repeats"});
   const TomlNode start =
       node.require("start", fmt::format("the value from which a fit starts, in {}", spec.unit));
   setting.value = read_value(start, spec);
@@ -91,11 +100,32 @@ void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
   }
   setting.prior = read_prior(node, spec);
   if (const auto nuisance = node.find("nuisance")) setting.nuisance = nuisance->boolean();
+  if (const auto between = node.find("between_repeats")) {
+    for (const char* key : {"fit", "scope", "prior", "prior_sd", "nuisance"}) {
+      if (const auto other = node.find(key))
+        other->fail(
+            "stands beside between_repeats, which says it already: the value differs at "
+            "random from repeat to repeat about `start`, and is estimated per condition");
+    }
+    read_between_repeats(*between, spec, setting);
+  }
   if (!setting.fit) return;
   if (const auto problem = complete_bounds(spec, setting)) start.fail(*problem);
 }
 
 }  // namespace
+
+void differ_between_repeats(const model::ParameterSpec& spec, double sd,
+                            ParameterSetting& setting) {
+  constexpr double kReach = 8.0;  // standard deviations; farther off the mean no repeat lies
+  setting.between_repeats = true;
+  setting.fit = true;
+  setting.scope = Scope::condition;
+  setting.nuisance = true;
+  setting.prior = Prior{setting.value, sd};
+  if (std::isnan(setting.lower)) setting.lower = std::max(spec.lower, setting.value - kReach * sd);
+  if (std::isnan(setting.upper)) setting.upper = std::min(spec.upper, setting.value + kReach * sd);
+}
 
 const model::ParameterSpec& spec_of(model::PlantKind plant, int index) {
   return model::parameter_table(plant)[static_cast<std::size_t>(index)];

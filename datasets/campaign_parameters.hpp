@@ -16,6 +16,11 @@ enum class ParameterGroup {
   any,         ///< [synthetic] parameters
 };
 
+/// Declares a parameter to differ at random from repeat to repeat about its value
+/// (ParameterSetting::between_repeats). Bounds that are NaN become eight standard deviations,
+/// within the parameter's limits.
+void differ_between_repeats(const model::ParameterSpec& spec, double sd, ParameterSetting& setting);
+
 const model::ParameterSpec& spec_of(model::PlantKind plant, int index);
 
 /// Keys of a group in the order of the parameter table.

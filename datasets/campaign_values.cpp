@@ -143,6 +143,7 @@ void set_value(Campaign& campaign, std::string_view assignment) {
   }
   ParameterSetting changed = setting_or_new(campaign, index, value);
   changed.value = value;
+  if (changed.between_repeats) changed.prior->mean = value;
   if (changed.fit) {
     if (const auto problem = complete_bounds(spec, changed)) {
       throw UsageError(fmt::format("{}: {}", option, *problem));
@@ -153,7 +154,7 @@ void set_value(Campaign& campaign, std::string_view assignment) {
 
 void set_free(Campaign& campaign, const std::vector<std::string>& names) {
   Campaign changed = campaign;
-  for (ParameterSetting& setting : changed.parameters) setting.fit = false;
+  for (ParameterSetting& setting : changed.parameters) setting.fit = setting.between_repeats;
   for (const std::string& name : names) {
     const std::string option = fmt::format("--free {}", name);
     const int index = index_of(changed, option, name);
@@ -163,6 +164,12 @@ void set_free(Campaign& campaign, const std::vector<std::string>& names) {
     }
     const double fallback = spec.default_value.value_or(std::numeric_limits<double>::quiet_NaN());
     ParameterSetting& setting = setting_or_new(changed, index, fallback);
+    if (setting.between_repeats) {
+      throw UsageError(
+          fmt::format("{}: the campaign says by how much it differs between repeats, "
+                      "so its mean has to be known",
+                      option));
+    }
     if (outside_limits(spec, setting.value)) {
       throw UsageError(
           fmt::format("{0}: {1} has no value to start from: expected one in the "

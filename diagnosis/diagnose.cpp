@@ -130,7 +130,8 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
   }
   result.reference_repeats = static_cast<int>(references.size());
 
-  const LeakProblem bounded = problem.up_to(2.0 * prepared.scan.largest_coefficient);
+  const LeakProblem bounded = problem.up_to(2.0 * prepared.scan.largest_coefficient)
+                                  .corrected_by(result.reference_repeats, record.repeats);
   result.fit = fit_leak(bounded, rig, *prepared.condition, record, covered,
                         result.reference_repeats, &prepared.scan, options.cancel);
   return result;

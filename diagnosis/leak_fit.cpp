@@ -43,12 +43,30 @@ datasets::ParameterSetting free_leak(const Campaign& campaign, int index) {
   return setting;
 }
 
-/// Weighted residuals of a record and all derivatives, at the end of the fit.
+/// Weighted residuals of a record and all derivatives, at the end of the fit; the priors of the
+/// unknowns stand apart.
 struct Linear {
   Eigen::MatrixXd jacobian;      ///< shape (residuals, unknowns), SI
   Eigen::MatrixXd rig_jacobian;  ///< shape (residuals, rig parameters), SI
   Eigen::VectorXd residual;      ///< simulated minus measured, weighted
+  Eigen::VectorXd prior_weight;  ///< 1 / sd of each unknown's prior, 0 where there is none
+  Eigen::VectorXd prior_residual;
 };
+
+void set_priors(const calib::Problem& problem, const model::ParameterValues& values,
+                Linear& linear) {
+  const auto& acting = problem.map.acting(0);
+  linear.prior_weight = Eigen::VectorXd::Zero(linear.jacobian.cols());
+  linear.prior_residual = Eigen::VectorXd::Zero(linear.jacobian.cols());
+  for (std::size_t j = 0; j < acting.size(); ++j) {
+    const calib::Unknown& unknown = problem.map.unknowns()[static_cast<std::size_t>(acting[j])];
+    if (!unknown.prior) continue;
+    const auto column = static_cast<Eigen::Index>(j);
+    linear.prior_weight(column) = 1.0 / unknown.prior->sd;
+    const double value = values[problem.spec(acting[j]).key];
+    linear.prior_residual(column) = (value - unknown.prior->mean) / unknown.prior->sd;
+  }
+}
 
 int column_of(const std::vector<int>& list, int index) {
   const auto found = std::find(list.begin(), list.end(), index);
@@ -89,9 +107,12 @@ struct Solved {
 
 Solved least_squares(const Linear& linear) {
   const Eigen::Index p = linear.jacobian.cols();
-  Eigen::MatrixXd rows(linear.jacobian.rows(), p + 1);
-  rows.leftCols(p) = linear.jacobian;
-  rows.col(p) = linear.residual;
+  const Eigen::Index samples = linear.jacobian.rows();
+  Eigen::MatrixXd rows(samples + p, p + 1);
+  rows.topLeftCorner(samples, p) = linear.jacobian;
+  rows.col(p).head(samples) = linear.residual;
+  rows.bottomLeftCorner(p, p) = linear.prior_weight.asDiagonal();
+  rows.col(p).tail(p) = linear.prior_residual;
   calib::Triangle triangle(p + 1);
   triangle.add(std::move(rows));
   const Eigen::MatrixXd& r = triangle.get();
@@ -153,7 +174,8 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
     fit.failure = in_words(run.ok() ? healthy : run);
     return;
   }
-  const Linear linear = linearise(condition, run, condition.free.size());
+  Linear linear = linearise(condition, run, condition.free.size());
+  set_priors(problem, values, linear);
   const auto leak = static_cast<Eigen::Index>(column_of(condition.free, leak_row));
   const auto [root, step] = least_squares(linear);
   if (!step.allFinite()) {
@@ -165,11 +187,15 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
   const Eigen::VectorXd left = linear.residual + linear.jacobian * step;
   const auto [covariance, freedom] =
       cluster_sandwich(linear.jacobian, left, bread, clusters_of(condition));
+  // Of the estimate's variance the white noise makes what the samples tell, and the priors theirs.
+  const Eigen::VectorXd of_priors = linear.prior_weight.asDiagonal() * bread.col(leak);
+  const double of_samples = std::max(0.0, bread(leak, leak) - of_priors.squaredNorm());
   const double noise_se =
-      root.row(leak).norm() * noise_rms(std::vector<double>(left.begin(), left.end()));
+      std::hypot(std::sqrt(of_samples) * noise_rms(std::vector<double>(left.begin(), left.end())),
+                 of_priors.norm());
   fit.white_se = noise_se;
   fit.white_freedom = std::max(1, static_cast<int>(left.size() - step.size()));
-  fit.cluster_se = std::sqrt(covariance(leak, leak));
+  fit.cluster_se = std::sqrt(covariance(leak, leak) + of_priors.squaredNorm());
   fit.cluster_freedom = freedom;
   // The mean of the healthy repeats has noise too, which the residuals show but is not the
   // record's.
@@ -281,6 +307,15 @@ LeakProblem LeakProblem::up_to(double coefficient) const {
   datasets::ParameterSetting& setting = result.campaign.parameters.back();
   setting.upper = coefficient;
   setting.value = std::min(setting.value, coefficient);
+  return result;
+}
+
+LeakProblem LeakProblem::corrected_by(int reference, int repeats) const {
+  LeakProblem result = *this;
+  for (datasets::ParameterSetting& setting : result.campaign.parameters) {
+    if (setting.between_repeats && reference > 0)
+      setting.prior->sd *= std::sqrt(1.0 + static_cast<double>(repeats) / reference);
+  }
   return result;
 }
 

@@ -36,6 +36,9 @@ struct LeakProblem {
   LeakProblem(const datasets::Campaign& original, const RigFit& rig);
   /// The same with another upper bound of the coefficient.
   LeakProblem up_to(double coefficient) const;
+  /// The same for records, each the mean of `repeats`, that the mean of `reference` healthy repeats
+  /// corrected: what differs between repeats (ParameterSetting::between_repeats) does so in both.
+  LeakProblem corrected_by(int reference, int repeats) const;
 };
 
 /// The leak that explains one record best.

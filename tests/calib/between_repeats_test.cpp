@@ -7,7 +7,9 @@
 #include <boost/random/normal_distribution.hpp>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 
+#include "datasets/campaign_parameters.hpp"
 #include "datasets/load_record.hpp"
 #include "datasets/synthetic_repeat.hpp"
 #include "tests/calib/twin.hpp"
@@ -241,6 +243,67 @@ TEST_CASE("between repeats: a supply that differs is seen, and named", "[calib]"
   CHECK_THAT(found.between_repeats->cause_sd, WithinAbs(0.02, 0.01));
   CHECK_THAT(fmt::format("{}", fmt::join(found.warnings, "; ")),
              Contains("as if supply_pressure varied by"));
+}
+
+TEST_CASE("between repeats: a supply that is declared to differ accounts for what differs",
+          "[calib]") {
+  DifferingSupply rig(false);
+  const Fit without = fit(rig.twin.campaign, rig.records, {});
+  datasets::ParameterSetting& supply = rig.twin.setting("supply_pressure");
+  supply.lower = supply.upper = std::numeric_limits<double>::quiet_NaN();
+  datasets::differ_between_repeats(datasets::spec_of(rig.twin.campaign.rig.plant, supply.index),
+                                   0.02 * supply.value, supply);
+  const Fit found = fit(rig.twin.campaign, rig.records, {});
+  REQUIRE(found.status == FitStatus::converged);
+  REQUIRE(found.between_repeats);
+  CHECK_FALSE(found.between_repeats->differ);
+  int nuisances = 0;
+  for (const FittedParameter& each : found.parameters) {
+    if (each.index != supply.index) continue;
+    ++nuisances;
+    CHECK(each.nuisance);
+    CHECK(std::abs(each.value / supply.value - 1.0) < 4.0 * 0.02 / std::sqrt(5.0));
+  }
+  CHECK(nuisances == 2);  // one per condition
+  for (const auto& [key, truth] : {std::pair{"valve_gain", 4.06e-5}, std::pair{"mass", 85.0}}) {
+    const auto& each = parameter(found, key);
+    CAPTURE(key, each.value, each.ci95->first, each.ci95->second);
+    CHECK(each.ci95->first < truth);
+    CHECK(each.ci95->second > truth);
+  }
+  CHECK(found.cost < 0.5 * without.cost);
+}
+
+TEST_CASE("difference by noise: F along the direction of a cause", "[calib]") {
+  const DifferingSupply rig(false);
+  Twin twin = rig.twin;
+  for (datasets::ParameterSetting& setting : twin.campaign.parameters) {
+    for (const auto& [index, value] : rig.twin.campaign.synthetic_settings->parameters)
+      if (index == setting.index) setting.value = value;
+  }
+  const Problem problem = problem_of(twin, rig.records);
+  CHECK(difference_by_noise(problem, problem.start(), "supply_pressure") < 1e-6);
+
+  // Noise alone: of 40 campaigns about a tenth is below a tenth.
+  int below = 0;
+  std::vector<datasets::Record> records = rig.records;
+  boost::random::mt19937_64 bits(7);
+  boost::random::normal_distribution<double> normal;
+  for (int trial = 0; trial < 40; ++trial) {
+    for (datasets::Record& record : records) {
+      auto& deviations = record.channels.at(datasets::Channel::position).deviations;
+      for (std::size_t t = 0; t < deviations.front().size(); ++t) {
+        double mean = 0.0;
+        for (auto& repeat : deviations) mean += repeat[t] = 2e-5 * normal(bits);
+        for (auto& repeat : deviations) repeat[t] -= mean / static_cast<double>(deviations.size());
+      }
+      for (auto& report : record.repeat_reports) report.shifted_s = 0.0;
+    }
+    const Problem noisy = problem_of(twin, records);
+    below += difference_by_noise(noisy, noisy.start(), "supply_pressure") < 0.1 ? 1 : 0;
+  }
+  CHECK(below >= 1);  // 4 of 40 expected; 0 or more than 10 have probabilities of 1.5 % and 0.2 %
+  CHECK(below <= 10);
 }
 
 TEST_CASE("between repeats: a recorded supply accounts for what differs", "[calib]") {

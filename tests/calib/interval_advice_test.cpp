@@ -31,6 +31,15 @@ TEST_CASE("between repeats: the least p counts for all unknowns", "[calib]") {
                                                     Contains("up to 3 times") &&
                                                     Contains("p = 0.04"));
   found.repeats_p = {0.3, 0.03};
+  // By the residuals they do not differ, by their own noise they do.
+  found.difference->p = 0.002;
+  CHECK(between_repeats(problem, found)->differ);
+  CHECK(between_repeats(problem, found)->p == 0.002);
+  found.difference = LikelyDifference{"supply_pressure", 0.02, 0.95};
+  CHECK_THAT(between_repeats_warning(*between_repeats(problem, found)),
+             Contains("supply_pressure varied by 2 %") && Contains("channel `supply_pressure`") &&
+                 Contains("`between_repeats` of supply_pressure"));
+  found.difference.reset();
   CHECK_FALSE(between_repeats(problem, found)->differ);
   CHECK(between_repeats_warning(*between_repeats(problem, found)).empty());
   found.repeats_ratio = {0.0, 0.0};

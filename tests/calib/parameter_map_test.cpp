@@ -1,7 +1,9 @@
 #include "calib/parameter_map.hpp"
 
 #include <catch2/catch.hpp>
+#include <limits>
 
+#include "datasets/campaign_parameters.hpp"
 #include "tests/calib/twin.hpp"
 
 namespace rigcal::calib {
@@ -64,6 +66,29 @@ TEST_CASE("parameter map: a known value of a condition or level is no unknown", 
   const ParameterMap map(twin.campaign, all(twin.campaign), false);
   CHECK(acting_names(map, 0) == std::vector<std::string>{"1", "0", "0a"});
   CHECK(acting_names(map, 1) == std::vector<std::string>{"0", "0high", "0b"});
+}
+
+TEST_CASE("parameter map: what differs between repeats averages out in a mean of them", "[calib]") {
+  Twin twin = three_scopes();
+  datasets::ParameterSetting& supply = twin.setting("supply_pressure");
+  supply.lower = supply.upper = std::numeric_limits<double>::quiet_NaN();
+  datasets::differ_between_repeats(datasets::spec_of(twin.campaign.rig.plant, supply.index), 1e5,
+                                   supply);
+  CHECK(supply.lower == supply.value - 8e5);
+  const auto sds = [&](const std::vector<int>& repeats) {
+    const ParameterMap map(twin.campaign, all(twin.campaign), false, {}, repeats);
+    std::vector<double> result;
+    for (const Unknown& unknown : map.unknowns()) {
+      if (unknown.index != supply.index) continue;
+      CHECK(unknown.nuisance);
+      CHECK(unknown.scope == Scope::condition);
+      CHECK(unknown.prior->mean == supply.value);
+      result.push_back(unknown.prior->sd);
+    }
+    return result;
+  };
+  CHECK(sds({}) == std::vector<double>{1e5, 1e5, 1e5});
+  CHECK(sds({4, 1, 25}) == std::vector<double>{5e4, 1e5, 2e4});
 }
 
 TEST_CASE("parameter map: round trip and slope", "[calib]") {

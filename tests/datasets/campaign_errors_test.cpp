@@ -137,6 +137,13 @@ TEST_CASE("load_campaign: types, units and limits of parameters", "[datasets]") 
       mass("{ start = \"60 kg\", prior_sd = \"6 kg\" }", {"mass.prior_sd", "no prior"}),
       mass("{ start = \"60 kg\", prior = \"60 kg\", prior_sd = \"0 kg\" }",
            {"mass.prior_sd", "above zero"}),
+      mass("{ start = \"60 kg\", between_repeats = \"0 kg\" }",
+           {"mass.between_repeats", "above zero"}),
+      mass("{ start = \"60 kg\", between_repeats = \"1 Hz\" }", {"mass.between_repeats"}),
+      mass("{ start = \"60 kg\", between_repeats = \"1 kg\", fit = true }",
+           {"mass.fit", "stands beside between_repeats"}),
+      mass("{ start = \"60 kg\", between_repeats = \"1 kg\", scope = \"rig\" }",
+           {"mass.scope", "stands beside between_repeats"}),
   };
   check(mistakes);
   check({

@@ -70,7 +70,7 @@ class Scripts(unittest.TestCase):
         printed = self.run_script("diagnosis-study", "3", "4", "50")
         self.assertIn("rigcal_diagnosis_study coverage 50\n", printed)
         self.assertIn("rigcal_diagnosis_study classes 3 4\n", printed)
-        self.assertIn("rigcal_diagnosis_study smallest 3 4\n", printed)
+        self.assertIn("rigcal_diagnosis_study smallest 3 3 disturbed\n", printed)
 
     def test_fuzz(self):
         for name in ("mat", "csv"):
