@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <boost/math/tools/toms748_solve.hpp>
 #include <cmath>
 #include <cstdint>
@@ -57,10 +56,14 @@ const PeriodicFlow& FlowCurve::at(double coefficient) {
 }
 
 double FlowCurve::log_slope(double coefficient) const {
-  const std::array free{model::parameter_index(values_.plant, "leakage_coefficient")};
+  return coefficient * share_slopes(coefficient, {})(0);
+}
+
+Eigen::VectorXd FlowCurve::share_slopes(double coefficient, std::span<const int> parameters) const {
+  std::vector<int> free{model::parameter_index(values_.plant, "leakage_coefficient")};
+  free.insert(free.end(), parameters.begin(), parameters.end());
   const PeriodicFlow flow = simulate(coefficient, free);
-  return coefficient * (flow.leak_slope(0) / flow.leak_flow_m3_per_s -
-                        flow.servo_slope(0) / flow.servo_flow_m3_per_s);
+  return flow.leak_slope / flow.leak_flow_m3_per_s - flow.servo_slope / flow.servo_flow_m3_per_s;
 }
 
 void FlowCurve::scan(double lowest, double highest, int per_decade) {

@@ -26,6 +26,12 @@ class FlowCurve {
   /// @throws NoResultError  as at()
   double log_slope(double coefficient) const;
 
+  /// d ln share / d parameter, by sensitivities: of the coefficient, then of `parameters` (rows of
+  /// the parameter table, SI). Shape (1 + parameters).
+  ///
+  /// @throws NoResultError  as at()
+  Eigen::VectorXd share_slopes(double coefficient, std::span<const int> parameters) const;
+
   /// Simulates a grid of coefficients, equidistant in their logarithm.
   void scan(double lowest, double highest, int per_decade);
 

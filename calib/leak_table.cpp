@@ -9,6 +9,7 @@
 #include "calib/flow_curve.hpp"
 #include "common/error.hpp"
 #include "common/parallel.hpp"
+#include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -90,6 +91,23 @@ std::string note_of(const LeakEntry& entry, const FlowCurve& curve) {
   return printed == entry.signal.printed.end() ? note : join(note, printed->second.note);
 }
 
+LeakRoot root_at(const FlowCurve& curve, double coefficient, const LeakTableOptions& options) {
+  const RigUncertainty& rig = options.rig;
+  LeakRoot root;
+  root.coefficient = coefficient;
+  if (rig.indices.empty()) {
+    root.log_slope = curve.log_slope(coefficient);
+    return root;
+  }
+  const Eigen::VectorXd slopes = curve.share_slopes(coefficient, rig.indices);
+  root.log_slope = coefficient * slopes(0);
+  const Eigen::VectorXd moves = -slopes.tail(slopes.size() - 1) / root.log_slope;
+  // No interval is narrower than what transient and sampling leave in the share.
+  const double numeric = options.periodic.tolerance / root.log_slope;
+  root.log_error = std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)) + numeric * numeric);
+  return root;
+}
+
 struct Column {
   std::vector<LeakEntry> entries;
   std::optional<NormalEntry> normal;
@@ -105,7 +123,7 @@ Column column_of(const PeriodicDrive& drive, const model::ParameterValues& value
     entry.signal = drive.signal;
     entry.target_percent = target;
     for (const double root : curve.roots(share_of, target / 100.0)) {
-      entry.roots.push_back({root, curve.log_slope(root)});
+      entry.roots.push_back(root_at(curve, root, options));
     }
     const auto printed = drive.signal.printed.find(target);
     if (printed != drive.signal.printed.end()) {
@@ -198,6 +216,12 @@ std::string_view to_string(LeakGrade grade) {
 }
 
 bool LeakRoot::determined() const { return std::abs(log_slope) >= kFlatSlope; }
+
+std::optional<std::array<double, 2>> LeakRoot::ci95() const {
+  if (!log_error) return std::nullopt;
+  const double factor = std::exp(metrics::normal_quantile(0.975) * *log_error);
+  return std::array{coefficient / factor, coefficient * factor};
+}
 
 std::vector<FixedCombination> fixed_combinations(const datasets::Campaign& campaign,
                                                  const model::ParameterValues& values) {

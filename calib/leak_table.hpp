@@ -19,8 +19,12 @@ std::string_view to_string(LeakGrade grade);
 struct LeakRoot {
   double coefficient = 0.0;
   double log_slope = 0.0;  ///< d ln share / d ln coefficient
+  /// Standard error of ln coefficient from that of the rig's values; empty where none is known.
+  std::optional<double> log_error;
   /// False on a plateau, where 1 % of the share moves the coefficient by more than 5 %.
   bool determined() const;
+  /// 95 % interval of the coefficient, which is above zero: symmetric in its logarithm.
+  std::optional<std::array<double, 2>> ci95() const;
 };
 
 /// The published coefficient of an entry against the computed one.
@@ -87,15 +91,26 @@ struct LeakTable {
   LeakSummary summary;
 };
 
+/// How well the rig's values are known: what a fit says of those that it estimated.
+struct RigUncertainty {
+  std::vector<int> indices;    ///< rows of the parameter table
+  Eigen::MatrixXd covariance;  ///< SI, shape (indices)^2
+};
+
 struct LeakTableOptions {
   PeriodicOptions periodic;
   int scan_per_decade = 4;
   int series_samples = 2000;  ///< of the features' period
   int threads = 1;            ///< results are the same bits for any number
+  RigUncertainty rig;         ///< empty: coefficients have no interval
 };
 
 /// Computes the table of a rig: per signal and target all leakage coefficients at which that share
 /// of the servo flow leaks, and what was published for it.
+///
+/// Where the rig's values p are estimates with a covariance S, so are the coefficients C at a share
+/// s: from s(C, p) = const follows d ln C / dp = -(d ln s / dp) / (d ln s / d ln C) = g, and the
+/// variance of ln C is g^T S g to first order, to which the numerical error of the share adds.
 ///
 /// @param settings  signals, targets, published numbers, assumptions
 /// @throws NoResultError  a simulation that fails or is slow to become periodic: says which and why

@@ -378,6 +378,7 @@ void override_assumption(LeakTableSettings& settings, const Campaign& campaign,
     assumption.value = value;
     assumption.start = value;
     assumption.source = "--set";
+    assumption.fitted = false;
     return;
   }
   Assumption added;
@@ -385,6 +386,41 @@ void override_assumption(LeakTableSettings& settings, const Campaign& campaign,
   added.value = value;
   added.source = "--set";
   settings.assumptions.push_back(added);
+}
+
+void take_fitted(LeakTableSettings& settings, const Campaign& campaign,
+                 const std::vector<FittedValue>& fitted) {
+  const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
+  for (const FittedValue& value : fitted) {
+    if (value.index == leak) continue;
+    const model::ParameterSpec& spec = assumption_spec(campaign.rig.plant, value.index);
+    const auto found =
+        std::find_if(settings.assumptions.begin(), settings.assumptions.end(),
+                     [&](const Assumption& entry) { return entry.index == value.index; });
+    if (value.scope != Scope::rig) {
+      if (found != settings.assumptions.end()) continue;
+      throw InputError(
+          {campaign.file.string()},
+          fmt::format("{} was fitted {}, so the rig has no single value of it: "
+                      "expected one in [leak_table.assumptions], or --set {}",
+                      spec.key,
+                      value.scope == Scope::leak_level ? "per leak level" : "per condition",
+                      spec.key));
+    }
+    Assumption taken;
+    taken.index = value.index;
+    taken.value = value.value;
+    taken.fitted = true;
+    taken.source = "fit";
+    if (found == settings.assumptions.end()) {
+      settings.assumptions.push_back(taken);
+      continue;
+    }
+    if (found->value != value.value)
+      taken.source =
+          fmt::format("fit, in place of {:g} {} ({})", found->value, spec.unit, found->source);
+    *found = taken;
+  }
 }
 
 void free_assumptions(LeakTableSettings& settings, const Campaign& campaign,

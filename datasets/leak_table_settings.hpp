@@ -55,6 +55,7 @@ struct Assumption {
   double start = 0.0;  ///< SI, as the bounds
   double lower = 0.0;
   double upper = 0.0;
+  bool fitted = false;  ///< the value is that of an earlier fit to records
 };
 
 /// Index of the factor from metres to the unit of the printed features [1/m]: no parameter of the
@@ -101,6 +102,16 @@ LeakSignal signal_from_text(const Campaign& campaign, const LeakTableSettings& s
 /// @throws UsageError  the residual scale is no number per metre above zero
 void override_assumption(LeakTableSettings& settings, const Campaign& campaign,
                          std::string_view assignment);
+
+/// Puts the values that an earlier fit estimated over the assumptions, which say in their source
+/// what they replace. What the fit did not estimate stays as it was. A leakage coefficient is what
+/// the table varies, and is passed over.
+///
+/// @throws InputError  a value was fitted per leak level or condition, so that the rig has no
+/// single
+///                     one, and no assumption gives it
+void take_fitted(LeakTableSettings& settings, const Campaign& campaign,
+                 const std::vector<FittedValue>& fitted);
 
 /// What --free names: exactly these are estimated by `fit-tables`. Bounds that the section does not
 /// give are value/10 to 10 value.

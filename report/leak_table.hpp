@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "calib/leak_table.hpp"
 #include "datasets/leak_table_settings.hpp"
@@ -19,6 +20,8 @@ struct LeakTableResult {
   const datasets::LeakTableSettings& settings;
   const calib::LeakTable& table;
   const Provenance& provenance;
+  std::vector<std::string> notes = {};     ///< which values are those of a fit, in words
+  std::vector<std::string> warnings = {};  ///< what is doubtful about the values
 };
 
 /// leak_table.json as docs/command-line.md describes it.

@@ -20,14 +20,23 @@ std::string list(const std::vector<calib::LeakRoot>& roots, Value value) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
+/// One end of the intervals of all roots; empty without a fit.
+std::string ends(const std::vector<calib::LeakRoot>& roots, std::size_t end) {
+  std::vector<std::string> texts;
+  for (const calib::LeakRoot& root : roots) {
+    if (const auto range = root.ci95()) texts.push_back(csv_number(range->at(end)));
+  }
+  return fmt::format("{}", fmt::join(texts, " "));
+}
+
 }  // namespace
 
 std::string leak_table_csv(const LeakTableResult& result) {
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
   std::string text =
       csv_row({"waveform", "frequency_hz", closed_loop ? "amplitude_m" : "amplitude_v",
-               "target_percent", "coefficients", "log_slopes", "published_coefficient",
-               "relative_error_percent", "share_at_published_percent",
+               "target_percent", "coefficients", "ci95_low", "ci95_high", "log_slopes",
+               "published_coefficient", "relative_error_percent", "share_at_published_percent",
                "share_by_rounding_low_percent", "share_by_rounding_high_percent", "grade", "note"});
   for (const calib::LeakEntry& entry : result.table.entries) {
     const auto& c = entry.comparison;
@@ -35,9 +44,9 @@ std::string leak_table_csv(const LeakTableResult& result) {
     text += csv_row(
         {std::string(to_string(entry.signal.waveform)), csv_number(entry.signal.frequency_hz),
          csv_number(entry.signal.amplitude), csv_number(entry.target_percent),
-         list(entry.roots, &calib::LeakRoot::coefficient),
-         list(entry.roots, &calib::LeakRoot::log_slope), of(&calib::LeakComparison::published),
-         of(&calib::LeakComparison::relative_error_percent),
+         list(entry.roots, &calib::LeakRoot::coefficient), ends(entry.roots, 0),
+         ends(entry.roots, 1), list(entry.roots, &calib::LeakRoot::log_slope),
+         of(&calib::LeakComparison::published), of(&calib::LeakComparison::relative_error_percent),
          of(&calib::LeakComparison::share_percent), of(&calib::LeakComparison::share_low_percent),
          of(&calib::LeakComparison::share_high_percent), std::string(to_string(entry.grade)),
          csv_text(entry.note)});

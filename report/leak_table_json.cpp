@@ -44,10 +44,14 @@ Json entry_json(const LeakTableResult& result, const calib::LeakEntry& entry) {
   put_signal(json, result, entry.signal);
   json["target_percent"] = number(entry.target_percent);
   json["coefficients"] = Json::array();
+  json["coefficients_ci95"] = Json::array();
   json["log_slopes"] = Json::array();
   bool determined = !entry.roots.empty();
   for (const calib::LeakRoot& root : entry.roots) {
     json["coefficients"].push_back(number(root.coefficient));
+    const auto range = root.ci95();
+    json["coefficients_ci95"].push_back(
+        range ? Json::array({number(range->front()), number(range->back())}) : Json(nullptr));
     json["log_slopes"].push_back(number(root.log_slope));
     determined = determined && root.determined();
   }
@@ -110,6 +114,11 @@ Json leak_table_json(const LeakTableResult& result) {
   json["campaign"] = result.campaign.name;
   json["share"] = "mean |Q_leak| / mean |Q_servo| over one period, periodic";
   json["residual"] = "|position without leak - position with leak| times residual_scale";
+  json["interval"] =
+      "95 % of each coefficient by the covariance of the fit, to first order in the fit's values: "
+      "ln C moves by -(d ln s / dp) / (d ln s / d ln C); null without a fit";
+  json["notes"] = result.notes;
+  json["warnings"] = result.warnings;
   json["assumptions"] = assumptions_json(result);
   json["fixed_combinations"] = Json::array();
   for (const calib::FixedCombination& combination : result.table.fixed_combinations) {

@@ -28,12 +28,22 @@ std::string coefficient_text(double value) {
   return fmt::format("{:.{}f}", value, decimals);
 }
 
+/// "±0.21 %" of the coefficient; where that is wide the two ends: "[0.2, 0.35]".
+std::string interval_text(double value, double low, double high) {
+  constexpr double kWide = 0.1;
+  const double half = 0.5 * (high - low) / value;
+  return half < kWide ? fmt::format("±{:.2g} %", 100.0 * half)
+                      : fmt::format("[{}, {}]", coefficient_text(low), coefficient_text(high));
+}
+
 std::string roots_text(const calib::LeakEntry& entry) {
   if (entry.roots.empty()) return "-";
   std::string text;
   for (const calib::LeakRoot& root : entry.roots) {
     if (!text.empty()) text += ", ";
     text += (root.determined() ? "" : "~") + coefficient_text(root.coefficient);
+    if (const auto range = root.ci95())
+      text += " " + interval_text(root.coefficient, range->front(), range->back());
   }
   return text;
 }
@@ -140,8 +150,16 @@ std::string features_text(const LeakTableResult& result, const Style& style) {
          table.text() + notes;
 }
 
+bool has_intervals(const calib::LeakTable& table) {
+  return std::any_of(table.entries.begin(), table.entries.end(), [](const auto& entry) {
+    return !entry.roots.empty() && entry.roots.front().log_error.has_value();
+  });
+}
+
 std::string assumptions_text(const LeakTableResult& result, const Style& style) {
   std::string text;
+  for (const std::string& note : result.notes) text += "\n" + note;
+  if (!result.notes.empty()) text += "\n";
   if (!result.settings.assumptions.empty()) {
     TextTable table({{"assumption"}, {"value", Align::right}, {"source"}});
     for (const datasets::Assumption& assumption : result.settings.assumptions) {
@@ -171,8 +189,10 @@ std::string leak_table_text(const LeakTableResult& result, const Style& style) {
   const calib::LeakSummary& summary = result.table.summary;
   const bool published = summary.published > 0;
   std::string text =
-      heading(fmt::format("{}: leakage coefficient by share of the servo flow{}",
-                          result.campaign.name, published ? ", computed/published and error" : ""),
+      heading(fmt::format("{}: leakage coefficient by share of the servo flow{}{}",
+                          result.campaign.name,
+                          has_intervals(result.table) ? " with its 95 % interval" : "",
+                          published ? ", computed/published and error" : ""),
               style) +
       grid(result, cell) + notes_text(result);
   if (published) {
@@ -188,6 +208,7 @@ std::string leak_table_text(const LeakTableResult& result, const Style& style) {
         "{:.1f} % rms\n",
         summary.within_10, summary.published, summary.within_16, *summary.share_rms_percent);
   }
+  for (const std::string& warning : result.warnings) text += "warning: " + warning + "\n";
   return text;
 }
 

@@ -12,6 +12,8 @@ namespace rigcal::report {
 namespace {
 
 constexpr std::size_t kLevelPoints = 1200;
+/// Half an interval in parts of its middle, from which on its two ends are shown.
+constexpr double kWideInterval = 0.1;
 /// Classes of the style sheet for levels side by side, told apart without colour by their order.
 constexpr std::array kLevelStyles{"model", "residual", "servo", "leak", "reference"};
 
@@ -43,6 +45,23 @@ std::string coefficients_text(const Json& entry) {
   return text.empty() ? "no coefficient" : text;
 }
 
+/// Their intervals; results without a fit, or of before there were any, have none.
+std::string intervals_text(const Json& entry) {
+  std::string text;
+  if (!entry.contains("coefficients_ci95")) return text;
+  for (const Json& range : entry.at("coefficients_ci95")) {
+    if (!range.is_array() || range.size() != 2 || !range[0].is_number() || !range[1].is_number())
+      continue;
+    const double low = range[0].get<double>();
+    const double high = range[1].get<double>();
+    const double half = (high - low) / (high + low);
+    text += text.empty() ? "" : ", ";
+    text += half < kWideInterval ? fmt::format("±{:.2g} %", 100.0 * half)
+                                 : fmt::format("{:.3g} … {:.3g}", low, high);
+  }
+  return text;
+}
+
 Json leak_cell(const Json& entry) {
   const bool published = entry.at("published_coefficient").is_number();
   Json cell;
@@ -50,6 +69,8 @@ Json leak_cell(const Json& entry) {
   cell["roots"] = Json::array();
   for (const Json& root : entry.at("coefficients"))
     cell["roots"].push_back({{"exact", shown_in(root, 1.0).at("exact")}});
+  cell["interval"] = intervals_text(entry);
+  cell["has_interval"] = !cell["interval"].get_ref<const std::string&>().empty();
   cell["published"] = published;
   cell["badge"] = grade_badge(text_of(entry, "grade"));
   if (!published) return cell;
@@ -255,6 +276,13 @@ Json leak_table_view(const LeakTableFiles& stored) {
                                         text_of(entry, "note")));
   }
   view["has_notes"] = !view["notes"].empty();
+  const auto texts = [&](const char* key) {
+    return table.contains(key) && table.at(key).is_array() ? table.at(key) : Json::array();
+  };
+  view["of_fit"] = texts("notes");
+  view["has_of_fit"] = !view["of_fit"].empty();
+  view["warnings"] = texts("warnings");
+  view["has_warnings"] = !view["warnings"].empty();
   view["normals"] = Json::array();
   for (const Json& normal : table.at("normal")) {
     view["normals"].push_back(

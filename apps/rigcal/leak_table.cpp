@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "apps/rigcal/fitted_rig.hpp"
 #include "apps/rigcal/leak_table_files.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/result_page.hpp"
@@ -20,6 +21,7 @@ struct LeakTableRequest {
   CampaignOptions common;
   std::vector<double> targets_percent;
   std::vector<std::string> signals;
+  std::filesystem::path fit;
 };
 
 void choose_targets(const LeakTableRequest& options, datasets::LeakTableSettings& settings) {
@@ -42,10 +44,20 @@ void choose_signals(const LeakTableRequest& options, const datasets::Campaign& c
 
 ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invocation) {
   LeakTableInput input = load_leak_table(options.common);
+  FittedRig rig;
+  std::vector<std::filesystem::path> more_inputs;
+  if (options.fit.empty()) {
+    rig.warnings = replaced_by_assumptions(input);
+  } else {
+    more_inputs.push_back(options.fit);
+    rig = take_fit(input, report::read_fit(options.fit, input.campaign.rig.plant),
+                   options.common.set);
+  }
   choose_targets(options, input.settings);
   choose_signals(options, input.campaign, input.settings);
   const report::HeldFolder held(options.common.out);
   calib::LeakTableOptions settings = leak_table_options(options.common, input.campaign, invocation);
+  settings.rig = rig.uncertainty;
   const calib::LeakTable table = calib::leak_table(input.campaign, input.settings, settings);
   report::Provenance provenance;
   provenance.command = invocation.command;
@@ -53,8 +65,9 @@ ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invoc
   provenance.options.emplace_back("targets",
                                   fmt::format("{}", fmt::join(options.targets_percent, ",")));
   provenance.options.emplace_back("signals", fmt::format("{}", fmt::join(options.signals, ",")));
-  provenance.inputs = report::hash_inputs(input.campaign, {});
-  const report::LeakTableResult result{input.campaign, input.settings, table, provenance};
+  provenance.inputs = report::hash_inputs(input.campaign, {}, more_inputs);
+  const report::LeakTableResult result{input.campaign, input.settings, table,
+                                       provenance,     rig.notes,      rig.warnings};
   auto files = leak_table_files(result);
   add_page(options.common.out, options.common.threads, files);
   report::write_results(options.common.out, files, provenance.inputs);
@@ -72,6 +85,9 @@ ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invoc
 Run add_leak_table(CLI::App& verb) {
   const auto options = std::make_shared<LeakTableRequest>();
   add_campaign_options(verb, options->common);
+  verb.add_option("--fit", options->fit,
+                  "fit.json of a fit of the rig: its values, with intervals of the coefficients")
+      ->check(not_empty());
   verb.add_option("--targets", options->targets_percent,
                   "Shares of the servo flow in percent: 5,15,25 (default: the campaign's)")
       ->delimiter(',')

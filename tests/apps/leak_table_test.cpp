@@ -117,6 +117,65 @@ TEST_CASE("leak-table: --set reaches it, a rig with a tenfold volume has a table
   CHECK((*volume)["source"] == "--set");
 }
 
+TEST_CASE("leak-table: of a fitted rig, whatever the campaign assumes", "[apps]") {
+  const CommandFolder folder;
+  const std::string assumed =
+      "[leak_table.assumptions]\nvalve_gain = { value = \"5e-5 m/V\", source = \"a guess\" }\n";
+  folder.write("campaign.toml",
+               edited(kCampaign, {{"1000 V/m", "300 V/m"}}) + assumed + kSynthetic);
+  REQUIRE(folder.run({"synthesize", "campaign.toml", "--seed", "1", "--out", "made", "--quiet"})
+              .exit_code == 0);
+  REQUIRE(folder.run({"fit", "made/campaign.toml", "--out", "fit", "--quiet"}).exit_code == 0);
+  const auto table = [&](const std::string& campaign, const CommandFolder::Arguments& more) {
+    CommandFolder::Arguments arguments{"leak-table", campaign,       "--targets", "10,30",
+                                       "--signals",  "sine@2Hz@5mm", "--out",     "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = folder.run(arguments);
+    CAPTURE(outcome.err);
+    REQUIRE(outcome.exit_code == 0);
+    json result = json::parse(folder.read("out/leak_table.json"));
+    CHECK(violations(result, "leak_table") == "");
+    return std::pair(outcome.out, result);
+  };
+  const json fit = json::parse(folder.read("fit/fit.json"));
+  const auto gain = std::find_if(fit["parameters"].begin(), fit["parameters"].end(),
+                                 [](const json& p) { return p["name"] == "valve_gain_m_per_v"; });
+  REQUIRE(gain != fit["parameters"].end());
+
+  const auto [text, fitted] = table("made/campaign.toml", {"--fit", "fit/fit.json"});
+  const auto used = std::find_if(fitted["assumptions"].begin(), fitted["assumptions"].end(),
+                                 [](const json& a) { return a["key"] == "valve_gain"; });
+  CHECK((*used)["value"] == (*gain)["value"]);
+  CHECK_THAT((*used)["source"].get<std::string>(), Contains("in place of 5e-05 m/V (a guess)"));
+  CHECK_THAT(text, Contains("the table takes valve_gain, damping from the fit") && Contains("±"));
+  for (const json& entry : fitted["entries"]) {
+    const double c = entry["coefficients"].at(0).get<double>();
+    const json& range = entry["coefficients_ci95"].at(0);
+    CHECK(range[0].get<double>() < c);
+    CHECK(c < range[1].get<double>());
+  }
+  CHECK_THAT(folder.read("out/report.html"), Contains("from the fit") && Contains("<small>±"));
+  CHECK_THAT(folder.read("out/leak_table.csv"), Contains("ci95_low,ci95_high"));
+
+  // The same file without the fit: the guess holds, and that is said.
+  const auto [warned, guessed] = table("fit/fitted.toml", {});
+  CHECK(guessed["entries"][0]["coefficients_ci95"][0].is_null());
+  CHECK(guessed["entries"][0]["coefficients"] != fitted["entries"][0]["coefficients"]);
+  CHECK_THAT(warned, Contains("warning: [leak_table.assumptions] replace") &&
+                         Contains("valve_gain (5e-05 for") && Contains("--fit"));
+  // And fitted.toml with the fit is the same table.
+  const auto [again, same] = table("fit/fitted.toml", {"--fit", "fit/fit.json"});
+  CHECK(same["entries"] == fitted["entries"]);
+
+  // What --set changes is not of the fit, and other known values make another rig.
+  const auto [changed, other] =
+      table("made/campaign.toml", {"--fit", "fit/fit.json", "--set", "valve_gain=0.05 mm/V",
+                                   "--set", "damping=1000 N s/m", "--set", "mass=70 kg"});
+  CHECK_THAT(changed, Contains("valve_gain: the value of the fit is not taken (--set)") &&
+                          Contains("mass is 70 kg here (assumption: --set), but the fit was made"));
+  CHECK(other["entries"][0]["coefficients_ci95"][0].is_null());
+}
+
 TEST_CASE("leak-table: a share out of reach is told, with what it gets to", "[apps]") {
   const CommandFolder folder;
   write_rig(folder, "[leak_table]\ncoefficients = [0.001, 0.01]\n");
@@ -137,6 +196,7 @@ TEST_CASE("leak-table: bad input is refused before any work", "[apps]") {
   write_rig(folder);
   check_refused(folder, {"leak-table"}, "CAMPAIGN");
   check_refused(folder, {"leak-table", "none.toml"}, "none.toml");
+  check_refused(folder, {"leak-table", "campaign.toml", "--fit", "none.json"}, "none.json");
   check_refused(folder, {"leak-table", "campaign.toml", "--targets", "0"}, "targets");
   check_refused(folder, {"leak-table", "campaign.toml", "--targets", "ten"}, "targets");
   check_refused(folder, {"leak-table", "campaign.toml", "--signals", "saw@1Hz"}, "saw");

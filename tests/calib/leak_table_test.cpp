@@ -128,6 +128,72 @@ TEST_CASE("leak_table: prints the combinations that the tables fix", "[calib]") 
   CHECK_THAT(combinations[2].value, WithinRel(4.456e-6 * std::sqrt(1000.0), 1e-12));
 }
 
+TEST_CASE("leak_table: intervals are those by which coefficients move with the rig", "[calib]") {
+  test::LeakRig rig;
+  rig.settings.signals = {rig.drive(Waveform::sine, 1.0).signal,
+                          rig.drive(Waveform::square, 1.0).signal};
+  rig.settings.targets_percent = {10.0, 30.0};
+  rig.settings.features.clear();
+  const int gain = model::parameter_index(rig.campaign.rig.plant, "valve_gain");
+  const int damping = model::parameter_index(rig.campaign.rig.plant, "damping");
+  // Errors of 2 % and 4 %, correlated.
+  const double gain_error = 0.02 * rig.values()["valve_gain"];
+  const double damping_error = 0.04 * rig.values()["damping"];
+  constexpr double kCorrelation = -0.6;
+  calib::LeakTableOptions options;
+  CHECK_FALSE(calib::leak_table(rig.campaign, rig.settings, options)
+                  .entries[0]
+                  .roots[0]
+                  .ci95()
+                  .has_value());
+  options.rig.indices = {gain, damping};
+  options.rig.covariance.resize(2, 2);
+  options.rig.covariance << gain_error * gain_error, kCorrelation * gain_error * damping_error,
+      kCorrelation * gain_error * damping_error, damping_error * damping_error;
+  const auto table = calib::leak_table(rig.campaign, rig.settings, options);
+
+  // Tables of rigs that are one standard error off, in either direction.
+  const auto table_with = [&](int index, double change) {
+    test::LeakRig moved = rig;
+    for (datasets::Assumption& each : moved.settings.assumptions)
+      if (each.index == index) each.value += change;
+    return calib::leak_table(moved.campaign, moved.settings, options);
+  };
+  const auto gain_up = table_with(gain, gain_error);
+  const auto gain_down = table_with(gain, -gain_error);
+  const auto damping_up = table_with(damping, damping_error);
+  const auto damping_down = table_with(damping, -damping_error);
+  for (std::size_t i = 0; i < table.entries.size(); ++i) {
+    CAPTURE(table.entries[i].signal.name(), table.entries[i].target_percent);
+    const auto move = [&](const calib::LeakTable& up, const calib::LeakTable& down) {
+      return 0.5 * std::log(up.entries[i].roots.at(0).coefficient /
+                            down.entries[i].roots.at(0).coefficient);
+    };
+    const double by_gain = move(gain_up, gain_down);
+    const double by_damping = move(damping_up, damping_down);
+    CHECK(std::abs(by_gain) > 1e-3);
+    const double error = std::sqrt(by_gain * by_gain + by_damping * by_damping +
+                                   2.0 * kCorrelation * by_gain * by_damping);
+    const calib::LeakRoot& root = table.entries[i].roots.at(0);
+    CHECK_THAT(root.log_error.value(), WithinRel(error, 0.02));
+    const auto range = root.ci95().value();
+    CHECK_THAT(std::log(range[1] / root.coefficient), WithinRel(1.959964 * *root.log_error, 1e-6));
+    CHECK_THAT(range[0] * range[1], WithinRel(root.coefficient * root.coefficient, 1e-12));
+  }
+}
+
+TEST_CASE("leak_table: an interval is no narrower than the numbers are exact", "[calib]") {
+  test::LeakRig rig;
+  rig.settings.signals = {rig.drive(Waveform::sine, 1.0).signal};
+  rig.settings.targets_percent = {20.0};
+  rig.settings.features.clear();
+  calib::LeakTableOptions options;
+  options.rig.indices = {model::parameter_index(rig.campaign.rig.plant, "mass")};
+  options.rig.covariance = Eigen::MatrixXd::Zero(1, 1);
+  const auto root = calib::leak_table(rig.campaign, rig.settings, options).entries[0].roots.at(0);
+  CHECK_THAT(root.log_error.value(), WithinRel(options.periodic.tolerance / root.log_slope, 1e-9));
+}
+
 TEST_CASE("leak_table: the exact symmetry of the model leaves every coefficient where it is",
           "[calib]") {
   test::LeakRig rig;

@@ -213,3 +213,43 @@ TEST_CASE("fitted_leak_table_text: reads back to the same assumptions", "[datase
   CHECK(again.assumptions[1].fit);
   CHECK(again.signals[0].printed.at(10.0).value == 0.25);
 }
+
+TEST_CASE("leak table settings: a fit's values replace assumptions and say what", "[datasets]") {
+  const test::TemporaryFolder folder;
+  const Campaign campaign = campaign_with(kSection, folder);
+  LeakTableSettings settings = leak_table_settings(campaign);
+  const auto index = [&](const char* key) {
+    return model::parameter_index(campaign.rig.plant, key);
+  };
+  take_fitted(settings, campaign,
+              {{index("mass"), Scope::rig, "", 90.0},
+               {index("damping"), Scope::rig, "", 700.0},
+               {index("leakage_coefficient"), Scope::leak_level, "none", 0.3}});
+  const Assumption* mass = settings.assumption(index("mass"));
+  CHECK(mass->value == 90.0);
+  CHECK(mass->fitted);
+  CHECK(mass->source == "fit, in place of 85 kg (Table 2)");
+  CHECK(settings.assumption(index("damping"))->source == "fit");
+  CHECK(settings.assumption(index("leakage_coefficient")) == nullptr);
+  CHECK_FALSE(settings.assumption(index("kp"))->fitted);  // the fit knows nothing of it
+  CHECK(leak_table_values(campaign, settings)["mass"] == 90.0);
+  CHECK(leak_table_values(campaign, settings)["damping"] == 700.0);
+  Campaign set = campaign;
+  set_value(set, "mass=70 kg");
+  override_assumption(settings, set, "mass=70 kg");
+  CHECK_FALSE(settings.assumption(index("mass"))->fitted);
+  CHECK(leak_table_values(set, settings)["mass"] == 70.0);
+}
+
+TEST_CASE("leak table settings: a rig needs a single value", "[datasets]") {
+  const test::TemporaryFolder folder;
+  const Campaign campaign = campaign_with(kSection, folder);
+  LeakTableSettings settings = leak_table_settings(campaign);
+  const int friction = model::parameter_index(campaign.rig.plant, "coulomb_friction");
+  CHECK_THROWS_WITH(
+      take_fitted(settings, campaign, {{friction, Scope::condition, "sine", 50.0}}),
+      Contains("coulomb_friction was fitted per condition") && Contains("--set coulomb_friction"));
+  const int mass = model::parameter_index(campaign.rig.plant, "mass");
+  take_fitted(settings, campaign, {{mass, Scope::leak_level, "none", 90.0}});
+  CHECK(settings.assumption(mass)->value == 85.0);  // which the campaign states for the rig
+}

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/rigcal/leak_table_files.hpp"
+#include "report/json.hpp"
+
+namespace rigcal::app {
+
+/// The rig of a leak table as a fit found it.
+struct FittedRig {
+  calib::RigUncertainty uncertainty;
+  std::vector<std::string> notes;     ///< which values are whose, in words
+  std::vector<std::string> warnings;  ///< what the fit or the campaign leaves in doubt
+};
+
+/// Puts the estimates of a fit over the campaign's values and assumptions, and --set over both.
+///
+/// @throws InputError  a value has no single one for the rig
+FittedRig take_fit(LeakTableInput& input, const report::EarlierFit& earlier,
+                   const std::vector<std::string>& set);
+
+/// Where, without a fit, assumptions replace other values of the campaign's rig, such as those that
+/// `fit` put into its fitted.toml; empty where none does.
+std::vector<std::string> replaced_by_assumptions(const LeakTableInput& input);
+
+}  // namespace rigcal::app
