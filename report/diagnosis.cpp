@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "diagnosis/signal_name.hpp"
 #include "report/csv_fields.hpp"
 #include "report/identity.hpp"
 #include "report/text_table.hpp"
@@ -134,6 +135,28 @@ Json class_settings_json(const datasets::DiagnosisSettings& settings) {
   return json;
 }
 
+std::string drive_of(const datasets::Campaign& campaign, const TableLimit& limit) {
+  datasets::Condition condition;
+  condition.waveform = limit.waveform;
+  condition.frequency_hz = limit.frequency_hz;
+  condition.amplitude = limit.amplitude;
+  return diagnosis::signal_name(campaign, condition);
+}
+
+Json class_limit_json(const datasets::Campaign& campaign, const TableLimit& limit) {
+  Json json;
+  json["signal"] = drive_of(campaign, limit);
+  json["share_percent"] = number(limit.target_percent);
+  json["class"] = class_or_null(class_ending_at(campaign.diagnosis, limit.target_percent));
+  json["coefficients"] = numbers(limit.coefficients);
+  json["coefficients_ci95"] = Json::array();
+  for (const auto& range : limit.ranges_95) {
+    json["coefficients_ci95"].push_back(
+        range ? Json::array({number(range->front()), number(range->back())}) : Json(nullptr));
+  }
+  return json;
+}
+
 std::string number_field(bool is_there, double value) {
   return is_there && std::isfinite(value) ? fmt::format("{}", value) : std::string();
 }
@@ -245,6 +268,38 @@ std::string limit_table(const diagnosis::Diagnosis& found) {
   return table.empty() ? std::string() : table.text();
 }
 
+/// Per signal the coefficient at which each class ends: the column of a leak table.
+std::string class_limit_table(const DiagnosisResult& result) {
+  std::vector<std::string> signals;
+  std::map<std::string, std::map<double, std::string>> cells;
+  std::map<double, std::string> heads;
+  for (const TableLimit& limit : result.class_limits) {
+    const auto ends = class_ending_at(result.campaign.diagnosis, limit.target_percent);
+    if (!ends) continue;
+    const std::string signal = drive_of(result.campaign, limit);
+    if (!cells.contains(signal)) signals.push_back(signal);
+    heads[limit.target_percent] =
+        fmt::format("{} to {:g} %", to_string(*ends), limit.target_percent);
+    std::string cell;
+    for (std::size_t i = 0; i < limit.coefficients.size(); ++i) {
+      cell += fmt::format("{}{:.3g}", cell.empty() ? "" : ", ", limit.coefficients[i]);
+      if (const auto& range = limit.ranges_95[i])
+        cell += fmt::format(" ({:.4g} .. {:.4g})", range->front(), range->back());
+    }
+    cells[signal][limit.target_percent] = cell;
+  }
+  std::vector<TextTable::Column> columns{{"signal"}};
+  for (const auto& [percent, head] : heads) columns.push_back({head, Align::right});
+  TextTable table(columns);
+  for (const std::string& signal : signals) {
+    std::vector<std::string> row{signal};
+    for (const auto& [percent, head] : heads)
+      row.push_back(cells[signal][percent].empty() ? "-" : cells[signal][percent]);
+    table.add(row);
+  }
+  return table.empty() ? std::string() : table.text();
+}
+
 /// What failed, and the warnings of averages, of repeats that no leak explains, and of all.
 std::string warning_lines(const diagnosis::Diagnosis& found) {
   std::string text;
@@ -278,6 +333,9 @@ Json diagnosis_json(const DiagnosisResult& result) {
   json["synthetic"] = result.campaign.synthetic;
   json["report"] = identity_json(result.campaign);
   json["settings"] = class_settings_json(result.campaign.diagnosis);
+  json["class_limits"] = Json::array();
+  for (const TableLimit& limit : result.class_limits)
+    json["class_limits"].push_back(class_limit_json(result.campaign, limit));
   json["records"] = Json::array();
   for (const RecordDiagnosis& record : found.records)
     json["records"].push_back(diagnosed_json(record));
@@ -329,6 +387,10 @@ std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
     text += "\n" + in_colour("Against the known classes (undecided counts as wrong)", "1", style) +
             "\n" + table;
   }
+  if (const std::string table = class_limit_table(result); !table.empty())
+    text += "\n" +
+            in_colour("Coefficient at which each class ends, by the leak table", "1", style) +
+            "\n" + table;
   if (const std::string table = limit_table(found); !table.empty()) {
     const datasets::DiagnosisSettings& settings = result.campaign.diagnosis;
     text += "\n" +

@@ -6,6 +6,7 @@
 #include "diagnosis/diagnose.hpp"
 #include "report/json.hpp"
 #include "report/provenance.hpp"
+#include "report/read_leak_table.hpp"
 #include "report/terminal.hpp"
 
 namespace rigcal::report {
@@ -18,6 +19,8 @@ struct DiagnosisResult {
   const diagnosis::Diagnosis& diagnosis;
   const std::vector<std::string>& reasons;  ///< why it was declined; empty if it was not
   const Provenance& provenance;
+  /// Of the leak table that gave the limits of the classes; empty where [diagnosis] did.
+  std::vector<TableLimit> class_limits = {};
 };
 
 /// "done"; "declined" where it gives reasons; "failed" where no record could be diagnosed.

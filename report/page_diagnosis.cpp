@@ -194,6 +194,24 @@ Json diagnosis_warnings(const Json& diagnosis) {
   return list;
 }
 
+/// Rows of the leak table that gave the limits; none where [diagnosis] did.
+Json class_limits_view(const Json& diagnosis) {
+  Json list = Json::array();
+  if (!diagnosis.contains("class_limits")) return list;
+  for (const Json& limit : diagnosis.at("class_limits")) {
+    Json roots = Json::array();
+    for (std::size_t i = 0; i < limit.at("coefficients").size(); ++i) {
+      roots.push_back({{"value", shown_in(limit.at("coefficients").at(i), 1.0, 4)},
+                       {"ci", shown_interval(limit.at("coefficients_ci95").at(i), 1.0)}});
+    }
+    list.push_back({{"signal", text_of(limit, "signal")},
+                    {"share", shown_in(limit.at("share_percent"), 1.0, 4)},
+                    {"class", text_of(limit, "class")},
+                    {"roots", std::move(roots)}});
+  }
+  return list;
+}
+
 struct FoundLeak {
   double share_percent = 0.0;
   std::string text;
@@ -322,6 +340,8 @@ Json diagnosis_view(const Json& diagnosis) {
                               {"reason", text_of(each, "reason")}});
   }
   view["has_limits"] = !view["limits"].empty();
+  view["class_limits"] = class_limits_view(diagnosis);
+  view["has_class_limits"] = !view["class_limits"].empty();
   const Json& settings = diagnosis.at("settings");
   view["false_alarms"] = fmt::format("{:g}", 100.0 * settings.at("false_alarms").get<double>());
   view["detection"] = fmt::format("{:g}", 100.0 * settings.at("detection").get<double>());

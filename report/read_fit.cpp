@@ -4,8 +4,8 @@
 #include <array>
 
 #include "common/error.hpp"
-#include "common/suggest.hpp"
 #include "report/json.hpp"
+#include "report/json_node.hpp"
 #include "report/read_json.hpp"
 
 namespace rigcal::report {
@@ -16,146 +16,45 @@ using datasets::Scope;
 
 constexpr const char* kTruthSchema = "rigcal.truth/1";
 
-/// One value of the file, with its place in words.
-class Node {
- public:
-  Node(const Json& json, const std::string& file, std::string path)
-      : json_(json), file_(file), path_(std::move(path)) {}
-
-  [[noreturn]] void fail(const std::string& expected) const {
-    throw InputError(
-        {file_}, fmt::format("key '{}': found {}, expected {}", path_,
-                             shortened(json_.dump(-1, ' ', false, Json::error_handler_t::replace)),
-                             expected));
-  }
-
-  Node operator[](const std::string& key) const {
-    const std::string path = path_.empty() ? key : path_ + "." + key;
-    if (!json_.is_object()) fail("an object");
-    const auto found = json_.find(key);
-    if (found == json_.end()) {
-      throw InputError({file_}, fmt::format("key '{}' is missing; is this a fit.json?", path));
-    }
-    return {*found, file_, path};
-  }
-
-  std::vector<Node> items() const {
-    if (!json_.is_array()) fail("a list");
-    std::vector<Node> result;
-    for (std::size_t i = 0; i < json_.size(); ++i) {
-      result.emplace_back(json_[i], file_, fmt::format("{}[{}]", path_, i));
-    }
-    return result;
-  }
-
-  /// Members that are numbers; null stands for one that is not finite, and is left out.
-  std::vector<std::pair<std::string, double>> numbers() const {
-    if (!json_.is_object()) fail("an object");
-    std::vector<std::pair<std::string, double>> result;
-    for (const auto& [key, value] : json_.items()) {
-      const Node member(value, file_, path_ + "." + key);
-      if (!member.is_null()) result.emplace_back(key, member.real());
-    }
-    return result;
-  }
-
-  bool is_null() const { return json_.is_null(); }
-  std::string string() const {
-    if (!json_.is_string()) fail("a text");
-    return json_.get<std::string>();
-  }
-  bool boolean() const {
-    if (!json_.is_boolean()) fail("true or false");
-    return json_.get<bool>();
-  }
-  double real() const {
-    if (!json_.is_number()) fail("a number");
-    return json_.get<double>();
-  }
-  std::optional<Range> range() const {
-    if (is_null()) return std::nullopt;
-    const std::vector<Node> ends = items();
-    if (ends.size() != 2) fail("two numbers, or null");
-    return Range{ends[0].real(), ends[1].real()};
-  }
-
- private:
-  static std::string shortened(std::string text) {
-    constexpr std::size_t kLongest = 40;
-    if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
-    return text;
-  }
-
-  const Json& json_;
-  std::string file_;
-  std::string path_;
-};
-
-template <typename Enum, std::size_t N>
-Enum one_of(const Node& node, const std::array<Enum, N>& values) {
-  const std::string text = node.string();
-  std::string names;
-  for (const Enum value : values) {
-    if (to_string(value) == text) return value;
-    names += std::string(names.empty() ? "" : ", ") + std::string(to_string(value));
-  }
-  node.fail("one of " + names);
-}
-
-int index_of(const Node& name, model::PlantKind plant) {
-  const auto table = model::parameter_table(plant);
-  const std::string text = name.string();
-  const auto found = std::find_if(table.begin(), table.end(),
-                                  [&](const model::ParameterSpec& s) { return s.name == text; });
-  if (found == table.end()) {
-    std::vector<std::string> known;
-    for (const model::ParameterSpec& spec : table) known.emplace_back(spec.name);
-    const std::string near = nearest_name(text, known);
-    name.fail(fmt::format("a parameter of the plant {}{}", to_string(plant),
-                          near.empty() ? "" : " such as " + near));
-  }
-  return static_cast<int>(found - table.begin());
-}
-
-Validity read_validity(const Node& node) {
+Validity read_validity(const JsonNode& node) {
   Validity validity;
   validity.frequency_hz = node["frequency_hz"].range();
-  const Node amplitude_m = node["amplitude_m"];
+  const JsonNode amplitude_m = node["amplitude_m"];
   validity.amplitude = amplitude_m.is_null() ? node["amplitude_v"].range() : amplitude_m.range();
   validity.supply_pressure_pa = node["supply_pressure_pa"].range();
   validity.leakage_coefficient = node["leakage_coefficient"].range();
-  for (const Node& level : node["leak_levels"].items()) {
+  for (const JsonNode& level : node["leak_levels"].items()) {
     validity.leak_levels.push_back(level.string());
   }
   return validity;
 }
 
 /// Standard error of an entry of `parameters`: the larger of the two; empty where there is none.
-std::optional<double> standard_error(const Node& entry) {
+std::optional<double> standard_error(const JsonNode& entry) {
   std::optional<double> largest;
   for (const char* key : {"standard_error", "robust_standard_error"}) {
-    const Node error = entry[key];
+    const JsonNode error = entry[key];
     if (!error.is_null()) largest = std::max(largest.value_or(0.0), error.real());
   }
   return largest;
 }
 
-void read_covariance(const Node& root, model::PlantKind plant, EarlierFit& fit) {
+void read_covariance(const JsonNode& root, model::PlantKind plant, EarlierFit& fit) {
   const auto names = root["correlation"]["names"].items();
   const auto rows = root["correlation"]["matrix"].items();
   std::vector<std::size_t> places;
   std::vector<double> errors;
-  for (const Node& entry : root["parameters"].items()) {
+  for (const JsonNode& entry : root["parameters"].items()) {
     if (!entry["fitted"].boolean() || entry["nuisance"].boolean()) continue;
     if (one_of(entry["scope"], std::array{Scope::rig, Scope::leak_level, Scope::condition}) !=
         Scope::rig)
       continue;
     const std::string name = entry["name"].string();
     const auto place = std::find_if(names.begin(), names.end(),
-                                    [&](const Node& each) { return each.string() == name; });
+                                    [&](const JsonNode& each) { return each.string() == name; });
     const auto error = standard_error(entry);
     if (!error || place == names.end()) continue;
-    fit.indices.push_back(index_of(entry["name"], plant));
+    fit.indices.push_back(parameter_row(entry["name"], plant));
     places.push_back(static_cast<std::size_t>(place - names.begin()));
     errors.push_back(*error);
   }
@@ -183,13 +82,13 @@ calib::Aspect no_assessment() {
   return aspect;
 }
 
-calib::Aspect read_aspect(const Node& node) {
+calib::Aspect read_aspect(const JsonNode& node) {
   using calib::AspectState;
   const std::array states{AspectState::pass, AspectState::reservation, AspectState::fail,
                           AspectState::not_assessed};
   calib::Aspect aspect;
   aspect.state = one_of(node["state"], states);
-  for (const Node& entry : node["reasons"].items()) {
+  for (const JsonNode& entry : node["reasons"].items()) {
     calib::Reason& reason = aspect.reasons.emplace_back();
     reason.state = one_of(entry["state"], states);
     reason.code = entry["code"].string();
@@ -200,14 +99,14 @@ calib::Aspect read_aspect(const Node& node) {
   return aspect;
 }
 
-void read_origin(const Json& json, const Node& root, EarlierFit& fit) {
+void read_origin(const Json& json, const JsonNode& root, EarlierFit& fit) {
   using datasets::Use;
-  for (const Node& entry : root["conditions"].items()) {
+  for (const JsonNode& entry : root["conditions"].items()) {
     fit.conditions.emplace_back(
         entry["id"].string(),
         one_of(entry["use"], std::array{Use::fit, Use::validate, Use::diagnose, Use::ignore}));
   }
-  for (const Node& input : root["provenance"]["inputs"].items())
+  for (const JsonNode& input : root["provenance"]["inputs"].items())
     fit.input_hashes.push_back(input["sha256"].string());
   fit.parameters =
       json.contains("assessment") ? read_aspect(root["assessment"]["parameters"]) : no_assessment();
@@ -218,7 +117,7 @@ void read_origin(const Json& json, const Node& root, EarlierFit& fit) {
 EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
   const std::string name = file.string();
   const Json json = read_json(file, "the fit.json of an earlier fit");
-  const Node root(json, name, "");
+  const JsonNode root(json, name, "", "fit.json");
   if (!json.is_object()) {
     throw InputError({name}, "found no JSON object, expected the fit.json of an earlier fit");
   }
@@ -235,9 +134,9 @@ EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
                                          "one that converged",
                                          result.message));
   }
-  for (const Node& entry : root["parameters"].items()) {
+  for (const JsonNode& entry : root["parameters"].items()) {
     FittedValue value;
-    value.index = index_of(entry["name"], plant);
+    value.index = parameter_row(entry["name"], plant);
     value.scope =
         one_of(entry["scope"], std::array{Scope::rig, Scope::leak_level, Scope::condition});
     if (value.scope != Scope::rig) value.level = entry["level"].string();
@@ -259,14 +158,14 @@ EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
 
 std::vector<FittedValue> read_truth(const std::filesystem::path& file, model::PlantKind plant) {
   const Json json = read_json(file, "the truth.json of a synthetic campaign");
-  const Node root(json, file.string(), "");
+  const JsonNode root(json, file.string(), "", "truth.json");
   if (root["schema"].string() != kTruthSchema)
     root["schema"].fail(fmt::format("\"{}\"", kTruthSchema));
   std::vector<FittedValue> values;
-  for (const Node& entry : root["parameters"].items()) {
+  for (const JsonNode& entry : root["parameters"].items()) {
     if (!entry["given"].boolean()) continue;
     FittedValue value;
-    value.index = index_of(entry["name"], plant);
+    value.index = parameter_row(entry["name"], plant);
     value.scope =
         one_of(entry["scope"], std::array{Scope::rig, Scope::leak_level, Scope::condition});
     if (value.scope != Scope::rig) value.level = entry["level"].string();

@@ -1,7 +1,9 @@
 #include "diagnosis/diagnose.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 
@@ -27,6 +29,7 @@ using datasets::Condition;
 struct DiagnoseRequest {
   CampaignOptions common;
   std::filesystem::path fit;
+  std::filesystem::path table;
 };
 
 /// Where each record leaves what the fit covers, which is asked with the leak that was found.
@@ -67,6 +70,40 @@ void warn_of_recordings(const std::vector<datasets::RepeatRecords>& records,
   }
 }
 
+/// The classes end where the rows of a leak table do, which must be that of the rig diagnosed here.
+std::vector<report::TableLimit> take_table(const std::filesystem::path& file,
+                                           const report::EarlierFit& earlier, Campaign& campaign) {
+  const report::EarlierLeakTable table = report::read_leak_table(file, campaign.rig.plant);
+  const auto differences = report::rig_differences(table, campaign, earlier.values);
+  if (!differences.empty()) {
+    throw InputError({file.string()},
+                     fmt::format("the table is of another rig: {}; expected that of leak-table "
+                                 "--fit with the same campaign and fit.json",
+                                 fmt::join(differences, "; ")));
+  }
+  report::take_limits(campaign.diagnosis, table.targets_percent, file.string());
+  return table.limits;
+}
+
+/// Signals that were diagnosed and are no column of the table.
+void warn_of_absent(const std::vector<report::TableLimit>& limits, const Campaign& campaign,
+                    diagnosis::Diagnosis& found) {
+  std::vector<std::string> absent;
+  for (const diagnosis::RecordDiagnosis& record : found.records) {
+    const Condition& condition = *campaign.find(record.condition);
+    const bool is_there = std::any_of(limits.begin(), limits.end(), [&](const auto& limit) {
+      return limit.waveform == condition.waveform && limit.frequency_hz == condition.frequency_hz &&
+             limit.amplitude == condition.amplitude;
+    });
+    if (!is_there && std::find(absent.begin(), absent.end(), record.signal) == absent.end())
+      absent.push_back(record.signal);
+  }
+  if (!absent.empty())
+    found.warnings.push_back(
+        fmt::format("the leak table has no column for {}: its classes are by the share alone",
+                    fmt::join(absent, "; ")));
+}
+
 std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& campaign) {
   const auto file = campaign.file.parent_path() / "truth.json";
   std::error_code error;
@@ -90,11 +127,12 @@ ExitCode write_diagnosis(const DiagnoseRequest& options, const report::Diagnosis
 }
 
 ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocation) {
-  const Campaign campaign = load(options.common);
+  Campaign campaign = load(options.common);
   const bool has_fit = !options.fit.empty();
   const std::vector<std::string> reasons = diagnosis::obstacles(campaign, has_fit);
   std::vector<std::filesystem::path> more_inputs;
   if (has_fit) more_inputs.push_back(options.fit);
+  if (!options.table.empty()) more_inputs.push_back(options.table);
   report::Provenance provenance{invocation.command, 0, recorded(options.common), {}};
   diagnosis::Diagnosis found;
   if (!reasons.empty()) {
@@ -106,6 +144,8 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
     return write_diagnosis(options, {campaign, found, reasons, provenance});
   }
   const report::EarlierFit earlier = report::read_fit(options.fit, campaign.rig.plant);
+  std::vector<report::TableLimit> limits;
+  if (!options.table.empty()) limits = take_table(options.table, earlier, campaign);
   diagnosis::DiagnosisOptions settings;
   settings.threads = options.common.threads;
   settings.truth = truth_beside(campaign);
@@ -131,9 +171,10 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
                         diagnosable.left_out.end());
   warn_of_validity(campaign, earlier.validity, found);
   warn_of_recordings(records, found);
+  if (!limits.empty()) warn_of_absent(limits, campaign, found);
   if (earlier.status == calib::FitStatus::stopped)
     found.warnings.push_back("the fit was stopped before it converged: " + earlier.message);
-  return write_diagnosis(options, {campaign, found, reasons, provenance});
+  return write_diagnosis(options, {campaign, found, reasons, provenance, limits});
 }
 
 }  // namespace
@@ -142,6 +183,9 @@ Run add_diagnose(CLI::App& verb) {
   const auto options = std::make_shared<DiagnoseRequest>();
   add_campaign_options(verb, options->common);
   verb.add_option("--fit", options->fit, "fit.json of a fit to healthy records of the rig")
+      ->check(not_empty());
+  verb.add_option("--table", options->table,
+                  "leak_table.json of the same rig: its rows are the limits of the classes")
       ->check(not_empty());
   return [options](const Invocation& invocation) { return run_diagnose(*options, invocation); };
 }

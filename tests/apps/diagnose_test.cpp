@@ -1,3 +1,4 @@
+#include <array>
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -64,6 +65,61 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
                        Contains("Against the known classes"));
   REQUIRE(folder.run({"report", "diagnosis"}).exit_code == 0);
   CHECK(folder.read("diagnosis/report.html") == page);
+}
+
+TEST_CASE("diagnose: classes end where the rows of a leak table of the same rig do", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kDiagnosed, {{"1000 V/m", "300 V/m"}}) + kSynthetic);
+  REQUIRE(folder.run({"synthesize", "campaign.toml", "--seed", "1", "--out", "made", "--quiet"})
+              .exit_code == 0);
+  REQUIRE(folder.run({"fit", "made/campaign.toml", "--out", "fit", "--quiet"}).exit_code == 0);
+  REQUIRE(folder
+              .run({"leak-table", "made/campaign.toml", "--fit", "fit/fit.json", "--out", "table",
+                    "--targets", "3,6,9"})
+              .exit_code == 0);
+  const auto diagnosed = [&](const CommandFolder::Arguments& more) {
+    CommandFolder::Arguments arguments{
+        "diagnose", "made/campaign.toml", "--fit", "fit/fit.json", "--out", "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return folder.run(arguments);
+  };
+  const Outcome outcome = diagnosed({"--table", "table/leak_table.json"});
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("Coefficient at which each class ends") &&
+                              Contains("slight to 3 %") && Contains("critical to 9 %"));
+  const json result = json::parse(folder.read("out/diagnosis.json"));
+  CHECK(violations(result, "diagnosis") == "");
+  CHECK_THAT(result["settings"]["limits_percent"]["critical"].get<double>(),
+             Catch::WithinRel(9.0, 1e-12));
+  // The class by the coefficient of the table is that by the share.
+  const json table = json::parse(folder.read("table/leak_table.json"));
+  REQUIRE(result["class_limits"].size() == table["entries"].size());
+  CHECK(result["class_limits"][0]["class"] == "slight");
+  CHECK(result["class_limits"][0]["coefficients"] == table["entries"][0]["coefficients"]);
+  for (const json& record : result["records"]) {
+    if (record["condition"] != "leaking") continue;
+    int rows_below = 0;
+    for (const json& limit : result["class_limits"]) {
+      if (limit["coefficients"].at(0) < record["leakage_coefficient"]) ++rows_below;
+    }
+    CAPTURE(record.dump());
+    constexpr std::array kByRows{"slight", "medium", "critical", "supercritical"};
+    CHECK(record["class"] == kByRows.at(static_cast<std::size_t>(rows_below)));
+    CHECK(rows_below > 0);
+  }
+  CHECK_THAT(folder.read("out/report.html"), Contains("Limits of the classes, by the leak table"));
+
+  // The table of the campaign's own values is of another rig.
+  REQUIRE(folder.run({"leak-table", "made/campaign.toml", "--out", "other", "--targets", "3,6,9"})
+              .exit_code == 0);
+  const Outcome other = diagnosed({"--table", "other/leak_table.json"});
+  CHECK(other.exit_code == 2);
+  CHECK_THAT(other.err,
+             Contains("another rig: ") && Contains("valve_gain is 20 um/V in the table"));
+  const Outcome none = diagnosed({"--table", "fit/fit.json"});
+  CHECK(none.exit_code == 2);
+  CHECK_THAT(none.err, Contains("rigcal.leak_table/1"));
 }
 
 TEST_CASE("diagnose: without a fit it is a wrong use", "[apps]") {

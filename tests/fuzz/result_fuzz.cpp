@@ -4,6 +4,7 @@
 #include "report/comparison.hpp"
 #include "report/page.hpp"
 #include "report/read_json.hpp"
+#include "report/read_leak_table.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #ifdef RIGCAL_LIBFUZZER
 #include "tests/fuzz/json_mutator.hpp"
@@ -33,6 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
        {model::PlantKind::load_pressure, model::PlantKind::two_chamber}) {
     read_or_refuse([&] { read_fit(file, plant); });
     read_or_refuse([&] { read_truth(file, plant); });
+    read_or_refuse([&] { read_leak_table(file, plant); });
   }
   for (const std::string kind : {"fit.json", "leak_table.json", "diagnosis.json"}) {
     const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
