@@ -54,7 +54,9 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m)
         "the healthy reference of its signal: its leak is zero by construction");
   if (!errors.healthy_m && record.reference_repeats == 0)
     record.warnings.emplace_back(
-        "no healthy record of this signal: what the model lacks is not in the interval");
+        "no healthy record of this signal: what the model lacks is not in the interval. If a leak "
+        "level is healthy, say so: --healthy LEVEL, or level_class = { \"LEVEL\" = \"normal\" } in "
+        "[diagnosis], or parameters = { leakage_coefficient = 0 } in [leak_level.\"LEVEL\"]");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "diagnosis/signal_name.hpp"
 #include "report/csv_fields.hpp"
+#include "report/gathered_warnings.hpp"
 #include "report/identity.hpp"
 #include "report/text_table.hpp"
 
@@ -302,16 +303,17 @@ std::string class_limit_table(const DiagnosisResult& result) {
 
 /// What failed, and the warnings of averages, of repeats that no leak explains, and of all.
 std::string warning_lines(const diagnosis::Diagnosis& found) {
-  std::string text;
+  std::vector<std::pair<std::string, std::string>> told;
   for (const RecordDiagnosis& record : found.records) {
     const std::string name = record.repeat
                                  ? fmt::format("{} repeat {}", record.condition, *record.repeat)
                                  : record.condition;
-    if (!record.fit.ok()) text += fmt::format("  {}: {}\n", name, record.fit.failure);
+    if (!record.fit.ok()) told.emplace_back(name, record.fit.failure);
     if (record.repeat && !record.unexplained) continue;  // the table files name them all
-    for (const std::string& warning : record.warnings)
-      text += fmt::format("  {}: {}\n", name, warning);
+    for (const std::string& warning : record.warnings) told.emplace_back(name, warning);
   }
+  std::string text;
+  for (const std::string& line : gathered_by_text(told)) text += fmt::format("  {}\n", line);
   for (const std::string& warning : found.warnings) text += fmt::format("warning: {}\n", warning);
   return text;
 }

@@ -4,12 +4,11 @@
 #include <array>
 #include <map>
 
+#include "report/gathered_warnings.hpp"
 #include "report/page_parts.hpp"
 
 namespace rigcal::report {
 namespace {
-
-constexpr std::size_t kRecordsNamed = 3;
 
 /// Verdict classes of the page for the classes of leaks, mildest first.
 struct LeakMark {
@@ -166,31 +165,21 @@ Json methods_view(const Json& diagnosis) {
   return list;
 }
 
-/// Each warning once, with the records that it holds for.
+/// Those of all; then of the records, each once.
 Json diagnosis_warnings(const Json& diagnosis) {
-  std::vector<std::string> order;
-  std::map<std::string, std::vector<std::string>> records;
+  std::vector<std::pair<std::string, std::string>> told;
   for (const Json& record : diagnosis.at("records")) {
+    const std::string name = text_of(record, "condition");
     for (const Json& warning : record.at("warnings")) {
-      const std::string text = warning.get<std::string>();
-      if (!records.contains(text)) order.push_back(text);
-      const std::string name = text_of(record, "condition");
-      records[text].push_back(
-          is_average(record) ? name
-                             : fmt::format("{} repeat {}", name, record.at("repeat").get<int>()));
+      told.emplace_back(is_average(record)
+                            ? name
+                            : fmt::format("{} repeat {}", name, record.at("repeat").get<int>()),
+                        warning.get<std::string>());
     }
   }
   Json list = Json::array();
   for (const Json& warning : diagnosis.at("warnings")) list.push_back(warning);
-  for (const std::string& text : order) {
-    const std::vector<std::string>& names = records[text];
-    std::string whose;
-    for (std::size_t i = 0; i < std::min(names.size(), kRecordsNamed); ++i)
-      whose += (i > 0 ? ", " : "") + names[i];
-    if (names.size() > kRecordsNamed)
-      whose += fmt::format(" and {} more", names.size() - kRecordsNamed);
-    list.push_back(fmt::format("{}: {}", whose, text));
-  }
+  for (const std::string& line : gathered_by_text(told)) list.push_back(line);
   return list;
 }
 

@@ -12,6 +12,7 @@
 #include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/parallel.hpp"
+#include "common/suggest.hpp"
 #include "datasets/record_warnings.hpp"
 #include "datasets/short_records.hpp"
 #include "datasets/single_repeats.hpp"
@@ -30,6 +31,7 @@ struct DiagnoseRequest {
   CampaignOptions common;
   std::filesystem::path fit;
   std::filesystem::path table;
+  std::vector<std::string> healthy;
 };
 
 /// Where each record leaves what the fit covers, which is asked with the leak that was found.
@@ -67,6 +69,25 @@ void warn_of_recordings(const std::vector<datasets::RepeatRecords>& records,
     for (diagnosis::RecordDiagnosis& record : found.records)
       if (!record.repeat && record.condition == warning.conditions.front())
         record.warnings.push_back("recording: " + warning.text);
+  }
+}
+
+/// Leak levels that --healthy names are normal, as if `level_class` said so.
+void take_healthy(const std::vector<std::string>& levels, Campaign& campaign) {
+  std::vector<std::string> known;
+  for (const Condition& condition : campaign.conditions) {
+    if (condition.leak_level &&
+        std::find(known.begin(), known.end(), *condition.leak_level) == known.end())
+      known.push_back(*condition.leak_level);
+  }
+  for (const std::string& level : levels) {
+    if (std::find(known.begin(), known.end(), level) == known.end())
+      throw UsageError("--healthy: " + unknown_name_message("leak level", level, known));
+    const auto [entry, is_new] =
+        campaign.diagnosis.level_class.emplace(level, datasets::LeakClass::normal);
+    if (!is_new && entry->second != datasets::LeakClass::normal)
+      throw UsageError(fmt::format("--healthy: level_class in [diagnosis] says that \"{}\" is {}",
+                                   level, to_string(entry->second)));
   }
 }
 
@@ -128,12 +149,15 @@ ExitCode write_diagnosis(const DiagnoseRequest& options, const report::Diagnosis
 
 ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocation) {
   Campaign campaign = load(options.common);
+  take_healthy(options.healthy, campaign);
   const bool has_fit = !options.fit.empty();
   const std::vector<std::string> reasons = diagnosis::obstacles(campaign, has_fit);
   std::vector<std::filesystem::path> more_inputs;
   if (has_fit) more_inputs.push_back(options.fit);
   if (!options.table.empty()) more_inputs.push_back(options.table);
   report::Provenance provenance{invocation.command, 0, recorded(options.common), {}};
+  for (const std::string& level : options.healthy)
+    provenance.options.emplace_back("healthy", level);
   diagnosis::Diagnosis found;
   if (!reasons.empty()) {
     if (!has_fit && diagnosis::obstacles(campaign, true).empty()) {
@@ -187,6 +211,9 @@ Run add_diagnose(CLI::App& verb) {
   verb.add_option("--table", options->table,
                   "leak_table.json of the same rig: its rows are the limits of the classes")
       ->check(not_empty());
+  verb.add_option("--healthy", options->healthy,
+                  "leak level that is healthy, besides those that the campaign knows; repeatable")
+      ->allow_extra_args(false);
   return [options](const Invocation& invocation) { return run_diagnose(*options, invocation); };
 }
 

@@ -122,6 +122,59 @@ TEST_CASE("diagnose: classes end where the rows of a leak table of the same rig 
   CHECK_THAT(none.err, Contains("rigcal.leak_table/1"));
 }
 
+TEST_CASE("diagnose: --healthy names the level that the campaign does not know", "[apps]") {
+  const CommandFolder folder;
+  folder.write(
+      "campaign.toml",
+      edited(kDiagnosed, {{"[leak_level.\"none\"]\nparameters = { leakage_coefficient = 0 }",
+                           "[leak_level.\"none\"]"}}) +
+          kSynthetic);
+  REQUIRE(folder.run({"synthesize", "campaign.toml", "--seed", "1", "--out", "made", "--quiet"})
+              .exit_code == 0);
+  REQUIRE(folder.run({"fit", "made/campaign.toml", "--out", "fit", "--quiet"}).exit_code == 0);
+  const auto diagnosed = [&](const CommandFolder::Arguments& more) {
+    CommandFolder::Arguments arguments{
+        "diagnose", "made/campaign.toml", "--fit", "fit/fit.json", "--out", "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return folder.run(arguments);
+  };
+  const auto count_of = [](const std::string& text, const std::string& part) {
+    int count = 0;
+    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+      ++count;
+    return count;
+  };
+  const Outcome unknown = diagnosed({});
+  REQUIRE(unknown.exit_code == 0);
+  // Both conditions lack it, and one line says so, with the cure.
+  CHECK(count_of(unknown.out, "what the model lacks is not in the interval") == 1);
+  CHECK_THAT(unknown.out, Contains("  sine, leaking: no healthy record of this signal") &&
+                              Contains("--healthy LEVEL") && Contains("level_class"));
+  const json without = json::parse(folder.read("out/diagnosis.json"));
+  for (const json& record : without["records"]) {
+    CHECK(record["reference_repeats"] == 0);
+    CHECK_THAT(record["warnings"].dump(), Contains("no healthy record"));
+  }
+
+  const Outcome outcome = diagnosed({"--healthy", "none"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK(count_of(outcome.out, "no healthy record") == 0);
+  const json result = json::parse(folder.read("out/diagnosis.json"));
+  CHECK(result["provenance"]["options"]["healthy"] == "none");
+  for (const json& record : result["records"]) CHECK(record["reference_repeats"] > 0);
+  CHECK(result["smallest_leak_l_per_min"][0]["averaged"].is_number());
+
+  const Outcome wrong = diagnosed({"--healthy", "nome"});
+  CHECK(wrong.exit_code == 2);
+  CHECK_THAT(wrong.err, Contains("--healthy") && Contains("did you mean 'none'"));
+  folder.write("made/campaign.toml", folder.read("made/campaign.toml") +
+                                         "\n[diagnosis]\nlevel_class = { none = \"slight\" }\n");
+  const Outcome contradicted = diagnosed({"--healthy", "none"});
+  CHECK(contradicted.exit_code == 2);
+  CHECK_THAT(contradicted.err, Contains("says that \"none\" is slight"));
+}
+
 TEST_CASE("diagnose: without a fit it is a wrong use", "[apps]") {
   const CommandFolder folder;
   folder.write("campaign.toml", kDiagnosed);

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rigcal::report {
+
+/// Each warning once, in the order of its first appearance, with the records that it holds for: all
+/// of a few by name, of many their number and the first ones.
+///
+/// @param told  name of a record, and a warning about it
+std::vector<std::string> gathered_by_text(
+    const std::vector<std::pair<std::string, std::string>>& told);
+
+}  // namespace rigcal::report
