@@ -15,6 +15,7 @@
 #include "datasets/column_guess.hpp"
 #include "datasets/load_csv.hpp"
 #include "datasets/load_mat.hpp"
+#include "datasets/mat_columns.hpp"
 #include "datasets/start_motion.hpp"
 #include "datasets/toml_reader.hpp"
 #include "datasets/waveform_guess.hpp"
@@ -65,8 +66,50 @@ struct FileColumns {
   std::string time_unit;
   std::vector<ChannelColumns> channels;
   std::vector<std::string> unknown;
+  /// Rows below the time of an array of Simulink's "To File", which has no names for them.
+  std::vector<std::string> rows;
   std::string lacks;  ///< why the file is no recording, in words; empty if it is one
 };
+
+/// Simulink's block "To File" with the format "Array" saves one matrix: time in its first row, the
+/// signals in the others. The first matrix of the file that has such a time; empty if none has.
+std::vector<std::string> to_file_rows(const fs::path& file, const std::vector<std::string>& names) {
+  constexpr std::string_view kFirst = "(1,:)";
+  for (const std::string& name : names) {
+    if (!name.ends_with(kFirst)) continue;
+    const std::string stem = name.substr(0, name.size() - kFirst.size() + 1);  // "ans("
+    std::vector<std::string> rows;
+    for (const std::string& other : names)
+      if (other.starts_with(stem)) rows.push_back(other);
+    if (rows.size() < 2) continue;
+    try {
+      read(file, rows[0], rows[1]);
+      return rows;
+    } catch (const InputError&) {
+      continue;  // its first row is no time
+    }
+  }
+  return {};
+}
+
+/// A file without names that tell a time: an array of "To File", or why it is no recording.
+void without_time(const fs::path& file, const std::vector<std::string>& names, FileColumns& found) {
+  if (is_mat_file(file)) found.rows = to_file_rows(file, names);
+  if (!found.rows.empty()) {
+    found.time = found.rows.front();
+    found.time_unit = "s";  // Simulink knows no other
+    found.rows.erase(found.rows.begin());
+    std::erase_if(found.unknown, [&](const std::string& name) {
+      return name == found.time ||
+             std::find(found.rows.begin(), found.rows.end(), name) != found.rows.end();
+    });
+    return;
+  }
+  found.lacks = names.empty()
+                    ? fmt::format("it holds no vector or matrix of numbers; {}", kHowToSaveMat)
+                    : fmt::format("no column looks like a time (t, time, ...); the columns are {}",
+                                  fmt::join(names, ", "));
+}
 
 FileColumns columns_of(const fs::path& file) {
   const auto names = column_names(file);
@@ -99,8 +142,7 @@ FileColumns columns_of(const fs::path& file) {
     }
   }
   if (found.time.empty()) {
-    found.lacks = fmt::format("no column looks like a time (t, time, ...); the columns are {}",
-                              fmt::join(names, ", "));
+    without_time(file, names, found);
   } else if (found.channels.empty()) {
     found.lacks = fmt::format(
         "no column looks like a channel (reference, command, position, "
@@ -170,6 +212,21 @@ std::string channels_text(const FileColumns& columns) {
   if (!columns.unknown.empty())
     text += fmt::format("# not used: {}\n", fmt::join(columns.unknown, ", "));
   return text;
+}
+
+/// The rows of a "To File" array with their ranges, by which the user knows them again.
+std::string rows_text(const fs::path& file, const FileColumns& columns) {
+  if (columns.rows.empty()) return {};
+  std::string text =
+      "# An array of Simulink's \"To File\": time in its first row, and nothing names the others.\n"
+      "# Give each channel its row and unit, reference = { ... } too if one drives a controller:\n";
+  for (const std::string& row : columns.rows) {
+    const auto values = read(file, columns.time, row).at(1);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    text += fmt::format("# {}: {:.6g} to {:.6g}\n", row, *low, *high);
+  }
+  return text + fmt::format("position = {{ column = {0}, unit = {0} }}{1}\n", toml_quoted(kBlank),
+                            comment("one of these rows"));
 }
 
 /// Optional terms that a cylinder with both chambers mostly has.
@@ -427,8 +484,16 @@ std::vector<FileGroup> readable_among(std::vector<FileGroup> groups,
   const auto reads = [&](const fs::path& file) {
     const FileColumns columns = columns_of(file);
     const ChannelColumns* drive = drive_of(columns);
+    ChannelColumns any;
+    if (drive != nullptr) {
+      any = *drive;
+    } else if (!columns.channels.empty()) {
+      any = columns.channels.front();
+    } else {
+      any.stem = columns.rows.front();
+    }
     try {
-      signal_of(file, columns, drive != nullptr ? *drive : columns.channels.front());
+      signal_of(file, columns, any);
     } catch (const InputError& error) {
       if (!first) first = error;
       left_out.push_back(file.filename().string() +
@@ -453,7 +518,8 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
   std::vector<std::string> left_out;
   const auto groups = readable_among(groups_of(recordings_among(files, left_out)), left_out);
   const FileColumns columns = columns_of(groups.at(0).files.at(0));
-  const bool closed_loop = find(columns, Channel::reference) != nullptr;
+  // Rows without names: that of the reference may be among them, as where an experiment is run.
+  const bool closed_loop = find(columns, Channel::reference) != nullptr || !columns.rows.empty();
   const bool chambers = std::any_of(groups.begin(), groups.end(), [](const FileGroup& group) {
     const FileColumns own = columns_of(group.files.front());
     return find(own, Channel::pressure_a) != nullptr || find(own, Channel::pressure_b) != nullptr;
@@ -469,7 +535,7 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
                    closed_loop);
   text += "\n[recording]\n" + initial_text(groups);
   text += "# decimate_to = \"1 kHz\"  # if the records are denser than the model needs\n";
-  text += channels_text(columns);
+  text += channels_text(columns) + rows_text(groups.at(0).files.at(0), columns);
   text +=
       "\n[averaging]\n"
       "align = \"correlate\"  # or \"none\" if all repeats share one trigger\n"

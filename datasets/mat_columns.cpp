@@ -28,11 +28,6 @@ std::size_t long_dimensions(const MatArray& array) {
       std::count_if(array.dims.begin(), array.dims.end(), [](std::size_t n) { return n != 1; }));
 }
 
-/// How to save what only MATLAB can read.
-constexpr const char* kHowToSave =
-    "of a timeseries save its numbers: t = ts.Time; x = squeeze(ts.Data); save file.mat t x; or "
-    "log to a \"Structure With Time\"";
-
 std::string kind_text(const MatArray& array) {
   switch (array.kind) {
     case MatKind::cell:
@@ -50,7 +45,7 @@ std::string kind_text(const MatArray& array) {
     case MatKind::object:
       return fmt::format(
           "an object, such as a timeseries, a table or a string, which only MATLAB can read ({})",
-          kHowToSave);
+          kHowToSaveMat);
     case MatKind::number:
       break;
   }
@@ -99,7 +94,7 @@ class ColumnOfMat {
       message += fmt::format(
           "; the file also holds objects, such as a timeseries, a table or a string, which only "
           "MATLAB can read: {}",
-          kHowToSave);
+          kHowToSaveMat);
     fail(message);
   }
 

@@ -8,6 +8,11 @@
 
 namespace rigcal::datasets {
 
+/// How to save what only MATLAB can read, in words.
+inline constexpr const char* kHowToSaveMat =
+    "of a timeseries save its numbers: t = ts.Time; x = squeeze(ts.Data); save file.mat t x; or "
+    "log to a \"Structure With Time\"";
+
 /// One column of a MAT file, by its name in MATLAB (mat_path.hpp).
 ///
 /// @param values_so_far  numbers that were already taken from the file; it counts against the limit

@@ -166,3 +166,54 @@ TEST_CASE("draft_campaign: files that tell nothing", "[datasets]") {
                     Contains("b.csv: no column looks like a channel"));
   CHECK_THROWS_AS(draft_campaign({folder.path() / "none.csv"}, folder.path()), InputError);
 }
+
+TEST_CASE("draft_campaign: an array of Simulink's To File has its time in the first row",
+          "[datasets]") {
+  const auto format = GENERATE(MatFormat::v6, MatFormat::v7, MatFormat::v73);
+  const TemporaryFolder folder;
+  // Rows: time, reference [mm], position [mm]; column by column as MATLAB stores them.
+  std::vector<double> array;
+  for (int i = 0; i < 400; ++i) {
+    const double t = 0.005 * i;
+    const double angle = 12.566370614359172 * t;
+    array.insert(array.end(), {t, 5.0 * std::sin(angle), 4.5 * std::sin(angle - 0.3)});
+  }
+  const auto file = folder.path() / "run_1.mat";
+  write_mat(file, format, {mat_array("ans", array, {3, 400})});
+  const std::string text = draft_campaign({file}, folder.path()).text;
+  CHECK_THAT(text, Contains("time = { column = 'ans(1,:)', unit = 's' }") ||
+                       Contains("time = { column = \"ans(1,:)\", unit = \"s\" }"));
+  CHECK_THAT(text, Contains("# ans(2,:): -5 to 5") && Contains("# ans(3,:): -4.49") &&
+                       Contains("position = { column = "));
+  CHECK_THAT(text, !Contains("not used"));
+
+  std::string ready = filled(text);
+  const std::size_t from = ready.find("position = { ");
+  ready.replace(from, ready.find('\n', from) - from,
+                "position = { column = \"ans(3,:)\", unit = \"mm\" }\n"
+                "reference = { column = \"ans(2,:)\", unit = \"mm\" }");
+  const std::size_t wave = ready.find("waveform = \"FILL IN\"");
+  REQUIRE(wave != std::string::npos);
+  ready.replace(wave, ready.find('\n', wave) - wave,
+                "waveform = \"sine\"\nfrequency = \"2 Hz\"\namplitude = \"5 mm\"");
+  const Campaign campaign = load_campaign(folder.write("campaign.toml", ready));
+  const Record record = load_record(campaign, campaign.conditions.at(0));
+  REQUIRE(record.time_s.size() == 400);
+  CHECK_THAT(record.time_s[7], Catch::WithinAbs(0.035, 1e-12));
+  CHECK_THAT(record.channels.at(Channel::position).mean[7],
+             Catch::WithinAbs(1e-3 * array[7 * 3 + 2], 1e-12));
+}
+
+TEST_CASE("draft_campaign: a matrix without a time in its first row is no To File array",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "run.mat";
+  write_mat(file, MatFormat::v6, {mat_array<double>("ans", {0, 1, 1, 2, 1, 3, 2, 4}, {2, 4})});
+  CHECK_THROWS_WITH(draft_campaign({file}, folder.path()),
+                    Contains("no column looks like a time") && Contains("ans(1,:), ans(2,:)"));
+  // Nothing but what MATLAB alone can read: the cure is said.
+  const auto text = folder.path() / "text.mat";
+  write_mat(text, MatFormat::v6, {mat_text("note", "run 3")});
+  CHECK_THROWS_WITH(draft_campaign({text}, folder.path()),
+                    Contains("no vector or matrix of numbers") && Contains("ts.Time"));
+}
