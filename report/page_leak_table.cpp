@@ -217,6 +217,77 @@ Plot levels_plot(const std::vector<std::pair<std::string, Table>>& levels) {
   return plot;
 }
 
+/// One column of a level's series over its period, times a factor; empty without that column.
+Trace level_trace(const Table& table, const char* column, double factor) {
+  Trace trace;
+  const auto* values = table.find(column);
+  const auto* time_s = table.find("time_s");
+  if (values == nullptr || time_s == nullptr || values->empty()) return trace;
+  const Buckets thin = buckets(values->size(), kLevelPoints);
+  trace.x = thinned_times(*time_s, thin);
+  trace.y = thinned(*values, thin);
+  for (double& y : trace.y) y *= factor;
+  return trace;
+}
+
+/// What the cylinder does of its reference at each level; the source paper's figures 8 and 10.
+Plot positions_plot(const std::vector<std::pair<std::string, Table>>& levels) {
+  Plot plot;
+  plot.title = "Position in percent of the amplitude of the reference, over one period";
+  plot.x_label = "time [s]";
+  plot.y_label = "position [% of the amplitude]";
+  for (const auto& [level, table] : levels) {
+    const auto* drive = table.find("drive");
+    if (drive == nullptr || drive->empty()) continue;
+    const double amplitude = *std::max_element(drive->begin(), drive->end());
+    if (!(amplitude > 0.0)) continue;
+    Trace trace = level_trace(table, "position_m", 100.0 / amplitude);
+    if (trace.x.empty()) continue;
+    trace.name = level;
+    trace.style = kLevelStyles[std::min(plot.traces.size(), kLevelStyles.size() - 1)];
+    plot.traces.push_back(std::move(trace));
+  }
+  return plot;
+}
+
+/// The flows at one level; the source paper's figures 9 and 11.
+Plot flows_plot(const std::string& level, const Table& table) {
+  struct Column {
+    const char* name;
+    const char* column;
+    const char* style;
+  };
+  constexpr std::array kColumns{Column{"servo", "servo_flow_m3_per_s", "servo"},
+                                Column{"work", "work_flow_m3_per_s", "model"},
+                                Column{"leakage", "leakage_flow_m3_per_s", "leak"}};
+  constexpr double kLitresPerMinuteEach = 60e3;  ///< per m3/s
+  Plot plot;
+  plot.title = fmt::format("Servo, work and leakage flow at the level {}, over one period", level);
+  plot.x_label = "time [s]";
+  plot.y_label = "flow [L/min]";
+  for (const Column& each : kColumns) {
+    Trace trace = level_trace(table, each.column, kLitresPerMinuteEach);
+    if (trace.x.empty()) continue;
+    trace.name = each.name;
+    trace.style = each.style;
+    plot.traces.push_back(std::move(trace));
+  }
+  return plot;
+}
+
+/// "Critical: 30.6 % of the servo flow leak, at the coefficient 0.6"
+std::string level_caption(const Json& features, const std::string& level) {
+  for (const Json& feature : features) {
+    if (text_of(feature, "level") != level) continue;
+    const auto servo = number_of(feature, "servo_flow_l_per_min");
+    const auto leak = number_of(feature, "leak_flow_l_per_min");
+    if (!servo || !leak || !(*servo > 0.0)) break;
+    return fmt::format("{}: {:.3g} % of the servo flow leak, at the coefficient {:g}", level,
+                       100.0 * *leak / *servo, number_of(feature, "coefficient").value_or(0.0));
+  }
+  return level;
+}
+
 std::string leak_sentence(const Json& table) {
   const Json& summary = table.at("summary");
   const int published = summary.at("published").get<int>();
@@ -248,7 +319,11 @@ std::vector<Figure> leak_table_figures(const LeakTableFiles& stored) {
   std::vector<Figure> figures;
   if (stored.table.at("summary").at("published").get<int>() > 0)
     figures.push_back({"leak_table", agreement_plot(stored.table.at("entries"))});
-  if (!stored.levels.empty()) figures.push_back({"leak_levels", levels_plot(stored.levels)});
+  if (stored.levels.empty()) return figures;
+  figures.push_back({"leak_levels", levels_plot(stored.levels)});
+  figures.push_back({"leak_positions", positions_plot(stored.levels)});
+  for (const auto& [level, table] : stored.levels)
+    figures.push_back({"leak_flows_" + plain_name(level), flows_plot(level, table)});
   return figures;
 }
 
@@ -295,7 +370,15 @@ Json leak_table_view(const LeakTableFiles& stored) {
   view["has_features"] = !view["features"].empty();
   view["residual"] = text_of(table, "residual");
   view["has_levels"] = !stored.levels.empty();
-  if (!stored.levels.empty()) view["levels_html"] = svg(levels_plot(stored.levels));
+  if (!stored.levels.empty()) {
+    view["levels_html"] = svg(levels_plot(stored.levels));
+    view["positions_html"] = svg(positions_plot(stored.levels));
+  }
+  view["flows"] = Json::array();
+  for (const auto& [level, series] : stored.levels) {
+    view["flows"].push_back({{"caption", level_caption(table.at("features"), level)},
+                             {"plot_html", svg(flows_plot(level, series))}});
+  }
   view["assumptions"] = Json::array();
   for (const Json& each : table.at("assumptions")) {
     view["assumptions"].push_back({{"name", text_of(each, "key")},

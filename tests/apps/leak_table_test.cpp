@@ -176,6 +176,32 @@ TEST_CASE("leak-table: of a fitted rig, whatever the campaign assumes", "[apps]"
   CHECK(other["entries"][0]["coefficients_ci95"][0].is_null());
 }
 
+TEST_CASE("leak-table: position and flows at each level are drawn", "[apps]") {
+  const CommandFolder folder;
+  write_rig(folder,
+            "[leak_table]\n[leak_table.features]\nwaveform = \"sine\"\nfrequency = \"2 Hz\"\n"
+            "amplitude = \"5 mm\"\n[[leak_table.features.row]]\nlevel = \"needle open\"\n"
+            "coefficient = 0.3\n");
+  REQUIRE(folder
+              .run({"leak-table", "campaign.toml", "--targets", "10", "--signals", "sine@2Hz@5mm",
+                    "--out", "out"})
+              .exit_code == 0);
+  const std::string page = folder.read("out/report.html");
+  const json feature = json::parse(folder.read("out/leak_table.json"))["features"][0];
+  const double percent = 100.0 * feature["leak_flow_l_per_min"].get<double>() /
+                         feature["servo_flow_l_per_min"].get<double>();
+  std::ostringstream share;
+  share << "needle open: " << std::setprecision(3) << percent << " % of the servo flow leak";
+  CHECK_THAT(page, Contains(share.str()) && Contains("Position in percent of the amplitude"));
+  REQUIRE(folder.run({"report", "out", "--figures"}).exit_code == 0);
+  CHECK_THAT(folder.read("out/figures/leak_positions.svg"),
+             Contains("needle open") && Contains("% of the amplitude"));
+  CHECK_THAT(folder.read("out/figures/leak_flows_needle_open.svg"),
+             Contains(">servo<") && Contains(">work<") && Contains(">leakage<") &&
+                 Contains("flow [L/min]"));
+  CHECK(folder.has("out/figures/leak_flows_needle_open.pdf"));
+}
+
 TEST_CASE("leak-table: a share out of reach is told, with what it gets to", "[apps]") {
   const CommandFolder folder;
   write_rig(folder, "[leak_table]\ncoefficients = [0.001, 0.01]\n");
