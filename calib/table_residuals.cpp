@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "calib/fit_tables.hpp"
 #include "common/parallel.hpp"
@@ -41,7 +42,10 @@ Quantity feature_of(Feature feature, const PeriodicSeries& leaking, const Period
 TableResiduals::TableResiduals(const datasets::Campaign& campaign,
                                const datasets::LeakTableSettings& settings, std::vector<int> free,
                                LeakTableOptions options)
-    : campaign_(campaign), settings_(settings), free_(std::move(free)), options_(options) {
+    : campaign_(campaign),
+      settings_(settings),
+      free_(std::move(free)),
+      options_(std::move(options)) {
   add_shares();
   add_features();
 }
