@@ -68,17 +68,24 @@ LeakClass class_of(const DiagnosisSettings& settings, double share) {
 
 DiagnosisSettings read_diagnosis(const TomlNode& node) {
   node.allow_only(
-      {"limits_percent", "least_probability", "false_alarms", "detection", "level_class"});
+      {"limits_percent", "least_probability", "false_alarms", "detection", "duty", "level_class"});
   DiagnosisSettings settings;
   if (const auto limits = node.find("limits_percent")) read_limits(*limits, settings);
   read_probability(node, "least_probability", settings.least_probability);
   read_probability(node, "false_alarms", settings.false_alarms);
   read_probability(node, "detection", settings.detection);
+  if (const auto duty = node.find("duty")) settings.duty = duty->name("the id of a condition");
   if (const auto levels = node.find("level_class")) {
     for (const auto& [level, entry] : levels->entries())
       settings.level_class[level] = entry.choice(class_choices());
   }
   return settings;
+}
+
+void check_duty(const TomlNode& node, const Campaign& campaign) {
+  const auto duty = node.find("duty");
+  if (duty && campaign.find(campaign.diagnosis.duty) == nullptr)
+    duty->fail_type("the id of a condition");
 }
 
 }  // namespace rigcal::datasets

@@ -143,6 +143,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   if (const auto node = root.find("diagnosis")) campaign.diagnosis = read_diagnosis(*node);
   if (const auto node = root.find("synthetic")) read_synthetic_entry(*node, campaign);
   if (const auto node = root.find("condition")) read_conditions(*node, campaign);
+  if (const auto node = root.find("diagnosis")) check_duty(*node, campaign);
   fill_times(campaign);
   // Only its verbs use it, but whoever checks a campaign wants to know that all of it is right.
   if (const auto node = root.find("leak_table")) read_leak_table(*node, campaign);

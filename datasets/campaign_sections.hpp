@@ -24,6 +24,8 @@ FitSettings read_fit(const TomlNode& node, const Campaign& campaign);
 
 /// [diagnosis]
 DiagnosisSettings read_diagnosis(const TomlNode& node);
+/// @throws InputError  `duty` names no condition of the campaign
+void check_duty(const TomlNode& node, const Campaign& campaign);
 
 /// [report]
 ReportSettings read_report(const TomlNode& node);

@@ -10,6 +10,7 @@
 #include "diagnosis/accuracy.hpp"
 #include "diagnosis/leak_estimate.hpp"
 #include "diagnosis/leak_fit.hpp"
+#include "diagnosis/machine_state.hpp"
 #include "metrics/residual_features.hpp"
 
 namespace rigcal::diagnosis {
@@ -64,6 +65,7 @@ struct SignalDiagnosis {
 struct Diagnosis {
   std::vector<RecordDiagnosis> records;  ///< campaign order; the average, then its repeats
   std::vector<SignalDiagnosis> signals;  ///< in order of their first appearance
+  std::vector<MachineState> states;      ///< in order of their first appearance
   Accuracy single;                       ///< fitted leak, single repeats
   Accuracy averaged;                     ///< fitted leak, averages
   Accuracy features;                     ///< paper's features, without the repeat in question

@@ -10,6 +10,7 @@
 #include "report/csv_fields.hpp"
 #include "report/gathered_warnings.hpp"
 #include "report/identity.hpp"
+#include "report/machine_state.hpp"
 #include "report/text_table.hpp"
 
 namespace rigcal::report {
@@ -338,6 +339,9 @@ Json diagnosis_json(const DiagnosisResult& result) {
   json["class_limits"] = Json::array();
   for (const TableLimit& limit : result.class_limits)
     json["class_limits"].push_back(class_limit_json(result.campaign, limit));
+  json["states"] = Json::array();
+  for (const diagnosis::MachineState& state : found.states)
+    json["states"].push_back(state_json(state));
   json["records"] = Json::array();
   for (const RecordDiagnosis& record : found.records)
     json["records"].push_back(diagnosed_json(record));
@@ -383,8 +387,11 @@ std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
     for (const std::string& reason : result.reasons) text += fmt::format("  - {}\n", reason);
     return text;
   }
-  std::string text =
-      in_colour("Leak in the average of each condition", "1", style) + "\n" + record_table(found);
+  std::string text = in_colour("State of the machine", "1", style) + "\n";
+  for (const diagnosis::MachineState& state : found.states)
+    text += wrapped("  " + state_sentence(state), 80, 4) + "\n";
+  text += "\n" + in_colour("Leak in the average of each condition", "1", style) + "\n" +
+          record_table(found);
   if (const std::string table = accuracy_table(found); !table.empty()) {
     text += "\n" + in_colour("Against the known classes (undecided counts as wrong)", "1", style) +
             "\n" + table;

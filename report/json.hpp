@@ -53,7 +53,9 @@ struct EarlierFit {
   std::vector<datasets::FittedValue> known;   ///< of the others, scope rig
   std::vector<std::pair<std::string, datasets::Use>> conditions;  ///< id and use of each scored
   std::vector<std::string> input_hashes;                          ///< SHA-256
-  calib::Aspect parameters;  ///< as the fit judged them; not assessed where it says nothing
+  /// As the fit judged them; not assessed where it says nothing.
+  calib::Aspect adequacy;
+  calib::Aspect parameters;
   Validity validity;
   std::vector<int> indices;  ///< table rows of the fitted values of scope rig that have an error
   /// Of these, SI, shape (indices)^2: the larger of standard and robust error, and the correlation.

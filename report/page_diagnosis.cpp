@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "report/gathered_warnings.hpp"
 #include "report/page_parts.hpp"
+#include "report/readable.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -228,6 +230,65 @@ std::vector<FoundLeak> leaks_of(const Json& diagnosis) {
   return leaks;
 }
 
+/// Verdicts on the states of the machine, but for healthy references; the largest leak first.
+std::vector<Json> judged_states(const Json& diagnosis) {
+  std::vector<Json> states;
+  for (const Json& state : diagnosis.value("states", Json::array()))
+    if (!state.at("is_reference").get<bool>()) states.push_back(state);
+  std::stable_sort(states.begin(), states.end(), [](const Json& a, const Json& b) {
+    return number_of(a, "leak_share_percent").value_or(-1.0) >
+           number_of(b, "leak_share_percent").value_or(-1.0);
+  });
+  return states;
+}
+
+Json state_badge(const Json& state) {
+  if (state.at("is_reference").get<bool>())
+    return {{"word", "reference"}, {"mark", "○"}, {"class", "none"}};
+  const std::size_t index = severity(text_of(state, "class"));
+  if (index < kLeakMarks.size())
+    return {{"word", kLeakMarks[index].name},
+            {"mark", kLeakMarks[index].mark},
+            {"class", kLeakMarks[index].css}};
+  const bool judged = state.at("leak_share_percent").is_number();
+  return {{"word", judged ? "undecided" : "no verdict"}, {"mark", "?"}, {"class", "none"}};
+}
+
+std::string distance_text(const Json& limit) {
+  if (!limit.is_object()) return "";
+  const double points = limit.at("distance_percentage_points").get<double>();
+  const std::string name = text_of(limit, "class");
+  const double percent = limit.at("percent").get<double>();
+  if (limit.at("on_limit").get<bool>()) return fmt::format("on that of {} ({:g} %)", name, percent);
+  return fmt::format("{:.1f} points {} {} ({:g} %)", std::abs(points),
+                     points < 0.0 ? "below" : "above", name, percent);
+}
+
+std::string agreement_text_of(const Json& agreement) {
+  if (!agreement.is_object()) return "one signal";
+  const std::string p = p_value_text(agreement.at("p").get<double>());
+  return agreement.at("agree").get<bool>() ? fmt::format("agree ({})", p)
+                                           : fmt::format("disagree ({})", p);
+}
+
+Json state_row(const Json& state) {
+  Json row;
+  row["state"] = text_of(state, "state");
+  row["badge"] = state_badge(state);
+  row["share"] = shown_in(state.at("leak_share_percent"), 1.0, 4);
+  row["share_ci"] = shown_interval(state.at("leak_share_ci95_percent"), 1.0);
+  row["duty"] = text_of(state, "duty");
+  row["coefficient"] = shown_in(state.at("leakage_coefficient"), 1.0, 4);
+  row["ci"] = shown_interval(state.at("ci95"), 1.0);
+  row["area"] = shown_in(state.at("leak_area_m2"), 1e-6, 4);
+  row["area_ci"] = shown_interval(state.at("leak_area_ci95_m2"), 1e-6);
+  row["limit"] = distance_text(state.at("nearest_limit"));
+  row["agreement"] = agreement_text_of(state.at("agreement"));
+  row["left_out"] = state.at("left_out");
+  row["has_left_out"] = !state.at("left_out").empty() && !state.at("is_reference").get<bool>();
+  return row;
+}
+
 /// Conditions of which nobody can say whether they leak.
 std::vector<std::string> open_questions(const Json& diagnosis) {
   std::vector<std::string> open;
@@ -243,10 +304,34 @@ std::vector<std::string> open_questions(const Json& diagnosis) {
   return open;
 }
 
+Json headline_of_states(const std::vector<Json>& states, const std::string& sentence) {
+  const auto is_leak = [](const Json& state) {
+    const std::size_t index = severity(text_of(state, "class"));
+    return index > 0 && index < kLeakMarks.size();
+  };
+  const auto is_open = [](const Json& state) { return state.at("class").is_null(); };
+  const bool leak = std::any_of(states.begin(), states.end(), is_leak);
+  const auto open = std::count_if(states.begin(), states.end(), is_open);
+  Json view = leak        ? make_headline("LEAK", "!", "warn", sentence)
+              : open == 0 ? make_headline("NO LEAK", "✓", "good", sentence)
+              : open == static_cast<std::ptrdiff_t>(states.size())
+                  ? make_headline("NOT JUDGED", "○", "none", sentence)
+                  : make_headline("UNCLEAR", "?", "warn", sentence);
+  for (std::size_t i = 1; i < states.size(); ++i)
+    add_reason(view, text_of(states[i], "sentence"), "diagnosis");
+  return view;
+}
+
 std::string diagnosis_sentence(const Json& diagnosis) {
   const std::string status = text_of(diagnosis, "status");
   if (status == "declined") return "These records cannot be diagnosed: no leak below may be used.";
   if (status != "done") return "No record could be diagnosed: no number below may be used.";
+  const std::vector<Json> states = judged_states(diagnosis);
+  if (states.size() == 1) return text_of(states.front(), "sentence");
+  if (!states.empty()) {
+    return fmt::format("Of {} states of the machine the worst: {}", states.size(),
+                       text_of(states.front(), "sentence"));
+  }
   std::map<std::string, int> count;
   int averages = 0;
   for (const Json& record : diagnosis.at("records")) {
@@ -275,6 +360,8 @@ Json diagnosis_headline(const Json& diagnosis) {
       add_reason(view, reason.get<std::string>(), "diagnosis");
     return view;
   }
+  if (const std::vector<Json> states = judged_states(diagnosis); !states.empty())
+    return headline_of_states(states, sentence);
   const std::vector<FoundLeak> leaks = leaks_of(diagnosis);
   bool judged = false;
   for (const Json& record : diagnosis.at("records")) {
@@ -315,6 +402,10 @@ Json diagnosis_view(const Json& diagnosis) {
     Json row = record_row(record, rows.size() + 1);
     rows.push_back(std::move(row));
   }
+  view["states"] = Json::array();
+  for (const Json& state : diagnosis.value("states", Json::array()))
+    view["states"].push_back(state_row(state));
+  view["has_states"] = !view["states"].empty();
   view["has_records"] = !view["averages"].empty();
   view["has_repeats"] = !view["repeats"].empty();
   if (!view["averages"].empty()) view["plot_html"] = svg(share_plot(diagnosis));

@@ -108,8 +108,11 @@ void read_origin(const Json& json, const JsonNode& root, EarlierFit& fit) {
   }
   for (const JsonNode& input : root["provenance"]["inputs"].items())
     fit.input_hashes.push_back(input["sha256"].string());
-  fit.parameters =
-      json.contains("assessment") ? read_aspect(root["assessment"]["parameters"]) : no_assessment();
+  const auto judged = [&](const char* aspect) {
+    return json.contains("assessment") ? read_aspect(root["assessment"][aspect]) : no_assessment();
+  };
+  fit.adequacy = judged("adequacy");
+  fit.parameters = judged("parameters");
 }
 
 }  // namespace

@@ -125,6 +125,18 @@ void warn_of_absent(const std::vector<report::TableLimit>& limits, const Campaig
                     fmt::join(absent, "; ")));
 }
 
+/// What the fit doubts about itself holds for every leak that rests on it.
+void warn_of_fit(const report::EarlierFit& fit, diagnosis::Diagnosis& found) {
+  if (fit.status == calib::FitStatus::stopped)
+    found.warnings.push_back("the fit was stopped before it converged: " + fit.message);
+  for (const calib::Aspect* aspect : {&fit.adequacy, &fit.parameters}) {
+    if (aspect->state == calib::AspectState::pass) continue;
+    for (const calib::Reason& reason : aspect->reasons)
+      if (reason.state != calib::AspectState::pass)
+        found.warnings.push_back("the fit that this rests on: " + reason.words);
+  }
+}
+
 std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& campaign) {
   const auto file = campaign.file.parent_path() / "truth.json";
   std::error_code error;
@@ -196,8 +208,7 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
   warn_of_validity(campaign, earlier.validity, found);
   warn_of_recordings(records, found);
   if (!limits.empty()) warn_of_absent(limits, campaign, found);
-  if (earlier.status == calib::FitStatus::stopped)
-    found.warnings.push_back("the fit was stopped before it converged: " + earlier.message);
+  warn_of_fit(earlier, found);
   return write_diagnosis(options, {campaign, found, reasons, provenance, limits});
 }
 

@@ -4,6 +4,7 @@
     docs/paper/tables.py combinations RESULT_DIR    what the shares depend on
     docs/paper/tables.py coefficients RESULT_DIR    Table 3 beside the published coefficients
     docs/paper/tables.py normal RESULT_DIR          Table 3's row without a fault
+    docs/paper/tables.py classes RESULT_DIR         which class its coefficients are in, by the limits
     docs/paper/tables.py features RESULT_DIR        Table 4 beside the published numbers
     docs/paper/tables.py peaks RESULT_DIR           flows of Table 4's levels over a period
     docs/paper/tables.py fitted RESULT_DIR          what `fit-tables` estimates
@@ -52,6 +53,26 @@ def normal(folder):
     print_table(["signal", "C published", "share at it"],
                 [[name_of(each), f"{each['published_coefficient']:g}", f"{each['share_at_published_percent']:.2f} %"]
                  for each in read_json(folder, "leak_table.json")["normal"]])
+
+
+PAPER_CLASSES = {10.0: "slight", 20.0: "medium", 30.0: "critical", 50.0: "supercritical"}
+CLASSES = ["normal", *PAPER_CLASSES.values()]
+READINGS = {"upper ends: 1, 10, 20, 30 % (default)": (1.0, 10.0, 20.0, 30.0),
+            "centres: 5, 15, 25, 40 %": (5.0, 15.0, 25.0, 40.0)}
+ON_LIMIT = 0.05  # as diagnosis::nearest_limit
+
+
+def classes(folder):
+    table = read_json(folder, "leak_table.json")
+    shares = [(PAPER_CLASSES[each["target_percent"]], each["share_at_published_percent"]) for each in table["entries"]]
+    shares += [("normal", each["share_at_published_percent"]) for each in table["normal"]]
+    rows = []
+    for reading, limits in READINGS.items():
+        as_named = [CLASSES[sum(share >= limit for limit in limits)] == name for name, share in shares]
+        on_limit = [any(abs(share - limit) <= ON_LIMIT * limit for limit in limits) for _, share in shares]
+        others = sum(limit and not named for limit, named in zip(on_limit, as_named))
+        rows.append([reading, f"{sum(as_named)} of {len(shares)}", str(others)])
+    print_table(["rows as", "named as in the paper", "others that are said to be on a limit"], rows)
 
 
 def feature_field(row, name):
@@ -103,7 +124,7 @@ def fitted(folder):
 
 
 if __name__ == "__main__":
-    tables = {"combinations": combinations, "coefficients": coefficients, "normal": normal, "features": features,
+    tables = {"combinations": combinations, "coefficients": coefficients, "normal": normal, "classes": classes, "features": features,
               "peaks": peaks, "fitted": fitted}
     if len(sys.argv) != 3 or sys.argv[1] not in tables:
         sys.exit(__doc__)

@@ -55,6 +55,14 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
     const bool is_healthy_mean = record["condition"] == "sine" && record["repeat"].is_null();
     CHECK(record["is_reference"] == is_healthy_mean);
   }
+  REQUIRE(result["states"].size() == 2);
+  CHECK(result["states"][0]["is_reference"] == true);
+  const json& leaking = result["states"][1];
+  CHECK(leaking["state"] == "open");
+  CHECK(leaking["class"] == "slight");
+  CHECK(leaking["ci95"][0] < 0.15);
+  CHECK(leaking["ci95"][1] > 0.15);
+  CHECK_THAT(outcome.out, Contains("State of the machine") && Contains("open: "));
   CHECK(result["accuracy"] == 1.0);
   CHECK(result["confusion"]["counts"][0][0] == 3);
   CHECK(result["smallest_leak_l_per_min"][0]["averaged"].is_number());

@@ -1,0 +1,107 @@
+#include "diagnosis/machine_state.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "metrics/distributions.hpp"
+
+namespace rigcal::diagnosis {
+namespace {
+
+/// Of a limit: nearer than this a share is said to sit on it.
+constexpr double kOnLimit = 0.05;
+/// Disagreement of less probability widens the error.
+constexpr double kDisagree = 0.05;
+
+double square_of(double x) { return x * x; }
+
+}  // namespace
+
+StateKey state_of(const datasets::Condition& condition) {
+  StateKey key;
+  key.leak_level = condition.leak_level.value_or(condition.date ? "" : condition.id);
+  key.specimen = condition.specimen.value_or("");
+  key.date = condition.date.value_or("");
+  return key;
+}
+
+std::string StateKey::name() const {
+  std::string text = leak_level;
+  const auto add = [&](const std::string& part) {
+    if (!part.empty()) text += (text.empty() ? "" : ", ") + part;
+  };
+  if (!specimen.empty()) add("specimen " + specimen);
+  add(date);
+  return text;
+}
+
+PooledLeak pooled_leak(const std::vector<StateMember>& members,
+                       const Eigen::MatrixXd& rig_covariance) {
+  if (members.empty()) throw std::invalid_argument("pooled_leak: expected a member");
+  const auto n = static_cast<Eigen::Index>(members.size());
+  const Eigen::Index rig = rig_covariance.rows();
+  Eigen::VectorXd coefficients(n);
+  Eigen::VectorXd own(n);
+  Eigen::MatrixXd moves(n, rig);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const StateMember& member = members[static_cast<std::size_t>(i)];
+    if (!(member.own_se > 0.0)) throw std::invalid_argument("pooled_leak: a member without error");
+    coefficients(i) = member.coefficient;
+    own(i) = square_of(member.own_se);
+    if (rig > 0) moves.row(i) = member.rig_moves.transpose();
+  }
+  Eigen::MatrixXd covariance = moves * rig_covariance * moves.transpose();
+  covariance.diagonal() += own;
+  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
+  const Eigen::VectorXd weighted = root.solve(ones);
+  const Eigen::VectorXd weights = weighted / weighted.sum();
+
+  PooledLeak pooled;
+  pooled.coefficient = weights.dot(coefficients);
+  pooled.rig_moves = moves.transpose() * weights;
+  const Eigen::VectorXd left = coefficients - pooled.coefficient * ones;
+  pooled.chi_squared = left.dot(root.solve(left));
+  pooled.freedom = static_cast<double>(n - 1);
+  if (n > 1) pooled.p = metrics::chi_squared_exceedance(pooled.chi_squared, pooled.freedom);
+  pooled.disagree = pooled.p < kDisagree;
+  if (pooled.disagree)
+    pooled.widened = std::max(1.0, std::sqrt(pooled.chi_squared / pooled.freedom));
+
+  double variance = 0.0;
+  double squares = 0.0;  // of Welch and Satterthwaite
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double part = square_of(weights(i)) * own(i);
+    variance += part;
+    squares += square_of(part) / members[static_cast<std::size_t>(i)].freedom;
+  }
+  const double rig_variance =
+      std::max(0.0, pooled.rig_moves.dot(rig_covariance * pooled.rig_moves));
+  pooled.error.own_se = pooled.widened * std::sqrt(variance);
+  pooled.error.rig_se = pooled.widened * std::sqrt(rig_variance);
+  pooled.error.freedom = std::clamp(square_of(variance + rig_variance) / squares, 1.0, 1e6);
+  return pooled;
+}
+
+LimitDistance nearest_limit(const LeakEstimate& estimate,
+                            const datasets::DiagnosisSettings& settings) {
+  const double share = estimate.share;
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < settings.limits.size(); ++i) {
+    if (std::abs(share - settings.limits[i]) < std::abs(share - settings.limits[best])) best = i;
+  }
+  LimitDistance nearest;
+  nearest.above = datasets::kLeakClasses[best + 1];
+  nearest.limit = settings.limits[best];
+  nearest.distance = share - nearest.limit;
+  const bool within =
+      estimate.share_ci95.first <= nearest.limit && nearest.limit <= estimate.share_ci95.second;
+  nearest.on_limit = within || std::abs(nearest.distance) <= kOnLimit * nearest.limit;
+  return nearest;
+}
+
+}  // namespace rigcal::diagnosis

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diagnosis/leak_estimate.hpp"
+#include "diagnosis/leak_fit.hpp"
+
+namespace rigcal::diagnosis {
+
+/// One machine in one state: what its leak level, specimen and date say is the same.
+struct StateKey {
+  std::string leak_level;  ///< the condition's id where it has neither leak level nor date
+  std::string specimen;
+  std::string date;
+  auto operator<=>(const StateKey&) const = default;
+  std::string name() const;  ///< "66.66 %, specimen B, 2026-03-01"
+};
+StateKey state_of(const datasets::Condition& condition);
+
+/// What the average of one condition says of the state.
+struct StateMember {
+  std::string condition;
+  std::string signal;
+  double coefficient = 0.0;
+  double own_se = 0.0;  ///< without the rig's parameters
+  double freedom = 1.0;
+  Eigen::VectorXd rig_moves;  ///< as LeakFit::rig_moves
+};
+
+/// One leak that all members share.
+struct PooledLeak {
+  double coefficient = 0.0;
+  CoefficientError error;     ///< widened where members disagree
+  Eigen::VectorXd rig_moves;  ///< of the pooled coefficient
+  double chi_squared = 0.0;   ///< of the members about it
+  double freedom = 0.0;       ///< members - 1
+  double p = 1.0;             ///< of as much disagreement by their errors alone
+  bool disagree = false;      ///< at 5 %
+  double widened = 1.0;       ///< factor of the error, at least 1
+};
+
+/// Pools by generalised least squares: members have errors of their own and one in common, that of
+/// the rig's parameters, which moves all of them together. Where they disagree by more than their
+/// errors allow, the error is multiplied by Birge's ratio, the root of chi-square over its degrees
+/// of freedom (Phys. Rev. 40, 1932): what is wrong with one of them is not known.
+///
+/// @param members         at least one; own_se above 0
+/// @param rig_covariance  of the rig's parameters, shape (rig_moves)^2
+PooledLeak pooled_leak(const std::vector<StateMember>& members,
+                       const Eigen::MatrixXd& rig_covariance);
+
+/// Where a share stands among the limits of the classes.
+struct LimitDistance {
+  LeakClass above = LeakClass::slight;  ///< the class that begins at the limit
+  double limit = 0.0;
+  double distance = 0.0;  ///< share less limit
+  /// The interval holds the limit, or the share is within a twentieth of it.
+  bool on_limit = false;
+};
+LimitDistance nearest_limit(const LeakEstimate& estimate,
+                            const datasets::DiagnosisSettings& settings);
+
+/// Verdict on one state, from the averages of its conditions.
+struct MachineState {
+  StateKey key;
+  std::vector<StateMember> members;
+  std::vector<std::string> left_out;  ///< condition and why, in words
+  /// Every signal is its own healthy reference: its leak is zero by construction.
+  bool is_reference = false;
+  std::string failure;  ///< why there is no verdict; the rest then means nothing
+  PooledLeak pooled;
+  double leak_area_m2 = 0.0;            ///< coefficient times leakage area: what the oil passes
+  std::string duty;                     ///< signal whose share is stated
+  LeakEstimate estimate;                ///< at that duty
+  std::optional<LeakClass> leak_class;  ///< empty: undecided
+  LimitDistance limit;
+  bool ok() const { return failure.empty() && !is_reference && !members.empty(); }
+};
+
+}  // namespace rigcal::diagnosis
