@@ -21,6 +21,7 @@ ELSEWHERE = {
     "setup": ".ci/run",
     "docs-numbers": "tests/docs/numbers_test.py",
     "mutation-study": "tests/CMakeLists.txt",
+    "reliability": "tests/CMakeLists.txt",
 }
 ECHO = '#!/bin/sh\necho "$(basename "$0") $*"\n'
 
@@ -89,7 +90,7 @@ class Scripts(unittest.TestCase):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("mat: found something, see build/fuzz/found/mat.log", done.stderr)
 
-    def test_fuzz(self):
+    def test_fuzz_for_seconds(self):
         program = self.tree / "build" / "fuzz" / "tests" / "fuzz" / "csv_fuzz"
         make_program(program, "#!/bin/sh\necho stat::number_of_executed_units: 12\n")
         printed = self.run_script("fuzz", "--seconds", "1", "csv")
