@@ -30,6 +30,7 @@ TEST_CASE("load_campaign: what a test report states", "[datasets]") {
   REQUIRE(campaign.report.sensors.size() == 1);
   CHECK(campaign.report.sensors[0] == Fields{{"channel", "position"}, {"due", "2027-01-31"}});
   CHECK(load_text(kExample).report.empty());
+  CHECK_FALSE(load_text(kExample + "[[report.sensor]]\nchannel = \"position\"\n").report.empty());
 }
 
 TEST_CASE("load_campaign: a wrong report names key and line", "[datasets]") {

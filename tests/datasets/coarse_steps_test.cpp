@@ -36,6 +36,7 @@ TEST_CASE("coarse_step: values that lie on no grid have none", "[datasets]") {
   std::vector<Repeat> repeats = read_in_steps(0.1);
   repeats[0].values[Channel::position][100] += 0.2;
   CHECK_FALSE(coarse_step(repeats, Channel::position, 0.17));
+  CHECK_FALSE(coarse_step(repeats, Channel::position, 0.01));
   repeats[0].values[Channel::position].assign(4000, 1.0);
   CHECK_FALSE(coarse_step(repeats, Channel::position, 0.17));
 }

@@ -62,6 +62,16 @@ TEST_CASE("mains_hum: neither noise nor lines elsewhere are hum", "[datasets]") 
   CHECK_FALSE(mains_hum(deviations(50.0, 0.3, 0.1, 1), std::nan(""), 0.0));
 }
 
+TEST_CASE("mains_hum: a line among others of its size is none", "[datasets]") {
+  Rows rows = deviations(50.0, 0.3, 0.1, 20000);
+  REQUIRE(mains_hum(rows, kRateHz, 0.0));
+  // A resonance about 50 Hz: 53 Hz has nearly half of the power.
+  const Rows beside = deviations(53.0, 0.2, 0.0, 20000);
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    for (std::size_t i = 0; i < rows[r].size(); ++i) rows[r][i] += beside[r][i];
+  CHECK_FALSE(mains_hum(rows, kRateHz, 0.0));
+}
+
 TEST_CASE("mains_hum: late edges of a square wave are none", "[datasets]") {
   for (const double drive : {1.0, 10.0}) {
     CAPTURE(drive);

@@ -184,6 +184,12 @@ TEST_CASE("level 5: nothing that a file says of itself is believed", "[datasets]
       {kLittle.tag(9, 8) + eight_zeros, "which is no variable"},
       {kLittle.raw(std::uint32_t{14} | 4U << 16U) + "abcd", "which is no variable"},
       {kLittle.numbers("x", {1, 2}, three), "not as many numbers"},
+      {kLittle.numbers("x", {1, 4}, three), "not as many numbers"},
+      {kLittle.numbers("x", {1, 5}, kLittle.raw(std::uint32_t{2} | 5U << 16U) + "abcd"),
+       "more bytes than its tag holds"},
+      {kLittle.element(14,
+                       kLittle.array_head(6, {1, 4}, "x") + kLittle.tag(9, 32) + three.substr(8)),
+       "longer than what it stands in"},
       {kLittle.numbers("x", {kLargest, kLargest, kLargest}, three), "beyond any file"},
       {kLittle.numbers("x", {-1, 3}, three), "below zero"},
       {kLittle.numbers("x", std::vector<std::int32_t>(40, 1), three), "description of 160 bytes"},
@@ -198,6 +204,8 @@ TEST_CASE("level 5: nothing that a file says of itself is believed", "[datasets]
       {structure({1, 1}, -8, eight_zeros, ""), "do not fit their length"},
       {structure({1, 1}, 3, eight_zeros, ""), "do not fit their length"},
       {structure({kLargest, 1}, 8, "f" + std::string(7, '\0'), ""), "than there is room for"},
+      {structure({100, 1}, 8, "f" + std::string(7, '\0'), kLittle.tag(14, 0)),
+       "than there is room for"},
       {structure({1, 1}, 8, "f" + std::string(7, '\0'), kLittle.element(9, eight_zeros)),
        "a field that is no array"},
       {nested(40), "structs within each other"},
@@ -212,6 +220,11 @@ TEST_CASE("level 5: nothing that a file says of itself is believed", "[datasets]
     CHECK_THAT(refusal(kLittle.file(good + each.variables)), Contains("damaged in variable 2"));
   }
   CHECK_THAT(refusal(kLittle.file(nested(20))), Contains("'x' is a struct"));
+}
+
+TEST_CASE("level 5: what fills up the last element may be missing", "[datasets]") {
+  const std::string array = kLittle.array_head(6, {1, 3}, "x") + kLittle.tag(1, 3) + "\1\2\3";
+  CHECK(refusal(kLittle.file(kLittle.tag(14, array.size()) + array)) == "no error");
 }
 
 TEST_CASE("level 5: compressed data end where their array does", "[datasets]") {

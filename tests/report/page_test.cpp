@@ -107,6 +107,10 @@ TEST_CASE("page: opens with what the report is of, and who signs it", "[report]"
   CHECK_THAT(html, !Contains("<script>alert"));
   json["acceptance"] = Json::array();
   CHECK_THAT(page(json), !Contains("Decision rule"));
+  json["report"].erase("operator");
+  CHECK_THAT(page(json), !Contains("class=\"signatures\""));
+  json["report"]["approver"] = "A. Head";
+  CHECK_THAT(page(json), Contains("class=\"signatures\"") && Contains("Approved by A. Head"));
 }
 
 TEST_CASE("page: says at its top what cannot be trusted", "[report]") {

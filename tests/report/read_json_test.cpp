@@ -28,6 +28,10 @@ TEST_CASE("read_json: every kind of value, with brackets and quotes within texts
   CHECK(json.at("a").at(2) == 0.0);  // too small for a double is zero
   CHECK(json.at("b") == "[{\"\\");
   CHECK(json.at("c").at("d") == ":,");
+  // Behind a quote that is escaped, brackets are text still.
+  JsonLimits limits;
+  limits.depth = 1;
+  CHECK(parsed_as(R"(["\"[[["])", limits).at(0) == "\"[[[");
 }
 
 TEST_CASE("read_json: the place of what is no JSON", "[report]") {
@@ -71,6 +75,8 @@ TEST_CASE("read_json: each limit, kept and broken by one", "[report]") {
   CHECK_NOTHROW(parsed_as(R"([{"a": 1, "b": 2}, {"a": 1, "b": 2}])", limits));
   CHECK_THROWS_WITH(parsed_as(R"([{"a": 1, "b": 2}, {"a": 1, "b": 2, "c": 3}])", limits),
                     Contains("an object of 3 keys"));
+  CHECK_THROWS_WITH(parsed_as(R"([{"a": 1, "b": 2}, {"a": 1, "b": 2}, {"a": 1}])", limits),
+                    Contains("an object of 1 keys"));
 }
 
 TEST_CASE("read_json: from a file", "[report]") {
