@@ -134,8 +134,30 @@ class RegularFile {
   std::size_t bytes_ = 0;
 };
 
-struct FreeDigest {
-  void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
+class Sha256 {
+ public:
+  Sha256() : digest_(EVP_MD_CTX_new()) {
+    if (!digest_ || EVP_DigestInit_ex(digest_.get(), EVP_sha256(), nullptr) != 1)
+      throw Error(ExitCode::internal, "OpenSSL does not offer SHA-256");
+  }
+
+  void add(std::string_view bytes) { EVP_DigestUpdate(digest_.get(), bytes.data(), bytes.size()); }
+
+  /// 64 lower-case hex digits.
+  std::string hex() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> sum{};
+    unsigned int length = 0;
+    EVP_DigestFinal_ex(digest_.get(), sum.data(), &length);
+    std::string text;
+    for (unsigned int i = 0; i < length; ++i) text += fmt::format("{:02x}", sum[i]);
+    return text;
+  }
+
+ private:
+  struct Free {
+    void operator()(EVP_MD_CTX* context) const { EVP_MD_CTX_free(context); }
+  };
+  std::unique_ptr<EVP_MD_CTX, Free> digest_;
 };
 
 }  // namespace
@@ -189,21 +211,17 @@ void require_regular_file(const fs::path& path, const std::string& expected) {
 
 std::string sha256_of_file(const fs::path& path) {
   const RegularFile file(path, "a file");
-  const std::unique_ptr<EVP_MD_CTX, FreeDigest> digest(EVP_MD_CTX_new());
-  if (!digest || EVP_DigestInit_ex(digest.get(), EVP_sha256(), nullptr) != 1)
-    throw Error(ExitCode::internal, "OpenSSL does not offer SHA-256");
-
+  Sha256 digest;
   std::vector<char> block(kBlockBytes);
   std::size_t count = 0;
-  while ((count = file.read(block.data(), block.size())) > 0)
-    EVP_DigestUpdate(digest.get(), block.data(), count);
+  while ((count = file.read(block.data(), block.size())) > 0) digest.add({block.data(), count});
+  return digest.hex();
+}
 
-  std::array<unsigned char, EVP_MAX_MD_SIZE> sum{};
-  unsigned int length = 0;
-  EVP_DigestFinal_ex(digest.get(), sum.data(), &length);
-  std::string text;
-  for (unsigned int i = 0; i < length; ++i) text += fmt::format("{:02x}", sum[i]);
-  return text;
+std::string sha256_of_text(std::string_view text) {
+  Sha256 digest;
+  digest.add(text);
+  return digest.hex();
 }
 
 }  // namespace rigcal

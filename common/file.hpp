@@ -38,4 +38,7 @@ void require_regular_file(const std::filesystem::path& path, const std::string& 
 /// @throws InputError  the file cannot be read
 std::string sha256_of_file(const std::filesystem::path& path);
 
+/// SHA-256 of a text, likewise.
+std::string sha256_of_text(std::string_view text);
+
 }  // namespace rigcal

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "common/error.hpp"
+#include "common/file.hpp"
 #include "report/json.hpp"
 #include "report/read_json.hpp"
 
@@ -122,6 +123,15 @@ void require_same_fit(const std::string& file, const Json& found, const Json& ex
   }
 }
 
+/// Numbers that are possible may still be others than were written.
+void require_own_hash(Json json) {
+  const std::string hash = json.at("sha256").get<std::string>();
+  json.erase("sha256");
+  if (sha256_of_text(json_text(json)) != hash)
+    throw NoCheckpoint(
+        "was changed since it was written; expected it as it was, or a fit without --resume");
+}
+
 }  // namespace
 
 std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenance& provenance) {
@@ -134,6 +144,7 @@ std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenanc
   json["best"] = checkpoint.best;
   json["best_z"] = checkpoint.best_z;
   json["ledger"] = ledger_json(checkpoint.ledger);
+  json["sha256"] = sha256_of_text(json_text(json));
   return json_text(json);
 }
 
@@ -154,6 +165,7 @@ calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Prove
     checkpoint.best = whole(json, "best", 0, static_cast<int>(checkpoint.starts.size()));
     checkpoint.best_z = json.at("best_z").get<std::vector<double>>();
     checkpoint.ledger = ledger_from(json.at("ledger"));
+    require_own_hash(json);
     return checkpoint;
   } catch (const NoCheckpoint& error) {
     throw InputError({file.string()}, error.what());

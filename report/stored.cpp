@@ -10,6 +10,7 @@
 #include "datasets/condition_id.hpp"
 #include "report/page_parts.hpp"
 #include "report/read_json.hpp"
+#include "report/result_files.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -64,20 +65,21 @@ Calibration load_calibration(const ReadFile& read, const std::string& where, int
   Calibration stored;
   const bool has_fit = read("fit.json").has_value();
   const bool both = has_fit && read("validation.json").has_value();
-  if (both) stored.curves = parsed(read, where, "residual_tests.json");
-  const bool is_fit = both ? text_of(stored.curves, "of") == "rigcal.fit/1" : has_fit;
+  const bool is_fit =
+      both ? text_of(parsed(read, where, "residual_tests.json"), "of") == "rigcal.fit/1" : has_fit;
   stored.file = is_fit ? "fit.json" : "validation.json";
   stored.result = load_json(read, where, stored.file);
   stored.of_tables =
       stored.result.is_object() && text_of(stored.result, "of") == "published tables";
   if (stored.of_tables) return stored;
-  if (!both) stored.curves = parsed(read, where, "residual_tests.json");
+  const ReadFile own = files_of_run(read, stored.result, where, stored.file);
+  stored.curves = parsed(own, where, "residual_tests.json");
   const Json& conditions = stored.result.at("conditions");
   stored.series.resize(conditions.size());
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
     const std::string id = checked_id(conditions.at(i), "id", path_in(where, stored.file));
     const std::string name = "residuals/" + id + ".csv";
-    if (const auto text = read(name)) stored.series[i] = parse_table(*text, path_in(where, name));
+    if (const auto text = own(name)) stored.series[i] = parse_table(*text, path_in(where, name));
   });
   return stored;
 }
@@ -85,10 +87,11 @@ Calibration load_calibration(const ReadFile& read, const std::string& where, int
 LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
   LeakTableFiles stored;
   stored.table = load_json(read, where, "leak_table.json");
+  const ReadFile own = files_of_run(read, stored.table, where, "leak_table.json");
   for (const Json& feature : stored.table.at("features")) {
     const std::string level = text_of(feature, "level");
     const std::string name = "levels/" + level_file(level);
-    if (const auto series = read(name))
+    if (const auto series = own(name))
       stored.levels.emplace_back(level, parse_table(*series, path_in(where, name)));
   }
   return stored;
@@ -97,11 +100,12 @@ LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
 ParityFiles load_parity(const ReadFile& read, const std::string& where) {
   ParityFiles stored;
   stored.parity = load_json(read, where, "parity.json");
+  const ReadFile own = files_of_run(read, stored.parity, where, "parity.json");
   for (const Json& record : stored.parity.at("records")) {
     const std::string condition = checked_id(record, "condition", path_in(where, "parity.json"));
     if (stored.series.contains(condition)) continue;
     const std::string name = "parity/" + condition + ".csv";
-    if (const auto series = read(name))
+    if (const auto series = own(name))
       stored.series.emplace(condition, parse_table(*series, path_in(where, name)));
   }
   return stored;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "report/result_files.hpp"
 #include "report/stored.hpp"
 
 namespace rigcal::app {
@@ -53,7 +54,9 @@ std::vector<report::ResultFile> leak_table_files(const report::LeakTableResult& 
                        report::level_csv(signal, row.series, &*table.healthy)});
     }
   }
-  files.push_back({"leak_table.json", report::json_text(report::leak_table_json(result))});
+  report::Json json = report::leak_table_json(result);
+  report::name_files(files, json);
+  files.push_back({"leak_table.json", report::json_text(json)});
   return files;
 }
 

@@ -7,6 +7,7 @@
 #include "report/folder.hpp"
 #include "report/parameters_csv.hpp"
 #include "report/residual_tests_json.hpp"
+#include "report/result_files.hpp"
 #include "report/terminal.hpp"
 
 namespace rigcal::app {
@@ -24,8 +25,9 @@ std::string fitted_toml(const CampaignOptions& options, const report::Result& re
   return "# status: stopped: the best so far, not a fit that converged\n" + text;
 }
 
+/// @param json  the result, to which the names of its files are added
 std::vector<report::ResultFile> files_of(const CampaignOptions& options,
-                                         const report::Result& result) {
+                                         const report::Result& result, report::Json& json) {
   const bool is_fit = result.kind == report::ResultKind::fit;
   std::vector<report::ResultFile> files;
   for (const calib::ConditionScore& score : result.fit.conditions) {
@@ -42,13 +44,13 @@ std::vector<report::ResultFile> files_of(const CampaignOptions& options,
     files.push_back({std::filesystem::path("residuals") / (condition.id + ".csv"),
                      report::residuals_csv(result, score)});
   }
-  const report::Json json = result_json(result);
   files.push_back({"scorecard.csv", report::scorecard_csv(result)});
   files.push_back({"parameters.csv", report::parameters_csv(json)});
   files.push_back({"residual_tests.json", report::residual_curves_text(result)});
   if (is_fit && report::status_of(result.fit) != FitStatus::failed) {
     files.push_back({"fitted.toml", fitted_toml(options, result)});
   }
+  name_files(files, json);
   // Last, so that whoever finds it finds the others too.
   files.push_back({is_fit ? "fit.json" : "validation.json", report::json_text(json)});
   add_page(options.out, options.threads, files);
@@ -91,13 +93,14 @@ void add_strict_option(CLI::App& verb, bool& strict) {
 
 ExitCode write_and_print(const CampaignOptions& options, const report::Result& result,
                          bool strict) {
-  const std::vector<report::ResultFile> files = files_of(options, result);
+  report::Json json = report::result_json(result);
+  const std::vector<report::ResultFile> files = files_of(options, result, json);
   const ExitCode code = exit_code_of(result.fit, strict);
   report::write_results(options.out, files, result.provenance.inputs);
   if (result.kind == report::ResultKind::fit && code == ExitCode::no_result) {
     report::remove_stale(options.out / "fitted.toml");
   }
-  print(options.print, text_of(options, result, files), report::result_json(result));
+  print(options.print, text_of(options, result, files), json);
   return code;
 }
 

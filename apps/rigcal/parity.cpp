@@ -18,6 +18,7 @@
 #include "report/folder.hpp"
 #include "report/json.hpp"
 #include "report/parity.hpp"
+#include "report/result_files.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -30,9 +31,10 @@ struct ParityRequest {
 };
 
 ExitCode write_parity(const ParityRequest& options, const report::ParityResult& result) {
-  const report::Json json = report::parity_json(result);
+  report::Json json = report::parity_json(result);
   std::vector<report::ResultFile> files = report::parity_series(result);
   files.push_back({"parity.csv", report::parity_csv(result)});
+  report::name_files(files, json);
   files.push_back({"parity.json", report::json_text(json)});
   add_page(options.common.out, options.common.threads, files);
   report::write_results(options.common.out, files, result.provenance.inputs);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "common/error.hpp"
+#include "report/result_files.hpp"
 #include "tests/report/stored_fixture.hpp"
 
 using Catch::Contains;
@@ -43,6 +44,21 @@ TEST_CASE("stored: the id of a condition is no way to other folders", "[report]"
                           Contains("expected an id of letters"));
     for (const std::string& other : files.others) CHECK_THAT(other, !Contains("residuals"));
   }
+}
+
+TEST_CASE("stored: the files of another run are refused", "[report]") {
+  StoredFiles files;
+  Json& fit = files.json["fit.json"] = rigcal::test::stored_result();
+  Json& curves = files.json["residual_tests.json"] = {{"of", "rigcal.fit/1"}};
+  name_files({{"residual_tests.json", curves.dump()}}, fit);
+  CHECK(fit["provenance"]["files"][0]["path"] == "residual_tests.json");
+  CHECK_NOTHROW(load_calibration(files.reader(), "folder", 1));
+  curves["conditions"] = nullptr;
+  CHECK_THROWS_WITH(load_calibration(files.reader(), "folder", 1),
+                    Contains("folder/residual_tests.json") &&
+                        Contains("is not the file that fit.json was written with"));
+  fit["provenance"].erase("files");  // by an earlier version
+  CHECK_NOTHROW(load_calibration(files.reader(), "folder", 1));
 }
 
 TEST_CASE("stored: nor is the condition of a parity record", "[report]") {
