@@ -4,14 +4,15 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 namespace rigcal {
 
-/// Calls task(i) once for each i in [0, count) on up to `threads` threads, the caller's included.
-/// Each task must write to a place of its own and read nothing that another writes: then the
-/// results are the same bits for any number of threads.
+/// Calls task(i) once for each i in [0, count) on up to `threads` threads, the caller's included,
+/// or as many as the system gives. Each task must write to a place of its own and read nothing that
+/// another writes: then the results are the same bits for any number of threads.
 ///
 /// @throws  what the task of the lowest index threw; the others are run to their end
 template <typename Task>
@@ -28,10 +29,15 @@ void parallel_for(std::size_t count, int threads, Task task) {
     }
   };
   const std::size_t helpers = std::min(count, static_cast<std::size_t>(std::max(threads, 1)));
-  std::vector<std::thread> pool;
-  for (std::size_t i = 1; i < helpers; ++i) pool.emplace_back(work);
+  std::vector<std::jthread> pool;
+  pool.reserve(helpers);
+  try {
+    while (pool.size() + 1 < helpers) pool.emplace_back(work);
+  } catch (const std::system_error&) {
+    // The system has no more threads: those there are do the work.
+  }
   work();
-  for (std::thread& thread : pool) thread.join();
+  pool.clear();
   for (const std::exception_ptr& error : errors) {
     if (error) std::rethrow_exception(error);
   }

@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <new>
 #include <optional>
 
 #include "common/error.hpp"
@@ -45,7 +46,9 @@ using UnitPtr = std::unique_ptr<ut_unit, FreeUnit>;
 class PlainLocale {
  public:
   PlainLocale()
-      : plain_(newlocale(LC_ALL_MASK, "C", locale_t{})), previous_(uselocale(plain_.get())) {}
+      : plain_(newlocale(LC_ALL_MASK, "C", locale_t{})), previous_(uselocale(plain_.get())) {
+    if (!plain_) throw std::bad_alloc();  // numbers would be read with another decimal sign
+  }
   PlainLocale(const PlainLocale&) = delete;
   PlainLocale& operator=(const PlainLocale&) = delete;
   ~PlainLocale() { uselocale(previous_); }
@@ -120,9 +123,11 @@ class UnitSystem {
     const std::lock_guard<std::mutex> lock(mutex_);
     const PlainLocale plain;
     const UnitPtr parsed(ut_parse(system_.get(), text.c_str(), UT_UTF8));
-    if (!parsed) return std::nullopt;
     Unit unit;
-    if (ut_accept_visitor(parsed.get(), &kTakeApart, &unit) != UT_SUCCESS) return std::nullopt;
+    const ut_status status =
+        parsed ? ut_accept_visitor(parsed.get(), &kTakeApart, &unit) : ut_get_status();
+    if (status == UT_OS) throw std::bad_alloc();  // which is not the text's fault
+    if (!parsed || status != UT_SUCCESS) return std::nullopt;
     std::erase_if(unit.powers, [](const auto& entry) { return entry.second == 0; });
     return unit;
   }

@@ -1,7 +1,9 @@
 #include "common/uninterrupted.hpp"
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
+#include <thread>
 
 namespace rigcal {
 namespace {
@@ -9,23 +11,34 @@ namespace {
 // A signal handler can reach nothing but a global.
 std::atomic<int> uninterrupted{0};
 std::atomic<int> postponed{0};
+std::atomic<bool> ending{false};
 static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not lock");
 
 }  // namespace
 
-Uninterrupted::Uninterrupted() { ++uninterrupted; }
+Uninterrupted::Uninterrupted() {
+  // In this order: the handler either counts this one, or is seen here.
+  ++uninterrupted;
+  while (ending) {
+    --uninterrupted;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    ++uninterrupted;
+  }
+}
 
 Uninterrupted::~Uninterrupted() {
   if (--uninterrupted > 0) return;
   if (const int signal = postponed.exchange(0)) std::raise(signal);
 }
 
+bool Uninterrupted::any() { return uninterrupted > 0; }
+
 bool Uninterrupted::postpones(int signal) {
-  // In this order: what ends meanwhile either finds the signal, or is no longer counted.
   postponed = signal;
-  if (uninterrupted > 0) return true;
-  postponed = 0;
-  return false;
+  ending = true;
+  if (uninterrupted == 0) return false;
+  ending = false;
+  return true;
 }
 
 }  // namespace rigcal

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
@@ -15,6 +16,8 @@
 #include "common/error.hpp"
 #include "common/memory.hpp"
 #include "common/suggest.hpp"
+#include "common/uninterrupted.hpp"
+#include "report/folder.hpp"
 #include "report/provenance.hpp"
 
 namespace {
@@ -136,9 +139,24 @@ ExitCode complain(ExitCode code, const std::string& message) {
   return code;
 }
 
+[[noreturn]] void end(std::string_view words) {
+  rigcal::report::HeldFolder::remove_if_empty();
+  std::fputs(words.data(), stderr);
+  std::_Exit(static_cast<int>(ExitCode::internal));
+}
+
+/// Ends the process where memory runs out, rather than unwind: what frees a JSON value takes memory
+/// itself, and not every library is whole again after an exception. Only files that are half
+/// written are taken back first.
+void end_without_memory() {
+  if (rigcal::Uninterrupted::any()) throw std::bad_alloc();
+  end("rigcal: out of memory\n");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::set_new_handler(end_without_memory);
   rigcal::keep_freed_memory();
   const ExitCode code = [&] {
     try {

@@ -6,7 +6,6 @@
 #include <memory>
 #include <optional>
 
-#include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "calib/initial_state.hpp"
@@ -115,7 +114,7 @@ report::Json json_of(const Task& task, const model::Simulation& simulation) {
   return json;
 }
 
-ExitCode run_simulate(const SimulateRequest& options, const Invocation& invocation) {
+ExitCode run_simulate(const SimulateRequest& options) {
   const Campaign campaign = load(options.common);
   std::vector<Task> tasks;
   std::vector<Record> records;
@@ -123,14 +122,12 @@ ExitCode run_simulate(const SimulateRequest& options, const Invocation& invocati
     tasks.push_back(prepare(campaign, *condition));
     if (tasks.back().record) records.push_back(*tasks.back().record);
   }
-  const Kept kept;
   const report::HeldFolder held(options.common.out);
 
   model::SimulationOptions settings;
   settings.method = campaign.simulation.method;
   settings.tolerance = campaign.simulation.tolerance.value_or(settings.tolerance);
   settings.max_seconds = campaign.simulation.max_seconds;
-  settings.cancel = &invocation.cancel;
   std::vector<model::Simulation> simulations(tasks.size());
   parallel_for(tasks.size(), options.common.threads, [&](std::size_t i) {
     const Task& task = tasks[i];
@@ -153,7 +150,7 @@ ExitCode run_simulate(const SimulateRequest& options, const Invocation& invocati
   print(options.common.print, text, json);
   if (problems.empty()) return ExitCode::done;
   problems.pop_back();
-  throw Error(invocation.cancel.load() ? ExitCode::stopped : ExitCode::no_result, problems);
+  throw NoResultError(problems);
 }
 
 }  // namespace
@@ -164,7 +161,7 @@ Run add_simulate(CLI::App& verb) {
   verb.add_option("--condition", options->conditions,
                   "Only this condition; repeatable (default: all that are not ignored)")
       ->allow_extra_args(false);
-  return [options](const Invocation& invocation) { return run_simulate(*options, invocation); };
+  return [options](const Invocation&) { return run_simulate(*options); };
 }
 
 }  // namespace rigcal::app

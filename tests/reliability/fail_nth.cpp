@@ -1,0 +1,116 @@
+// Preloaded into rigcal by tests/reliability/faults.py: one call of a kind fails, as if memory or
+// disk had run out.
+//
+// RIGCAL_FAIL=memory:N or files:N  the N-th allocation, or the N-th call that writes files, fails;
+// 0: none RIGCAL_COUNT=FILE                where both are counted at the end
+//
+// Counting begins with main(), whose first call is mallopt(): what fails before it is not the
+// program's. It pauses within UDUNITS-2, which does not look whether it was given memory: it
+// crashes, or forgets units.
+
+#include <dlfcn.h>
+#include <sys/types.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <new>
+
+namespace {
+
+std::atomic<bool> counting{false};
+std::atomic<long> allocations{0};
+std::atomic<long> file_calls{0};
+long failing_allocation = 0;
+long failing_file_call = 0;
+
+long number_after(const char* text, const char* kind) {
+  const std::size_t length = std::strlen(kind);
+  return std::strncmp(text, kind, length) == 0 ? std::atol(text + length) : 0;
+}
+
+void* allocated(std::size_t alignment, std::size_t size) {
+  const bool fails = counting && ++allocations == failing_allocation;
+  void* const memory =
+      fails ? nullptr
+            : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+  if (memory != nullptr) return memory;
+  if (const std::new_handler handler = std::get_new_handler()) handler();
+  throw std::bad_alloc();
+}
+
+bool file_call_fails(int reason) {
+  if (!counting || ++file_calls != failing_file_call) return false;
+  errno = reason;
+  return true;
+}
+
+template <typename Function>
+Function* next(const char* name) {
+  return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
+}
+
+void write_counts() {
+  counting = false;
+  const char* const path = std::getenv("RIGCAL_COUNT");
+  if (path == nullptr) return;
+  std::FILE* const file = std::fopen(path, "w");
+  if (file == nullptr) return;
+  std::fprintf(file, "%ld %ld\n", allocations.load(), file_calls.load());
+  std::fclose(file);
+}
+
+}  // namespace
+
+extern "C" {
+
+int mallopt(int parameter, int value) {
+  static const auto real = next<int(int, int)>("mallopt");
+  const int result = real(parameter, value);
+  if (counting) return result;
+  if (const char* const which = std::getenv("RIGCAL_FAIL")) {
+    failing_allocation = number_after(which, "memory:");
+    failing_file_call = number_after(which, "files:");
+    std::atexit(write_counts);
+    counting = true;
+  }
+  return result;
+}
+
+ssize_t write(int descriptor, const void* bytes, std::size_t count) {
+  static const auto real = next<ssize_t(int, const void*, std::size_t)>("write");
+  return file_call_fails(ENOSPC) ? -1 : real(descriptor, bytes, count);
+}
+
+int fsync(int descriptor) {
+  static const auto real = next<int(int)>("fsync");
+  return file_call_fails(EIO) ? -1 : real(descriptor);
+}
+
+int mkdir(const char* path, unsigned mode) {
+  static const auto real = next<int(const char*, unsigned)>("mkdir");
+  return file_call_fails(ENOSPC) ? -1 : real(path, mode);
+}
+
+}  // extern "C"
+
+void* operator new(std::size_t size) { return allocated(alignof(std::max_align_t), size); }
+void* operator new[](std::size_t size) { return allocated(alignof(std::max_align_t), size); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  return allocated(static_cast<std::size_t>(alignment), size);
+}
+void* operator new[](std::size_t size, std::align_val_t alignment) {
+  return allocated(static_cast<std::size_t>(alignment), size);
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }

@@ -1,0 +1,63 @@
+"""Every allocation and every write fails once, in turn: the program says so with exit code 5 and leaves the results of
+the earlier run as they were, or gets over it and writes what it writes without."""
+import hashlib
+import os
+import shutil
+
+from runs import SMALL_RIG, Count, comparable, left_behind, must, run
+
+
+def content(folder):
+    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def study(rigcal, folder, small):
+    library = rigcal.parent / "tests" / "libfail_nth.so"
+    must(rigcal, ["synthesize", SMALL_RIG, "--seed", "1", "--out", folder / "twin", "--quiet"])
+    campaign = folder / "twin" / "campaign.toml"
+    must(rigcal, ["fit", campaign, "--out", folder / "earlier", "--seed", "2", "--quiet"])
+    rows = []
+    for verb, most in (("fit", 30 if small else 3000), ("report", 15 if small else 1500)):
+        out = folder / "out"
+
+        def attempt(fault):
+            shutil.rmtree(out, ignore_errors=True)
+            shutil.copytree(folder / "earlier", out)
+            arguments = ["fit", campaign, "--out", out] if verb == "fit" else ["report", out]
+            counts = folder / "counts"
+            environment = {**os.environ, "LD_PRELOAD": str(library), "RIGCAL_FAIL": fault, "RIGCAL_COUNT": str(counts)}
+            code, _, err = run(rigcal, [*arguments, "--threads", "1", "--quiet"][:None if verb == "fit" else 2],
+                               env=environment)
+            return code, err.decode(errors="replace"), counts
+
+        code, err, counts = attempt("memory:0")
+        if code != 0:
+            raise SystemExit(f"reliability: {verb} under {library}: exit {code}: {err}")
+        whole = {path: hash_ for path, hash_ in content(out).items() if path not in ("fit.json", "report.html")}
+        result = comparable(out / "fit.json")
+        before = content(folder / "earlier")
+        for kind, count in zip(("memory", "files"), map(int, counts.read_text().split())):
+            row = Count(f"faults: {verb}, {'allocations' if kind == 'memory' else 'writes'}")
+            chosen = sorted({1 + k * (count - 1) // max(1, min(most, count) - 1) for k in range(min(most, count))})
+            for n in chosen:
+                code, err, _ = attempt(f"{kind}:{n}")
+                where = f"{kind} {n} of {count}"
+                row.ended(code, where)
+                now = {path: hash_ for path, hash_ in content(out).items() if path not in ("fit.json", "report.html")}
+                is_new = now == whole and comparable(out / "fit.json") == result
+                if code == 0 and not is_new:
+                    row.is_wrong(f"exit 0 with other results: {where}")
+                elif code == 5:
+                    # The new ones are in their places when what is printed runs out of memory.
+                    if not is_new and content(out) != before:
+                        row.is_wrong(f"neither the results of the earlier run nor the new ones: {where}")
+                    if "bug" in err:
+                        row.is_wrong(f"called a bug: {where}: {err.strip()[-200:]}")
+                elif code is not None and code > 0:
+                    row.is_wrong(f"exit {code}: {where}: {err.strip()[-200:]}")
+                for each in left_behind(out):
+                    row.is_wrong(f"left {each}: {where}")
+            row.remarks.append(f"{len(chosen)} of {count} places")
+            rows.append(row)
+    return rows
