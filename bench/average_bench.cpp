@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "datasets/average.hpp"
+#include "datasets/prepare/average.hpp"
 
 namespace rigcal::bench {
 namespace {

@@ -17,9 +17,9 @@
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
 #include "common/significant.hpp"
-#include "datasets/load_record.hpp"
-#include "datasets/noise.hpp"
-#include "datasets/synthetic_repeat.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "datasets/synthetic/noise.hpp"
+#include "datasets/synthetic/synthetic_repeat.hpp"
 #include "metrics/distributions.hpp"
 
 namespace rigcal::bench {

@@ -20,10 +20,10 @@
 
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
-#include "datasets/campaign_parameters.hpp"
-#include "datasets/load_record.hpp"
-#include "datasets/single_repeats.hpp"
-#include "datasets/synthetic_repeat.hpp"
+#include "datasets/campaign/campaign_parameters.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "datasets/prepare/single_repeats.hpp"
+#include "datasets/synthetic/synthetic_repeat.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/steady_leak.hpp"
 
@@ -545,7 +545,7 @@ void print_coefficients(Campaign campaign) {
 int main(int argc, char** argv) {
   std::vector<std::string> arguments(argv + 1, argv + argc);
   Campaign campaign =
-      datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/uis_shake_table/diagnosis.toml");
+      datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/rigs/uis_shake_table/diagnosis.toml");
   const char* rig = "as the model";
   if (!arguments.empty() && arguments.back() == "disturbed") {
     arguments.pop_back();

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/campaign.hpp"
+#include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
 #include "model/simulate.hpp"
 

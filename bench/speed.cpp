@@ -15,10 +15,10 @@
 #include "bench/clock.hpp"
 #include "bench/problems.hpp"
 #include "bench/two_chamber_record.hpp"
-#include "calib/evaluator.hpp"
 #include "calib/fit.hpp"
-#include "calib/multi_start.hpp"
-#include "calib/solve.hpp"
+#include "calib/search/evaluator.hpp"
+#include "calib/search/multi_start.hpp"
+#include "calib/search/solve.hpp"
 #include "common/memory.hpp"
 
 namespace rigcal::bench {

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/budget.hpp"
 #include "calib/fit.hpp"
+#include "calib/search/budget.hpp"
 
 namespace rigcal::calib {
 

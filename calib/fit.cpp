@@ -8,28 +8,28 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "calib/assessment.hpp"
-#include "calib/basins.hpp"
-#include "calib/bootstrap.hpp"
-#include "calib/budget.hpp"
-#include "calib/checkpoint.hpp"
-#include "calib/combinations.hpp"
 #include "calib/cross_validation.hpp"
-#include "calib/evaluator.hpp"
-#include "calib/identifiability.hpp"
-#include "calib/information.hpp"
-#include "calib/initial_state.hpp"
-#include "calib/interval_advice.hpp"
-#include "calib/known_values.hpp"
-#include "calib/lack_of_fit.hpp"
-#include "calib/multi_start.hpp"
-#include "calib/profile.hpp"
-#include "calib/scorecard.hpp"
-#include "calib/settle.hpp"
-#include "calib/sharpen.hpp"
-#include "calib/symmetry.hpp"
-#include "calib/weights.hpp"
-#include "datasets/record_warnings.hpp"
+#include "calib/problem/initial_state.hpp"
+#include "calib/problem/known_values.hpp"
+#include "calib/score/assessment.hpp"
+#include "calib/score/scorecard.hpp"
+#include "calib/search/basins.hpp"
+#include "calib/search/budget.hpp"
+#include "calib/search/checkpoint.hpp"
+#include "calib/search/evaluator.hpp"
+#include "calib/search/multi_start.hpp"
+#include "calib/search/settle.hpp"
+#include "calib/search/sharpen.hpp"
+#include "calib/search/weights.hpp"
+#include "calib/trust/bootstrap.hpp"
+#include "calib/trust/combinations.hpp"
+#include "calib/trust/identifiability.hpp"
+#include "calib/trust/information.hpp"
+#include "calib/trust/interval_advice.hpp"
+#include "calib/trust/lack_of_fit.hpp"
+#include "calib/trust/profile.hpp"
+#include "calib/trust/symmetry.hpp"
+#include "datasets/checks/record_warnings.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -499,102 +499,6 @@ void add_validation(Fit validation, Fit& fit) {
 }
 
 }  // namespace
-
-void FitOptions::validate() const {
-  const auto require = [](bool holds, const char* message) {
-    if (!holds) throw std::invalid_argument(std::string("FitOptions: ") + message);
-  };
-  require(starts >= 1, "starts must be at least 1");
-  require(further_starts >= 0, "further_starts must not be negative");
-  require(threads >= 1, "threads must be at least 1");
-  require(max_iterations >= 0, "max_iterations must not be negative");
-  require(bootstrap >= 0, "bootstrap must not be negative");
-  require(!max_evaluations || *max_evaluations > 0, "max_evaluations must be positive");
-  require(!max_seconds || *max_seconds > 0.0, "max_seconds must be positive");
-  require(function_tolerance > 0.0, "function_tolerance must be positive");
-  require(gradient_tolerance > 0.0, "gradient_tolerance must be positive");
-  require(parameter_tolerance > 0.0, "parameter_tolerance must be positive");
-}
-
-std::string_view to_string(FitStatus status) {
-  switch (status) {
-    case FitStatus::converged:
-      return "converged";
-    case FitStatus::stopped:
-      return "stopped";
-    case FitStatus::failed:
-      return "failed";
-  }
-  return "";
-}
-
-std::string_view to_string(Identifiability identifiability) {
-  switch (identifiability) {
-    case Identifiability::identified:
-      return "identified";
-    case Identifiability::weak:
-      return "weak";
-    case Identifiability::bounded:
-      return "bounded";
-    case Identifiability::not_identifiable:
-      return "not_identifiable";
-  }
-  return "";
-}
-
-std::string_view to_string(IntervalSource source) {
-  switch (source) {
-    case IntervalSource::none:
-      return "none";
-    case IntervalSource::standard_error:
-      return "standard_error";
-    case IntervalSource::robust_standard_error:
-      return "robust_standard_error";
-  }
-  return "";
-}
-
-std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::pass:
-      return "PASS";
-    case Verdict::warn:
-      return "WARN";
-    case Verdict::fail:
-      return "FAIL";
-  }
-  return "";
-}
-
-std::string_view to_string(StoppedIn stage) {
-  switch (stage) {
-    case StoppedIn::nothing:
-      break;
-    case StoppedIn::starts:
-      return "starts";
-    case StoppedIn::validation:
-      return "validation";
-    case StoppedIn::bootstrap:
-      return "bootstrap";
-    case StoppedIn::profiles:
-      return "profiles";
-    case StoppedIn::cross_validation:
-      return "cross_validation";
-  }
-  return "";
-}
-
-bool Fit::has_converged() const {
-  return status == FitStatus::converged ||
-         (status == FitStatus::stopped && stopped_in != StoppedIn::nothing &&
-          stopped_in != StoppedIn::starts);
-}
-
-bool Fit::usable() const {
-  return status == FitStatus::converged &&
-         std::all_of(parameters.begin(), parameters.end(),
-                     [](const FittedParameter& each) { return std::isfinite(each.value); });
-}
 
 Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitOptions& options) {
   options.validate();

@@ -10,7 +10,7 @@ foreach(entry IN LISTS FILES)
   file(READ "${CMAKE_MATCH_2}" content)
   string(APPEND rows "    {\"${name}\", R\"rigcal_asset(${content})rigcal_asset\"},\n")
 endforeach()
-file(WRITE "${OUT}" "#include \"report/assets.hpp\"
+file(WRITE "${OUT}" "#include \"report/page/assets.hpp\"
 
 #include <map>
 

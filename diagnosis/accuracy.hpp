@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "datasets/diagnosis_settings.hpp"
+#include "datasets/campaign/diagnosis_settings.hpp"
 
 namespace rigcal::diagnosis {
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "common/parallel.hpp"
-#include "datasets/single_repeats.hpp"
+#include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/feature_clusters.hpp"
 #include "diagnosis/healthy_reference.hpp"
 #include "diagnosis/judgement.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/campaign.hpp"
+#include "datasets/campaign/campaign.hpp"
 #include "diagnosis/accuracy.hpp"
 #include "diagnosis/leak_estimate.hpp"
 #include "diagnosis/leak_fit.hpp"

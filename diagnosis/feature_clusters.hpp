@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/diagnosis_settings.hpp"
+#include "datasets/campaign/diagnosis_settings.hpp"
 #include "metrics/residual_features.hpp"
 
 namespace rigcal::diagnosis {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "datasets/campaign.hpp"
+#include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
 #include "metrics/residual_features.hpp"
 

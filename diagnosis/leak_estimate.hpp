@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "datasets/diagnosis_settings.hpp"
+#include "datasets/campaign/diagnosis_settings.hpp"
 #include "diagnosis/leak_curve.hpp"
 #include "diagnosis/leak_fit.hpp"
 #include "diagnosis/signal_errors.hpp"

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "calib/problem.hpp"
-#include "calib/solve.hpp"
-#include "calib/triangle.hpp"
+#include "calib/problem/problem.hpp"
+#include "calib/problem/triangle.hpp"
+#include "calib/search/solve.hpp"
 #include "diagnosis/phase_clusters.hpp"
 #include "diagnosis/residual_rms.hpp"
 #include "diagnosis/steady_leak.hpp"
@@ -99,7 +99,7 @@ Linear linearise(const calib::ProblemCondition& condition, const model::Simulati
   return linear;
 }
 
-/// What the triangle R of [J r] (calib/triangle.hpp) tells of the unknowns of J.
+/// What the triangle R of [J r] (calib/problem/triangle.hpp) tells of the unknowns of J.
 struct Solved {
   Eigen::MatrixXd root;  ///< inverse of J's part of R: root root^T is the inverse of J^T J
   Eigen::VectorXd step;  ///< to the least squares; not finite where a column of J is nothing

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "calib/fit.hpp"
-#include "datasets/campaign.hpp"
-#include "datasets/single_repeats.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/leak_curve.hpp"
 #include "diagnosis/leak_scan.hpp"
 

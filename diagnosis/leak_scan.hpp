@@ -1,6 +1,6 @@
 #pragma once
 
-#include "calib/problem.hpp"
+#include "calib/problem/problem.hpp"
 
 namespace rigcal::diagnosis {
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/campaign.hpp"
+#include "datasets/campaign/campaign.hpp"
 
 namespace rigcal::diagnosis {
 

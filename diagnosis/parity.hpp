@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/campaign.hpp"
-#include "datasets/single_repeats.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/leak_fit.hpp"
 #include "metrics/residual_features.hpp"
 

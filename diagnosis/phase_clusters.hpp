@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "calib/problem.hpp"
+#include "calib/problem/problem.hpp"
 
 namespace rigcal::diagnosis {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "datasets/campaign.hpp"
+#include "datasets/campaign/campaign.hpp"
 
 namespace rigcal::diagnosis {
 

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "calib/periodic_flow.hpp"
+#include "calib/published/periodic_flow.hpp"
 #include "metrics/leak_share.hpp"
 
 namespace rigcal::diagnosis {

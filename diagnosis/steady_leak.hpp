@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <span>
 
-#include "calib/problem.hpp"
+#include "calib/problem/problem.hpp"
 
 namespace rigcal::diagnosis {
 

@@ -7,13 +7,13 @@
 #include <optional>
 #include <stdexcept>
 
-#include "model/layout.hpp"
-#include "model/load_pressure.hpp"
-#include "model/sampled_period.hpp"
-#include "model/sensors.hpp"
-#include "model/simulate_sized.hpp"
-#include "model/subnormals.hpp"
-#include "model/two_chamber.hpp"
+#include "model/arithmetic/subnormals.hpp"
+#include "model/plant/layout.hpp"
+#include "model/plant/load_pressure.hpp"
+#include "model/plant/sensors.hpp"
+#include "model/plant/two_chamber.hpp"
+#include "model/signal/sampled_period.hpp"
+#include "model/solver/simulate_sized.hpp"
 
 namespace rigcal::model {
 namespace {

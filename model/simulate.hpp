@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "model/parameter.hpp"
-#include "model/signal.hpp"
+#include "model/plant/parameter.hpp"
+#include "model/signal/signal.hpp"
 
 namespace rigcal::model {
 

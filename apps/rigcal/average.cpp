@@ -4,11 +4,11 @@
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "datasets/load_record.hpp"
-#include "datasets/short_records.hpp"
-#include "report/csv.hpp"
-#include "report/folder.hpp"
-#include "report/terminal.hpp"
+#include "datasets/checks/short_records.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "report/store/csv.hpp"
+#include "report/store/folder.hpp"
+#include "report/text/terminal.hpp"
 
 namespace rigcal::app {
 namespace {

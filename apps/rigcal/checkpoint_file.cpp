@@ -1,8 +1,8 @@
 #include "apps/rigcal/checkpoint_file.hpp"
 
 #include "common/file.hpp"
-#include "report/checkpoint.hpp"
-#include "report/folder.hpp"
+#include "report/store/checkpoint.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <optional>
 
-#include "calib/checkpoint.hpp"
 #include "calib/fit.hpp"
-#include "report/provenance.hpp"
+#include "calib/search/checkpoint.hpp"
+#include "report/store/provenance.hpp"
 
 namespace rigcal::app {
 

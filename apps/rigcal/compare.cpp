@@ -8,8 +8,8 @@
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
-#include "report/comparison.hpp"
-#include "report/folder.hpp"
+#include "report/comparison/comparison.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 namespace {

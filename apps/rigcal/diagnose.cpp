@@ -13,13 +13,13 @@
 #include "apps/rigcal/verb.hpp"
 #include "common/parallel.hpp"
 #include "common/suggest.hpp"
-#include "datasets/record_warnings.hpp"
-#include "datasets/short_records.hpp"
-#include "datasets/single_repeats.hpp"
+#include "datasets/checks/record_warnings.hpp"
+#include "datasets/checks/short_records.hpp"
+#include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/obstacles.hpp"
-#include "report/diagnosis.hpp"
-#include "report/folder.hpp"
-#include "report/validity.hpp"
+#include "report/leak/diagnosis.hpp"
+#include "report/store/folder.hpp"
+#include "report/store/validity.hpp"
 
 namespace rigcal::app {
 namespace {

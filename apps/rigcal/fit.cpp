@@ -15,8 +15,8 @@
 #include "apps/rigcal/outcome.hpp"
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "datasets/load_record.hpp"
-#include "report/folder.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 namespace {

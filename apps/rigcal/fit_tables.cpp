@@ -1,4 +1,4 @@
-#include "calib/fit_tables.hpp"
+#include "calib/published/fit_tables.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "report/fit_tables.hpp"
-#include "report/folder.hpp"
-#include "report/parameters_csv.hpp"
+#include "report/leak/fit_tables.hpp"
+#include "report/store/folder.hpp"
+#include "report/store/parameters_csv.hpp"
 
 namespace rigcal::app {
 namespace {

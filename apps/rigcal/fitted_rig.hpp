@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/rigcal/leak_table_files.hpp"
-#include "report/json.hpp"
+#include "report/store/json.hpp"
 
 namespace rigcal::app {
 

@@ -10,8 +10,8 @@
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/file.hpp"
-#include "datasets/draft_campaign.hpp"
-#include "report/folder.hpp"
+#include "datasets/draft/draft_campaign.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 namespace {

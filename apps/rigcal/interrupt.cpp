@@ -7,7 +7,7 @@
 
 #include "common/error.hpp"
 #include "common/uninterrupted.hpp"
-#include "report/folder.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 namespace {

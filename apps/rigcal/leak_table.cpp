@@ -1,4 +1,4 @@
-#include "calib/leak_table.hpp"
+#include "calib/published/leak_table.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,8 +11,8 @@
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "report/folder.hpp"
-#include "report/leak_table.hpp"
+#include "report/leak/leak_table.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "report/result_files.hpp"
-#include "report/stored.hpp"
+#include "report/store/result_files.hpp"
+#include "report/store/stored.hpp"
 
 namespace rigcal::app {
 namespace {

@@ -4,10 +4,10 @@
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "calib/leak_table.hpp"
-#include "datasets/leak_table_settings.hpp"
-#include "report/folder.hpp"
-#include "report/leak_table.hpp"
+#include "calib/published/leak_table.hpp"
+#include "datasets/campaign/leak_table_settings.hpp"
+#include "report/leak/leak_table.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 

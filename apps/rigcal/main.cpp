@@ -17,8 +17,8 @@
 #include "common/memory.hpp"
 #include "common/suggest.hpp"
 #include "common/uninterrupted.hpp"
-#include "report/folder.hpp"
-#include "report/provenance.hpp"
+#include "report/store/folder.hpp"
+#include "report/store/provenance.hpp"
 
 namespace {
 

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "datasets/campaign.hpp"
-#include "report/json.hpp"
-#include "report/provenance.hpp"
-#include "report/terminal.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "report/store/json.hpp"
+#include "report/store/provenance.hpp"
+#include "report/text/terminal.hpp"
 
 namespace rigcal::app {
 

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include "apps/rigcal/result_page.hpp"
-#include "report/csv.hpp"
-#include "report/folder.hpp"
-#include "report/parameters_csv.hpp"
-#include "report/residual_tests_json.hpp"
-#include "report/result_files.hpp"
-#include "report/terminal.hpp"
+#include "report/store/csv.hpp"
+#include "report/store/folder.hpp"
+#include "report/store/parameters_csv.hpp"
+#include "report/store/residual_tests_json.hpp"
+#include "report/store/result_files.hpp"
+#include "report/text/terminal.hpp"
 
 namespace rigcal::app {
 namespace {

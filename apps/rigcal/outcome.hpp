@@ -4,7 +4,7 @@
 
 #include "apps/rigcal/options.hpp"
 #include "common/error.hpp"
-#include "report/result.hpp"
+#include "report/store/result.hpp"
 
 namespace rigcal::app {
 

@@ -2,7 +2,7 @@
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "report/terminal.hpp"
+#include "report/text/terminal.hpp"
 
 namespace rigcal::app {
 namespace {

@@ -10,15 +10,15 @@
 #include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/parallel.hpp"
-#include "datasets/record_warnings.hpp"
-#include "datasets/short_records.hpp"
-#include "datasets/single_repeats.hpp"
+#include "datasets/checks/record_warnings.hpp"
+#include "datasets/checks/short_records.hpp"
+#include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/diagnose.hpp"
 #include "diagnosis/obstacles.hpp"
-#include "report/folder.hpp"
-#include "report/json.hpp"
-#include "report/parity.hpp"
-#include "report/result_files.hpp"
+#include "report/leak/parity.hpp"
+#include "report/store/folder.hpp"
+#include "report/store/json.hpp"
+#include "report/store/result_files.hpp"
 
 namespace rigcal::app {
 namespace {

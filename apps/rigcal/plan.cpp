@@ -1,4 +1,4 @@
-#include "calib/plan.hpp"
+#include "calib/trust/plan.hpp"
 
 #include <fmt/format.h>
 
@@ -7,9 +7,9 @@
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "datasets/load_record.hpp"
-#include "report/folder.hpp"
-#include "report/plan.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "report/store/folder.hpp"
+#include "report/store/plan.hpp"
 
 namespace rigcal::app {
 namespace {

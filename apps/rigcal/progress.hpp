@@ -7,7 +7,7 @@
 #include <string>
 
 #include "calib/fit.hpp"
-#include "report/time_left.hpp"
+#include "report/text/time_left.hpp"
 
 namespace rigcal::app {
 

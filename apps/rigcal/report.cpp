@@ -4,8 +4,8 @@
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "report/folder.hpp"
-#include "report/page.hpp"
+#include "report/page/page.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 namespace {

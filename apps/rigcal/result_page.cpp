@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "report/page.hpp"
+#include "report/page/page.hpp"
 
 namespace rigcal::app {
 

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "report/folder.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 

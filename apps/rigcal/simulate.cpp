@@ -8,12 +8,12 @@
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "calib/initial_state.hpp"
+#include "calib/problem/initial_state.hpp"
 #include "common/parallel.hpp"
 #include "common/suggest.hpp"
-#include "datasets/load_record.hpp"
-#include "report/csv.hpp"
-#include "report/folder.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "report/store/csv.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 namespace {

@@ -1,4 +1,4 @@
-#include "datasets/synthesize.hpp"
+#include "datasets/synthetic/synthesize.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "report/folder.hpp"
+#include "report/store/folder.hpp"
 
 namespace rigcal::app {
 namespace {

@@ -10,9 +10,9 @@
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "calib/fit.hpp"
-#include "datasets/load_record.hpp"
-#include "report/folder.hpp"
-#include "report/validity.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "report/store/folder.hpp"
+#include "report/store/validity.hpp"
 
 namespace rigcal::app {
 namespace {

@@ -13,7 +13,7 @@ import numpy as np
 from measures import print_table, residuals, ring, rings_of_repeats, steps
 from result_files import fit
 
-CAMPAIGN = "datasets/festo_tp511/campaign.toml"
+CAMPAIGN = "datasets/rigs/festo_tp511/campaign.toml"
 MASSES_KG = (7.5, 8.5)
 FITTED = ("steps_1V", "steps_4V")
 

@@ -9,7 +9,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 from result_files import fit, print_table, read_json, scorecard  # noqa: E402
 
-CAMPAIGN = "datasets/festo_tp511/campaign.toml"
+CAMPAIGN = "datasets/rigs/festo_tp511/campaign.toml"
 # term: values that leave it out
 TERMS = {
     "none": [],

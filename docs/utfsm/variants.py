@@ -10,7 +10,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
 from result_files import fit, print_table, scorecard  # noqa: E402
 
-CAMPAIGN = "datasets/utfsm_mts/campaign.toml"
+CAMPAIGN = "datasets/rigs/utfsm_mts/campaign.toml"
 BASE = "valve_gain,transport_delay,position_offset"
 NO_LOAD, NO_FRICTION, NO_DAMPING = "external_force=0 N", "coulomb_friction=1 N", "damping=1000 N s/m"
 AS_INPUT = 'role = "input"'

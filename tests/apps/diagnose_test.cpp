@@ -197,8 +197,8 @@ TEST_CASE("diagnose: a seal defect in counts is declined with every reason", "[a
       std::filesystem::path(RIGCAL_RECORDINGS_DIR) / "moog_flotork_rotary_seal_defect";
   const CommandFolder folder;
   const Outcome outcome =
-      folder.run({"diagnose", RIGCAL_SOURCE_DIR "/datasets/moog_flotork/campaign.toml", "--data",
-                  data.string(), "--out", "declined"});
+      folder.run({"diagnose", RIGCAL_SOURCE_DIR "/datasets/rigs/moog_flotork/campaign.toml",
+                  "--data", data.string(), "--out", "declined"});
   if (!std::filesystem::exists(data)) {
     WARN("skipped: no recordings at " << data);
     return;

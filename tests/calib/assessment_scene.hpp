@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "calib/acceptance.hpp"
-#include "calib/assessment.hpp"
+#include "calib/score/acceptance.hpp"
+#include "calib/score/assessment.hpp"
 
 namespace rigcal::calib {
 

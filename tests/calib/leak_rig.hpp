@@ -2,14 +2,14 @@
 
 #include <string>
 
-#include "calib/leak_table.hpp"
-#include "datasets/campaign.hpp"
-#include "datasets/leak_table_settings.hpp"
+#include "calib/published/leak_table.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/leak_table_settings.hpp"
 
 namespace rigcal::test {
 
 inline std::string shake_table_file() {
-  return std::string(RIGCAL_SOURCE_DIR) + "/datasets/uis_shake_table/campaign.toml";
+  return std::string(RIGCAL_SOURCE_DIR) + "/datasets/rigs/uis_shake_table/campaign.toml";
 }
 
 /// The source paper's rig with its published tables.

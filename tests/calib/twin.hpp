@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "calib/fit.hpp"
-#include "calib/problem.hpp"
-#include "datasets/campaign.hpp"
-#include "datasets/model_output.hpp"
+#include "calib/problem/problem.hpp"
+#include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
+#include "datasets/synthetic/model_output.hpp"
 #include "tests/support/paper_rig.hpp"
 
 namespace rigcal::calib {

@@ -1,9 +1,9 @@
 #include <catch2/catch.hpp>
 
-#include "calib/acceptance.hpp"
 #include "calib/fit.hpp"
-#include "calib/multi_start.hpp"
-#include "calib/scorecard.hpp"
+#include "calib/score/acceptance.hpp"
+#include "calib/score/scorecard.hpp"
+#include "calib/search/multi_start.hpp"
 #include "common/error.hpp"
 #include "tests/calib/twin.hpp"
 

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "datasets/campaign.hpp"
+#include "datasets/campaign/campaign.hpp"
 #include "tests/support/replaced.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "datasets/noise.hpp"
+#include "datasets/synthetic/noise.hpp"
 
 namespace rigcal::test {
 

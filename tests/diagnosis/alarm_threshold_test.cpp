@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "datasets/noise.hpp"
+#include "datasets/synthetic/noise.hpp"
 
 using namespace rigcal;
 using diagnosis::alarm_threshold;

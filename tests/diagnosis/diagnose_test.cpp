@@ -2,9 +2,9 @@
 
 #include <catch2/catch.hpp>
 
-#include "calib/leak_table.hpp"
-#include "datasets/single_repeats.hpp"
-#include "datasets/synthetic_repeat.hpp"
+#include "calib/published/leak_table.hpp"
+#include "datasets/prepare/single_repeats.hpp"
+#include "datasets/synthetic/synthetic_repeat.hpp"
 
 using namespace rigcal;
 using datasets::Campaign;
@@ -21,7 +21,7 @@ int row_of(const Campaign& campaign, const char* key) {
 /// The paper's campaign with one signal, few samples and the coefficients of 0, 5, 15 and 25 %.
 Campaign small_campaign() {
   Campaign campaign =
-      datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/uis_shake_table/diagnosis.toml");
+      datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/rigs/uis_shake_table/diagnosis.toml");
   std::erase_if(campaign.conditions, [](const Condition& c) {
     return c.waveform != datasets::Waveform::sine || c.frequency_hz != 1.0;
   });
@@ -112,7 +112,7 @@ TEST_CASE("diagnose: a coefficient of the leak table has the table's share", "[d
   // Two periods from rest: the first is transient, and a share of the record would be another.
   for (const auto waveform : {datasets::Waveform::sine, datasets::Waveform::square}) {
     Campaign campaign =
-        datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/uis_shake_table/diagnosis.toml");
+        datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/rigs/uis_shake_table/diagnosis.toml");
     std::erase_if(campaign.conditions, [&](const Condition& c) {
       return c.waveform != waveform || c.frequency_hz != 0.1 ||
              (c.leak_level != "0 %" && c.leak_level != "66.66 %");

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "datasets/campaign_parameters.hpp"
-#include "datasets/single_repeats.hpp"
-#include "datasets/synthetic_repeat.hpp"
+#include "datasets/campaign/campaign_parameters.hpp"
+#include "datasets/prepare/single_repeats.hpp"
+#include "datasets/synthetic/synthetic_repeat.hpp"
 
 using namespace rigcal;
 using Catch::WithinRel;
@@ -22,7 +22,7 @@ struct HealthySine {
 HealthySine healthy_sine() {
   HealthySine made;
   made.campaign =
-      datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/uis_shake_table/diagnosis.toml");
+      datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/rigs/uis_shake_table/diagnosis.toml");
   std::erase_if(made.campaign.conditions,
                 [](const auto& each) { return each.id != "sine_1Hz_open_0"; });
   made.campaign.conditions.front().duration_s = 2.0;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "datasets/synthetic_repeat.hpp"
+#include "datasets/synthetic/synthetic_repeat.hpp"
 
 using namespace rigcal;
 using datasets::Campaign;
@@ -21,7 +21,7 @@ int leak_row(const Campaign& campaign) {
 /// leak of this coefficient.
 Campaign three_conditions(double coefficient) {
   Campaign campaign =
-      datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/uis_shake_table/diagnosis.toml");
+      datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/rigs/uis_shake_table/diagnosis.toml");
   std::erase_if(campaign.conditions, [](const Condition& c) {
     return c.waveform != datasets::Waveform::sine || c.frequency_hz != 1.0;
   });

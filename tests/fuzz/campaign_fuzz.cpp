@@ -1,6 +1,6 @@
 #include "common/error.hpp"
-#include "datasets/campaign.hpp"
-#include "datasets/leak_table_settings.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/leak_table_settings.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace rigcal;

@@ -1,5 +1,5 @@
 #include "common/error.hpp"
-#include "datasets/campaign.hpp"
+#include "datasets/campaign/campaign.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace rigcal;

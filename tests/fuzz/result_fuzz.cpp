@@ -1,10 +1,10 @@
 #include <optional>
 
 #include "common/error.hpp"
-#include "report/comparison.hpp"
-#include "report/page.hpp"
-#include "report/read_json.hpp"
-#include "report/read_leak_table.hpp"
+#include "report/comparison/comparison.hpp"
+#include "report/leak/read_leak_table.hpp"
+#include "report/page/page.hpp"
+#include "report/store/read_json.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #ifdef RIGCAL_LIBFUZZER
 #include "tests/fuzz/json_mutator.hpp"

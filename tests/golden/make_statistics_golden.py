@@ -200,7 +200,7 @@ def parzen(x):
 
 
 def score_scatter(generator):
-    """calib/sandwich.hpp of one channel, by dense matrices of the samples."""
+    """calib/trust/sandwich.hpp of one channel, by dense matrices of the samples."""
     n = 150
     phase = numpy.linspace(0, 9, n)
     J = rounded(numpy.linalg.qr(numpy.c_[numpy.sin(phase), numpy.exp(-0.5 * phase)])[0])

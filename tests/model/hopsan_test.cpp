@@ -5,8 +5,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/model/two_chamber_rig.hpp"
 #include "tests/support/sanitized.hpp"
-#include "two_chamber_rig.hpp"
 
 // Records of another simulator with known parameters: shared/data/sim_hopsan_leaky_servo.
 

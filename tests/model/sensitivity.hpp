@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "rig.hpp"
+#include "tests/model/rig.hpp"
 #include "tests/support/sanitized.hpp"
 
 // Sensitivities of a scenario against central differences.

@@ -1,4 +1,4 @@
-#include "sensitivity.hpp"
+#include "tests/model/sensitivity.hpp"
 
 using namespace rigcal::model;
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/model/two_chamber_rig.hpp"
 #include "tests/support/sanitized.hpp"
-#include "two_chamber_rig.hpp"
 
 using namespace rigcal::model;
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <stdexcept>
 
-#include "rig.hpp"
+#include "tests/model/rig.hpp"
 
 using namespace rigcal::model;
 using Catch::Contains;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "rig.hpp"
+#include "tests/model/rig.hpp"
 
 namespace rigcal::model {
 

@@ -11,7 +11,7 @@ import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 SMALL_RIG = ROOT / "tests" / "golden" / "resume_study.toml"
-DEMO = ROOT / "datasets" / "uis_shake_table" / "campaign.toml"
+DEMO = ROOT / "datasets" / "rigs" / "uis_shake_table" / "campaign.toml"
 HANGS_S = 60.0
 DOCUMENTED = (1, 2, 3, 4, 5)  # exit codes of a refusal, docs/command-line.md
 

@@ -244,7 +244,7 @@ def check_bad(binary, work):
 
 def check_leak_table(binary, work, sources):
     """The paper's table: every coefficient of leak_table.json is on the page, with its grade."""
-    campaign = sources / "datasets" / "uis_shake_table" / "campaign.toml"
+    campaign = sources / "datasets" / "rigs" / "uis_shake_table" / "campaign.toml"
     check(rigcal(binary, work, "leak-table", campaign, "--out", "leaks") == 0, "leak table")
     path = work / "leaks" / "report.html"
     entries = json.loads((work / "leaks" / "leak_table.json").read_text())["entries"]
@@ -398,7 +398,7 @@ def check_utfsm(binary, work, sources):
     data = recordings(sources, "utfsm_mts_servohydraulic_chirp")
     if data is None:
         return
-    campaign = sources / "datasets" / "utfsm_mts" / "campaign.toml"
+    campaign = sources / "datasets" / "rigs" / "utfsm_mts" / "campaign.toml"
     # One parameter alone, for the time it takes: what is tested is the page.
     status = rigcal(binary, work, "fit", campaign, "--data", data, "--out", "utfsm", "--free", "valve_gain")
     check(status in (0, 1), "fit of UTFSM's machine")
@@ -409,7 +409,7 @@ def check_festo(binary, work, sources):
     data = recordings(sources, "festo_tp511_servo_cylinder")
     if data is None:
         return
-    campaign = sources / "datasets" / "festo_tp511" / "campaign.toml"
+    campaign = sources / "datasets" / "rigs" / "festo_tp511" / "campaign.toml"
     # What is tested is the page, for which the starts of the campaign do; a fit takes longer.
     check(rigcal(binary, work, "validate", campaign, "--data", data, "--out", "festo") in (0, 1), "Festo's machine")
     check_recorded(work / "festo", "validation.json", SECTIONS)

@@ -1,0 +1,162 @@
+#include "calib/problem/evaluation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/problem/loss.hpp"
+#include "calib/problem/triangle.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// Errors of the derivatives leave the gradient of a residual that is noise alone off by a
+/// hundredth of a standard error and more where they are as loose as far from the optimum (decision
+/// 0004).
+constexpr double kLoosenessNearOptimum = 10.0;
+
+}  // namespace
+
+Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t channel,
+                              const RowRange& range, const model::Simulation& run,
+                              const Eigen::VectorXd& slopes, const datasets::FitSettings& settings,
+                              double& square_sum) {
+  const ProblemChannel& data = condition.channels[channel];
+  const auto column = static_cast<Eigen::Index>(channel);
+  const Eigen::Index unknowns = slopes.size();
+  const auto count = static_cast<Eigen::Index>(range.end - range.begin);
+  const bool squared = settings.loss == datasets::Loss::squared;
+  const Eigen::Map<const Eigen::VectorXd> measured(data.measured.data() + range.begin, count);
+  Eigen::MatrixXd rows(count, unknowns + 1);
+  const auto fill = [&](const auto& samples) {
+    const Eigen::VectorXd error = run.outputs(samples, column) - measured;
+    square_sum += error.squaredNorm();
+    Eigen::VectorXd weight = Eigen::VectorXd::Constant(count, 1.0 / data.sd);
+    rows.col(unknowns) = error / data.sd;
+    for (Eigen::Index row = 0; row < count && !squared; ++row) {
+      const LossValue loss = apply_loss(settings.loss, settings.loss_scale, rows(row, unknowns));
+      weight(row) *= loss.slope;
+      rows(row, unknowns) = loss.residual;
+    }
+    for (Eigen::Index j = 0; j < unknowns; ++j) {
+      rows.col(j) = run.sensitivities[channel](samples, j).cwiseProduct(weight) * slopes(j);
+    }
+  };
+  if (count == 0) return rows;
+  const auto first = static_cast<Eigen::Index>(condition.rows[range.begin] - range.first_sample);
+  if (condition.rows[range.end - 1] - condition.rows[range.begin] + 1 == range.end - range.begin) {
+    fill(Eigen::seqN(first, count));  // no gap: in vector registers
+  } else {
+    std::vector<Eigen::Index> samples;
+    for (std::size_t i = range.begin; i < range.end; ++i)
+      samples.push_back(static_cast<Eigen::Index>(condition.rows[i] - range.first_sample));
+    fill(samples);
+  }
+  return rows;
+}
+
+Eigen::VectorXd acting_slopes(const Problem& problem, std::size_t condition,
+                              std::span<const double> z) {
+  const std::vector<int>& acting = problem.map.acting(condition);
+  Eigen::VectorXd slopes(static_cast<Eigen::Index>(acting.size()));
+  for (std::size_t j = 0; j < acting.size(); ++j) {
+    slopes(static_cast<Eigen::Index>(j)) =
+        problem.map.slope(acting[j], z[static_cast<std::size_t>(acting[j])]);
+  }
+  return slopes;
+}
+
+model::SimulationOptions simulation_options(const Problem& problem, std::size_t condition,
+                                            double tolerance, const std::atomic<bool>* cancel) {
+  model::SimulationOptions options;
+  options.method = problem.campaign->simulation.method;
+  options.tolerance = tolerance;
+  options.max_steps = problem.conditions[condition].max_steps;
+  options.max_seconds = problem.campaign->simulation.max_seconds;
+  options.cancel = cancel;
+  return options;
+}
+
+ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
+                                       std::span<const double> z, const std::atomic<bool>* cancel,
+                                       ConditionRows* rows, const Effort& effort) {
+  const ProblemCondition& data = problem.conditions[condition];
+  const datasets::Campaign& campaign = *problem.campaign;
+  auto options =
+      simulation_options(problem, condition, problem.tolerance_of(condition, effort), cancel);
+  if (effort.exact) options.sensitivity_looseness = kLoosenessNearOptimum;
+  const bool slopes_too = effort.derivatives;
+  const model::Simulation run = model::simulate(
+      data.rig, problem.values_at(condition, z), slopes_too ? data.free : std::vector<int>(),
+      data.inputs, data.fit_times(effort), data.outputs, options);
+
+  ConditionEvaluation result;
+  result.status = run.status;
+  result.steps = run.steps + run.rejected_steps;
+  result.failed_at_s = run.failed_at_s;
+  result.reason = run.reason;
+  if (!run.ok()) return result;
+
+  const Eigen::VectorXd slopes =
+      slopes_too ? acting_slopes(problem, condition, z) : Eigen::VectorXd();
+  const Eigen::Index unknowns = slopes.size();
+  const std::size_t count = data.rows_at(effort);
+  const auto samples = static_cast<Eigen::Index>(count);
+  if (rows != nullptr) {
+    const Eigen::Index total = samples * static_cast<Eigen::Index>(data.channels.size());
+    rows->jacobian.resize(total, unknowns);
+    rows->residual.resize(total);
+  }
+  Triangle triangle(unknowns + 1);
+  for (std::size_t k = 0; k < data.channels.size(); ++k) {
+    double square_sum = 0.0;
+    for (std::size_t begin = 0; begin < count; begin += Triangle::kBlock) {
+      const std::size_t end = std::min(begin + Triangle::kBlock, count);
+      Eigen::MatrixXd weighted =
+          weighted_rows(data, k, {begin, end, 0}, run, slopes, campaign.fit, square_sum);
+      if (rows != nullptr) {
+        const Eigen::Index first =
+            static_cast<Eigen::Index>(k) * samples + static_cast<Eigen::Index>(begin);
+        rows->jacobian.middleRows(first, weighted.rows()) = weighted.leftCols(unknowns);
+        rows->residual.segment(first, weighted.rows()) = weighted.col(unknowns);
+      }
+      triangle.add(std::move(weighted));
+    }
+    result.rms.push_back(std::sqrt(square_sum / static_cast<double>(samples)));
+  }
+  result.triangle = triangle.get();
+  if (!result.triangle.allFinite()) {
+    result.status = model::SimulationStatus::not_finite;
+    result.failed_at_s = data.fit_times(effort).back();
+    result.reason = "a residual or its derivative is not finite";
+    result.triangle.resize(0, 0);
+  }
+  return result;
+}
+
+Linearisation linearise(const Problem& problem, const Evaluation& evaluation) {
+  const auto unknowns = static_cast<Eigen::Index>(problem.map.unknowns().size());
+  Triangle total(unknowns + 1);
+  for (std::size_t i = 0; i < evaluation.conditions.size(); ++i) {
+    const Eigen::MatrixXd& part = evaluation.conditions[i].triangle;
+    const std::vector<int>& acting = problem.map.acting(i);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(part.rows(), unknowns + 1);
+    for (std::size_t j = 0; j < acting.size(); ++j)
+      rows.col(acting[j]) = part.col(static_cast<Eigen::Index>(j));
+    rows.col(unknowns) = part.col(part.cols() - 1);
+    total.add(rows);
+  }
+  for (Eigen::Index j = 0; j < unknowns; ++j) {
+    const auto u = static_cast<std::size_t>(j);
+    const auto& prior = problem.map.unknowns()[u].prior;
+    if (!prior) continue;
+    const int unknown = static_cast<int>(j);
+    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, unknowns + 1);
+    row(0, j) = problem.map.slope(unknown, evaluation.z[u]) / prior->sd;
+    row(0, unknowns) =
+        (problem.map.to_physical(unknown, evaluation.z[u]) - prior->mean) / prior->sd;
+    total.add(row);
+  }
+  return {total.get().leftCols(unknowns), total.get().col(unknowns)};
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/problem/problem.hpp"
+
+namespace rigcal::calib {
+
+/// What one condition contributes at one point of the unit box.
+struct ConditionEvaluation {
+  model::SimulationStatus status = model::SimulationStatus::ok;
+  double failed_at_s = 0.0;
+  std::string reason;  ///< in words, if it failed
+  /// Triangle of [J r], shape (acting unknowns + 1)^2: J in unit-box coordinates, r weighted.
+  Eigen::MatrixXd triangle;
+  std::vector<double> rms;  ///< root mean square of simulated minus measured per channel, SI
+  long steps = 0;
+
+  bool ok() const { return status == model::SimulationStatus::ok; }
+  /// Half the sum of squares.
+  double cost() const { return 0.5 * triangle.col(triangle.cols() - 1).squaredNorm(); }
+};
+
+/// Weighted residuals and their Jacobian of one condition, every row of it.
+struct ConditionRows {
+  Eigen::MatrixXd jacobian;  ///< shape (channels * samples that count, acting unknowns)
+  Eigen::VectorXd residual;
+};
+
+/// Samples of a condition that count, [begin, end) of its `rows`, and where the times of a
+/// simulation begin in the record.
+struct RowRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+  std::size_t first_sample = 0;
+};
+
+/// [J r] of one channel over a range: chain rule to the coordinates of the unknowns, weight, loss.
+///
+/// @param slopes      shape (columns of the run's sensitivities): d value / d coordinate
+/// @param square_sum  the squares of simulated minus measured are added to it, SI
+Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t channel,
+                              const RowRange& range, const model::Simulation& run,
+                              const Eigen::VectorXd& slopes, const datasets::FitSettings& settings,
+                              double& square_sum);
+
+/// d value / d z of the unknowns that act in a condition, in their order.
+Eigen::VectorXd acting_slopes(const Problem& problem, std::size_t condition,
+                              std::span<const double> z);
+
+/// How a condition is simulated: the campaign's method and limits at some tolerance.
+model::SimulationOptions simulation_options(const Problem& problem, std::size_t condition,
+                                            double tolerance, const std::atomic<bool>* cancel);
+
+/// Simulates one condition. Residual: (simulated - measured) / sd, then the loss. Never throws for
+/// a point that cannot be simulated. Without derivatives the triangle has the column of residuals
+/// alone.
+///
+/// @param z     shape (unknowns), in the unit box
+/// @param rows  if not null, receives every row
+ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
+                                       std::span<const double> z, const std::atomic<bool>* cancel,
+                                       ConditionRows* rows = nullptr,
+                                       const Effort& effort = Effort::full);
+
+/// All conditions at one point.
+struct Evaluation {
+  std::vector<double> z;
+  std::vector<ConditionEvaluation> conditions;
+  double cost = 0.0;   ///< half the sum of squares, priors included
+  bool ok = false;     ///< every condition could be simulated
+  double share = 1.0;  ///< of the samples that count, those looked at
+  /// The point that was simulated, where the residuals are what its derivatives predict at z.
+  std::vector<double> predicted_from;
+
+  bool simulated() const { return predicted_from.empty(); }
+};
+
+/// Least-squares system of all conditions and priors at one point, as a triangle.
+struct Linearisation {
+  Eigen::MatrixXd jacobian;  ///< shape (unknowns + 1, unknowns), unit-box coordinates
+  Eigen::VectorXd residual;  ///< shape (unknowns + 1); half its squared norm is the cost
+};
+
+/// @param evaluation  one that is ok
+Linearisation linearise(const Problem& problem, const Evaluation& evaluation);
+
+}  // namespace rigcal::calib

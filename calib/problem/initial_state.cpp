@@ -1,0 +1,206 @@
+#include "calib/problem/initial_state.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/draft/start_motion.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Campaign;
+using datasets::Channel;
+using datasets::Condition;
+using datasets::InitialMode;
+using datasets::Record;
+
+/// Smallest half width of bounds for a record that does not move [m, m/s, Pa].
+constexpr double kLeastTravel_m = 1e-6;
+constexpr double kLeastSpeed_m_per_s = 1e-6;
+constexpr double kLeastPressure_pa = 1e3;
+
+/// Recorded mean of a channel; empty if it is not there.
+std::vector<double> recorded(const Record& record, Channel channel) {
+  const auto found = record.channels.find(channel);
+  return found == record.channels.end() ? std::vector<double>{} : found->second.mean;
+}
+
+/// What a sensor of the load pressure reads, from those of both chambers if need be; empty if
+/// neither is there.
+std::vector<double> load_pressure(const Record& record, const model::ParameterValues& values) {
+  if (auto direct = recorded(record, Channel::load_pressure); !direct.empty()) return direct;
+  std::vector<double> a = recorded(record, Channel::pressure_a);
+  const std::vector<double> b = recorded(record, Channel::pressure_b);
+  if (a.empty() || b.empty()) return {};
+  std::transform(a.begin(), a.end(), b.begin(), a.begin(), [&](double p_a, double p_b) {
+    const double P_A = (p_a - values["pressure_a_offset"]) / values["pressure_a_gain"];
+    const double P_B = (p_b - values["pressure_b_offset"]) / values["pressure_b_gain"];
+    return values["load_pressure_gain"] * (P_A - P_B) + values["load_pressure_offset"];
+  });
+  return a;
+}
+
+double initial_mean(const Record& record, const std::vector<double>& signal, double window_s) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < signal.size(); ++i) {
+    if (i > 0 && record.time_s[i] - record.time_s.front() > window_s) break;
+    sum += signal[i];
+    ++count;
+  }
+  return sum / count;
+}
+
+/// Value and slope of a line through the finite samples within `half_width_s` of an instant;
+/// nothing where there are none.
+std::optional<std::pair<double, double>> line_at(const Record& record,
+                                                 const std::vector<double>& signal, double time_s,
+                                                 double half_width_s) {
+  double count = 0.0;
+  double t = 0.0;
+  double y = 0.0;
+  double tt = 0.0;
+  double ty = 0.0;
+  for (std::size_t i = 0; i < signal.size(); ++i) {
+    const double from = record.time_s[i] - time_s;
+    if (std::abs(from) > half_width_s || !std::isfinite(signal[i])) continue;
+    count += 1.0;
+    t += from;
+    y += signal[i];
+    tt += from * from;
+    ty += from * signal[i];
+  }
+  if (count == 0.0) return std::nullopt;
+  const double spread = tt - t * t / count;
+  const double slope = spread > 0.0 ? (ty - t * y / count) / spread : 0.0;
+  return std::pair{(y - slope * t) / count, slope};
+}
+
+double peak_to_peak(const std::vector<double>& signal) {
+  const auto [low, high] = std::minmax_element(signal.begin(), signal.end());
+  return *high - *low;
+}
+
+double fastest_change(const Record& record, const std::vector<double>& signal) {
+  double fastest = 0.0;
+  for (std::size_t i = 1; i < signal.size(); ++i) {
+    fastest = std::max(
+        fastest, std::abs(signal[i] - signal[i - 1]) / (record.time_s[i] - record.time_s[i - 1]));
+  }
+  return fastest;
+}
+
+/// One initial_* parameter: its value from the record, and how far it may lie from there.
+struct Guess {
+  std::string_view key;
+  double value = 0.0;
+  double half_width = 0.0;
+  bool recorded = false;
+};
+
+}  // namespace
+
+InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condition,
+                               const Record& record, const model::ParameterValues& values) {
+  InitialPlan plan;
+  if (campaign.initial == InitialMode::rest) return plan;
+  plan.state = model::InitialState::given;
+  const auto position = record.channels.find(Channel::position);
+  if (position == record.channels.end() || position->second.mean.empty()) {
+    throw InputError(
+        condition.where,
+        fmt::format("condition \"{}\": `initial` is \"{}\", but no position is "
+                    "recorded: expected a position channel, or initial = \"rest\"",
+                    condition.id, campaign.initial == InitialMode::fit ? "fit" : "record"));
+  }
+  const auto& x = position->second.mean;
+  const double window_s = campaign.initial_window_s;
+  const double supply_pa = values["supply_pressure"];
+  std::vector<Guess> guesses{
+      {"initial_position", initial_mean(record, x, window_s),
+       std::max(peak_to_peak(x), kLeastTravel_m), true},
+      {"initial_velocity", 0.0, std::max(fastest_change(record, x), kLeastSpeed_m_per_s), true},
+  };
+  const auto add_pressure = [&](std::string_view key, const std::vector<double>& signal,
+                                double unrecorded_pa) {
+    if (model::parameter_index(campaign.rig.plant, key) < 0) return;
+    if (signal.empty()) {
+      guesses.push_back({key, unrecorded_pa, std::max(supply_pa, kLeastPressure_pa), false});
+    } else {
+      guesses.push_back({key, initial_mean(record, signal, window_s),
+                         std::max(peak_to_peak(signal), kLeastPressure_pa), true});
+    }
+  };
+  add_pressure("initial_load_pressure", load_pressure(record, values), 0.0);
+  add_pressure("initial_pressure_a", recorded(record, Channel::pressure_a), 0.5 * supply_pa);
+  add_pressure("initial_pressure_b", recorded(record, Channel::pressure_b), 0.5 * supply_pa);
+  for (const Guess& guess : guesses) {
+    const int index = model::parameter_index(campaign.rig.plant, guess.key);
+    if (campaign.setting(index) != nullptr || known_in(campaign, condition, index)) continue;
+    if (campaign.initial == InitialMode::record) {
+      if (!guess.recorded) continue;  // the model then starts in equilibrium with the load
+      plan.known.emplace_back(index, guess.value);
+    } else {
+      plan.unknowns.push_back({index, datasets::Scope::condition, condition.id, guess.value,
+                               guess.value - guess.half_width, guess.value + guess.half_width,
+                               std::nullopt, true});
+    }
+  }
+  return plan;
+}
+
+std::string moving_start(const Campaign& campaign, const std::vector<const Condition*>& conditions,
+                         const std::vector<Record>& records) {
+  if (campaign.initial != InitialMode::record) return {};
+  std::vector<std::string> moving;
+  double farthest = 0.0;
+  for (const Condition* condition : conditions) {
+    const auto record = std::find_if(records.begin(), records.end(), [&](const Record& each) {
+      return each.condition == condition->id;
+    });
+    if (record == records.end()) continue;
+    const auto moved = datasets::motion_at_start(
+        record->time_s, recorded(*record, Channel::position), campaign.initial_window_s);
+    if (!moved) continue;
+    moving.push_back(condition->id);
+    farthest = std::max(farthest, *moved);
+  }
+  if (moving.empty()) return {};
+  const std::size_t shown = std::min<std::size_t>(moving.size(), 3);
+  const std::string more = moving.size() > shown ? fmt::format(", ... ({})", moving.size()) : "";
+  moving.resize(shown);
+  return fmt::format(
+      "the position moves by up to {:.3g} m within the initial_window of {:g} s ({}{}), and its "
+      "mean "
+      "there is not where the run starts: expected rest within the window, a shorter one, or "
+      "initial = \"fit\"",
+      farthest, campaign.initial_window_s, fmt::join(moving, ", "), more);
+}
+
+datasets::Overrides recorded_state(const Campaign& campaign, const Record& record,
+                                   const model::ParameterValues& values, double time_s,
+                                   double half_width_s) {
+  datasets::Overrides state;
+  const auto add = [&](std::string_view key, double value) {
+    const int index = model::parameter_index(campaign.rig.plant, key);
+    if (index >= 0) state.emplace_back(index, value);
+  };
+  const auto line = [&](const std::vector<double>& signal) {
+    return line_at(record, signal, time_s, half_width_s);
+  };
+  if (const auto position = line(recorded(record, Channel::position))) {
+    add("initial_position", position->first);
+    add("initial_velocity", position->second / values["position_gain"]);
+  }
+  if (const auto p = line(load_pressure(record, values))) add("initial_load_pressure", p->first);
+  if (const auto p = line(recorded(record, Channel::pressure_a)))
+    add("initial_pressure_a", p->first);
+  if (const auto p = line(recorded(record, Channel::pressure_b)))
+    add("initial_pressure_b", p->first);
+  return state;
+}
+
+}  // namespace rigcal::calib

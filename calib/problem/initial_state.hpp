@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/problem/parameter_map.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
+
+namespace rigcal::calib {
+
+/// Where a simulation of one condition starts.
+struct InitialPlan {
+  model::InitialState state = model::InitialState::rest;
+  datasets::Overrides known;      ///< initial_* values read from the record
+  std::vector<Unknown> unknowns;  ///< initial_* values to be estimated; nuisance
+};
+
+/// What the campaign's `initial` means for one condition:
+///   rest    all states zero;
+///   record  position, and load pressure where pressures are recorded, are their means over the
+///           `initial_window`; the velocity is zero, and an unrecorded load pressure that of
+///           equilibrium with the load;
+///   fit     position, velocity and load pressure are estimated, between bounds from the record:
+///   one
+///           peak-to-peak about the mean of the window, the fastest change between two samples, the
+///           supply pressure (or one peak-to-peak of the recorded load pressure).
+/// Values that the campaign gives or fits itself stay as they are. A load pressure that comes from
+/// both chamber pressures is told without the offsets of their sensors, as `values` has them.
+///
+/// @param values  of the condition: known, fitted before, or the start of an estimate
+/// @throws InputError  record or fit without a recorded position
+InitialPlan plan_initial_state(const datasets::Campaign& campaign,
+                               const datasets::Condition& condition, const datasets::Record& record,
+                               const model::ParameterValues& values);
+
+/// What is wrong with `initial = "record"` where the piston moves within the window, in words;
+/// empty if nothing is.
+std::string moving_start(const datasets::Campaign& campaign,
+                         const std::vector<const datasets::Condition*>& conditions,
+                         const std::vector<datasets::Record>& records);
+
+/// What the initial_* parameters would be for a run that begins in the middle of a record: position
+/// and velocity from a straight line through the samples within `half_width_s` of that instant,
+/// recorded pressures their means there. Of unrecorded position nothing is told.
+///
+/// @param values  of the condition, for the sensors of both pressures
+datasets::Overrides recorded_state(const datasets::Campaign& campaign,
+                                   const datasets::Record& record,
+                                   const model::ParameterValues& values, double time_s,
+                                   double half_width_s);
+
+}  // namespace rigcal::calib

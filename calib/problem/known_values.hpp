@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "datasets/campaign/campaign.hpp"
+
+namespace rigcal::calib {
+
+/// Values in a condition where those of a fit hold in place of the rig's. Values that the campaign
+/// knows for the condition or its leak level go first. Nuisance parameters are left alone.
+///
+/// @throws InputError  a parameter that the campaign fits, or that was fitted per leak level or
+///                     condition, has no value for this one: names it and the levels that exist
+model::ParameterValues values_with(const datasets::Campaign& campaign,
+                                   const datasets::Condition& condition,
+                                   const std::vector<datasets::FittedValue>& fitted);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,153 @@
+#include "calib/problem/parameter_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+using datasets::ParameterSetting;
+using datasets::Scope;
+
+/// Logarithmic where the bounds span more than this ratio.
+constexpr double kLogarithmicRatio = 10.0;
+
+bool is_logarithmic(const Unknown& unknown) {
+  return unknown.lower > 0.0 && unknown.upper > kLogarithmicRatio * unknown.lower;
+}
+
+bool contains(const datasets::Overrides& overrides, int index) {
+  return std::any_of(overrides.begin(), overrides.end(),
+                     [index](const auto& entry) { return entry.first == index; });
+}
+
+Unknown unknown_of(const ParameterSetting& setting, std::string level) {
+  return {setting.index, setting.scope, std::move(level), setting.value,
+          setting.lower, setting.upper, setting.prior,    setting.nuisance};
+}
+
+void check(const Unknown& unknown, std::string_view key, const Location& where) {
+  if (!std::isfinite(unknown.lower) || !std::isfinite(unknown.upper) ||
+      !(unknown.lower < unknown.upper)) {
+    throw InputError(where, fmt::format("{}: bounds {:g} to {:g}, expected finite ones with lower "
+                                        "below upper",
+                                        key, unknown.lower, unknown.upper));
+  }
+  if (!(unknown.start >= unknown.lower && unknown.start <= unknown.upper)) {
+    throw InputError(where, fmt::format("{}: the start {:g} lies outside the bounds {:g} to {:g}",
+                                        key, unknown.start, unknown.lower, unknown.upper));
+  }
+  if (unknown.prior && !(unknown.prior->sd > 0.0 && std::isfinite(unknown.prior->mean))) {
+    throw InputError(where, fmt::format("{}: prior {:g} with prior_sd {:g}, expected a finite "
+                                        "mean and a positive standard deviation",
+                                        key, unknown.prior->mean, unknown.prior->sd));
+  }
+}
+
+}  // namespace
+
+std::string parameter_name(const model::ParameterSpec& spec, datasets::Scope scope,
+                           const std::string& level) {
+  switch (scope) {
+    case datasets::Scope::rig:
+      break;
+    case datasets::Scope::leak_level:
+      return fmt::format("{} (leak level {})", spec.name, level);
+    case datasets::Scope::condition:
+      return fmt::format("{} (condition {})", spec.name, level);
+  }
+  return std::string(spec.name);
+}
+
+bool known_in(const Campaign& campaign, const Condition& condition, int index) {
+  if (contains(condition.overrides, index)) return true;
+  if (!condition.leak_level) return false;
+  const auto level = campaign.leak_levels.find(*condition.leak_level);
+  return level != campaign.leak_levels.end() && contains(level->second, index);
+}
+
+std::string level_in(const Condition& condition, Scope scope, std::string_view parameter) {
+  if (scope == Scope::condition) return condition.id;
+  if (scope == Scope::rig) return {};
+  if (!condition.leak_level) {
+    throw InputError(
+        condition.where,
+        fmt::format("condition \"{}\" has no leak_level, but {} has one value per leak "
+                    "level: expected a leak_level, or a known value in `parameters`",
+                    condition.id, parameter));
+  }
+  return *condition.leak_level;
+}
+
+ParameterMap::ParameterMap(const Campaign& campaign,
+                           const std::vector<const Condition*>& conditions, bool nuisance_only,
+                           const std::vector<Unknown>& extra, const std::vector<int>& repeats) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  std::vector<ParameterSetting> settings = campaign.parameters;
+  std::stable_sort(settings.begin(), settings.end(),
+                   [](const auto& a, const auto& b) { return a.index < b.index; });
+  for (const ParameterSetting& setting : settings) {
+    if (!setting.fit || (nuisance_only && !setting.nuisance)) continue;
+    const auto key = table[static_cast<std::size_t>(setting.index)].key;
+    const std::size_t first = unknowns_.size();
+    for (std::size_t i = 0; i < conditions.size(); ++i) {
+      const Condition* condition = conditions[i];
+      if (known_in(campaign, *condition, setting.index)) continue;
+      std::string level = level_in(*condition, setting.scope, key);
+      const bool present =
+          std::any_of(unknowns_.begin() + static_cast<std::ptrdiff_t>(first), unknowns_.end(),
+                      [&](const Unknown& unknown) { return unknown.level == level; });
+      if (present) continue;
+      unknowns_.push_back(unknown_of(setting, std::move(level)));
+      if (setting.between_repeats && !repeats.empty())
+        unknowns_.back().prior->sd /= std::sqrt(static_cast<double>(repeats[i]));
+    }
+    if (unknowns_.size() > first) check(unknowns_.back(), key, setting.where);
+  }
+  for (const Unknown& unknown : extra) {
+    check(unknown, table[static_cast<std::size_t>(unknown.index)].key, {campaign.file.string()});
+    unknowns_.push_back(unknown);
+  }
+  std::stable_sort(unknowns_.begin(), unknowns_.end(),
+                   [](const Unknown& a, const Unknown& b) { return a.index < b.index; });
+
+  for (const Condition* condition : conditions) {
+    std::vector<int>& acting = acting_.emplace_back();
+    for (std::size_t j = 0; j < unknowns_.size(); ++j) {
+      const Unknown& unknown = unknowns_[j];
+      if (known_in(campaign, *condition, unknown.index)) continue;
+      const bool acts =
+          unknown.scope == Scope::rig ||
+          unknown.level == (unknown.scope == Scope::condition ? condition->id
+                                                              : condition->leak_level.value_or(""));
+      if (acts) acting.push_back(static_cast<int>(j));
+    }
+  }
+}
+
+double ParameterMap::to_physical(int unknown, double z) const {
+  const Unknown& u = unknowns_[static_cast<std::size_t>(unknown)];
+  const double value = is_logarithmic(u)
+                           ? std::exp(std::log(u.lower) + z * std::log(u.upper / u.lower))
+                           : u.lower + z * (u.upper - u.lower);
+  return std::clamp(value, u.lower, u.upper);  // rounding must not leave the hard limits
+}
+
+double ParameterMap::to_unit(int unknown, double value) const {
+  const Unknown& u = unknowns_[static_cast<std::size_t>(unknown)];
+  const double z = is_logarithmic(u) ? std::log(value / u.lower) / std::log(u.upper / u.lower)
+                                     : (value - u.lower) / (u.upper - u.lower);
+  return std::clamp(z, 0.0, 1.0);
+}
+
+double ParameterMap::slope(int unknown, double z) const {
+  const Unknown& u = unknowns_[static_cast<std::size_t>(unknown)];
+  return is_logarithmic(u) ? to_physical(unknown, z) * std::log(u.upper / u.lower)
+                           : u.upper - u.lower;
+}
+
+}  // namespace rigcal::calib

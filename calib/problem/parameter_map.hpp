@@ -1,0 +1,66 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/campaign/campaign.hpp"
+
+namespace rigcal::calib {
+
+/// One unknown of the fit: a parameter of the rig, of one leak level, or of one condition.
+struct Unknown {
+  int index = 0;  ///< row of the plant's parameter table
+  datasets::Scope scope = datasets::Scope::rig;
+  std::string level;  ///< leak level or condition; empty for the rig
+  double start = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+  std::optional<datasets::Prior> prior;
+  bool nuisance = false;
+};
+
+/// True where the condition, or its leak level, has a known value of its own for a parameter: it
+/// goes before any value that holds for the rig, fitted ones too.
+bool known_in(const datasets::Campaign& campaign, const datasets::Condition& condition, int index);
+
+/// The level for which a value of this scope holds in a condition: empty for the rig.
+///
+/// @throws InputError  scope leak_level, and the condition has none
+std::string level_in(const datasets::Condition& condition, datasets::Scope scope,
+                     std::string_view parameter);
+
+/// The unknowns of a set of conditions, in a fixed order (table index, then first appearance of the
+/// level), and which of them act in which condition. Optimiser coordinates z are in [0, 1]: linear
+/// "mass_kg", "leakage_coefficient (leak level 33 %)": a parameter with whose it is.
+std::string parameter_name(const model::ParameterSpec& spec, datasets::Scope scope,
+                           const std::string& level);
+
+/// in the bounds, or in their logarithms where both are positive and span more than a decade.
+class ParameterMap {
+ public:
+  /// @param conditions     those that take part
+  /// @param nuisance_only  true in validation: everything but nuisance parameters keeps its value
+  /// @param extra          unknowns beside those of the campaign (initial states of conditions)
+  /// @param repeats        of how many the record of each condition is the mean; empty: 1
+  /// @throws InputError    a start outside its bounds, bounds that are not finite or empty, a
+  ///                       condition without the leak level that a scope asks for
+  ParameterMap(const datasets::Campaign& campaign,
+               const std::vector<const datasets::Condition*>& conditions, bool nuisance_only,
+               const std::vector<Unknown>& extra = {}, const std::vector<int>& repeats = {});
+
+  const std::vector<Unknown>& unknowns() const { return unknowns_; }
+  /// Positions in unknowns() that act in condition i, in the order of their table index.
+  const std::vector<int>& acting(std::size_t condition) const { return acting_[condition]; }
+
+  double to_physical(int unknown, double z) const;
+  double to_unit(int unknown, double value) const;
+  /// d value / d z
+  double slope(int unknown, double z) const;
+
+ private:
+  std::vector<Unknown> unknowns_;
+  std::vector<std::vector<int>> acting_;
+};
+
+}  // namespace rigcal::calib

@@ -1,0 +1,354 @@
+#include "calib/problem/problem.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "calib/problem/initial_state.hpp"
+#include "calib/problem/known_sd.hpp"
+#include "calib/problem/known_values.hpp"
+#include "datasets/synthetic/model_output.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Campaign;
+using datasets::Channel;
+using datasets::Condition;
+using datasets::Record;
+
+/// First guess of an unknown standard deviation, as a share of the peak-to-peak.
+constexpr double kGuessedNoise = 1e-2;
+/// Tolerance of the simulations where nothing tells the noise, and the largest: cost and gradient
+/// jump by about the tolerance when the steps of a simulation change, which stalls the optimiser.
+constexpr double kDefaultTolerance = 1e-6;
+constexpr double kLeastTolerance = 1e-8;
+/// Largest of a record whose noise lets it be simulated less exactly than others.
+constexpr double kLargestTolerance = 1e-5;
+/// Far from an optimum: less buys no fewer steps of the optimiser.
+constexpr double kCoarseTolerance = 1e-4;
+/// Residuals below this share of the peak-to-peak are no noise: a sensor of 20 bits resolves as
+/// much.
+constexpr double kLeastShare = 1e-6;
+
+const Record& record_of(const Condition& condition, const std::vector<Record>& records) {
+  const auto found = std::find_if(records.begin(), records.end(), [&](const Record& record) {
+    return record.condition == condition.id;
+  });
+  if (found == records.end() || found->time_s.empty()) {
+    throw InputError(condition.where, fmt::format("condition \"{}\" has no record: expected "
+                                                  "`repeats` or `averaged`",
+                                                  condition.id));
+  }
+  return *found;
+}
+
+/// Counts would be taken for metres, pascals and seconds.
+void require_units(const Campaign& campaign, const Condition& condition) {
+  const bool counted =
+      campaign.time_in_counts ||
+      std::any_of(campaign.channels.begin(), campaign.channels.end(), [](const auto& entry) {
+        return entry.second.in_counts && entry.second.role != datasets::ChannelRole::ignore;
+      });
+  if (!counted) return;
+  throw InputError(condition.where,
+                   fmt::format("condition \"{}\": {}", condition.id,
+                               fmt::join(lacks_for_model(campaign, condition), "; ")));
+}
+
+ProblemChannel make_channel(const Campaign& campaign, const ProblemCondition& condition,
+                            Channel channel) {
+  const datasets::Series& series = condition.record->channels.at(channel);
+  ProblemChannel result;
+  result.channel = channel;
+  for (const std::size_t row : condition.rows) {
+    const double value = series.mean.at(row);
+    if (!std::isfinite(value)) {
+      throw InputError(condition.condition->where,
+                       fmt::format("condition \"{}\": sample {} of channel {} at {} s is not a "
+                                   "finite number",
+                                   condition.condition->id, row, datasets::info(channel).key,
+                                   condition.record->time_s[row]));
+    }
+    result.measured.push_back(value);
+  }
+  const auto [low, high] = std::minmax_element(result.measured.begin(), result.measured.end());
+  result.peak_to_peak = *high - *low;
+  result.sd = known_sd(campaign, channel, series);
+  result.sd_known = std::isfinite(result.sd);
+  return result;
+}
+
+/// A channel of unknown noise starts from a share of its own peak-to-peak, or of the largest of
+/// that channel where it is constant.
+void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
+  std::map<Channel, double> largest;
+  for (const ProblemCondition& condition : conditions) {
+    for (const ProblemChannel& channel : condition.channels) {
+      double& range = largest[channel.channel];
+      range = std::max(range, channel.peak_to_peak);
+    }
+  }
+  for (ProblemCondition& condition : conditions) {
+    for (ProblemChannel& channel : condition.channels) {
+      if (channel.sd_known) continue;
+      const double range =
+          channel.peak_to_peak > 0.0 ? channel.peak_to_peak : largest[channel.channel];
+      if (!(range > 0.0)) {
+        throw InputError(
+            condition.condition->where,
+            fmt::format("condition \"{}\": channel {} is constant and neither repeats nor `sd` "
+                        "tell its noise, so it has no weight: expected `sd`, or role = \"ignore\"",
+                        condition.condition->id, datasets::info(channel.channel).key));
+      }
+      channel.sd = kGuessedNoise * range;
+    }
+  }
+}
+
+/// Rows up to a period after the first, where the reference is a sine or a square.
+std::size_t count_first_period(const ProblemCondition& condition) {
+  const Condition& settings = *condition.condition;
+  const bool periodic = settings.waveform == datasets::Waveform::sine ||
+                        settings.waveform == datasets::Waveform::square;
+  if (!periodic || !settings.frequency_hz || !(*settings.frequency_hz > 0.0))
+    return condition.rows.size();
+  const auto& time_s = condition.record->time_s;
+  const double end_s = time_s[condition.rows.front()] + 1.0 / *settings.frequency_hz;
+  const auto last = std::find_if(condition.rows.begin(), condition.rows.end(),
+                                 [&](std::size_t row) { return time_s[row] > end_s; });
+  return static_cast<std::size_t>(last - condition.rows.begin());
+}
+
+ProblemCondition make_condition(const Campaign& campaign, const std::vector<Record>& records,
+                                const Condition& condition,
+                                const std::vector<datasets::FittedValue>* fitted) {
+  ProblemCondition result;
+  require_units(campaign, condition);
+  result.condition = &condition;
+  result.record = &record_of(condition, records);
+  result.rig = campaign.rig;
+  result.values = fitted != nullptr ? values_with(campaign, condition, *fitted)
+                                    : datasets::values_in(campaign, condition);
+  result.inputs = datasets::inputs_of(campaign, condition, result.values, result.record);
+  result.rows = samples_that_count(condition, *result.record);
+  const auto channels = output_channels(campaign, *result.record);
+  if (channels.empty()) {
+    throw InputError(condition.where,
+                     fmt::format("condition \"{}\": no recorded channel can be compared with the "
+                                 "model: expected position, load_pressure, pressure_a, pressure_b "
+                                 "or force with role \"output\"",
+                                 condition.id));
+  }
+  for (const Channel channel : channels) {
+    result.channels.push_back(make_channel(campaign, result, channel));
+    result.outputs.push_back(datasets::model_output(channel).value());
+  }
+  result.first_period_rows = count_first_period(result);
+  // The start point is simulated with this budget; later points with one from the steps it took.
+  result.max_steps = 1'000'000 + 50 * static_cast<long>(result.record->time_s.size());
+  return result;
+}
+
+/// Least standard deviation over peak-to-peak of the outputs of a condition; 0 if one is not known,
+/// infinite if none moves.
+double relative_noise(const ProblemCondition& condition) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ProblemChannel& channel : condition.channels) {
+    if (!channel.sd_known) return 0.0;
+    if (channel.peak_to_peak > 0.0) least = std::min(least, channel.sd / channel.peak_to_peak);
+  }
+  return least;
+}
+
+}  // namespace
+
+std::size_t ProblemCondition::rows_at(const Effort& effort) const {
+  if (effort.whole()) return rows.size();
+  const auto& time_s = record->time_s;
+  const double end_s = time_s[rows.front()] + effort.opening_s;
+  const auto end = rows.begin() + static_cast<std::ptrdiff_t>(first_period_rows);
+  const auto last = std::partition_point(rows.begin(), end,
+                                         [&](std::size_t row) { return time_s[row] <= end_s; });
+  return static_cast<std::size_t>(last - rows.begin());
+}
+
+bool Problem::repeats_itself() const {
+  return std::any_of(conditions.begin(), conditions.end(), [](const ProblemCondition& each) {
+    return each.first_period_rows < each.rows.size();
+  });
+}
+
+double Problem::coarse_tolerance() const { return std::max(kCoarseTolerance, tolerance); }
+
+double Problem::tolerance_of(std::size_t condition, const Effort& effort) const {
+  if (!effort.exact) return coarse_tolerance();
+  if (tolerance_fixed) return tolerance;
+  double least = std::numeric_limits<double>::infinity();
+  for (const ProblemCondition& each : conditions) least = std::min(least, relative_noise(each));
+  const double own = relative_noise(conditions[condition]);
+  if (!(least > 0.0) || !std::isfinite(own)) return tolerance;
+  return std::max(tolerance, std::min(tolerance * (own / least), kLargestTolerance));
+}
+
+double Problem::share_at(const Effort& effort) const {
+  std::size_t seen = 0;
+  std::size_t all = 0;
+  for (const ProblemCondition& each : conditions) {
+    seen += each.rows_at(effort) * each.channels.size();
+    all += each.rows.size() * each.channels.size();
+  }
+  return static_cast<double>(seen) / static_cast<double>(all);
+}
+
+long Problem::residual_count() const {
+  std::size_t count = 0;
+  for (const ProblemCondition& condition : conditions)
+    count += condition.rows.size() * condition.channels.size();
+  for (const Unknown& unknown : map.unknowns()) count += unknown.prior ? 1 : 0;
+  return static_cast<long>(count);
+}
+
+bool Problem::has_estimated_sd() const {
+  return std::any_of(conditions.begin(), conditions.end(), [](const ProblemCondition& condition) {
+    return std::any_of(condition.channels.begin(), condition.channels.end(),
+                       [](const ProblemChannel& channel) { return !channel.sd_known; });
+  });
+}
+
+double Problem::least_sd(const ProblemChannel& channel) const {
+  const double range = channel.peak_to_peak > 0.0 ? channel.peak_to_peak : channel.sd;
+  // Here the errors of the simulations move an estimate by one of its standard errors at most.
+  const double resolved = tolerance * std::sqrt(static_cast<double>(residual_count()));
+  return std::max(kLeastShare, resolved) * range;
+}
+
+double Problem::least_noise() const {
+  double least = 0.0;
+  for (const ProblemCondition& condition : conditions) {
+    for (const ProblemChannel& channel : condition.channels)
+      least = std::max(least, channel.sd_known ? 1.0 : least_sd(channel) / channel.sd);
+  }
+  return least;
+}
+
+model::ParameterValues Problem::values_at(std::size_t condition, std::span<const double> z) const {
+  model::ParameterValues values = conditions[condition].values;
+  for (const int j : map.acting(condition)) {
+    const auto u = static_cast<std::size_t>(j);
+    values.set(map.unknowns()[u].index, map.to_physical(j, z[u]));
+  }
+  return values;
+}
+
+std::vector<double> Problem::to_physical(std::span<const double> z) const {
+  std::vector<double> values(z.size());
+  for (std::size_t j = 0; j < z.size(); ++j) values[j] = map.to_physical(static_cast<int>(j), z[j]);
+  return values;
+}
+
+std::vector<double> Problem::start() const {
+  std::vector<double> z(map.unknowns().size());
+  for (std::size_t j = 0; j < z.size(); ++j)
+    z[j] = map.to_unit(static_cast<int>(j), map.unknowns()[j].start);
+  return z;
+}
+
+const model::ParameterSpec& Problem::spec(std::size_t unknown) const {
+  const auto row = static_cast<std::size_t>(map.unknowns()[unknown].index);
+  return model::parameter_table(campaign->rig.plant)[row];
+}
+
+std::string Problem::name(std::size_t unknown) const {
+  const Unknown& u = map.unknowns()[unknown];
+  return parameter_name(spec(unknown), u.scope, u.level);
+}
+
+std::vector<Channel> output_channels(const Campaign& campaign, const Record& record) {
+  std::vector<Channel> result;
+  for (const auto& [channel, series] : record.channels) {
+    const auto setting = campaign.channels.find(channel);
+    if (!datasets::info(channel).is_output || setting == campaign.channels.end() ||
+        setting->second.role != datasets::ChannelRole::output) {
+      continue;
+    }
+    const auto& listed = campaign.fit.outputs;
+    if (listed.empty() || std::find(listed.begin(), listed.end(), channel) != listed.end())
+      result.push_back(channel);
+  }
+  return result;
+}
+
+std::vector<std::size_t> samples_that_count(const Condition& condition, const Record& record) {
+  const auto& windows = condition.moving_windows ? record.windows : condition.windows;
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const double t = record.time_s[i];
+    const bool counts = windows.empty() || std::any_of(windows.begin(), windows.end(),
+                                                       [t](const datasets::TimeWindow& w) {
+                                                         return t >= w.start_s && t <= w.end_s;
+                                                       });
+    if (counts) rows.push_back(i);
+  }
+  if (rows.empty()) {
+    throw InputError(condition.where,
+                     fmt::format("condition \"{}\": no sample lies inside its windows; the record "
+                                 "goes from {:g} s to {:g} s",
+                                 condition.id, record.time_s.front(), record.time_s.back()));
+  }
+  return rows;
+}
+
+/// An error e of the simulation moves an estimate by up to e sqrt(n) / sd of its standard errors, n
+/// residuals: 0.1 keeps that below a thirtieth or so (the tolerance is an upper bound of e).
+double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, bool estimated) {
+  double least = std::numeric_limits<double>::infinity();
+  std::size_t residuals = 0;
+  for (const ProblemCondition& condition : conditions) {
+    residuals += condition.rows.size() * condition.channels.size();
+    for (const ProblemChannel& channel : condition.channels) {
+      if ((channel.sd_known || estimated) && channel.peak_to_peak > 0.0)
+        least = std::min(least, channel.sd / channel.peak_to_peak);
+    }
+  }
+  if (!std::isfinite(least)) return kDefaultTolerance;
+  return std::clamp(0.1 * least / std::sqrt(static_cast<double>(residuals)), kLeastTolerance,
+                    kDefaultTolerance);
+}
+
+Problem make_problem(const Campaign& campaign, const std::vector<Record>& records,
+                     const std::vector<const Condition*>& conditions, bool nuisance_only,
+                     const std::vector<datasets::FittedValue>* fitted) {
+  std::vector<ProblemCondition> prepared;
+  std::vector<Unknown> initial_unknowns;
+  for (const Condition* condition : conditions) {
+    ProblemCondition& each =
+        prepared.emplace_back(make_condition(campaign, records, *condition, fitted));
+    const InitialPlan plan = plan_initial_state(campaign, *condition, *each.record, each.values);
+    each.rig.initial = plan.state;
+    for (const auto& [index, value] : plan.known) each.values.set(index, value);
+    initial_unknowns.insert(initial_unknowns.end(), plan.unknowns.begin(), plan.unknowns.end());
+  }
+  guess_unknown_sd(prepared);
+  std::vector<int> repeats;
+  for (const ProblemCondition& each : prepared) repeats.push_back(each.record->repeats);
+
+  Problem problem{&campaign,
+                  ParameterMap(campaign, conditions, nuisance_only, initial_unknowns, repeats),
+                  std::move(prepared), campaign.simulation.tolerance.value_or(0.0),
+                  campaign.simulation.tolerance.has_value()};
+  if (!problem.tolerance_fixed) problem.tolerance = tolerance_from_noise(problem.conditions, false);
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    for (const int j : problem.map.acting(i)) {
+      const auto u = static_cast<std::size_t>(j);
+      problem.conditions[i].free.push_back(problem.map.unknowns()[u].index);
+    }
+  }
+  return problem;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,135 @@
+#pragma once
+
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/problem/parameter_map.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
+#include "model/simulate.hpp"
+
+namespace rigcal::calib {
+
+/// What a simulation has to be good for.
+struct Effort {
+  bool derivatives = true;
+  bool exact = false;  ///< as the noise asks for, else to within a standard error or so
+  /// Of each record the samples until so long after the first that counts, of a sine or square
+  /// those of its first period at most. Infinite: all samples.
+  double opening_s = std::numeric_limits<double>::infinity();
+
+  static const Effort cost;  ///< the cost of a start
+  static const Effort coarse;
+  static const Effort full;
+  static constexpr Effort opening(double length_s) { return {true, false, length_s}; }
+
+  bool whole() const { return opening_s == std::numeric_limits<double>::infinity(); }
+  friend bool operator==(const Effort&, const Effort&) = default;
+};
+
+inline constexpr Effort Effort::cost{false, false};
+inline constexpr Effort Effort::coarse{true, false};
+inline constexpr Effort Effort::full{true, true};
+
+/// One recorded channel that the model is compared with.
+struct ProblemChannel {
+  datasets::Channel channel = datasets::Channel::position;
+  std::vector<double> measured;  ///< SI, samples that count
+  double sd = 0.0;               ///< what a residual is divided by, SI
+  bool sd_known = false;         ///< false: estimated from the residual of the fit
+  double peak_to_peak = 0.0;     ///< of `measured`
+};
+
+/// One condition with everything that its simulation needs. Borrows the campaign and the record.
+struct ProblemCondition {
+  const datasets::Condition* condition = nullptr;
+  const datasets::Record* record = nullptr;
+  model::Rig rig;
+  model::ParameterValues values;  ///< of what is not an unknown
+  model::SimulationInputs inputs;
+  std::vector<ProblemChannel> channels;
+  std::vector<model::Output> outputs;  ///< of the channels
+  std::vector<std::size_t> rows;       ///< samples that count (inside the windows)
+  std::vector<int> free;               ///< table indices of the acting unknowns
+  std::size_t first_period_rows = 0;   ///< how many of `rows` tell what periods repeat
+  long max_steps = 0;                  ///< budget of one simulation
+
+  /// How many of `rows` an effort looks at.
+  std::size_t rows_at(const Effort& effort) const;
+  /// Sample times up to the last that counts.
+  std::span<const double> fit_times(const Effort& effort = Effort::full) const {
+    return std::span(record->time_s).first(rows[rows_at(effort) - 1] + 1);
+  }
+};
+
+/// What is to be solved: conditions with records, inputs and weights, and the unknowns.
+struct Problem {
+  const datasets::Campaign* campaign = nullptr;
+  ParameterMap map;
+  std::vector<ProblemCondition> conditions;
+  double tolerance = 0.0;        ///< of the simulations: the least that a condition asks for
+  bool tolerance_fixed = false;  ///< by the campaign
+
+  /// Tolerance of the simulations of a condition: as much above the least as its noise is, in
+  /// shares of the motion, where that is known of all.
+  double tolerance_of(std::size_t condition, const Effort& effort = Effort::full) const;
+  /// Tolerance far from an optimum.
+  double coarse_tolerance() const;
+  /// Share of all residuals that an effort looks at.
+  double share_at(const Effort& effort) const;
+  /// Whether the first periods are less than everything.
+  bool repeats_itself() const;
+  /// Effort that a start deserves: its derivatives help where the optimiser begins with all
+  /// samples.
+  Effort of_starts() const { return repeats_itself() ? Effort::cost : Effort::coarse; }
+  /// Number of weighted residuals, priors included.
+  long residual_count() const;
+  bool has_estimated_sd() const;
+  /// The least standard deviation that may be estimated for a channel, SI.
+  double least_sd(const ProblemChannel& channel) const;
+  /// Least rms of weighted residuals that is to be believed: 1 where the noise of a channel is
+  /// known, else what least_sd() allows.
+  double least_noise() const;
+  /// Values of all parameters in a condition at unit-box coordinates z.
+  model::ParameterValues values_at(std::size_t condition, std::span<const double> z) const;
+  /// SI values of the unknowns.
+  std::vector<double> to_physical(std::span<const double> z) const;
+  /// Unit-box coordinates of the start values.
+  std::vector<double> start() const;
+  /// Row of the parameter table of an unknown.
+  const model::ParameterSpec& spec(std::size_t unknown) const;
+  /// "mass_kg", "leakage_coefficient (leak level 33 %)".
+  std::string name(std::size_t unknown) const;
+};
+
+/// Channels of a record that count as outputs: recorded, role output, and listed in [fit] outputs
+/// if that is given.
+std::vector<datasets::Channel> output_channels(const datasets::Campaign& campaign,
+                                               const datasets::Record& record);
+
+/// Samples of a record that lie inside the condition's windows, or those found from the record; all
+/// if it has none.
+std::vector<std::size_t> samples_that_count(const datasets::Condition& condition,
+                                            const datasets::Record& record);
+
+/// Least tolerance that the noise of the channels asks for, between 1e-8 and 1e-6.
+///
+/// @param estimated  count channels of estimated noise too
+double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, bool estimated);
+
+/// Sets up the problem of some conditions.
+///
+/// @param records        found by their `condition`
+/// @param nuisance_only  true: only nuisance parameters are unknown
+/// @param fitted         values of an earlier fit that hold in place of the rig's; may be null
+/// @throws InputError    a record is missing or has no output channel, no sample counts, a channel
+///                       that is constant and of unknown noise everywhere, a fitted level is
+///                       missing
+Problem make_problem(const datasets::Campaign& campaign,
+                     const std::vector<datasets::Record>& records,
+                     const std::vector<const datasets::Condition*>& conditions, bool nuisance_only,
+                     const std::vector<datasets::FittedValue>* fitted);
+
+}  // namespace rigcal::calib

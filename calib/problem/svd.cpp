@@ -1,0 +1,3 @@
+#include "calib/problem/svd.hpp"
+
+template class Eigen::JacobiSVD<Eigen::MatrixXd>;

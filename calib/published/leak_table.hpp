@@ -1,0 +1,125 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/published/periodic_flow.hpp"
+#include "datasets/campaign/leak_table_settings.hpp"
+#include "metrics/residual_features.hpp"
+
+namespace rigcal::calib {
+
+/// How near a published coefficient the computed one comes.
+enum class LeakGrade { within_10, within_16, outlier, not_published };
+std::string_view to_string(LeakGrade grade);
+
+struct LeakRoot {
+  double coefficient = 0.0;
+  double log_slope = 0.0;  ///< d ln share / d ln coefficient
+  /// Standard error of ln coefficient from that of the rig's values; empty where none is known.
+  std::optional<double> log_error;
+  /// False on a plateau, where 1 % of the share moves the coefficient by more than 5 %.
+  bool determined() const;
+  /// 95 % interval of the coefficient, which is above zero: symmetric in its logarithm.
+  std::optional<std::array<double, 2>> ci95() const;
+};
+
+/// The published coefficient of an entry against the computed one.
+struct LeakComparison {
+  double published = 0.0;
+  double share_percent = 0.0;      ///< at the published coefficient
+  double share_low_percent = 0.0;  ///< at the ends of what its rounding allows
+  double share_high_percent = 0.0;
+  std::optional<double> relative_error_percent;  ///< of the nearest root; absent without a root
+};
+
+/// One cell of the table: a signal and a target share.
+struct LeakEntry {
+  datasets::LeakSignal signal;
+  double target_percent = 0.0;
+  std::vector<LeakRoot> roots;  ///< all, increasing
+  std::optional<LeakComparison> comparison;
+  LeakGrade grade = LeakGrade::not_published;
+  std::string note;  ///< in words: why there is no root, or more than one, or an outlier
+};
+
+/// The published coefficient of the rig without a fault.
+struct NormalEntry {
+  datasets::LeakSignal signal;
+  double coefficient = 0.0;
+  double share_percent = 0.0;  ///< at it
+};
+
+/// One row of the published flows and features, computed.
+struct FeatureRow {
+  datasets::PrintedFeatures printed;
+  double servo_flow_m3_per_s = 0.0;
+  double leak_flow_m3_per_s = 0.0;
+  metrics::ResidualFeatures features;  ///< of the scaled residual: leaking minus healthy position
+  /// Coefficients that give the published leak flow; for the rig without a fault only.
+  std::vector<double> coefficients_for_leak_flow;
+  PeriodicSeries series;  ///< one period, outputs of kFeatureOutputs
+};
+inline constexpr std::array kFeatureOutputs{model::Output::position, model::Output::servo_flow,
+                                            model::Output::leakage_flow, model::Output::work_flow};
+
+/// A combination of values that the tables fix, where the values alone are not.
+struct FixedCombination {
+  std::string_view name;     ///< "loop_gain_per_s"
+  std::string_view formula;  ///< "kp k_sv C_d w sqrt(P_s / rho) / A"
+  std::string_view unit;
+  double value = 0.0;
+};
+
+/// How well the published numbers are met, over all entries that have one.
+struct LeakSummary {
+  int published = 0;
+  int within_10 = 0;
+  int within_16 = 0;                        ///< those within 10 % included
+  std::optional<double> share_rms_percent;  ///< rms of ln(share / target), in percent
+};
+
+struct LeakTable {
+  std::vector<LeakEntry> entries;  ///< signals in their order, targets within
+  std::vector<NormalEntry> normals;
+  std::optional<PeriodicSeries> healthy;  ///< of the feature signal, without a leak
+  std::vector<FeatureRow> features;
+  std::vector<FixedCombination> fixed_combinations;
+  LeakSummary summary;
+};
+
+/// How well the rig's values are known: what a fit says of those that it estimated.
+struct RigUncertainty {
+  std::vector<int> indices;    ///< rows of the parameter table
+  Eigen::MatrixXd covariance;  ///< SI, shape (indices)^2
+};
+
+struct LeakTableOptions {
+  PeriodicOptions periodic;
+  int scan_per_decade = 4;
+  int series_samples = 2000;  ///< of the features' period
+  int threads = 1;            ///< results are the same bits for any number
+  RigUncertainty rig;         ///< empty: coefficients have no interval
+};
+
+/// Computes the table of a rig: per signal and target all leakage coefficients at which that share
+/// of the servo flow leaks, and what was published for it.
+///
+/// Where the rig's values p are estimates with a covariance S, so are the coefficients C at a share
+/// s: from s(C, p) = const follows d ln C / dp = -(d ln s / dp) / (d ln s / d ln C) = g, and the
+/// variance of ln C is g^T S g to first order, to which the numerical error of the share adds.
+///
+/// @param settings  signals, targets, published numbers, assumptions
+/// @throws NoResultError  a simulation that fails or is slow to become periodic: says which and why
+/// @throws InputError     a parameter of the plant has no value
+LeakTable leak_table(const datasets::Campaign& campaign,
+                     const datasets::LeakTableSettings& settings, const LeakTableOptions& options);
+
+/// Loop gain, m / b and leak conductance; those that exist for the rig.
+std::vector<FixedCombination> fixed_combinations(const datasets::Campaign& campaign,
+                                                 const model::ParameterValues& values);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "datasets/campaign/leak_table_settings.hpp"
+#include "model/simulate.hpp"
+
+namespace rigcal::calib {
+
+/// A rig under one periodic drive.
+struct PeriodicDrive {
+  model::Rig rig;
+  datasets::LeakSignal signal;
+};
+
+struct PeriodicOptions {
+  model::SimulationOptions simulation{.tolerance = 1e-5};
+  int periods = 4;             ///< to begin with; a power of two, at least 4
+  int most_periods = 1024;     ///< beyond: not periodic
+  int intervals = 512;         ///< samples per piece of a period, to begin with
+  int most_intervals = 16384;  ///< beyond: not resolved
+  double tolerance = 1e-4;     ///< of the mean flows: what transient and sampling may leave
+};
+
+/// Mean flows of a rig that has become periodic.
+struct PeriodicFlow {
+  double servo_flow_m3_per_s = 0.0;  ///< mean |Q_servo| over the last period
+  double leak_flow_m3_per_s = 0.0;   ///< mean |Q_leak|
+  Eigen::VectorXd servo_slope;       ///< d servo flow / d parameter, shape (free), SI
+  Eigen::VectorXd leak_slope;
+  double saturated = 0.0;  ///< part of the period in which the command is at its limit
+  int periods = 0;         ///< that were simulated from rest
+  int intervals = 0;       ///< per piece
+  std::string failure;     ///< why there is no result; empty if there is one
+
+  bool ok() const { return failure.empty(); }
+  double share() const { return leak_flow_m3_per_s / servo_flow_m3_per_s; }
+};
+
+/// Simulates from rest until the mean flows are periodic, and samples until they are resolved.
+///
+/// Whether a run of n periods is periodic shows in the means f of its periods n/4, n/2 and n: with
+/// a transient a y^k per quarter of the run, f(n/2) - f(n/4) = a y (y - 1) and f(n) - f(n/2) = a
+/// y^2 (y^2 - 1), so that their quotient gives y, and y gives what is left at n. Beyond the
+/// tolerance the run is made twice as long. The sampling is judged by leaving out every other
+/// sample.
+///
+/// @param values  SI; includes the leakage coefficient
+/// @param free    table indices of the slopes that are wanted
+PeriodicFlow periodic_flow(const PeriodicDrive& drive, const model::ParameterValues& values,
+                           std::span<const int> free, const PeriodicOptions& options);
+
+/// One period of a periodic run at equidistant times.
+struct PeriodicSeries {
+  std::vector<double> time_s;  ///< from the start of the period; shape (samples)
+  model::Simulation run;       ///< outputs and their slopes
+};
+
+/// @param periods  after which the run is periodic; the last of them is returned
+PeriodicSeries periodic_series(const PeriodicDrive& drive, const model::ParameterValues& values,
+                               std::span<const int> free, std::span<const model::Output> outputs,
+                               int periods, int samples, const model::SimulationOptions& options);
+
+}  // namespace rigcal::calib

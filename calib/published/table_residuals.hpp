@@ -1,0 +1,66 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "calib/published/leak_table.hpp"
+
+namespace rigcal::calib {
+
+/// The published numbers of a leak table as weighted residuals of its assumptions.
+class TableResiduals {
+ public:
+  /// @param free  indices of the assumptions that vary, kResidualScale among them
+  TableResiduals(const datasets::Campaign& campaign, const datasets::LeakTableSettings& settings,
+                 std::vector<int> free, LeakTableOptions options);
+
+  struct Evaluation {
+    std::string failure;        ///< why there is none; empty if there is one
+    Eigen::VectorXd residuals;  ///< shape (size())
+    Eigen::MatrixXd jacobian;   ///< shape (size(), free), SI; empty if not wanted
+  };
+  /// @param values  of the free assumptions, SI
+  Evaluation evaluate(const std::vector<double>& values, bool with_jacobian);
+
+  std::size_t size() const { return rows_.size(); }
+  /// What a residual is of, and its weight.
+  const std::string& name(std::size_t row) const { return rows_[row].what; }
+  double weight(std::size_t row) const { return rows_[row].weight; }
+
+ private:
+  struct Row {
+    std::string what;
+    double weight = 1.0;
+    std::size_t run = 0;     ///< whose result it is
+    double published = 0.0;  ///< SI, features in their printed unit
+    bool is_share = false;   ///< else `feature`
+    datasets::Feature feature = datasets::Feature::servo_flow;
+  };
+  /// One coefficient under one drive; the first run of a feature signal is the healthy rig.
+  struct Run {
+    PeriodicDrive drive;
+    double coefficient = 0.0;
+    bool with_series = false;
+    PeriodicOptions options;  ///< begins with what the last evaluation needed
+  };
+  struct Outcome {
+    PeriodicFlow flow;
+    PeriodicSeries series;
+  };
+
+  Outcome simulate(Run& run, const model::ParameterValues& values,
+                   const std::vector<int>& free) const;
+  void add_shares();
+  void add_features();
+
+  const datasets::Campaign& campaign_;
+  datasets::LeakTableSettings settings_;
+  std::vector<int> free_;
+  LeakTableOptions options_;
+  std::vector<Run> runs_;
+  std::vector<Row> rows_;
+  std::optional<std::size_t> healthy_;
+};
+
+}  // namespace rigcal::calib

@@ -1,0 +1,53 @@
+#include "calib/result/aspect.hpp"
+
+#include <algorithm>
+
+namespace rigcal::calib {
+namespace {
+
+/// How grave a state is.
+int rank(AspectState state) {
+  switch (state) {
+    case AspectState::fail:
+      return 3;
+    case AspectState::not_assessed:
+      return 2;
+    case AspectState::reservation:
+      return 1;
+    case AspectState::pass:
+      break;
+  }
+  return 0;
+}
+
+}  // namespace
+
+std::string_view to_string(AspectState state) {
+  switch (state) {
+    case AspectState::pass:
+      return "pass";
+    case AspectState::reservation:
+      return "reservation";
+    case AspectState::fail:
+      return "fail";
+    case AspectState::not_assessed:
+      return "not_assessed";
+  }
+  return "";
+}
+
+Reason reason(AspectState state, std::string code, std::string words, std::string subject,
+              std::vector<std::pair<std::string, double>> numbers) {
+  return {state, std::move(code), std::move(subject), std::move(numbers), std::move(words)};
+}
+
+Aspect aspect_of(std::vector<Reason> reasons) {
+  std::stable_sort(reasons.begin(), reasons.end(),
+                   [](const Reason& a, const Reason& b) { return rank(a.state) > rank(b.state); });
+  Aspect aspect;
+  if (!reasons.empty()) aspect.state = reasons.front().state;
+  aspect.reasons = std::move(reasons);
+  return aspect;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "calib/result/model_error.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
+#include "metrics/agreement.hpp"
+#include "metrics/noise_floor.hpp"
+#include "metrics/residual_tests.hpp"
+
+// How well the model agrees with the record of a condition.
+
+namespace rigcal::calib {
+
+/// Agreement of one channel in one condition.
+struct ChannelScore {
+  datasets::Channel channel = datasets::Channel::position;
+  std::optional<metrics::Agreement> agreement;           ///< absent: see `problem`
+  std::optional<metrics::NoiseFloor> noise_floor;        ///< absent where the noise is unknown
+  std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
+  std::string problem;                                   ///< why a metric does not exist, in words
+  /// Of measured minus simulated, over the longest stretch that counts; absent where it is too
+  /// short, or constant.
+  std::optional<metrics::ResidualTests> residual_tests;
+  std::optional<LackOfFit> lack_of_fit;  ///< of a prediction; absent where the noise is unknown
+};
+
+enum class Verdict { pass, warn, fail };
+std::string_view to_string(Verdict verdict);
+
+/// One metric of one channel of a condition against its limit.
+struct LimitCheck {
+  datasets::Channel channel = datasets::Channel::position;
+  std::string metric;
+  std::optional<double> value;  ///< absent: it does not exist, see `words`
+  std::optional<double> limit, warn;
+  Verdict verdict = Verdict::pass;
+  double used = 0.0;  ///< distance of the value from the ideal over that of the limit
+  std::string words;  ///< why WARN or FAIL; empty for PASS
+};
+
+/// Score of one condition, and the series it was computed from.
+struct ConditionScore {
+  std::string id;
+  datasets::Use use = datasets::Use::fit;
+  std::vector<ChannelScore> channels;
+  std::vector<LimitCheck> checks;          ///< of every limit that holds for a channel of it
+  std::optional<Verdict> verdict;          ///< worst of the checks; absent without limits
+  std::vector<std::string> reasons;        ///< of WARN and FAIL, in words
+  std::vector<std::string> data_warnings;  ///< what is doubtful about the recording, in words
+  std::string failure;                     ///< why it could not be simulated; empty if it could
+  std::string not_scored;  ///< why it was not scored although it might be; empty if it was
+  long samples = 0;        ///< that count (inside the windows)
+  std::vector<double> time_s;
+  /// measured mean and simulated value per output channel, whole record
+  std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
+  std::vector<double> drive;  ///< reference [m] or command [V] at time_s
+  /// Simulated flows at time_s [m3/s]; empty if it could not be simulated.
+  std::vector<double> servo_flow_m3_per_s, leakage_flow_m3_per_s;
+  std::vector<bool> in_window;  ///< empty: all
+};
+
+}  // namespace rigcal::calib

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/result/aspect.hpp"
+#include "calib/result/condition_score.hpp"
+#include "calib/result/fitted_parameter.hpp"
+#include "calib/result/model_error.hpp"
+#include "calib/result/search_report.hpp"
+
+namespace rigcal::calib {
+
+/// Everything that a fit found.
+struct Fit {
+  FitStatus status = FitStatus::failed;
+  StoppedIn stopped_in = StoppedIn::nothing;
+  std::string message;  ///< in words: why it stopped, what is not to be trusted
+  double cost = 0.0;    ///< half the sum of squared weighted residuals, priors included
+  long residual_count = 0;
+  double reduced_chi_square = 0.0;  ///< 2 cost / (residuals - rank); about 1 if the noise is all
+  long evaluations = 0;             ///< of all residuals
+  double wall_seconds = 0.0;
+  double tolerance = 0.0;              ///< of the simulations
+  double independent_residuals = 0.0;  ///< what they are worth in the noise model; 0: not known
+  double aic = 0.0,
+         bic = 0.0;  ///< with the independent residuals; to compare models of one campaign
+  std::vector<FittedParameter> parameters;
+  std::vector<LackOfFit> lack_of_fit;  ///< channels of known noise
+  std::optional<bool> misfit;          ///< significant lack of fit; absent: cannot be judged
+  std::optional<BetweenRepeats> between_repeats;  ///< absent: no single repeats
+  std::string interval_advice;                    ///< which interval to believe, and why
+  std::vector<std::string> correlation_names;
+  std::vector<std::string> combinations;  ///< what is fixed where single parameters are not
+  Eigen::MatrixXd correlation;            ///< shape (unknowns that have a standard error)^2
+  int rank = 0;                           ///< of the scaled Jacobian at the optimum
+  std::vector<double> singular_values;
+  std::vector<StartReport> starts;
+  int best_start = 0;
+  std::vector<Basin> basins;      ///< by cost
+  int bootstrap_replicates = 0;   ///< that converged
+  std::string bootstrap_message;  ///< how they were drawn, what went wrong
+  std::vector<HeldOut> cross_validation;
+  std::string agreement;  ///< of the starts, in words; empty for a single one
+  std::vector<SimulationFailure> failures;
+  long failure_count = 0;
+  std::vector<std::string> warnings;
+  std::vector<ConditionScore> conditions;  ///< fit and validate conditions, campaign order
+  Assessment assessment;
+  std::optional<Verdict> verdict;  ///< follows from the assessment
+
+  /// A result that may be used: converged, every parameter finite.
+  bool usable() const;
+  /// The search converged, whatever was stopped after it.
+  bool has_converged() const;
+};
+
+}  // namespace rigcal::calib

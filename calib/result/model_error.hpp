@@ -1,0 +1,50 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "datasets/record.hpp"
+#include "metrics/residual_tests.hpp"
+
+// What the records say of the model: its error against the noise, differences between repeats,
+// predictions of what was left out.
+
+namespace rigcal::calib {
+
+/// Model error of one channel of one condition against its pure error (lack_of_fit.hpp).
+struct LackOfFit : metrics::Judged {
+  std::string condition;
+  datasets::Channel channel = datasets::Channel::position;
+  double ratio = 0.0;         ///< variance of the residual over that of the pure error
+  double freedom = 0.0;       ///< effective degrees of freedom of the residual
+  double pure_freedom = 0.0;  ///< and of the pure error; infinite where `sd` states it
+  bool by_repeats = false;    ///< pure error from repeats; else from `sd`
+  /// Probability of such a ratio, or a larger one, of noise alone. The outcome is that of all tests
+  /// together.
+  double p = 1.0;
+};
+
+/// How the repeats of the fitted conditions differ from one another (between_repeats.hpp).
+struct BetweenRepeats {
+  bool differ = false;  ///< by more than the residuals of their mean tell, at 5 %
+  double p = 1.0;       ///< of the parameter that shows it most, times the number of parameters
+  double ratio = 0.0;   ///< largest of error by the repeats over error by the residuals
+  std::vector<std::string> parameters;  ///< whose interval rests on the repeats
+  std::string cause;      ///< that would explain it: key of a parameter, or "start"; empty: none
+  double cause_sd = 0.0;  ///< of the cause between repeats: relative, of the start in s
+  double cause_explains = 0.0;  ///< share of how the repeats differ, 0 to 1
+};
+
+/// A condition that was left out of the fit and predicted by it.
+struct HeldOut {
+  std::string condition;
+  std::string problem;  ///< why there is no prediction, in words; empty if there is one
+  std::vector<std::pair<datasets::Channel, double>> rms;         ///< of the prediction, SI
+  std::vector<std::pair<datasets::Channel, double>> fitted_rms;  ///< where it took part, SI
+  double largest_shift = 0.0;  ///< of a parameter, in its error; 0 if none has one
+  std::string shifted;         ///< that parameter
+};
+
+}  // namespace rigcal::calib

@@ -1,0 +1,35 @@
+#include "calib/result/search_report.hpp"
+
+namespace rigcal::calib {
+
+std::string_view to_string(FitStatus status) {
+  switch (status) {
+    case FitStatus::converged:
+      return "converged";
+    case FitStatus::stopped:
+      return "stopped";
+    case FitStatus::failed:
+      return "failed";
+  }
+  return "";
+}
+
+std::string_view to_string(StoppedIn stage) {
+  switch (stage) {
+    case StoppedIn::nothing:
+      break;
+    case StoppedIn::starts:
+      return "starts";
+    case StoppedIn::validation:
+      return "validation";
+    case StoppedIn::bootstrap:
+      return "bootstrap";
+    case StoppedIn::profiles:
+      return "profiles";
+    case StoppedIn::cross_validation:
+      return "cross_validation";
+  }
+  return "";
+}
+
+}  // namespace rigcal::calib

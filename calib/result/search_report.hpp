@@ -1,0 +1,51 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+// How the search went.
+
+namespace rigcal::calib {
+
+enum class FitStatus {
+  converged,
+  stopped,  ///< a limit of iterations or time, or a signal: the best so far
+  failed,   ///< no start gave a usable result
+};
+std::string_view to_string(FitStatus status);
+
+/// What a job was at when it was stopped.
+enum class StoppedIn { nothing, starts, validation, bootstrap, profiles, cross_validation };
+std::string_view to_string(StoppedIn stage);
+
+/// One start of a multi-start fit.
+struct StartReport {
+  int number = 1;
+  std::vector<double> start_values;  ///< SI, order of the unknowns
+  std::vector<double> end_values;
+  double initial_cost = 0.0;
+  double final_cost = 0.0;  ///< its last step may be predicted, not simulated
+  int iterations = 0;
+  FitStatus status = FitStatus::failed;
+  std::string message;
+};
+
+/// Converged starts that ended at one point.
+struct Basin {
+  double cost = 0.0;           ///< least of its starts
+  std::vector<int> starts;     ///< numbers, by cost
+  std::vector<double> values;  ///< SI, of its best start
+};
+
+/// A simulation that failed during the fit (first few of each kind are kept, all are counted).
+struct SimulationFailure {
+  std::string condition;
+  std::vector<std::pair<std::string, double>> parameters;  ///< names and SI values of the unknowns
+  double time_s = 0.0;
+  std::string reason;
+  int start = 1;
+};
+
+}  // namespace rigcal::calib

@@ -1,0 +1,98 @@
+#include "calib/score/acceptance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "metrics/metric_table.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+const metrics::MetricSpec& metric(std::string_view name) {
+  const auto found = std::find_if(metrics::kMetrics.begin(), metrics::kMetrics.end(),
+                                  [name](const auto& spec) { return spec.name == name; });
+  if (found == metrics::kMetrics.end())
+    throw std::invalid_argument(fmt::format("judge: no metric is named '{}'", name));
+  return *found;
+}
+
+/// What the noise of the record leaves of a metric to any model; empty where that is not known.
+std::optional<double> floor_of(const ChannelScore& score, std::string_view name) {
+  if (!score.noise_floor) return std::nullopt;
+  if (name == "rho2") return score.noise_floor->rho2;
+  if (name == "ccc") return score.noise_floor->ccc;
+  if (name == "absolute_error_percent") return score.noise_floor->absolute_error_percent;
+  return std::nullopt;
+}
+
+/// Distance of a value from the ideal over that of a bound; infinite beyond a bound that is ideal.
+double used_of(const metrics::MetricSpec& spec, double value, double bound) {
+  const double distance = std::abs(value - metrics::ideal(spec));
+  const double allowed = std::abs(bound - metrics::ideal(spec));
+  if (distance == 0.0) return 0.0;
+  return distance / allowed;
+}
+
+LimitCheck check(const datasets::AcceptanceLimit& limit, const ChannelScore& channel) {
+  LimitCheck result;
+  result.channel = channel.channel;
+  result.metric = limit.metric;
+  result.limit = limit.limit;
+  result.warn = limit.warn;
+  const auto key = datasets::info(channel.channel).key;
+  if (!channel.agreement) {
+    result.verdict = Verdict::fail;
+    result.words = fmt::format("{}: {} does not exist, so that its limit cannot be evaluated ({})",
+                               key, limit.metric, channel.problem);
+    return result;
+  }
+  const metrics::MetricSpec& spec = metric(limit.metric);
+  const double value = (*channel.agreement).*spec.value;
+  result.value = value;
+  const auto beyond = [&](const std::optional<double>& bound) {
+    return bound && !(spec.higher_is_better ? value >= *bound : value <= *bound);
+  };
+  const auto text = [&](double bound) {
+    std::string note;
+    const auto floor = floor_of(channel, limit.metric);
+    if (floor && (spec.higher_is_better ? *floor < bound : *floor > bound))
+      note = fmt::format("; the noise of the record allows {:.6g} at best", *floor);
+    return fmt::format("{}: {} = {:.6g} is {} {:.6g}{}", key, limit.metric, value,
+                       spec.higher_is_better ? "below" : "above", bound, note);
+  };
+  if (beyond(limit.limit)) {
+    result.verdict = Verdict::fail;
+    result.words = text(*limit.limit);
+  } else if (beyond(limit.warn)) {
+    result.verdict = Verdict::warn;
+    result.words = text(*limit.warn);
+  }
+  if (const auto bound = limit.limit ? limit.limit : limit.warn)
+    result.used = used_of(spec, value, *bound);
+  return result;
+}
+
+}  // namespace
+
+void judge(const std::vector<datasets::AcceptanceLimit>& limits, ConditionScore& score) {
+  if (limits.empty()) return;
+  if (!score.failure.empty()) {
+    score.verdict = Verdict::fail;
+    score.reasons.push_back("could not be simulated: " + score.failure);
+    return;
+  }
+  for (const datasets::AcceptanceLimit& limit : limits) {
+    for (const ChannelScore& channel : score.channels) {
+      if (channel.channel != limit.channel) continue;
+      score.checks.push_back(check(limit, channel));
+      const LimitCheck& made = score.checks.back();
+      score.verdict = std::max(score.verdict.value_or(Verdict::pass), made.verdict);
+      if (!made.words.empty()) score.reasons.push_back(made.words);
+    }
+  }
+}
+
+}  // namespace rigcal::calib

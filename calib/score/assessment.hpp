@@ -1,0 +1,26 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+
+#include "calib/result/aspect.hpp"
+#include "calib/result/fit_result.hpp"
+#include "calib/result/origin.hpp"
+
+namespace rigcal::calib {
+
+/// Judges a finished fit or validation: the only place that does. Reports repeat what it says.
+/// The four aspects are judged apart: judge_agreement.hpp, judge_validation.hpp, judge_adequacy.hpp
+/// and judge_parameters.hpp say by what.
+///
+/// @param estimated_from  ids of conditions whose records the values in use were estimated from
+/// @param parameters      of the fit whose values are validated; null: judged from `fit`
+Assessment assess(const datasets::Campaign& campaign, const Fit& fit,
+                  const std::set<std::string>& estimated_from, const Aspect* parameters = nullptr);
+
+/// FAIL where agreement or validation fails, PASS where all four pass, else WARN; none where the
+/// campaign has no limits.
+std::optional<Verdict> verdict_of(const Assessment& assessment);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,104 @@
+#include "calib/score/judge_agreement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calib/score/judge_limits.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Campaign;
+
+/// Without limits, an agreement below this is named: a model that explains less than nine tenths of
+/// the variance does not describe a record by anybody's standard.
+constexpr double kPoorRho2 = 0.9;
+
+/// Limits of the campaign that no scored condition could be held against.
+void judge_unused_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
+  const auto by_campaign = [&](const ConditionScore& score) {
+    const datasets::Condition* condition = campaign.find(score.id);
+    return condition != nullptr && !condition->acceptance && score.failure.empty() &&
+           score.not_scored.empty();
+  };
+  if (std::none_of(fit.conditions.begin(), fit.conditions.end(), by_campaign)) return;
+  for (const datasets::AcceptanceLimit& limit : campaign.acceptance) {
+    const bool used =
+        std::any_of(fit.conditions.begin(), fit.conditions.end(), [&](const auto& score) {
+          return by_campaign(score) &&
+                 std::any_of(score.checks.begin(), score.checks.end(), [&](const auto& check) {
+                   return check.channel == limit.channel && check.metric == limit.metric;
+                 });
+        });
+    if (used) continue;
+    const auto key = datasets::info(limit.channel).key;
+    reasons.push_back(reason(AspectState::fail, "limit_not_evaluable",
+                             fmt::format("the limit of {} of {} was not evaluated: no condition "
+                                         "recorded {}",
+                                         limit.metric, key, key)));
+  }
+}
+
+/// Recordings about which something was found doubtful.
+void judge_recordings(const Fit& fit, std::vector<Reason>& reasons) {
+  const ConditionScore* first = nullptr;
+  std::size_t count = 0;
+  for (const ConditionScore& score : fit.conditions) {
+    if (score.data_warnings.empty()) continue;
+    ++count;
+    if (first == nullptr) first = &score;
+  }
+  if (first == nullptr) return;
+  reasons.push_back(
+      reason(AspectState::reservation, "recording_doubtful",
+             fmt::format("recordings of {} are doubtful; {}: {}", conditions_text(count), first->id,
+                         first->data_warnings.front()),
+             first->id, {{"conditions", static_cast<double>(count)}}));
+}
+
+/// The least rho2 of all signals, where the campaign gives no limits.
+void name_poor_agreement(const Fit& fit, std::vector<Reason>& reasons) {
+  const ConditionScore* where = nullptr;
+  const ChannelScore* worst = nullptr;
+  for (const ConditionScore& score : fit.conditions) {
+    for (const ChannelScore& channel : score.channels) {
+      if (!channel.agreement) continue;
+      if (worst != nullptr && channel.agreement->rho2 >= worst->agreement->rho2) continue;
+      worst = &channel;
+      where = &score;
+    }
+  }
+  if (worst == nullptr) return;
+  const double rho2 = worst->agreement->rho2;
+  const bool poor = rho2 < kPoorRho2;
+  reasons.push_back(reason(AspectState::not_assessed, poor ? "poor_agreement" : "least_agreement",
+                           fmt::format("least agreement: rho2 = {:.4g} of {} in {}{}", rho2,
+                                       datasets::info(worst->channel).key, where->id,
+                                       poor ? ": the model does not describe this record" : ""),
+                           where->id, {{"rho2", rho2}}));
+}
+
+}  // namespace
+
+Aspect judge_agreement(const Campaign& campaign, const Fit& fit) {
+  std::vector<Reason> reasons;
+  if (!has_limits(campaign, fit)) {
+    reasons.push_back(no_limits());
+    name_poor_agreement(fit, reasons);
+    return aspect_of(std::move(reasons));
+  }
+  std::vector<const ConditionScore*> scores;
+  for (const ConditionScore& score : fit.conditions) scores.push_back(&score);
+  judge_limits(scores, reasons);
+  judge_unused_limits(campaign, fit, reasons);
+  judge_recordings(fit, reasons);
+  if (reasons.empty()) {
+    reasons.push_back(
+        reason(AspectState::not_assessed, "not_scored",
+               scores.empty() ? "no condition was scored" : "no scored condition has a limit"));
+  }
+  return aspect_of(std::move(reasons));
+}
+
+}  // namespace rigcal::calib

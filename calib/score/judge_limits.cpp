@@ -1,0 +1,91 @@
+#include "calib/score/judge_limits.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+namespace rigcal::calib {
+namespace {
+
+double largest_use(const ConditionScore& score) {
+  double used = 0.0;
+  for (const LimitCheck& check : score.checks) used = std::max(used, check.used);
+  return used;
+}
+
+/// "37 %", "1.8 %", "over 1000 %".
+std::string percent(double share) {
+  return share > 10.0 ? std::string("over 1000 %") : fmt::format("{:.2g} %", 100.0 * share);
+}
+
+/// Scores in the order of how far they use their tolerances, the worst first.
+std::vector<const ConditionScore*> by_use(const std::vector<const ConditionScore*>& scores) {
+  std::vector<const ConditionScore*> sorted = scores;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) {
+    const auto key = [](const ConditionScore* s) {
+      return std::pair(s->failure.empty() ? 0 : 1, largest_use(*s));
+    };
+    return key(a) > key(b);
+  });
+  return sorted;
+}
+
+}  // namespace
+
+bool has_limits(const datasets::Campaign& campaign, const Fit& fit) {
+  return !campaign.acceptance.empty() ||
+         std::any_of(fit.conditions.begin(), fit.conditions.end(),
+                     [](const ConditionScore& score) { return score.verdict.has_value(); });
+}
+
+Reason no_limits() {
+  return reason(AspectState::not_assessed, "no_limits",
+                "the campaign has no acceptance limits, so that nothing was judged");
+}
+
+void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<Reason>& reasons) {
+  const ConditionScore* nearest = nullptr;
+  std::size_t kept = 0;
+  for (const ConditionScore* score : by_use(scores)) {
+    const std::string words = fmt::format("{}: {}", score->id, fmt::join(score->reasons, "; "));
+    const std::vector<std::pair<std::string, double>> numbers{
+        {"tolerance_used", largest_use(*score)}};
+    if (!score->not_scored.empty()) {
+      reasons.push_back(reason(AspectState::reservation, "not_scored",
+                               fmt::format("{}: not scored ({})", score->id, score->not_scored),
+                               score->id));
+    } else if (!score->failure.empty()) {
+      reasons.push_back(reason(AspectState::fail, "not_simulated", words, score->id));
+    } else if (score->verdict == Verdict::fail) {
+      const bool evaluated = std::all_of(score->checks.begin(), score->checks.end(),
+                                         [](const LimitCheck& check) { return check.value; });
+      reasons.push_back(reason(AspectState::fail,
+                               evaluated ? "limit_broken" : "limit_not_evaluable", words, score->id,
+                               numbers));
+    } else if (score->verdict == Verdict::warn) {
+      reasons.push_back(reason(AspectState::reservation, "limit_near", words, score->id, numbers));
+    } else if (score->verdict) {
+      ++kept;
+      if (nearest == nullptr) nearest = score;
+    }
+  }
+  if (nearest == nullptr) return;
+  const double used = largest_use(*nearest);
+  reasons.push_back(reason(
+      AspectState::pass, "limits_kept",
+      scores.size() == 1
+          ? fmt::format("{} keeps its limits: {} of the tolerance used", nearest->id, percent(used))
+          : fmt::format("{} of {} keep their limits; closest to one: {}, {} of the tolerance used",
+                        kept, conditions_text(scores.size()), nearest->id, percent(used)),
+      nearest->id,
+      {{"conditions", static_cast<double>(scores.size())},
+       {"kept", static_cast<double>(kept)},
+       {"tolerance_used", used}}));
+}
+
+std::string conditions_text(std::size_t count) {
+  return fmt::format("{} condition{}", count, count == 1 ? "" : "s");
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,104 @@
+#include "calib/score/judge_parameters.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/problem/parameter_map.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Campaign;
+
+/// An upper limit is negligible below this share of what the same parameter is elsewhere in the
+/// campaign: the share that makes an estimate weak.
+constexpr double kNegligibleShare = 0.2;
+
+/// The largest size that a parameter has in the result at another level, condition or known value.
+double elsewhere(const Fit& fit, const FittedParameter& parameter) {
+  double largest = 0.0;
+  for (const FittedParameter& each : fit.parameters) {
+    if (&each == &parameter || each.index != parameter.index) continue;
+    if (each.identifiability == Identifiability::bounded) continue;
+    largest = std::max(largest, std::abs(each.value));
+  }
+  return largest;
+}
+
+/// The largest size that a parameter which cannot be told from zero may have (95 %).
+double upper_limit(const FittedParameter& parameter) {
+  return parameter.ci95
+             ? std::max(std::abs(parameter.ci95->first), std::abs(parameter.ci95->second))
+             : HUGE_VAL;
+}
+
+Reason judge_bounded(const Campaign& campaign, const Fit& fit, const FittedParameter& parameter,
+                     const std::string& name) {
+  const double limit = upper_limit(parameter);
+  const auto& stated = campaign.acceptance_bounds.negligible;
+  const auto own = stated.find(parameter.index);
+  const double allowed =
+      own != stated.end() ? own->second : kNegligibleShare * elsewhere(fit, parameter);
+  const bool negligible = limit <= allowed;
+  std::string words = name + ": " + parameter.reason;
+  if (negligible) {
+    words += own != stated.end() ? ", negligible as [acceptance.negligible] states"
+                                 : ", negligible beside its values elsewhere in the campaign";
+  } else if (own != stated.end()) {
+    words += ", more than [acceptance.negligible] allows";
+  } else {
+    words += "; [acceptance.negligible] may state what would not matter";
+  }
+  return reason(negligible ? AspectState::pass : AspectState::reservation, "bounded", words, name,
+                {{"upper_limit", limit}, {"allowed", allowed}});
+}
+
+}  // namespace
+
+Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  std::vector<Reason> reasons;
+  if (!fit.has_converged())
+    reasons.push_back(reason(AspectState::reservation, "not_converged", fit.message));
+  std::size_t estimated = 0;
+  std::size_t identified = 0;
+  for (const FittedParameter& each : fit.parameters) {
+    if (!each.fitted || each.nuisance) continue;
+    ++estimated;
+    const std::string name =
+        parameter_name(table[static_cast<std::size_t>(each.index)], each.scope, each.level);
+    const bool active = each.at_bound && each.identifiability != Identifiability::bounded;
+    if (each.identifiability == Identifiability::bounded) {
+      reasons.push_back(judge_bounded(campaign, fit, each, name));
+    } else if (each.identifiability == Identifiability::identified && !active) {
+      ++identified;
+    } else {
+      const char* code = each.identifiability == Identifiability::not_identifiable
+                             ? "not_identifiable"
+                         : active ? "active_bound"
+                                  : "weak";
+      reasons.push_back(reason(AspectState::reservation, code, name + ": " + each.reason, name));
+    }
+  }
+  if (fit.starts.size() > 1 && !fit.basins.empty() && fit.basins.front().starts.size() < 2) {
+    reasons.push_back(reason(AspectState::reservation, "found_once",
+                             "only one of several starts ended at this point: " + fit.agreement, {},
+                             {{"starts", static_cast<double>(fit.starts.size())}}));
+  }
+  if (estimated == 0) {
+    reasons.push_back(reason(AspectState::pass, "stated_values",
+                             "no parameter was estimated: the values are those of the campaign"));
+  } else if (identified > 0) {
+    reasons.push_back(reason(AspectState::pass, "identified",
+                             fmt::format("{} of {} estimated parameter{} identified", identified,
+                                         estimated, estimated == 1 ? " is" : "s are"),
+                             {},
+                             {{"identified", static_cast<double>(identified)},
+                              {"estimated", static_cast<double>(estimated)}}));
+  }
+  return aspect_of(std::move(reasons));
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,195 @@
+#include "calib/score/scorecard.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "calib/score/acceptance.hpp"
+#include "calib/trust/lack_of_fit.hpp"
+#include "common/parallel.hpp"
+#include "metrics/fundamental.hpp"
+#include "metrics/metric_table.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Condition;
+
+/// Samples [first, first + count) of the longest stretch of the record that counts without a gap.
+std::pair<std::size_t, std::size_t> longest_stretch(const std::vector<std::size_t>& rows) {
+  std::pair<std::size_t, std::size_t> best{0, 0};
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i > 0 && rows[i] != rows[i - 1] + 1) begin = i;
+    if (i + 1 - begin > best.second) best = {begin, i + 1 - begin};
+  }
+  return best;
+}
+
+void add_problem(ChannelScore& score, const std::string& text) {
+  score.problem += score.problem.empty() ? text : "; " + text;
+}
+
+void compare_at_fundamental(const ProblemCondition& condition, std::span<const double> measured,
+                            std::span<const double> simulated, ChannelScore& score) {
+  const Condition& c = *condition.condition;
+  const bool periodic =
+      c.waveform == datasets::Waveform::sine || c.waveform == datasets::Waveform::square;
+  if (!periodic || !c.frequency_hz) return;
+  const auto [first, count] = longest_stretch(condition.rows);
+  const auto time_s = std::span(condition.record->time_s).subspan(condition.rows[first], count);
+  try {
+    const auto found = metrics::compare_fundamentals(
+        time_s, measured.subspan(first, count), simulated.subspan(first, count), *c.frequency_hz);
+    score.gain_ratio = found.gain_ratio;
+    score.phase_deg = found.phase_deg;
+    score.delay_s = found.delay_s;
+  } catch (const std::logic_error& error) {  // no whole period, or no such component
+    add_problem(score, error.what());
+  }
+}
+
+/// Tests of the residual on the longest stretch without a gap.
+std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& condition,
+                                                    std::span<const double> measured,
+                                                    std::span<const double> simulated,
+                                                    std::span<const double> drive) {
+  const auto [first, count] = longest_stretch(condition.rows);
+  if (count < 2) return std::nullopt;
+  std::vector<double> residual;
+  for (std::size_t i = first; i < first + count; ++i)
+    residual.push_back(measured[i] - simulated[i]);
+  const auto& time_s = condition.record->time_s;
+  const std::size_t begin = condition.rows[first];
+  const double interval_s =
+      (time_s[begin + count - 1] - time_s[begin]) / static_cast<double>(count - 1);
+  try {
+    return metrics::residual_tests(residual, drive.subspan(begin, count), interval_s);
+  } catch (const std::logic_error&) {  // too short, or constant
+    return std::nullopt;
+  }
+}
+
+ChannelScore score_channel(const ProblemCondition& condition, const ProblemChannel& channel,
+                           const std::vector<double>& simulated, std::span<const double> drive) {
+  ChannelScore score;
+  score.channel = channel.channel;
+  try {
+    score.agreement = metrics::agreement(channel.measured, simulated);
+  } catch (const std::logic_error& error) {  // constant, or fewer than two samples
+    add_problem(score, error.what());
+  }
+  if (channel.sd_known) {
+    try {
+      score.noise_floor = metrics::noise_floor(channel.measured, channel.sd);
+    } catch (const std::logic_error& error) {
+      add_problem(score, error.what());
+    }
+  }
+  compare_at_fundamental(condition, channel.measured, simulated, score);
+  score.residual_tests = test_residual(condition, channel.measured, simulated, drive);
+  std::vector<double> residual;
+  for (std::size_t i = 0; i < simulated.size(); ++i)
+    residual.push_back(channel.measured[i] - simulated[i]);
+  score.lack_of_fit = lack_of_prediction(condition, channel, residual);
+  return score;
+}
+
+ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<const double> z) {
+  const ProblemCondition& condition = problem.conditions[i];
+  ConditionScore score;
+  score.id = condition.condition->id;
+  score.use = condition.condition->use;
+  score.samples = static_cast<long>(condition.rows.size());
+  score.time_s = condition.record->time_s;
+  if (condition.rows.size() < score.time_s.size()) {
+    score.in_window.assign(score.time_s.size(), false);
+    for (const std::size_t row : condition.rows) score.in_window[row] = true;
+  }
+  model::SimulationOptions options;
+  options.method = problem.campaign->simulation.method;
+  options.tolerance = problem.tolerance;
+  options.max_seconds = problem.campaign->simulation.max_seconds;
+  for (const double t : score.time_s) score.drive.push_back(condition.inputs.drive.value(t));
+  std::vector<model::Output> outputs = condition.outputs;
+  outputs.push_back(model::Output::servo_flow);
+  outputs.push_back(model::Output::leakage_flow);
+  const model::Simulation run = model::simulate(condition.rig, problem.values_at(i, z), {},
+                                                condition.inputs, score.time_s, outputs, options);
+  if (!run.ok()) {
+    score.failure =
+        fmt::format("{} at {:g} s ({})", run.reason, run.failed_at_s, model::to_string(run.status));
+    for (const ProblemChannel& channel : condition.channels)
+      score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean, {}};
+  } else {
+    const auto column = [&](std::size_t k) {
+      const auto values = run.outputs.col(static_cast<Eigen::Index>(k));
+      return std::vector<double>(values.begin(), values.end());
+    };
+    score.servo_flow_m3_per_s = column(outputs.size() - 2);
+    score.leakage_flow_m3_per_s = column(outputs.size() - 1);
+    for (std::size_t k = 0; k < condition.channels.size(); ++k) {
+      const ProblemChannel& channel = condition.channels[k];
+      std::vector<double> whole = column(k);
+      std::vector<double> simulated;
+      for (const std::size_t row : condition.rows) simulated.push_back(whole[row]);
+      score.channels.push_back(score_channel(condition, channel, simulated, score.drive));
+      score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean,
+                                       std::move(whole)};
+    }
+  }
+  judge(problem.campaign->limits(*condition.condition), score);
+  return score;
+}
+
+}  // namespace
+
+std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
+                                             int threads) {
+  std::vector<ConditionScore> scores(problem.conditions.size());
+  parallel_for(scores.size(), threads,
+               [&](std::size_t i) { scores[i] = score_condition(problem, i, z); });
+  return scores;
+}
+
+std::vector<ConditionScore> unscored_conditions(const Problem& problem, const std::string& why) {
+  std::vector<ConditionScore> scores;
+  for (const ProblemCondition& condition : problem.conditions) {
+    ConditionScore& score = scores.emplace_back();
+    score.id = condition.condition->id;
+    score.use = condition.condition->use;
+    score.samples = static_cast<long>(condition.rows.size());
+    score.time_s = condition.record->time_s;
+    score.not_scored = why;
+    for (const double t : score.time_s) score.drive.push_back(condition.inputs.drive.value(t));
+    for (const ProblemChannel& channel : condition.channels)
+      score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean, {}};
+  }
+  return scores;
+}
+
+std::vector<std::string> overfitting_warnings(const std::vector<ConditionScore>& scores) {
+  std::vector<std::string> warnings;
+  for (const ConditionScore& score : scores) {
+    for (const ChannelScore& channel : score.channels) {
+      if (!channel.agreement || !channel.noise_floor || score.samples < 2) continue;
+      // One draw of the noise scatters about its variance by sqrt(2 / n).
+      const double scatter = 5.0 * std::sqrt(2.0 / static_cast<double>(score.samples));
+      const double unexplained = 1.0 - channel.agreement->rho2;
+      const double least = 1.0 - channel.noise_floor->rho2;
+      if (unexplained >= least * (1.0 - std::max(0.2, scatter))) continue;
+      warnings.push_back(fmt::format(
+          "condition \"{}\": {} has rho2 = {:.6g}, better than the {:.6g} that its noise allows "
+          "any "
+          "model: the fit follows the noise (overfitting), or the noise is smaller than its stated "
+          "standard deviation",
+          score.id, datasets::info(channel.channel).key, channel.agreement->rho2,
+          channel.noise_floor->rho2));
+    }
+  }
+  return warnings;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,74 @@
+#include "calib/search/basins.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace rigcal::calib {
+namespace {
+
+constexpr double kSamePoint = 0.1;
+constexpr double kSameCost = 0.02;
+/// Share of the cost by which simulations of one point may differ.
+constexpr double kSimulated = 2e-6;
+
+bool same_point(const std::vector<double>& a, const std::vector<double>& b,
+                const std::vector<FittedParameter>& parameters) {
+  for (std::size_t j = 0; j < a.size() && j < parameters.size(); ++j) {
+    const auto& interval = parameters[j].ci95;
+    if (!interval) continue;
+    if (std::abs(a[j] - b[j]) > kSamePoint * (interval->second - interval->first)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Basin> basins(const std::vector<StartReport>& starts,
+                          const std::vector<FittedParameter>& parameters, double variance) {
+  std::vector<const StartReport*> converged;
+  for (const StartReport& start : starts) {
+    if (start.status == FitStatus::converged) converged.push_back(&start);
+  }
+  std::stable_sort(converged.begin(), converged.end(),
+                   [](const auto* a, const auto* b) { return a->final_cost < b->final_cost; });
+  std::vector<Basin> result;
+  for (const StartReport* start : converged) {
+    const auto home = std::find_if(result.begin(), result.end(), [&](const Basin& basin) {
+      return start->final_cost - basin.cost <=
+                 std::max(kSameCost * variance, kSimulated * basin.cost) &&
+             same_point(start->end_values, basin.values, parameters);
+    });
+    if (home != result.end()) {
+      home->starts.push_back(start->number);
+    } else {
+      result.push_back({start->final_cost, {start->number}, start->end_values});
+    }
+  }
+  return result;
+}
+
+std::string agreement_of(const std::vector<StartReport>& starts, const std::vector<Basin>& basins,
+                         double variance) {
+  if (starts.size() < 2) return {};
+  if (basins.empty()) return fmt::format("none of {} starts converged", starts.size());
+  const auto unfinished = std::count_if(starts.begin(), starts.end(), [](const StartReport& start) {
+    return start.status != FitStatus::converged;
+  });
+  std::string text = fmt::format("{} of {} starts ended at the best point",
+                                 basins.front().starts.size(), starts.size());
+  if (basins.size() > 1) {
+    const double rise = (basins[1].cost - basins.front().cost) / std::max(variance, 1e-300);
+    text += fmt::format(
+        "; {} other {}, the next with a cost higher by {:.3g} (2 would be one "
+        "parameter's 95 % interval)",
+        basins.size() - 1, basins.size() == 2 ? "minimum" : "minima", rise);
+  }
+  if (unfinished > 0) text += fmt::format("; {} did not converge", unfinished);
+  if (basins.front().starts.size() == 1)
+    text += "; no other start confirms the best point: make more starts";
+  return text;
+}
+
+}  // namespace rigcal::calib

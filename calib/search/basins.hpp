@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "calib/result/fitted_parameter.hpp"
+#include "calib/result/search_report.hpp"
+
+namespace rigcal::calib {
+
+/// Gathers converged starts that ended at one point: no parameter farther than a tenth of its
+/// interval from that of the basin's best, parameters without an interval left out, and the cost
+/// higher by no more than 0.02 variances of the residuals (0.2 standard errors), or than two
+/// millionths of itself, which errors of the simulations leave. Ordered by cost,
+/// then by start.
+///
+/// @param parameters  of the fit, in the order of the starts' values
+/// @param variance    of the weighted residuals: 1, or more where the model leaves more than noise
+std::vector<Basin> basins(const std::vector<StartReport>& starts,
+                          const std::vector<FittedParameter>& parameters, double variance);
+
+/// "41 of 64 starts ended at the best point; ...": how far the starts agree, in words.
+std::string agreement_of(const std::vector<StartReport>& starts, const std::vector<Basin>& basins,
+                         double variance);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,241 @@
+#include "calib/search/descend.hpp"
+
+#include <ceres/iteration_callback.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "calib/search/residual.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+constexpr int kMaxCalls = 4;
+/// Standard errors that may be left of a step with coarse simulations: their own errors leave more.
+constexpr double kCoarseOffset = 1.0;
+/// Share of the cost that may be left to gain in an opening: the model then errs by a fraction of
+/// what it leaves anyway.
+constexpr double kOpeningLeaves = 0.05;
+/// Standard errors that may be left with it: in many samples a parameter that is far off, but acts
+/// on few of them, is a small share of the cost.
+constexpr double kOpeningOffset = 10.0;
+/// Relative change of the cost below which coarse simulations tell no more.
+constexpr double kCoarseChange = 1e-4;
+
+/// Whether a parameter that was held at a bound is drawn inwards now.
+bool lets_go(const std::vector<bool>& held, const std::vector<bool>& now) {
+  for (std::size_t j = 0; j < held.size(); ++j) {
+    if (held[j] && !now[j]) return true;
+  }
+  return false;
+}
+
+/// Whether an opening tells no more: the next one, a few times as long, tells much better.
+bool opening_is_told(const Problem& problem, const Evaluator& evaluator,
+                     const OptimumCheck& check) {
+  const Evaluation& best = evaluator.best();
+  const double residuals = best.share * static_cast<double>(problem.residual_count());
+  const bool noise = !problem.has_estimated_sd() && 2.0 * best.cost <= residuals;
+  return noise || (check.reducible <= kOpeningLeaves && check.relative_offset <= kOpeningOffset);
+}
+
+bool near_enough(const Problem& problem, const Evaluator& evaluator, const OptimumCheck& check) {
+  if (evaluator.effort().exact) return check.stationary();
+  return check.relative_offset <= kCoarseOffset ||
+         (!evaluator.effort().whole() && opening_is_told(problem, evaluator, check));
+}
+
+/// Tells of each iteration, and ends the call at a stationary point, when the set of parameters to
+/// be held at a bound has changed for good, on a signal, or at the time limit.
+class Watcher final : public ceres::IterationCallback {
+ public:
+  Watcher(const Problem& problem, const Evaluator& evaluator, const FitOptions& options, int start,
+          int first_iteration, const std::vector<bool>& held)
+      : problem_(problem),
+        evaluator_(evaluator),
+        options_(options),
+        start_(start),
+        first_iteration_(first_iteration),
+        held_(held) {}
+
+  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
+    try {
+      iterations_ = summary.iteration;
+      if (options_.progress) {
+        const double change = summary.cost > 0.0 ? summary.cost_change / summary.cost : 0.0;
+        options_.progress(start_, first_iteration_ + summary.iteration,
+                          summary.cost / problem_.share_at(evaluator_.effort()), change,
+                          summary.cumulative_time_in_seconds);
+      }
+      const OptimumCheck check = check_optimum(problem_, evaluator_.best());
+      stationary_ = near_enough(problem_, evaluator_, check);
+      other_bounds_ = check.held == held_ ? 0 : other_bounds_ + 1;
+      if (lets_go(held_, check.held)) other_bounds_ = kPatience;
+    } catch (...) {
+      error_ = std::current_exception();
+    }
+    const bool stop = error_ != nullptr || stationary_ || bounds_changed() || evaluator_.aborted();
+    return stop ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+  }
+
+  int iterations() const { return iterations_; }
+  bool bounds_changed() const { return other_bounds_ >= kPatience; }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  /// Iterations for which a parameter may touch a bound on its way; off it, it is let go at once.
+  static constexpr int kPatience = 3;
+
+  const Problem& problem_;
+  const Evaluator& evaluator_;
+  const FitOptions& options_;
+  int start_;
+  int first_iteration_;
+  const std::vector<bool>& held_;
+  int iterations_ = 0;
+  int other_bounds_ = 0;
+  bool stationary_ = false;
+  std::exception_ptr error_;
+};
+
+/// One call of Ceres; z is where it starts and its working space.
+ceres::Solver::Summary call_ceres(const Problem& problem, Evaluator& evaluator,
+                                  std::vector<double>& z, const std::vector<bool>& held,
+                                  double trust_radius, int iterations, Watcher& watcher,
+                                  const FitOptions& options) {
+  evaluator.watch(z);
+  ceres::Problem::Options problem_options;
+  problem_options.evaluation_callback = &evaluator;
+  ceres::Problem system(problem_options);
+  const auto& unknowns = problem.map.unknowns();
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    system.AddParameterBlock(&z[j], 1);
+    system.SetParameterLowerBound(&z[j], 0, 0.0);
+    system.SetParameterUpperBound(&z[j], 0, 1.0);
+    if (held[j]) system.SetParameterBlockConstant(&z[j]);
+    if (unknowns[j].prior) {
+      system.AddResidualBlock(new PriorCost(problem.map, static_cast<int>(j), *unknowns[j].prior),
+                              nullptr, &z[j]);
+    }
+  }
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    std::vector<double*> blocks;
+    for (const int j : problem.map.acting(i)) blocks.push_back(&z[static_cast<std::size_t>(j)]);
+    if (blocks.empty()) continue;  // no unknown changes it: a constant of the cost
+    system.AddResidualBlock(new ConditionCost(evaluator, i, blocks.size()), nullptr, blocks);
+  }
+
+  ceres::Solver::Options settings;
+  settings.linear_solver_type = ceres::DENSE_QR;  // the triangles are small
+  settings.num_threads = 1;  // more would add up in another order; conditions run in parallel
+  settings.logging_type = ceres::SILENT;
+  settings.minimizer_progress_to_stdout = false;
+  settings.max_num_iterations = iterations;
+  settings.initial_trust_region_radius = trust_radius;
+  settings.function_tolerance =
+      evaluator.effort().exact ? options.function_tolerance : kCoarseChange;
+  settings.gradient_tolerance = options.gradient_tolerance;
+  settings.parameter_tolerance = options.parameter_tolerance;
+  settings.callbacks.push_back(&watcher);
+  ceres::Solver::Summary summary;
+  ceres::Solve(settings, &system, &summary);
+  return summary;
+}
+
+}  // namespace
+
+std::string describe_failure(const Problem& problem, const Evaluation& evaluation) {
+  for (std::size_t i = 0; i < evaluation.conditions.size(); ++i) {
+    const ConditionEvaluation& each = evaluation.conditions[i];
+    if (each.ok() || each.status == model::SimulationStatus::cancelled) continue;
+    std::vector<std::string> values;
+    for (const int j : problem.map.acting(i)) {
+      const auto u = static_cast<std::size_t>(j);
+      values.push_back(
+          fmt::format("{} = {:g}", problem.name(u), problem.map.to_physical(j, evaluation.z[u])));
+    }
+    return fmt::format("condition \"{}\" cannot be simulated at {:g} s: {} ({}{}{})",
+                       problem.conditions[i].condition->id, each.failed_at_s, each.reason,
+                       model::to_string(each.status), values.empty() ? "" : "; ",
+                       fmt::join(values, ", "));
+  }
+  return "not simulated";
+}
+
+std::string stop_reason(const Evaluator& evaluator, int iterations) {
+  if (evaluator.cancelled()) return "stopped on request";
+  if (evaluator.out_of_time()) return "stopped at the time limit";
+  if (evaluator.out_of_evaluations()) {
+    return fmt::format("stopped after {} evaluations, the most allowed",
+                       evaluator.ledger().evaluations);
+  }
+  return fmt::format("stopped after {} iterations, the most allowed, before it converged",
+                     iterations);
+}
+
+std::string converged_after(int iterations) {
+  return fmt::format("converged after {} iterations", iterations);
+}
+
+SolveResult no_start(const Problem& problem, const Evaluator& evaluator, const Evaluation& first) {
+  SolveResult result;
+  result.status = evaluator.aborted() ? FitStatus::stopped : FitStatus::failed;
+  result.message = evaluator.aborted() ? stop_reason(evaluator, 0)
+                                       : "the start " + describe_failure(problem, first);
+  return result;
+}
+
+SolveResult descend(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
+                    double trust_radius, int iterations, int start, const FitOptions& options) {
+  SolveResult result;
+  const Evaluation first = evaluator.evaluate(z);
+  if (!first.ok) return no_start(problem, evaluator, first);
+  std::vector<bool> held(z.size(), false);
+  int retries = 0;
+  while (retries < kMaxCalls) {
+    Watcher watcher(problem, evaluator, options, start, result.iterations, held);
+    const auto summary = call_ceres(problem, evaluator, z, held, trust_radius,
+                                    std::max(iterations - result.iterations, 0), watcher, options);
+    evaluator.rethrow();
+    watcher.rethrow();
+    result.iterations += watcher.iterations();
+    z = evaluator.best().z;
+    result.check = check_optimum(problem, evaluator.best());
+    const bool agreed = summary.termination_type == ceres::CONVERGENCE;
+    const bool nearly = evaluator.effort().exact ? result.check.nearly_stationary()
+                                                 : !lets_go(held, result.check.held);
+    if (near_enough(problem, evaluator, result.check) || (agreed && nearly)) {
+      result.status = FitStatus::converged;
+      result.message = converged_after(result.iterations);
+      return result;
+    }
+    if (evaluator.aborted() || result.iterations >= iterations) {
+      result.status = FitStatus::stopped;
+      result.message = stop_reason(evaluator, iterations);
+      return result;
+    }
+    result.status = FitStatus::failed;
+    result.message =
+        summary.termination_type == ceres::FAILURE
+            ? "the optimiser gave up: " + summary.message
+            : fmt::format(
+                  "the optimiser says that it converged, but a step of {:.2g} standard "
+                  "errors is left: not a minimum",
+                  result.check.relative_offset);
+    if (!watcher.bounds_changed() || watcher.iterations() == 0) ++retries;
+    trust_radius = kFirstTrustRadius;
+    held = result.check.held;
+    for (std::size_t j = 0; j < z.size(); ++j) {
+      if (held[j]) z[j] = result.check.side[j] == BoundSide::lower ? 0.0 : 1.0;
+    }
+    if (!evaluator.evaluate(z).ok) break;  // not even the bound itself
+  }
+  return result;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <ceres/evaluation_callback.h>
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "calib/problem/evaluation.hpp"
+#include "calib/result/search_report.hpp"
+#include "calib/search/fit_options.hpp"
+
+namespace rigcal::calib {
+
+/// What an evaluator has counted.
+struct EvaluationLedger {
+  long evaluations = 0;
+  long failure_count = 0;
+  std::vector<SimulationFailure> failures;  ///< the first few of each condition and kind
+  std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept;
+};
+
+/// How a point is evaluated.
+struct EvaluationOptions {
+  Effort effort = Effort::full;
+  const std::atomic<bool>* cancel = nullptr;
+  std::vector<ConditionRows>* rows = nullptr;  ///< if not null, receives those of each condition
+};
+
+/// Every condition at z, whatever limits say.
+Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
+                       const EvaluationOptions& options = {});
+
+/// What the derivatives of an evaluation predict at z.
+///
+/// @param from  one that is ok
+Evaluation predict(const Problem& problem, const Evaluation& from, std::span<const double> z);
+
+/// Evaluates all conditions of a problem in parallel and hands the results to Ceres' cost
+/// functions.
+///
+/// Every evaluation carries sensitivities: nearly every trial point becomes the next iterate, whose
+/// Jacobian is then there already, and cost and gradient come from the same steps of the solver.
+/// The last and the best point are kept, so that nothing is computed twice.
+class Evaluator final : public ceres::EvaluationCallback {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  struct Options {
+    int threads = 1;
+    const std::atomic<bool>* cancel = nullptr;
+    std::optional<Clock::time_point> deadline;
+    std::optional<long> max_evaluations;
+  };
+
+  /// Borrows the problem, whose weights may change between solves: call forget() then.
+  Evaluator(const Problem& problem, const Options& options)
+      : problem_(problem), options_(options) {}
+
+  /// The evaluation at z; not ok where a condition could not be simulated, which is recorded.
+  const Evaluation& evaluate(std::span<const double> z);
+  /// The same whatever signals and limits say, not counted beyond them: what a fit has come to when
+  /// it is stopped is judged by all of its records.
+  const Evaluation& conclude(std::span<const double> z);
+
+  /// Simulates no more and no finer than need be. Far from an optimum errors of the simulation are
+  /// nothing against those of the parameters. A change drops what is kept of earlier points.
+  void set_effort(const Effort& effort);
+  const Effort& effort() const { return effort_; }
+
+  /// Begins a start of a multi-start: best() is then the best of this start.
+  void begin_start(int number);
+  /// Drops what is kept of earlier points.
+  void forget();
+  /// The point of lowest cost so far; not ok if there is none.
+  const Evaluation& best() const { return best_; }
+
+  /// Takes the last point for the best, whatever its cost.
+  void take_last() { best_ = last_; }
+  /// Takes what was predicted for the best.
+  void take(Evaluation predicted) { best_ = std::move(predicted); }
+
+  /// Where Ceres keeps the point; read at every PrepareForEvaluation.
+  void watch(std::span<const double> z) { watched_ = z; }
+  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
+  /// The evaluation that PrepareForEvaluation made.
+  const Evaluation& prepared() const { return last_; }
+
+  /// A signal, the time limit or that of evaluations ends the fit.
+  bool out_of_time() const { return options_.deadline && Clock::now() >= *options_.deadline; }
+  bool out_of_evaluations() const {
+    return options_.max_evaluations && ledger_.evaluations >= *options_.max_evaluations;
+  }
+  bool cancelled() const;
+  bool aborted() const { return cancelled() || out_of_time() || out_of_evaluations(); }
+  /// Counts an evaluation that was made elsewhere, and records its failures.
+  void record(const Evaluation& evaluation);
+  /// Throws what an evaluation threw inside Ceres.
+  void rethrow() const;
+
+  const Options& options() const { return options_; }
+  const EvaluationLedger& ledger() const { return ledger_; }
+  /// Goes on counting from there, as after a resumed fit.
+  void set_ledger(EvaluationLedger ledger) { ledger_ = std::move(ledger); }
+
+ private:
+  Evaluation evaluate_now(std::span<const double> z, const std::atomic<bool>* cancel) const;
+  void keep_best();
+
+  const Problem& problem_;
+  Options options_;
+  Evaluation last_;
+  Evaluation best_;
+  std::span<const double> watched_;
+  std::exception_ptr error_;
+  Effort effort_ = Effort::full;
+  int start_ = 1;
+  EvaluationLedger ledger_;
+};
+
+}  // namespace rigcal::calib

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "calib/search/solve.hpp"
+
+namespace rigcal::calib {
+
+/// Latin hypercube: every dimension is cut into `points` strata and each stratum holds one point.
+/// Portable: the same seed gives the same bits on any machine.
+///
+/// @return  `points` vectors of shape (dimensions), in [0, 1)
+std::vector<std::vector<double>> latin_hypercube(std::size_t points, std::size_t dimensions,
+                                                 std::uint64_t seed);
+
+/// All starts of a fit and the best of them.
+struct MultiStart {
+  std::vector<StartReport> starts;
+  int best = 0;  ///< number of the best start, from 1; 0 if none has a point that can be simulated
+  SolveResult result;  ///< of the best start
+  Evaluation optimum;  ///< its end point; not ok if there is none
+};
+
+/// Solves from the campaign's start values (start 1) and from a latin hypercube over the unit box;
+/// nuisance parameters always start at their own start values. A start that fails leaves the others
+/// alone. The best is the converged one of lowest cost, ties by number; without a converged one,
+/// the lowest cost of all.
+MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options);
+
+/// Takes over what the best start ended at into its report.
+void report_best(const Problem& problem, MultiStart& found);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <vector>
+
+#include "calib/problem/evaluation.hpp"
+
+namespace rigcal::calib {
+
+enum class BoundSide { inside, lower, upper };
+
+/// Within this of a face of the unit box a parameter is at its bound.
+inline constexpr double kAtBound = 1e-6;
+
+BoundSide bound_side(double z);
+
+/// Relative size below which a singular value of the column-scaled Jacobian is that of a direction
+/// which the data do not determine: the derivatives themselves are no better (ErrorNorm).
+double rank_threshold(double simulation_tolerance);
+
+/// Whether a point is a minimum in the box, judged by our own measure and not by the optimiser's.
+struct OptimumCheck {
+  std::vector<BoundSide> side;  ///< per unknown
+  std::vector<bool> held;       ///< at a bound, and the cost falls only towards the outside
+  /// Length of the Gauss-Newton step in standard errors, root mean square over the free directions
+  /// (relative offset of Bates and Watts, Technometrics 23, 1981). 0.01: the step that is left is a
+  /// hundredth of what the noise leaves uncertain.
+  double relative_offset = 0.0;
+  double reducible = 0.0;   ///< share of the cost that this step is predicted to take away
+  bool stationary() const;  ///< at most 0.01
+  /// At most 0.05: what rounding of the simulations may leave where the optimiser's own tolerances
+  /// say that nothing is to be gained.
+  bool nearly_stationary() const;
+};
+
+OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation);
+
+}  // namespace rigcal::calib

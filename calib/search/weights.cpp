@@ -1,0 +1,112 @@
+#include "calib/search/weights.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace rigcal::calib {
+namespace {
+
+constexpr int kMaxRounds = 10;
+/// Standard deviations that move by less leave weights, and with them the estimate, all but alone.
+constexpr double kSettled = 0.1;
+
+/// Calls action(channel, rms residual) for every channel of estimated noise.
+template <typename Action>
+void for_each_estimated(Problem& problem, const Evaluation& optimum, const Action& action) {
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    auto& channels = problem.conditions[i].channels;
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      if (!channels[k].sd_known) action(channels[k], optimum.conditions[i].rms[k]);
+    }
+  }
+}
+
+/// Sets every estimated standard deviation to the rms residual, and the tolerance to what that asks
+/// for; returns the largest relative change of a standard deviation.
+double update(Problem& problem, const Evaluation& optimum) {
+  double largest = 0.0;
+  const auto set = [&](ProblemChannel& channel, double rms) {
+    const double sd = std::max(rms, problem.least_sd(channel));
+    largest = std::max(largest, std::abs(sd / channel.sd - 1.0));
+    channel.sd = sd;
+  };
+  for_each_estimated(problem, optimum, set);
+  if (!problem.tolerance_fixed) {
+    // Never coarser again: each change is another cost, which has its minimum elsewhere.
+    problem.tolerance = std::min(problem.tolerance, tolerance_from_noise(problem.conditions, true));
+    for_each_estimated(problem, optimum, set);  // a finer simulation resolves more
+  }
+  return largest;
+}
+
+void warn(Problem& problem, const Evaluation& optimum, bool settled,
+          std::vector<std::string>& warnings) {
+  std::set<std::string> names;
+  int estimated = 0;
+  int unresolved = 0;
+  double share = 0.0;
+  for_each_estimated(problem, optimum, [&](const ProblemChannel& channel, double rms) {
+    names.emplace(datasets::info(channel.channel).key);
+    ++estimated;
+    if (rms >= problem.least_sd(channel)) return;
+    ++unresolved;
+    if (channel.peak_to_peak > 0.0)
+      share = std::max(share, problem.least_sd(channel) / channel.peak_to_peak);
+  });
+  std::vector<std::string> where;
+  for (const ProblemCondition& each : problem.conditions) {
+    if (std::any_of(each.channels.begin(), each.channels.end(),
+                    [](const ProblemChannel& channel) { return !channel.sd_known; }))
+      where.push_back(fmt::format("\"{}\"", each.condition->id));
+  }
+  warnings.push_back(fmt::format(
+      "neither repeats nor `sd` tell the noise of {}: it was estimated from the residual of the "
+      "fit in {}{}; errors of the model count as noise",
+      fmt::join(names, ", "),
+      where.size() == problem.conditions.size() ? std::string("each condition")
+                                                : fmt::format("{}", fmt::join(where, ", ")),
+      settled ? "" : " (and had not settled when the fit ended)"));
+  if (unresolved == 0) return;
+  warnings.push_back(fmt::format(
+      "in {} of {} records the residual is smaller than simulations of tolerance {:.2g} resolve: "
+      "their standard deviation was taken as {:.2g} of the peak-to-peak",
+      unresolved, estimated, problem.tolerance, share));
+}
+
+}  // namespace
+
+void estimate_weights(Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                      MultiStart& found, std::vector<std::string>& warnings) {
+  bool settled = false;
+  FitOptions counting = options;
+  if (options.progress) {  // one count of iterations through all rounds
+    counting.progress = [&](int start, int iteration, double cost, double change, double seconds) {
+      options.progress(start, found.result.iterations + iteration, cost, change, seconds);
+    };
+  }
+  for (int round = 0; round < kMaxRounds && !settled; ++round) {
+    if (found.result.status != FitStatus::converged || evaluator.aborted()) break;
+    settled = update(problem, found.optimum) <= kSettled;
+    evaluator.forget();
+    const int iterations_before = found.result.iterations;
+    found.result =
+        refine(problem, evaluator, found.optimum.z, options.max_iterations, found.best, counting);
+    found.result.iterations += iterations_before;
+    if (!evaluator.best().ok) break;
+    found.optimum = evaluator.best();
+  }
+  if (!settled && evaluator.aborted() && found.result.status == FitStatus::converged) {
+    found.result.status = FitStatus::stopped;
+    found.result.message = "stopped before the noise was estimated";
+  }
+  if (found.result.status == FitStatus::converged)
+    found.result.message = fmt::format("converged after {} iterations", found.result.iterations);
+  warn(problem, found.optimum, settled, warnings);
+  found.result.message += "; noise estimated from the residual";
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,116 @@
+#include "calib/trust/combinations.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "common/unit_product.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// A combination is worth its name if it is this well known, and this much better than its parts.
+constexpr double kWellKnown = 0.2;
+constexpr double kMuchBetter = 1.0 / 3.0;
+constexpr double kRoundedPower = 0.1;
+/// Outside, one of the two is all but alone in what is fixed.
+constexpr double kLeastPower = 0.2;
+constexpr double kMostPower = 5.0;
+constexpr double kNormal95 = 1.96;
+
+struct PowerLaw {
+  std::size_t first = 0;
+  std::size_t second = 0;
+  double power = 1.0;       ///< first / second^power is fixed
+  double half_width = 0.0;  ///< relative, 95 %
+};
+
+std::string short_name(const Problem& problem, std::size_t unknown) {
+  const Unknown& u = problem.map.unknowns()[unknown];
+  const auto key = problem.spec(unknown).key;
+  return u.level.empty() ? std::string(key) : fmt::format("{} ({})", key, u.level);
+}
+
+double simple_power(double power) {
+  for (const double simple : {0.5, 1.0, 2.0}) {
+    if (std::abs(std::abs(power) - simple) < kRoundedPower * simple)
+      return std::copysign(simple, power);
+  }
+  return power;
+}
+
+std::string power_text(const std::string& name, double power) {
+  if (power == 1.0) return name;
+  if (power == 0.5) return "sqrt(" + name + ")";
+  return fmt::format("{}^{:.3g}", name, power);
+}
+
+std::string text_of(const Problem& problem, std::span<const double> z, const PowerLaw& c) {
+  const std::string a = short_name(problem, c.first);
+  const std::string b = short_name(problem, c.second);
+  const double value =
+      problem.map.to_physical(static_cast<int>(c.first), z[c.first]) /
+      std::pow(problem.map.to_physical(static_cast<int>(c.second), z[c.second]), c.power);
+  const std::string unit =
+      unit_product(problem.spec(c.first).unit, problem.spec(c.second).unit, -c.power);
+  return fmt::format("the records fix {}{}{} = {:.3g}{} (to {:.2g} %), not {} and {}", a,
+                     c.power > 0.0 ? "/" : " * ", power_text(b, std::abs(c.power)), value,
+                     unit == "1" ? "" : " " + unit, 100.0 * c.half_width, a, b);
+}
+
+/// The partner with which the unknown makes the best-known product of powers.
+std::optional<PowerLaw> best_partner(const Eigen::MatrixXd& log_spread,
+                                     const std::vector<bool>& counts, std::size_t unknown) {
+  const Eigen::RowVectorXd own = log_spread.row(static_cast<Eigen::Index>(unknown));
+  std::optional<PowerLaw> best;
+  for (std::size_t k = 0; k < counts.size(); ++k) {
+    if (k == unknown || !counts[k]) continue;
+    const Eigen::RowVectorXd other = log_spread.row(static_cast<Eigen::Index>(k));
+    const double square = other.squaredNorm();
+    if (!(square > 0.0)) continue;
+    const double power = simple_power(own.dot(other) / square);
+    const double half_width = kNormal95 * (own - power * other).norm();
+    const bool useful = half_width < kWellKnown &&
+                        half_width < kMuchBetter * kNormal95 * own.norm() &&
+                        std::abs(power) > kLeastPower && std::abs(power) < kMostPower;
+    if (useful && (!best || half_width < best->half_width))
+      best = PowerLaw{unknown, k, power, half_width};
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<std::string> name_combinations(const Problem& problem, std::span<const double> z,
+                                           const Uncertainty& found,
+                                           std::vector<FittedParameter>& parameters) {
+  const std::size_t n = z.size();
+  Eigen::MatrixXd log_spread = found.spread;
+  std::vector<bool> counts(n, false);
+  for (std::size_t j = 0; j < n; ++j) {
+    const int unknown = static_cast<int>(j);
+    const double value = problem.map.to_physical(unknown, z[j]);
+    counts[j] = value > 0.0 && !problem.map.unknowns()[j].nuisance;
+    log_spread.row(unknown) *= counts[j] ? problem.map.slope(unknown, z[j]) / value : 0.0;
+  }
+  std::vector<std::string> words;
+  std::vector<bool> named(n, false);
+  for (std::size_t j = 0; j < n; ++j) {
+    const Identifiability grade = parameters[j].identifiability;
+    const bool determined =
+        grade == Identifiability::identified || grade == Identifiability::bounded;
+    if (!counts[j] || determined) continue;
+    const auto best = best_partner(log_spread, counts, j);
+    if (!best) continue;
+    const std::string text = text_of(problem, z, *best);
+    parameters[j].reason += (parameters[j].reason.empty() ? "" : "; ") + text;
+    if (named[j] && named[best->second]) continue;
+    named[j] = named[best->second] = true;
+    words.push_back(text);
+  }
+  return words;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,238 @@
+#include "calib/trust/identifiability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "common/significant.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+constexpr double kWeak = 0.2;
+constexpr double kNotIdentifiable = 1.0;
+constexpr double kRobustMatters = 1.5;
+/// Below this share of the noise residuals tell of the simulation or of a wrong `sd`, not of noise.
+constexpr double kSuspiciouslySmall = 0.5;
+constexpr double kLeastFreedom = 3.0;
+constexpr double kStrongCorrelation = 0.9;
+
+using datasets::FittedValue;
+using datasets::Scope;
+using model::ParameterKind;
+using model::ParameterSpec;
+
+const ParameterSpec& spec_of(const Problem& problem, int index) {
+  return model::parameter_table(problem.campaign->rig.plant)[static_cast<std::size_t>(index)];
+}
+
+bool zero_is_arbitrary(const ParameterSpec& spec, const Unknown& unknown) {
+  return spec.kind == ParameterKind::sensor || spec.kind == ParameterKind::initial ||
+         (unknown.lower < 0.0 && unknown.upper > 0.0);
+}
+
+bool may_be_absent(const ParameterSpec& spec) {
+  return spec.lower == 0.0 &&
+         (spec.kind == ParameterKind::term || spec.key == "leakage_coefficient");
+}
+
+std::string number(const ParameterSpec& spec, double value) {
+  return spec.unit == "1" ? fmt::format("{:.4g}", value)
+                          : fmt::format("{:.4g} {}", value, spec.unit);
+}
+
+/// "; correlated 0.98 with mass_kg", or nothing.
+std::string partner(const Problem& problem, const Uncertainty& found, std::size_t unknown) {
+  const auto row = static_cast<Eigen::Index>(unknown);
+  Eigen::Index best = -1;
+  for (Eigen::Index k = 0; k < found.correlation.cols(); ++k) {
+    if (k == row || !found.standard_error[static_cast<std::size_t>(k)]) continue;
+    if (best < 0 || std::abs(found.correlation(row, k)) > std::abs(found.correlation(row, best)))
+      best = k;
+  }
+  if (best < 0 || std::abs(found.correlation(row, best)) < kStrongCorrelation) return {};
+  return fmt::format("; correlated {:.3f} with {}", found.correlation(row, best),
+                     problem.name(static_cast<std::size_t>(best)));
+}
+
+void add_reason(FittedParameter& parameter, const std::string& text) {
+  parameter.reason += parameter.reason.empty() ? text : "; " + text;
+}
+
+/// Grade and reason of a parameter that has an interval of this half width: by nothing but the
+/// interval and the value, so that wider bounds change neither.
+void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown, double half_width,
+           FittedParameter& parameter) {
+  const Unknown& u = problem.map.unknowns()[unknown];
+  const ParameterSpec& spec = spec_of(problem, u.index);
+  const bool holds_zero = std::abs(parameter.value) <= half_width;
+  if (holds_zero && may_be_absent(spec)) {
+    parameter.identifiability = Identifiability::bounded;
+    add_reason(parameter, fmt::format("not significantly different from zero: at most {} (95 %)",
+                                      number(spec, parameter.value + half_width)));
+    return;
+  }
+  if (holds_zero && zero_is_arbitrary(spec, u)) {
+    parameter.identifiability = Identifiability::bounded;
+    add_reason(parameter, fmt::format("not significantly different from zero: {} to {} (95 %)",
+                                      number(spec, parameter.value - half_width),
+                                      number(spec, parameter.value + half_width)));
+    return;
+  }
+  const double share =
+      parameter.value != 0.0 ? half_width / std::abs(parameter.value) : kNotIdentifiable * 2.0;
+  if (share > kNotIdentifiable) {
+    parameter.identifiability = Identifiability::not_identifiable;
+  } else if (share > kWeak) {
+    parameter.identifiability = Identifiability::weak;
+  }
+  if (parameter.identifiability == Identifiability::identified) return;
+  add_reason(parameter, fmt::format("half width of the 95 % interval is {:.0f} % of the value{}",
+                                    100.0 * share, partner(problem, found, unknown)));
+}
+
+/// Half width of the 95 % interval, and on which error it rests.
+double choose_interval(const Problem& problem, const Uncertainty& found, std::size_t unknown,
+                       FittedParameter& parameter) {
+  const double plain = *parameter.standard_error;
+  const double robust = parameter.robust_standard_error.value_or(0.0);
+  const double freedom = found.robust_freedom[unknown];
+  const double least = kSuspiciouslySmall * problem.least_noise();
+  const bool unresolved = found.reduced_chi_square < least * least;
+  if (!(robust > 0.0) || unresolved || (freedom < kLeastFreedom && robust < plain)) {
+    parameter.interval = IntervalSource::standard_error;
+    return student_t(found.freedom) * plain;
+  }
+  parameter.interval = IntervalSource::robust_standard_error;
+  if (robust > kRobustMatters * plain) {
+    add_reason(parameter,
+               fmt::format("{}: the robust error, on which the "
+                           "interval rests, is {} times the plain one",
+                           found.from_repeats[unknown] ? "repeats differ from one another"
+                                                       : "residuals are autocorrelated",
+                           significant(robust / plain, 2)));
+  }
+  return found.robust_quantile[unknown] * robust;
+}
+
+/// On which bound the estimate lies, and whether the cost presses against it.
+void describe_bound(const Problem& problem, const OptimumCheck& check, std::size_t unknown,
+                    FittedParameter& parameter) {
+  const BoundSide side = check.side[unknown];
+  if (side == BoundSide::inside) return;
+  const Unknown& u = problem.map.unknowns()[unknown];
+  parameter.at_bound = true;
+  const bool lower = side == BoundSide::lower;
+  const std::string text =
+      fmt::format("at its {} bound {} ({})", lower ? "lower" : "upper",
+                  number(spec_of(problem, u.index), lower ? u.lower : u.upper),
+                  parameter.identifiability == Identifiability::not_identifiable
+                      ? "the records do not determine it"
+                  : check.held[unknown] ? "active: the fit would improve beyond it"
+                                        : "the fit would not improve beyond it");
+  parameter.reason = parameter.reason.empty() ? text : text + "; " + parameter.reason;
+}
+
+/// Whether a value of an earlier fit is that of one of the problem's conditions at least.
+bool holds_somewhere(const Problem& problem, const FittedValue& value) {
+  return std::any_of(
+      problem.conditions.begin(), problem.conditions.end(), [&](const ProblemCondition& each) {
+        const datasets::Condition& condition = *each.condition;
+        if (known_in(*problem.campaign, condition, value.index)) return false;
+        if (value.scope == Scope::rig) return true;
+        return value.level ==
+               (value.scope == Scope::condition ? condition.id : condition.leak_level.value_or(""));
+      });
+}
+
+FittedParameter known(int index, Scope scope, std::string level, double value) {
+  FittedParameter parameter;
+  parameter.index = index;
+  parameter.scope = scope;
+  parameter.level = std::move(level);
+  parameter.value = value;
+  parameter.start = value;
+  parameter.lower = value;
+  parameter.upper = value;
+  return parameter;
+}
+
+}  // namespace
+
+std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Evaluation& optimum,
+                                               const OptimumCheck& check,
+                                               const Uncertainty& found) {
+  std::vector<FittedParameter> result;
+  for (std::size_t j = 0; j < optimum.z.size(); ++j) {
+    const Unknown& u = problem.map.unknowns()[j];
+    const ParameterSpec& spec = spec_of(problem, u.index);
+    FittedParameter& parameter = result.emplace_back();
+    parameter.index = u.index;
+    parameter.scope = u.scope;
+    parameter.level = u.level;
+    parameter.value = problem.map.to_physical(static_cast<int>(j), optimum.z[j]);
+    parameter.start = u.start;
+    parameter.lower = u.lower;
+    parameter.upper = u.upper;
+    parameter.fitted = true;
+    parameter.nuisance = u.nuisance;
+    parameter.standard_error = found.standard_error[j];
+    parameter.robust_standard_error = found.robust_standard_error[j];
+    if (parameter.standard_error) {
+      const double half_width = choose_interval(problem, found, j, parameter);
+      parameter.ci95 = {std::max(spec.lower, parameter.value - half_width),
+                        std::min(spec.upper, parameter.value + half_width)};
+      grade(problem, found, j, half_width, parameter);
+    } else {
+      parameter.identifiability = Identifiability::not_identifiable;
+      parameter.reason = found.reason[j];
+    }
+    describe_bound(problem, check, j, parameter);
+  }
+  return result;
+}
+
+bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
+                    const std::vector<double>& z, std::size_t unknown) {
+  constexpr double kMost = 0.7;  // of the error: half of the variance
+  const auto row = static_cast<Eigen::Index>(unknown);
+  const auto& error = uncertainty.standard_error[unknown];
+  if (!error || uncertainty.known.names.empty()) return false;
+  const double slope = problem.map.slope(static_cast<int>(unknown), z[unknown]);
+  return slope * uncertainty.known.response.row(row).norm() > kMost * *error;
+}
+
+std::vector<FittedParameter> describe_known(const Problem& problem,
+                                            const std::vector<FittedValue>* values) {
+  const datasets::Campaign& campaign = *problem.campaign;
+  std::vector<FittedParameter> result;
+  for (const auto& setting : campaign.parameters) {
+    const auto of_setting = [&](const auto& each) { return each.index == setting.index; };
+    const auto& unknowns = problem.map.unknowns();
+    if (std::any_of(unknowns.begin(), unknowns.end(), of_setting)) continue;
+    if (values == nullptr || std::none_of(values->begin(), values->end(), of_setting)) {
+      result.push_back(known(setting.index, Scope::rig, {}, setting.value));
+      continue;
+    }
+    for (const FittedValue& each : *values) {
+      if (of_setting(each) && holds_somewhere(problem, each))
+        result.push_back(known(each.index, each.scope, each.level, each.value));
+    }
+  }
+  std::set<std::string> levels;
+  for (const ProblemCondition& each : problem.conditions) {
+    const datasets::Condition& condition = *each.condition;
+    for (const auto& [index, value] : condition.overrides)
+      result.push_back(known(index, Scope::condition, condition.id, value));
+    if (!condition.leak_level || !levels.insert(*condition.leak_level).second) continue;
+    const auto level = campaign.leak_levels.find(*condition.leak_level);
+    if (level == campaign.leak_levels.end()) continue;
+    for (const auto& [index, value] : level->second)
+      result.push_back(known(index, Scope::leak_level, *condition.leak_level, value));
+  }
+  return result;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,178 @@
+#include "calib/trust/information.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/problem/svd.hpp"
+#include "calib/problem/triangle.hpp"
+#include "calib/search/optimum.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+constexpr double kLost = 0.1;
+constexpr double kAtBest95 = 1.96;
+constexpr double kTold = 0.2;
+constexpr double kTriedPrior = 0.05;      // relative standard deviation of a prior that is tried
+constexpr double kPressureNoise = 0.003;  // of the supply pressure, that of a plain sensor
+constexpr double kTriedSeconds = 5.0;
+constexpr std::size_t kMostSamples = 5000;
+constexpr std::size_t kMostPriors = 2;
+
+bool tells(const Problem& problem, std::span<const double> z, const Eigen::MatrixXd& jacobian,
+           std::size_t target) {
+  const auto sd = cramer_rao(problem, z, jacobian)[target];
+  const double value = problem.map.to_physical(static_cast<int>(target), z[target]);
+  return relative_half_width(sd, value).value_or(2.0 * kTold) < kTold;
+}
+
+Eigen::MatrixXd above(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd both(a.rows() + b.rows(), a.cols());
+  both << a, b;
+  return both;
+}
+
+/// Weighted sensitivities of one output of a condition; empty where it cannot be simulated.
+Eigen::MatrixXd tried_rows(const Problem& problem, std::size_t i, std::span<const double> z,
+                           const model::SimulationInputs& inputs, std::span<const double> time_s,
+                           model::Output output, double sd) {
+  const ProblemCondition& condition = problem.conditions[i];
+  model::SimulationOptions options;
+  options.method = problem.campaign->simulation.method;
+  options.tolerance = problem.tolerance;
+  options.max_seconds = problem.campaign->simulation.max_seconds;
+  const std::vector<model::Output> outputs{output};
+  const auto run = model::simulate(condition.rig, problem.values_at(i, z), condition.free, inputs,
+                                   time_s, outputs, options);
+  if (!run.ok()) return {};
+  const std::vector<int>& acting = problem.map.acting(i);
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(time_s.size()),
+                                               static_cast<Eigen::Index>(z.size()));
+  for (std::size_t j = 0; j < acting.size(); ++j) {
+    const double slope = problem.map.slope(acting[j], z[static_cast<std::size_t>(acting[j])]);
+    rows.col(acting[j]) =
+        run.sensitivities[0].col(static_cast<Eigen::Index>(j)).head(rows.rows()) * slope / sd;
+  }
+  return rows;
+}
+
+Eigen::MatrixXd as_triangle(const Eigen::MatrixXd& rows) {
+  Triangle triangle(rows.cols());
+  triangle.add(rows);
+  return triangle.get();
+}
+
+void try_priors(const Problem& problem, std::span<const double> z, const Eigen::MatrixXd& jacobian,
+                std::size_t target, std::vector<std::string>& words) {
+  for (std::size_t j = 0; j < z.size() && words.size() < kMostPriors; ++j) {
+    const Unknown& unknown = problem.map.unknowns()[j];
+    const double value = problem.map.to_physical(static_cast<int>(j), z[j]);
+    if (unknown.nuisance || unknown.prior || j == target || value == 0.0) continue;
+    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, jacobian.cols());
+    row(0, static_cast<Eigen::Index>(j)) =
+        problem.map.slope(static_cast<int>(j), z[j]) / (kTriedPrior * std::abs(value));
+    if (tells(problem, z, above(jacobian, row), target))
+      words.push_back(fmt::format("a prior on {} ({:g} %)", problem.name(j), 100.0 * kTriedPrior));
+  }
+}
+
+void try_pressure(const Problem& problem, std::span<const double> z,
+                  const Eigen::MatrixXd& jacobian, std::size_t target,
+                  std::vector<std::string>& words) {
+  Eigen::MatrixXd total = jacobian;
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    const ProblemCondition& condition = problem.conditions[i];
+    const bool recorded =
+        std::any_of(condition.channels.begin(), condition.channels.end(),
+                    [](const auto& each) { return each.channel != datasets::Channel::position; });
+    if (recorded) return;
+    const double sd = kPressureNoise * problem.values_at(i, z)["supply_pressure"];
+    const Eigen::MatrixXd rows = tried_rows(problem, i, z, condition.inputs, condition.fit_times(),
+                                            model::Output::load_pressure, sd);
+    if (rows.size() > 0) total = above(total, as_triangle(rows));
+  }
+  if (tells(problem, z, total, target)) words.emplace_back("a recorded load pressure");
+}
+
+void try_signals(const Problem& problem, std::span<const double> z, const Eigen::MatrixXd& jacobian,
+                 std::size_t target, std::vector<std::string>& words) {
+  // Like the condition that knows the most unknowns, with another signal.
+  std::size_t like = 0;
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    if (problem.map.acting(i).size() > problem.map.acting(like).size()) like = i;
+  }
+  const ProblemCondition& condition = problem.conditions[like];
+  const datasets::Condition& c = *condition.condition;
+  const auto& time_s = condition.record->time_s;
+  if (!c.amplitude || !c.frequency_hz || time_s.size() < 2) return;
+  const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  std::vector<double> times;
+  while (times.size() < kMostSamples && step_s * static_cast<double>(times.size()) <= kTriedSeconds)
+    times.push_back(step_s * static_cast<double>(times.size()));
+  const ProblemChannel& channel = condition.channels.front();
+  for (const double frequency_hz : {0.1, 1.0, 10.0}) {
+    // No faster than what the rig was seen to do.
+    const double amplitude = *c.amplitude * std::min(1.0, *c.frequency_hz / frequency_hz);
+    for (const bool square : {false, true}) {
+      model::SimulationInputs inputs = condition.inputs;
+      inputs.drive = square ? model::Signal::square(amplitude, frequency_hz)
+                            : model::Signal::sine(amplitude, frequency_hz);
+      const Eigen::MatrixXd rows =
+          tried_rows(problem, like, z, inputs, times, condition.outputs.front(), channel.sd);
+      if (rows.size() == 0 || !tells(problem, z, above(jacobian, as_triangle(rows)), target))
+        continue;
+      words.push_back(
+          fmt::format("a {} of {:g} Hz (amplitude {:.3g} {}, {:.3g} s)",
+                      square ? "square wave" : "sine", frequency_hz, amplitude,
+                      problem.campaign->rig.controller == model::ControllerKind::pid ? "m" : "V",
+                      times.back()));
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<const double> z,
+                                              const Eigen::MatrixXd& jacobian) {
+  const Eigen::Index n = jacobian.cols();
+  std::vector<std::optional<double>> result(static_cast<std::size_t>(n));
+  const Eigen::VectorXd norms = jacobian.colwise().norm();
+  Eigen::MatrixXd scaled = jacobian;
+  for (Eigen::Index j = 0; j < n; ++j) {
+    if (norms(j) > 0.0) scaled.col(j) /= norms(j);
+  }
+  Svd svd(scaled, Eigen::ComputeFullV | Eigen::ComputeThinU);
+  svd.setThreshold(rank_threshold(problem.tolerance));
+  const Eigen::Index rank = svd.rank();
+  const Eigen::MatrixXd& V = svd.matrixV();
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const bool lost = rank < n && V.row(j).tail(n - rank).cwiseAbs().maxCoeff() > kLost;
+    if (lost || !(norms(j) > 0.0)) continue;
+    const double length =
+        (V.row(j).head(rank).array() / svd.singularValues().head(rank).transpose().array())
+            .matrix()
+            .norm();
+    const auto u = static_cast<std::size_t>(j);
+    result[u] = problem.map.slope(static_cast<int>(j), z[u]) * length / norms(j);
+  }
+  return result;
+}
+
+std::optional<double> relative_half_width(const std::optional<double>& sd, double value) {
+  if (!sd || value == 0.0) return std::nullopt;
+  return kAtBest95 * *sd / std::abs(value);
+}
+
+std::vector<std::string> remedies(const Problem& problem, std::span<const double> z,
+                                  const Eigen::MatrixXd& jacobian, std::size_t target) {
+  std::vector<std::string> words;
+  try_priors(problem, z, jacobian, target, words);
+  try_pressure(problem, z, jacobian, target, words);
+  try_signals(problem, z, jacobian, target, words);
+  return words;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/problem/problem.hpp"
+
+namespace rigcal::calib {
+
+/// What a Jacobian of weighted residuals (rows any, one column per unknown, unit box) tells of each
+/// unknown: Cramer-Rao standard deviation, SI, white noise, all unknowns free. Empty where it takes
+/// part in a direction that the rows do not determine.
+std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<const double> z,
+                                              const Eigen::MatrixXd& jacobian);
+
+/// Half width of the 95 % interval of such a standard deviation, as a share of the value; empty
+/// without one, or where the value is 0.
+std::optional<double> relative_half_width(const std::optional<double>& sd, double value);
+
+/// What would tell unknowns that the records do not: for each target the simplest additions that
+/// bring its interval below 20 % of the value, in words: "a prior on mass_kg (5 %)", "a recorded
+/// load pressure", "a square wave of 10 Hz" (the first two priors, the slowest signal). Each is
+/// tried alone, by simulation at z. Empty where none of them would do.
+///
+/// @param jacobian  of all conditions and priors
+std::vector<std::string> remedies(const Problem& problem, std::span<const double> z,
+                                  const Eigen::MatrixXd& jacobian, std::size_t target);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,212 @@
+#include "calib/trust/interval_advice.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "calib/trust/lack_of_fit.hpp"
+#include "common/significant.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// Effective share of the residuals below which correlation is worth a word.
+constexpr double kCorrelated = 0.5;
+/// Widths and halves that differ by less agree: a bootstrap of 1000 knows its own to 5 %.
+constexpr double kAgrees = 1.25;
+
+double width(const std::pair<double, double>& interval) { return interval.second - interval.first; }
+
+/// Share by which the longer half of an interval exceeds the other.
+double skewness(double value, const std::pair<double, double>& interval) {
+  const double below = value - interval.first;
+  const double above = interval.second - value;
+  if (!(below > 0.0) || !(above > 0.0)) return 1.0;
+  return std::max(below / above, above / below);
+}
+
+/// Both ends with as many digits as tell them apart.
+std::string ends_text(const std::pair<double, double>& interval, std::string_view unit) {
+  const double size = std::max(std::abs(interval.first), std::abs(interval.second));
+  const double share = width(interval) > 0.0 ? size / width(interval) : 1.0;
+  const int digits = std::clamp(3 + static_cast<int>(std::ceil(std::log10(share))), 4, 12);
+  return fmt::format("{:.{}g} to {:.{}g}{}{}", interval.first, digits, interval.second, digits,
+                     unit == "1" ? "" : " ", unit == "1" ? "" : unit);
+}
+
+/// Where profile or bootstrap of a parameter say otherwise than `ci95`, and which to use.
+std::string other_interval(const FittedParameter& parameter, std::string_view unit, bool misfit) {
+  if (parameter.profile && parameter.profile->low.value && parameter.profile->high.value) {
+    const std::pair ends{*parameter.profile->low.value, *parameter.profile->high.value};
+    if (skewness(parameter.value, ends) > kAgrees) {
+      return fmt::format("use the interval of the profile, {}: the cost is not quadratic there",
+                         ends_text(ends, unit));
+    }
+  }
+  if (!parameter.bootstrap) return {};
+  const std::pair<double, double>& drawn = parameter.bootstrap->ci95;
+  const double ratio = width(drawn) / width(*parameter.ci95);
+  if (ratio > kAgrees) {
+    return fmt::format("use the interval of the bootstrap, {}: it is {} times as wide",
+                       ends_text(drawn, unit), significant(ratio, 2));
+  }
+  if (skewness(parameter.value, drawn) > 2.0 * kAgrees)
+    return fmt::format("use the interval of the bootstrap, {}: it is skewed",
+                       ends_text(drawn, unit));
+  // Few repeats know their own scatter badly: a variance of f degrees of freedom to sqrt(2 / f).
+  const double chance = 2.0 / std::sqrt(2.0 * std::max(1.0, parameter.bootstrap->freedom));
+  if (ratio * (kAgrees + chance) < 1.0) {
+    return fmt::format("the bootstrap is {:.2g} times as wide; use `ci95`{}", ratio,
+                       misfit ? ", which counts what the model lacks too" : "");
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string interval_advice(const Problem& problem, const OptimumCheck& check,
+                            const Uncertainty& found, const std::vector<LackOfFit>& tests) {
+  if (!check.nearly_stationary()) {
+    return fmt::format(
+        "no interval is reliable: the fit did not end at a minimum; by the derivatives at its end "
+        "the nearest is {} standard errors away, and the intervals lie about that end",
+        significant(check.relative_offset, 2));
+  }
+  if (found.scatter.empty()) {
+    return "only the plain standard errors exist: too few residuals to tell their correlation, or "
+           "a record that could not be simulated again";
+  }
+  const double share = found.independent_residuals / static_cast<double>(problem.residual_count());
+  std::string text =
+      share < kCorrelated
+          ? "residuals are autocorrelated: use the robust errors; the plain ones are too small"
+          : "residuals are hardly autocorrelated: robust and plain errors agree where the variance "
+            "of the noise is constant";
+  const auto flagged = misfit(tests);
+  if (!flagged && !tests.empty()) {
+    const auto open = std::find_if(tests.begin(), tests.end(), [](const LackOfFit& test) {
+      return test.outcome == metrics::TestOutcome::not_judged;
+    });
+    return text + fmt::format("; lack of fit cannot be judged (condition \"{}\", {}: {})",
+                              open->condition, datasets::info(open->channel).key, open->reason);
+  }
+  if (!flagged) {
+    return text +
+           "; neither repeats nor `sd` tell the noise, so errors of the model and noise "
+           "cannot be told apart";
+  }
+  const LackOfFit& test = *least_likely(tests);
+  const std::string against = test.by_repeats ? "the scatter of the repeats" : "the stated `sd`";
+  if (*flagged) {
+    return text + fmt::format(
+                      "; significant lack of fit (condition \"{}\", {}: residual variance {:.3g} "
+                      "times that of {}, p = {:.2g}): intervals hold for the values that fit this "
+                      "model best to these signals, and other signals may ask for others",
+                      test.condition, datasets::info(test.channel).key, test.ratio, against,
+                      test.p);
+  }
+  return text + fmt::format("; no lack of fit detected against {} (smallest p = {:.2g}, {} test{})",
+                            against, test.p, tests.size(), tests.size() == 1 ? "" : "s");
+}
+
+std::optional<BetweenRepeats> between_repeats(const Problem& problem, const Uncertainty& found) {
+  BetweenRepeats result;
+  for (std::size_t j = 0; j < found.repeats_ratio.size(); ++j) {
+    result.ratio = std::max(result.ratio, found.repeats_ratio[j]);
+    result.p = std::min(result.p, found.repeats_p[j]);
+    if (found.from_repeats[j]) result.parameters.push_back(problem.name(j));
+  }
+  if (!(result.ratio > 0.0)) return std::nullopt;
+  result.p = std::min(1.0, result.p * static_cast<double>(found.repeats_p.size()));
+  result.differ = found.repeats_differ() || found.difference;
+  if (found.difference) {
+    if (!found.repeats_differ()) result.p = found.difference->p;
+    result.cause = found.difference->cause;
+    result.cause_sd = found.difference->sd;
+    result.cause_explains = found.difference->explained;
+  }
+  return result;
+}
+
+std::string between_repeats_warning(const BetweenRepeats& repeats) {
+  if (!repeats.differ) return {};
+  std::string text = fmt::format(
+      "repeats differ from one another by more than their noise (p = {:.2g}): errors by their "
+      "spread are up to {:.2g} times those by the residuals of their mean",
+      repeats.p, repeats.ratio);
+  if (!repeats.parameters.empty())
+    text += fmt::format(", and the intervals of {} rest on the spread",
+                        fmt::join(repeats.parameters, ", "));
+  if (repeats.cause.empty()) return text;
+  if (repeats.cause == "start") {
+    return text + fmt::format(
+                      "; they differ as if each had begun at another time (standard deviation "
+                      "{:.2g} ms), so how late their mean began is not known either: record what "
+                      "drives the rig, or use a common trigger",
+                      1e3 * repeats.cause_sd);
+  }
+  text += fmt::format("; they differ as if {} varied by {:.2g} % from repeat to repeat",
+                      repeats.cause, 100.0 * repeats.cause_sd);
+  text += ": ";
+  if (repeats.cause == "supply_pressure")
+    text += "a recorded supply pressure (channel `supply_pressure`) would account for it, or ";
+  return text + fmt::format(
+                    "`between_repeats` of {} in [rig.parameters], with this standard "
+                    "deviation, estimates it for every condition",
+                    repeats.cause);
+}
+
+std::string noiseless_warning(const Problem& problem, const Uncertainty& found) {
+  std::size_t all = 0;
+  for (const ProblemCondition& condition : problem.conditions) all += condition.channels.size();
+  return fmt::format(
+      "in {} of {} records the residual is too small to be noise: it holds errors of the model and "
+      "of its solver, which do not average out. Standard errors there count every condition as one "
+      "observation; they tell how far such errors may move a value, not how it scatters",
+      found.noiseless, all);
+}
+
+std::string compare_intervals(const Problem& problem,
+                              const std::vector<FittedParameter>& parameters,
+                              const std::vector<std::string>& carried, bool misfit) {
+  std::vector<std::string> words;
+  std::vector<std::string> open;
+  bool drawn = false;
+  bool followed = false;
+  for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
+    const FittedParameter& each = parameters[j];
+    if (each.nuisance || (!each.bootstrap && !each.profile)) continue;
+    if (each.identifiability == Identifiability::not_identifiable) {
+      open.push_back(problem.name(j));
+      continue;
+    }
+    if (!each.ci95 || !(width(*each.ci95) > 0.0)) continue;
+    drawn = drawn || each.bootstrap;
+    followed = followed || (each.profile && !each.profile->low.lost && !each.profile->high.lost);
+    if (!carried.empty()) continue;
+    const std::string advice = other_interval(each, problem.spec(j).unit, misfit);
+    if (!advice.empty()) words.push_back(problem.name(j) + ": " + advice);
+  }
+  const std::string made = drawn && followed ? "bootstrap and profiles"
+                           : drawn           ? "the bootstrap"
+                                             : "profiles";
+  const char* const s = drawn && !followed ? "s" : "";
+  if (!carried.empty() && (drawn || followed)) {
+    words.push_back(
+        fmt::format("{} leave{} out the uncertainty of {}: use `ci95`, which includes it", made, s,
+                    fmt::join(carried, ", ")));
+  } else if (words.empty() && (drawn || followed)) {
+    words.push_back(
+        fmt::format("{}{} agree{} with `ci95`", open.empty() ? "" : "elsewhere ", made, s));
+  }
+  if (!open.empty()) {
+    words.insert(words.begin(), fmt::format("not identifiable, so that no interval is reliable: {}",
+                                            fmt::join(open, ", ")));
+  }
+  return fmt::format("{}", fmt::join(words, "; "));
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/problem/problem.hpp"
+
+namespace rigcal::calib {
+
+/// Known values of the rig whose uncertainty the campaign states (`prior` and `prior_sd` of a
+/// parameter that is not fitted), and what it does to the estimates.
+struct KnownUncertainty {
+  std::vector<std::string> names;
+  /// Change of the unknowns in the unit box per standard deviation of each, to first order:
+  /// -(J^T J)^-1 J^T J_known sd. Shape (unknowns, names).
+  Eigen::MatrixXd response;
+};
+
+/// Weighted sensitivities of one condition to parameters that are known in it: shape (channels *
+/// samples that count, indices), per SI unit; empty where it cannot be simulated.
+///
+/// @param indices  rows of the parameter table, none of them free in the condition
+Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t condition,
+                                    std::span<const double> z, const std::vector<int>& indices);
+
+/// @param root  R with R R^T = (J^T J)^-1 on the directions that the data determine
+KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
+                                   const Eigen::MatrixXd& root, int threads);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,314 @@
+#include "calib/trust/profile.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+
+#include "calib/search/solve.hpp"
+#include "common/parallel.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+constexpr double kProfile95 = 1.96;
+/// First step where no interval suggests one, and the least, as a share of the box.
+constexpr double kFirstStep = 0.05;
+constexpr double kLeastStep = 1e-6;
+constexpr int kMostDoublings = 12;
+constexpr int kMostRefinements = 8;
+/// How often a step is made shorter where there is no fit, and by what.
+constexpr int kMostShortened = 4;
+constexpr double kShorter = 8.0;
+constexpr double kCrossing = 0.02;
+/// A rise below minus this share of the threshold, about one standard error: the fit was not at its
+/// minimum. Less may be the error of simulations, which differs from point to point.
+constexpr double kLower = 0.25;
+
+datasets::Campaign campaign_with(const Problem& problem, const Unknown& unknown, double value) {
+  datasets::Campaign campaign = *problem.campaign;
+  for (auto& setting : campaign.parameters) {
+    if (setting.index != unknown.index || unknown.scope != datasets::Scope::rig) continue;
+    setting.fit = false;
+    setting.value = value;
+  }
+  if (unknown.scope == datasets::Scope::leak_level)
+    campaign.leak_levels[unknown.level].emplace_back(unknown.index, value);
+  if (unknown.scope == datasets::Scope::condition) {
+    for (auto& condition : campaign.conditions) {
+      if (condition.id == unknown.level) condition.overrides.emplace_back(unknown.index, value);
+    }
+  }
+  return campaign;
+}
+
+/// Least cost of all others at values of one unknown, from the nearest point that is known.
+class Follower {
+ public:
+  Follower(const Problem& problem, const std::vector<datasets::Record>& records,
+           std::size_t unknown, const Evaluation& optimum, double threshold,
+           const FitOptions& options, Budget& budget)
+      : problem_(problem),
+        records_(records),
+        unknown_(unknown),
+        threshold_(threshold),
+        options_(options),
+        optimum_(optimum),
+        budget_(budget) {
+    options_.progress = nullptr;
+    std::vector<double> others = optimum.z;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(unknown));
+    points_[optimum.z[unknown]] = {0.0, std::move(others)};
+  }
+
+  /// Rise of 2 cost in units of the threshold; empty where it could not be found.
+  std::optional<double> rise(double z) {
+    const auto known = points_.find(z);
+    if (known != points_.end()) return known->second.rise;
+    datasets::Campaign campaign;
+    const double value = problem_.map.to_physical(static_cast<int>(unknown_), z);
+    const Problem fixed = with_known(problem_, records_, unknown_, value, campaign);
+    Evaluator evaluator(fixed, {1, budget_.cancel(), budget_.deadline(), {}});
+    const std::vector<double>& from = nearest(z);
+    if (fixed.map.unknowns().empty()) {
+      evaluator.evaluate(from);
+    } else {
+      const auto solved = refine(fixed, evaluator, from, options_.max_iterations, 1, options_);
+      evaluations_ += evaluator.ledger().evaluations;
+      if (solved.status != FitStatus::converged) return std::nullopt;
+    }
+    if (!evaluator.best().ok) return std::nullopt;
+    const double cost = evaluator.best().cost + prior_cost(value);
+    const double found = 2.0 * (cost - optimum_.cost) / threshold_;
+    points_[z] = {found, evaluator.best().z};
+    return found;
+  }
+
+  bool cancelled() const { return budget_.cancelled() || budget_.out_of_time(); }
+  long evaluations() const { return evaluations_; }
+
+  Profile table() const {
+    Profile profile;
+    for (const auto& [z, point] : points_) {
+      profile.values.push_back(problem_.map.to_physical(static_cast<int>(unknown_), z));
+      profile.rises.push_back(point.rise);
+      profile.lower_cost_found = profile.lower_cost_found || point.rise < -kLower;
+    }
+    return profile;
+  }
+
+ private:
+  struct Point {
+    double rise = 0.0;
+    std::vector<double> others;
+  };
+
+  const std::vector<double>& nearest(double z) const {
+    const auto best = std::min_element(points_.begin(), points_.end(), [z](auto& a, auto& b) {
+      return std::abs(a.first - z) < std::abs(b.first - z);
+    });
+    return best->second.others;
+  }
+
+  double prior_cost(double value) const {
+    const auto& prior = problem_.map.unknowns()[unknown_].prior;
+    if (!prior) return 0.0;
+    const double residual = (value - prior->mean) / prior->sd;
+    return 0.5 * residual * residual;
+  }
+
+  const Problem& problem_;
+  const std::vector<datasets::Record>& records_;
+  std::size_t unknown_;
+  double threshold_;
+  FitOptions options_;
+  const Evaluation& optimum_;
+  Budget& budget_;
+  long evaluations_ = 0;
+  std::map<double, Point> points_;
+};
+
+/// Follows the profile from z0 towards 0 or 1.
+ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknown, double z0,
+                  double step, double side) {
+  const auto value = [&](double z) {
+    return problem.map.to_physical(static_cast<int>(unknown), z);
+  };
+  const double bound = side > 0.0 ? 1.0 : 0.0;
+  double inside = z0;
+  double inside_rise = 0.0;
+  ProfileEnd end;
+  end.reached = value(z0);
+  double outside = z0;
+  std::optional<double> outside_rise;
+  for (int i = 0; i < kMostDoublings && inside != bound; ++i) {
+    outside = std::clamp(inside + side * step, 0.0, 1.0);
+    outside_rise = follower.rise(outside);
+    // Too far for a fit from the point before, as where the interval holds more than the records
+    // say.
+    for (int k = 0; k < kMostShortened && !outside_rise && !follower.cancelled(); ++k) {
+      step /= kShorter;
+      outside = std::clamp(inside + side * step, 0.0, 1.0);
+      outside_rise = follower.rise(outside);
+    }
+    if (!outside_rise) {
+      end.lost = true;
+      return end;
+    }
+    end.reached = value(outside);
+    if (*outside_rise >= 1.0) break;
+    inside = outside;
+    inside_rise = *outside_rise;
+    step *= 2.0;
+  }
+  if (!outside_rise || *outside_rise < 1.0) return end;  // open up to there
+  // The root of the rise is all but linear in z.
+  for (int i = 0; i < kMostRefinements; ++i) {
+    if (std::abs(outside - inside) <= kCrossing * std::abs(outside - z0)) break;
+    const double a = std::sqrt(std::max(0.0, inside_rise));
+    const double b = std::sqrt(*outside_rise);
+    const double share = std::clamp((1.0 - a) / (b - a), 0.05, 0.95);
+    const double between = inside + share * (outside - inside);
+    const auto rise = follower.rise(between);
+    if (!rise) break;
+    if (std::abs(*rise - 1.0) <= kCrossing) {
+      end.value = value(between);
+      return end;
+    }
+    if (*rise < 1.0) {
+      inside = between;
+      inside_rise = *rise;
+    } else {
+      outside = between;
+      outside_rise = rise;
+    }
+  }
+  end.value = value(outside);
+  return end;
+}
+
+/// Rise of 2 cost at which the profile of this parameter ends: a quadratic one at ci95.
+double threshold_of(const FittedParameter& parameter, double reduced_chi_square) {
+  const double variance = std::max(1.0, reduced_chi_square);
+  if (!parameter.ci95 || !parameter.standard_error) return kProfile95 * kProfile95 * variance;
+  // The longer half: the other may be cut off where values make no sense.
+  const double half =
+      std::max(parameter.ci95->second - parameter.value, parameter.value - parameter.ci95->first);
+  const double errors = half / *parameter.standard_error;
+  return errors * errors * variance;
+}
+
+double first_step(const Problem& problem, std::size_t unknown, double z0,
+                  const FittedParameter& parameter) {
+  if (!parameter.standard_error) return kFirstStep;
+  const double error = parameter.robust_standard_error.value_or(*parameter.standard_error);
+  const double slope = problem.map.slope(static_cast<int>(unknown), z0);
+  return std::clamp(kProfile95 * error / slope, kLeastStep, 0.5);
+}
+
+/// Of which the budget allowed nothing but the optimum.
+Profile not_made(double value) {
+  Profile profile;
+  profile.low = {{}, value, true};
+  profile.high = {{}, value, true};
+  profile.values = {value};
+  profile.rises = {0.0};
+  return profile;
+}
+
+}  // namespace
+
+Problem with_known(const Problem& problem, const std::vector<datasets::Record>& records,
+                   std::size_t unknown, double value, datasets::Campaign& campaign) {
+  campaign = campaign_with(problem, problem.map.unknowns()[unknown], value);
+  std::vector<const datasets::Condition*> conditions;
+  for (const ProblemCondition& each : problem.conditions)
+    conditions.push_back(campaign.find(each.condition->id));
+  Problem fixed = make_problem(campaign, records, conditions, false, nullptr);
+  fixed.tolerance = problem.tolerance;
+  fixed.tolerance_fixed = problem.tolerance_fixed;
+  for (std::size_t i = 0; i < fixed.conditions.size(); ++i) {
+    fixed.conditions[i].max_steps = problem.conditions[i].max_steps;
+    for (std::size_t k = 0; k < fixed.conditions[i].channels.size(); ++k)
+      fixed.conditions[i].channels[k].sd = problem.conditions[i].channels[k].sd;
+  }
+  return fixed;
+}
+
+void profiles(const Problem& problem, const std::vector<datasets::Record>& records,
+              const Evaluation& optimum, const FitOptions& options, Fit& fit, Budget* budget) {
+  const auto& unknowns = problem.map.unknowns();
+  Budget without_limits(options.cancel, {}, {}, {});
+  Budget& left = budget != nullptr ? *budget : without_limits;
+  const std::optional<long> allowed = left.evaluations_left();
+  std::vector<long> taken(unknowns.size(), 0);
+  std::atomic<int> done = 0;
+  parallel_for(unknowns.size(), options.threads, [&](std::size_t j) {
+    if (unknowns[j].nuisance) return;
+    FittedParameter& parameter = fit.parameters[j];
+    if (left.spent()) {
+      parameter.profile = not_made(parameter.value);
+      return;
+    }
+    Follower follower(problem, records, j, optimum, threshold_of(parameter, fit.reduced_chi_square),
+                      options, left);
+    const double step = first_step(problem, j, optimum.z[j], parameter);
+    const ProfileEnd low = follow(follower, problem, j, optimum.z[j], step, -1.0);
+    const ProfileEnd high = follow(follower, problem, j, optimum.z[j], step, 1.0);
+    Profile profile = follower.table();
+    profile.low = low;
+    profile.high = high;
+    parameter.profile = std::move(profile);
+    taken[j] = follower.evaluations();
+    left.count(taken[j]);
+    if (options.beside) options.beside("profiles", ++done, static_cast<int>(unknowns.size()));
+  });
+  // Which profiles were made beyond the one that reached a limit depends on the threads.
+  long sum = 0;
+  for (std::size_t j = 0; j < unknowns.size(); ++j) {
+    FittedParameter& parameter = fit.parameters[j];
+    if (allowed && sum >= *allowed && parameter.profile)
+      parameter.profile = not_made(parameter.value);
+    sum += taken[j];
+  }
+  for (std::size_t j = 0; j < unknowns.size(); ++j) {
+    FittedParameter& parameter = fit.parameters[j];
+    if (!parameter.profile) continue;
+    const Profile& profile = *parameter.profile;
+    const auto say = [&](const std::string& text) {
+      parameter.reason += (parameter.reason.empty() ? "" : "; ") + text;
+    };
+    if (profile.lower_cost_found)
+      say("its profile finds a lower cost: the fit is not at the minimum, make more starts");
+    if (profile.low.lost || profile.high.lost) {
+      say(fmt::format("its profile was not made {}: {}",
+                      profile.low.lost && profile.high.lost ? "on either side"
+                      : profile.low.lost                    ? "below"
+                                                            : "above",
+                      left.spent() ? left.reason() : "no fit there converged"));
+    }
+    if (profile.low.value && profile.high.value) continue;
+    const model::ParameterSpec& spec = model::parameter_table(
+        problem.campaign->rig.plant)[static_cast<std::size_t>(unknowns[j].index)];
+    // Up to a limit of the parameter itself, such as no leakage at all, nothing is left open.
+    const bool below = !profile.low.value && !profile.low.lost && unknowns[j].lower > spec.lower;
+    const bool above = !profile.high.value && !profile.high.lost && unknowns[j].upper < spec.upper;
+    if (!below && !above) continue;
+    const std::string unit = spec.unit == "1" ? "" : fmt::format(" {}", spec.unit);
+    say(fmt::format("its profile is open {}: followed from {:.4g}{} to {:.4g}{}",
+                    below && above ? "on both sides" : (above ? "above" : "below"),
+                    profile.low.value.value_or(profile.low.reached), unit,
+                    profile.high.value.value_or(profile.high.reached), unit));
+    // A bound within `ci95` cuts off what the records tell; beyond it they tell less than it says.
+    const double half_width = parameter.ci95 ? std::max(parameter.ci95->second - parameter.value,
+                                                        parameter.value - parameter.ci95->first)
+                                             : 0.0;
+    if ((below && parameter.value - unknowns[j].lower >= half_width) ||
+        (above && unknowns[j].upper - parameter.value >= half_width))
+      parameter.identifiability = Identifiability::not_identifiable;
+  }
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,277 @@
+#include "calib/trust/sandwich.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "metrics/distributions.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using metrics::Autoregression;
+/// Rows of samples in memory order: the recursions walk along the samples.
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Integral of the squared Parzen kernel, both sides.
+constexpr double kParzenSquare = 0.539285;
+
+/// Rows of one channel.
+struct ChannelRows {
+  RowMajor jacobian;
+  VectorXd residual;
+
+  Index samples() const { return residual.size(); }
+};
+
+ChannelRows channel_rows(const ScoreRows& rows, Index channel) {
+  const Index samples = rows.residual.size() / rows.channels;
+  return {rows.jacobian.middleRows(channel * samples, samples),
+          rows.residual.segment(channel * samples, samples)};
+}
+
+/// L^T J: y[t] = x[t] + sum_k phi[k] y[t + 1 + k].
+RowMajor backwards(const Autoregression& noise, RowMajor rows) {
+  const auto order = static_cast<Index>(noise.phi.size());
+  for (Index t = rows.rows() - 1; t >= 0; --t) {
+    for (Index k = 0; k < order && t + 1 + k < rows.rows(); ++k)
+      rows.row(t) += noise.phi[static_cast<std::size_t>(k)] * rows.row(t + 1 + k);
+  }
+  return rows;
+}
+
+/// L J: y[t] = x[t] + sum_k phi[k] y[t - 1 - k].
+RowMajor forwards(const Autoregression& noise, RowMajor rows) {
+  const auto order = static_cast<Index>(noise.phi.size());
+  for (Index t = 0; t < rows.rows(); ++t) {
+    for (Index k = 0; k < order && k < t; ++k)
+      rows.row(t) += noise.phi[static_cast<std::size_t>(k)] * rows.row(t - 1 - k);
+  }
+  return rows;
+}
+
+/// L^-1 x: u[t] = x[t] - sum_k phi[k] x[t - 1 - k].
+RowMajor whitened(const Autoregression& noise, const RowMajor& rows) {
+  RowMajor result = rows;
+  const auto order = static_cast<Index>(noise.phi.size());
+  for (Index t = 0; t < rows.rows(); ++t) {
+    for (Index k = 0; k < order && k < t; ++k)
+      result.row(t) -= noise.phi[static_cast<std::size_t>(k)] * rows.row(t - 1 - k);
+  }
+  return result;
+}
+
+/// sum_t a[t] . b[t + lag]
+double lagged(const RowMajor& a, const RowMajor& b, Index lag) {
+  return a.topRows(a.rows() - lag).cwiseProduct(b.bottomRows(b.rows() - lag)).sum();
+}
+
+/// By how much the fit has made the autocovariances of the residuals too small, if `noise` is what
+/// they come from and `total` the covariance of the whole score.
+std::vector<double> bias(const ChannelRows& rows, const Autoregression& noise,
+                         const MatrixXd& total, Index lags) {
+  const RowMajor& Q = rows.jacobian;
+  const RowMajor sigma_q = noise.variance * forwards(noise, backwards(noise, Q));
+  const RowMajor q_total = Q * total;
+  std::vector<double> result;
+  for (Index h = 0; h <= lags; ++h) {
+    const double removed = lagged(Q, sigma_q, h) + lagged(sigma_q, Q, h) - lagged(q_total, Q, h);
+    result.push_back(removed / static_cast<double>(rows.samples()));
+  }
+  return result;
+}
+
+/// Covariance of the score of one channel if `noise` is what its residuals come from.
+MatrixXd expected(const ChannelRows& rows, const Autoregression& noise) {
+  const RowMajor filtered = backwards(noise, rows.jacobian);
+  return noise.variance * filtered.transpose() * filtered;
+}
+
+/// u = L^-1 r of one channel.
+struct Innovations {
+  VectorXd u;
+  RowMajor own;  ///< covariance with the error of each combination, over its standard error
+};
+Innovations innovations(const ChannelRows& rows, const Autoregression& noise,
+                        const RowMajor& filtered, const MatrixXd& total,
+                        const MatrixXd& combinations) {
+  const RowMajor residual = rows.residual;
+  const RowMajor p = whitened(noise, rows.jacobian);
+  const MatrixXd c = combinations.transpose();
+  const VectorXd variance = (c.transpose() * total * c).diagonal();
+  Innovations result{whitened(noise, residual).col(0),
+                     noise.variance * filtered * c - p * (total * c)};
+  for (Index j = 0; j < c.cols(); ++j)
+    result.own.col(j) *= variance(j) > 0.0 ? 1.0 / std::sqrt(variance(j)) : 0.0;
+  return result;
+}
+
+/// Autoregressions of all channels, corrected for what the fit has removed.
+std::vector<std::vector<Autoregression>> noise_models(const std::vector<ScoreRows>& rows,
+                                                      const MatrixXd& priors) {
+  struct ChannelNoise {
+    std::size_t condition;
+    ChannelRows rows;
+    std::vector<double> gamma;
+    Autoregression noise;
+    std::size_t order = 0;
+  };
+  std::vector<ChannelNoise> channels;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (Index k = 0; k < rows[i].channels; ++k) {
+      ChannelNoise& each = channels.emplace_back();
+      each.condition = i;
+      each.rows = channel_rows(rows[i], k);
+      const auto samples = static_cast<std::size_t>(each.rows.samples());
+      const int lags = std::min<int>(kMostLags, static_cast<int>(samples / 10));
+      each.gamma = metrics::autocovariance({each.rows.residual.data(), samples}, lags);
+      each.noise = metrics::fit_autoregression(each.gamma, static_cast<double>(samples));
+      each.order = each.noise.phi.size();
+    }
+  }
+  MatrixXd total = priors;
+  for (const ChannelNoise& each : channels) total += expected(each.rows, each.noise);
+  for (ChannelNoise& each : channels) {
+    std::vector<double> gamma(each.gamma.begin(),
+                              each.gamma.begin() + 1 + static_cast<std::ptrdiff_t>(each.order));
+    const auto removed = bias(each.rows, each.noise, total, static_cast<Index>(each.order));
+    // More than half taken away: the fit has left too little to tell the noise by.
+    if (!(removed.front() < 0.5 * (gamma.front() + removed.front()))) continue;
+    for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
+    // Far from an optimum residuals are not the noise that the correction supposes.
+    if (!metrics::is_autocovariance(gamma)) continue;
+    each.noise = metrics::fit_autoregression(gamma, static_cast<double>(each.rows.samples()));
+  }
+  std::vector<std::vector<Autoregression>> result(rows.size());
+  for (const ChannelNoise& each : channels) result[each.condition].push_back(each.noise);
+  return result;
+}
+
+/// Andrews' bandwidth of the Parzen kernel, 2.6614 (alpha(2) n)^(1/5) with alpha(2) from a
+/// first-order autoregression of every component (Econometrica 59, 1991, eqs. 6.2 and 6.4).
+double bandwidth(const RowMajor& scores) {
+  constexpr double kMostCorrelation = 0.97;
+  double above = 0.0;
+  double below = 0.0;
+  const Index n = scores.rows();
+  for (Index j = 0; j < scores.cols() && n > 2; ++j) {
+    const auto column = scores.col(j);
+    const double square = column.head(n - 1).squaredNorm();
+    if (!(square > 0.0)) continue;
+    const double rho = std::clamp(column.head(n - 1).dot(column.tail(n - 1)) / square,
+                                  -kMostCorrelation, kMostCorrelation);
+    // Components in units of their own size: one of them must not decide for all.
+    above += 4.0 * rho * rho / std::pow(1.0 - rho, 8.0) * std::pow(1.0 - rho * rho, 2.0);
+    below += std::pow(1.0 - rho * rho, 2.0) / std::pow(1.0 - rho, 4.0);
+  }
+  if (!(below > 0.0)) return 0.0;
+  return 2.6614 * std::pow(above / below * static_cast<double>(n), 0.2);
+}
+
+double parzen(double x) {
+  if (x >= 1.0) return 0.0;
+  return x <= 0.5 ? 1.0 - 6.0 * x * x * (1.0 - x) : 2.0 * std::pow(1.0 - x, 3.0);
+}
+
+MatrixXd kernel_covariance(const RowMajor& scores, double width) {
+  MatrixXd sum = scores.transpose() * scores;
+  for (Index h = 1; static_cast<double>(h) < width && h < scores.rows(); ++h) {
+    const MatrixXd cross =
+        scores.topRows(scores.rows() - h).transpose() * scores.bottomRows(scores.rows() - h);
+    sum += parzen(static_cast<double>(h) / width) * (cross + cross.transpose());
+  }
+  return sum;
+}
+
+ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise,
+                        const MatrixXd& total, const MatrixXd& combinations) {
+  ScoreScatter result;
+  const Index samples = rows.residual.size() / rows.channels;
+  RowMajor scores = RowMajor::Zero(samples, rows.jacobian.cols());
+  MatrixXd weights = MatrixXd::Zero(samples, combinations.rows());  // variance of c . score
+  RowMajor own = RowMajor::Zero(samples, combinations.rows());
+  for (Index k = 0; k < rows.channels; ++k) {
+    const Autoregression& model = noise[static_cast<std::size_t>(k)];
+    const ChannelRows channel = channel_rows(rows, k);
+    const RowMajor filtered = backwards(model, channel.jacobian);
+    const Innovations each = innovations(channel, model, filtered, total, combinations);
+    scores += each.u.asDiagonal() * filtered;
+    const RowMajor combined = filtered * combinations.transpose();
+    own += each.own.cwiseProduct(combined);
+    weights += model.variance * combined.cwiseAbs2();
+    result.independent_residuals += model.effective_samples(static_cast<double>(samples));
+  }
+  const double width = bandwidth(scores);
+  result.covariance = kernel_covariance(scores, width);
+  const bool whitening =
+      std::any_of(noise.begin(), noise.end(), [](const auto& each) { return !each.phi.empty(); });
+  result.freedom = VectorXd::Zero(combinations.rows());
+  result.own = VectorXd::Zero(combinations.rows());
+  for (Index j = 0; j < combinations.rows(); ++j) {
+    const double squares = weights.col(j).squaredNorm();
+    if (!(squares > 0.0)) continue;
+    const VectorXd c = combinations.row(j).transpose();
+    if (const double all = c.dot(total * c); all > 0.0)
+      result.own(j) = kernel_covariance(own.col(j), width)(0, 0) / all;
+    const double terms = weights.col(j).sum() * weights.col(j).sum() / squares;
+    result.freedom(j) = 1.0 / (std::max(1.0, kParzenSquare * width) / terms +
+                               (whitening ? 2.0 / result.independent_residuals : 0.0));
+  }
+  result.noise = std::move(noise);
+  return result;
+}
+
+}  // namespace
+
+std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows, const MatrixXd& priors,
+                                        const MatrixXd& combinations) {
+  const auto noise = noise_models(rows, priors);
+  MatrixXd total = priors;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (Index k = 0; k < rows[i].channels; ++k)
+      total += expected(channel_rows(rows[i], k), noise[i][static_cast<std::size_t>(k)]);
+  }
+  std::vector<ScoreScatter> result;
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    result.push_back(scatter_of(rows[i], noise[i], total, combinations));
+  return result;
+}
+
+RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const MatrixXd& priors,
+                               const MatrixXd& combinations, Index combination) {
+  RobustVariance result;
+  const VectorXd c = combinations.row(combination).transpose();
+  result.variance = c.dot(priors * c);
+  for (const ScoreScatter& each : scatter) {
+    result.variance += c.dot(each.covariance * c);
+    if (each.own.size() > combination) result.own += each.own(combination);
+  }
+  double squares = 0.0;
+  for (const ScoreScatter& each : scatter) {
+    const double share = c.dot(each.covariance * c) / result.variance;
+    const double freedom = each.freedom(combination);
+    if (freedom > 0.0 && share > 0.0) squares += share * share / freedom;
+  }
+  result.freedom = squares > 0.0 ? 1.0 / squares : std::numeric_limits<double>::infinity();
+  return result;
+}
+
+double RobustVariance::quantile() const {
+  constexpr double kMostOwn = 0.9;
+  constexpr double kMostFreedom = 1e9;
+  const double share = std::clamp(own, 0.0, kMostOwn);
+  const double rest = 1.0 - share;
+  const double scatter = std::max(1.0 / freedom - share * share, 1.0 / kMostFreedom);
+  const double t = student_t(rest * rest / scatter);
+  return t / std::sqrt(rest + share * t * t);
+}
+
+double student_t(double freedom) {
+  return metrics::student_t_quantile(0.975, std::max(freedom, 1.0));
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,198 @@
+#include "calib/trust/symmetry.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "common/parallel.hpp"
+#include "common/unit_product.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+constexpr double kScaleKnown = 0.1;
+constexpr std::string_view kSmoothing = "leakage_smoothing";  // no physics: no exponent of its own
+constexpr std::string_view kSupply = "supply_pressure";
+
+bool positions_alone(const Problem& problem) {
+  for (const ProblemCondition& condition : problem.conditions) {
+    for (const ProblemChannel& channel : condition.channels) {
+      if (channel.channel != datasets::Channel::position) return false;
+    }
+  }
+  return true;
+}
+
+std::vector<std::string> known_and_scaled(const Problem& problem) {
+  const auto table = model::parameter_table(problem.campaign->rig.plant);
+  std::set<std::size_t> rows;
+  for (const ProblemCondition& condition : problem.conditions) {
+    for (std::size_t row = 0; row < table.size(); ++row) {
+      const bool acts = condition.values.given[row] && condition.values.value[row] != 0.0;
+      const bool free = std::find(condition.free.begin(), condition.free.end(),
+                                  static_cast<int>(row)) != condition.free.end();
+      if (acts && !free && scaling_exponent(table[row]) != 0.0) rows.insert(row);
+    }
+  }
+  std::vector<std::string> names;
+  for (const std::size_t row : rows) names.emplace_back(table[row].name);
+  // Air in the oil compares pressures with that of the atmosphere, which nobody scales.
+  const int air = model::parameter_index(problem.campaign->rig.plant, "air_fraction");
+  const bool holds_air =
+      air >= 0 && std::any_of(problem.conditions.begin(), problem.conditions.end(),
+                              [air](const ProblemCondition& condition) {
+                                return condition.values.value[static_cast<std::size_t>(air)] != 0.0;
+                              });
+  if (holds_air) names.emplace_back("pressure of the atmosphere (air_fraction)");
+  return names;
+}
+
+/// Outputs of one condition, shape (samples that count, channels); empty where it cannot be
+/// simulated.
+Eigen::MatrixXd outputs_at(const Problem& problem, const ProblemCondition& condition,
+                           const model::ParameterValues& values) {
+  model::SimulationOptions options;
+  options.method = problem.campaign->simulation.method;
+  options.tolerance = problem.tolerance;
+  options.max_seconds = problem.campaign->simulation.max_seconds;
+  const auto run = model::simulate(condition.rig, values, {}, condition.inputs,
+                                   condition.fit_times(), condition.outputs, options);
+  if (!run.ok()) return {};
+  return run.outputs(condition.rows, Eigen::all);
+}
+
+/// Change of the weighted residuals, priors included, per ln s where unknowns and smoothing are
+/// scaled; measured by scaling them, because the model has no derivative to the smoothing.
+double felt_when_scaled(const Problem& problem, std::span<const double> z,
+                        const std::vector<std::size_t>& unknowns, int threads) {
+  constexpr double kScale = 1.5;  // far enough for the tolerance of the simulations not to count
+  const int smoothing = model::parameter_index(problem.campaign->rig.plant, kSmoothing);
+  std::vector<double> scaled(z.size());
+  for (std::size_t j = 0; j < z.size(); ++j)
+    scaled[j] = problem.map.to_physical(static_cast<int>(j), z[j]);
+  double sum = 0.0;
+  for (const std::size_t j : unknowns) {
+    const double value = scaled[j];
+    scaled[j] *= std::pow(kScale, scaling_exponent(problem.spec(j)));
+    const auto& prior = problem.map.unknowns()[j].prior;
+    if (prior) sum += std::pow((scaled[j] - value) / prior->sd, 2);
+  }
+  std::vector<double> squares(problem.conditions.size(), 0.0);
+  parallel_for(squares.size(), threads, [&](std::size_t i) {
+    const ProblemCondition& condition = problem.conditions[i];
+    const model::ParameterValues here = problem.values_at(i, z);
+    model::ParameterValues there = here;
+    for (const int j : problem.map.acting(i)) {
+      const auto u = static_cast<std::size_t>(j);
+      there.set(problem.map.unknowns()[u].index, scaled[u]);
+    }
+    there.set(smoothing, kScale * here.value[static_cast<std::size_t>(smoothing)]);
+    const Eigen::MatrixXd before = outputs_at(problem, condition, here);
+    const Eigen::MatrixXd after = outputs_at(problem, condition, there);
+    if (before.size() == 0 || after.size() == 0) return;
+    for (std::size_t k = 0; k < condition.channels.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      squares[i] += (after.col(column) - before.col(column)).squaredNorm() /
+                    std::pow(condition.channels[k].sd, 2);
+    }
+  });
+  for (const double each : squares) sum += each;
+  return std::sqrt(sum) / std::log(kScale);
+}
+
+bool takes_part(const Problem& problem, const ScalingSymmetry& symmetry, std::string_view key) {
+  return std::any_of(symmetry.unknowns.begin(), symmetry.unknowns.end(),
+                     [&](std::size_t j) { return problem.spec(j).key == key; });
+}
+
+}  // namespace
+
+double scaling_exponent(const model::ParameterSpec& spec) {
+  using model::ParameterKind;
+  // Flows follow the root of pressure over density, and density stays: it is no force.
+  if (spec.key == "valve_gain" || spec.key == "leakage_coefficient") return -0.5;
+  if (spec.key == "density" || spec.key == kSmoothing) return 0.0;
+  if (spec.kind == ParameterKind::sensor || spec.kind == ParameterKind::controller) return 0.0;
+  return mass_exponent(spec.unit);
+}
+
+bool ScalingSymmetry::holds() const { return relative_sd > kScaleKnown; }
+
+std::optional<ScalingSymmetry> scaling_symmetry(const Problem& problem, std::span<const double> z,
+                                                double sigma, int threads) {
+  if (!positions_alone(problem)) return std::nullopt;
+  ScalingSymmetry result;
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const int unknown = static_cast<int>(j);
+    if (scaling_exponent(problem.spec(j)) == 0.0 || problem.map.to_physical(unknown, z[j]) == 0.0)
+      continue;
+    result.unknowns.push_back(j);
+  }
+  // A known supply pressure fixes s through the orifices: what is open then, the Jacobian tells.
+  if (result.unknowns.size() < 2 || !takes_part(problem, result, kSupply)) return std::nullopt;
+  result.known = known_and_scaled(problem);
+  const double felt = felt_when_scaled(problem, z, result.unknowns, threads);
+  result.relative_sd = felt > 0.0 ? sigma / felt : std::numeric_limits<double>::infinity();
+  return result;
+}
+
+std::string symmetry_remedy(const Problem& problem, const ScalingSymmetry& symmetry) {
+  return fmt::format("a prior on {}supply pressure, or a recorded pressure or force",
+                     takes_part(problem, symmetry, "mass") ? "mass or " : "");
+}
+
+std::string describe(const Problem& problem, const ScalingSymmetry& symmetry) {
+  std::vector<std::string> grow;
+  std::vector<std::string> fall;
+  for (const std::size_t j : symmetry.unknowns) {
+    const double exponent = scaling_exponent(problem.spec(j));
+    if (exponent > 0.0) grow.push_back(problem.name(j));
+    if (exponent < 0.0) fall.push_back(problem.name(j) + (exponent == -0.5 ? " (by sqrt(s))" : ""));
+  }
+  if (!symmetry.holds() && (symmetry.known.empty() || grow.size() < 2)) return {};
+  const std::string scaling =
+      fmt::format("multiplying {} by a factor s{}", fmt::join(grow, ", "),
+                  fall.empty() ? "" : fmt::format(" and dividing {} by it", fmt::join(fall, ", ")));
+  if (symmetry.known.empty()) {
+    return fmt::format(
+        "scaling symmetry: {} leaves all positions unchanged; not determined without {}", scaling,
+        symmetry_remedy(problem, symmetry));
+  }
+  const std::string known = fmt::format("{}", fmt::join(symmetry.known, ", "));
+  if (symmetry.holds()) {
+    return fmt::format(
+        "scaling symmetry, nearly: {} changes positions only through the fixed {}, which {} s to "
+        "no better than {:.2g} % (standard error); it takes {} to determine it",
+        scaling, known, symmetry.known.size() == 1 ? "determines" : "determine",
+        100.0 * symmetry.relative_sd, symmetry_remedy(problem, symmetry));
+  }
+  return fmt::format(
+      "scaling symmetry: {} changes positions only through the fixed {}: an error of 1 % there is "
+      "one of 1 % here",
+      scaling, known);
+}
+
+void grade_symmetric(const Problem& problem, const ScalingSymmetry& symmetry,
+                     std::vector<FittedParameter>& parameters) {
+  if (!symmetry.holds()) return;
+  for (const std::size_t j : symmetry.unknowns) {
+    FittedParameter& each = parameters[j];
+    if (each.nuisance) continue;
+    each.identifiability = Identifiability::not_identifiable;
+    // What was said of an interval goes with it.
+    const std::string known = each.standard_error || each.reason.empty() ? "" : "; " + each.reason;
+    each.standard_error.reset();
+    each.robust_standard_error.reset();
+    each.ci95.reset();
+    each.interval = IntervalSource::none;
+    each.reason = fmt::format(
+        "not determined because of the scaling symmetry: {}, would make it identifiable{}",
+        symmetry_remedy(problem, symmetry), known);
+  }
+}
+
+}  // namespace rigcal::calib

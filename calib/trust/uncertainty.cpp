@@ -1,0 +1,203 @@
+#include "calib/trust/uncertainty.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/problem/repeat_inputs.hpp"
+#include "calib/problem/svd.hpp"
+#include "calib/search/optimum.hpp"
+#include "calib/trust/coherent_error.hpp"
+#include "common/parallel.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// Share of a null direction above which a parameter counts as part of it: in what the outputs feel
+/// of it, or in how far it moves in the box against the one that moves most.
+constexpr double kFelt = 0.1;
+constexpr double kMoves = 0.05;
+
+/// Scores of every condition in coordinates of `root`.
+std::vector<ScoreRows> score_rows(const Problem& problem, std::vector<ConditionRows> rows,
+                                  const Eigen::MatrixXd& root) {
+  std::vector<ScoreRows> result(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    result[i].jacobian = rows[i].jacobian * root(problem.map.acting(i), Eigen::all);
+    result[i].residual = std::move(rows[i].residual);
+    rows[i].jacobian.resize(0, 0);
+    result[i].channels = static_cast<Eigen::Index>(problem.conditions[i].channels.size());
+  }
+  return result;
+}
+
+/// Scores of the single repeats of every condition.
+std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span<const double> z,
+                                               const std::vector<ScoreRows>& rows, int threads) {
+  std::vector<Eigen::MatrixXd> result(rows.size());
+  parallel_for(rows.size(), threads, [&](std::size_t i) {
+    Eigen::MatrixXd deviations =
+        repeat_deviations(problem.conditions[i], explained_by_inputs(problem, i, z));
+    const Eigen::MatrixXd declared = explained_by_declared(problem, i, z, deviations);
+    if (declared.size() > 0) deviations -= declared;
+    result[i] = repeat_scores(rows[i].jacobian, deviations);
+  });
+  return result;
+}
+
+/// J^T J of the priors in coordinates of `root`.
+Eigen::MatrixXd prior_information(const Problem& problem, std::span<const double> z,
+                                  const Eigen::MatrixXd& root) {
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(root.cols(), root.cols());
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const auto& prior = problem.map.unknowns()[j].prior;
+    if (!prior) continue;
+    const auto row = static_cast<Eigen::Index>(j);
+    const double weight = problem.map.slope(static_cast<int>(j), z[j]) / prior->sd;
+    sum += weight * weight * root.row(row).transpose() * root.row(row);
+  }
+  return sum;
+}
+
+std::string null_reason(const Problem& problem, const std::vector<std::size_t>& members,
+                        std::size_t unknown) {
+  std::vector<std::string> partners;
+  for (const std::size_t member : members) {
+    if (member != unknown) partners.push_back(problem.name(member));
+  }
+  if (partners.empty())
+    return fmt::format("no output of these conditions responds to {}", problem.name(unknown));
+  return fmt::format("these conditions determine {} only in a combination with {}, not by itself",
+                     problem.name(unknown), fmt::join(partners, ", "));
+}
+
+}  // namespace
+
+namespace {
+
+/// Of a nameable difference between repeats, which is looked for in every fit.
+constexpr double kDifferenceLevel = 0.01;
+
+}  // namespace
+
+bool Uncertainty::repeats_differ() const {
+  constexpr double kLevel = 0.05;
+  const auto least = std::min_element(repeats_p.begin(), repeats_p.end());
+  return least != repeats_p.end() && *least * static_cast<double>(repeats_p.size()) < kLevel;
+}
+
+Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
+                        std::vector<ConditionRows> rows, int threads) {
+  const Linearisation system = linearise(problem, optimum);
+  const auto n = static_cast<Eigen::Index>(optimum.z.size());
+  const Eigen::VectorXd norms = system.jacobian.colwise().norm();
+  Eigen::VectorXd inverse_norms(n);
+  for (Eigen::Index j = 0; j < n; ++j) inverse_norms(j) = norms(j) > 0.0 ? 1.0 / norms(j) : 0.0;
+  const Eigen::MatrixXd scaled = system.jacobian * inverse_norms.asDiagonal();
+  Svd svd(scaled, Eigen::ComputeThinU | Eigen::ComputeFullV);
+  svd.setThreshold(rank_threshold(problem.tolerance));
+  const Eigen::Index rank = svd.rank();
+  const Eigen::VectorXd s = svd.singularValues();
+  const Eigen::MatrixXd& V = svd.matrixV();
+
+  Uncertainty result;
+  result.rank = static_cast<int>(rank);
+  result.singular_values.assign(s.data(), s.data() + s.size());
+  const double freedom = static_cast<double>(problem.residual_count() - rank);
+  result.reduced_chi_square = freedom > 0.0 ? 2.0 * optimum.cost / freedom : 0.0;
+  result.freedom = std::max(freedom, 1.0);
+
+  // (J^T J)^-1 in the unit box, on the directions that the data determine.
+  const Eigen::MatrixXd root =
+      inverse_norms.asDiagonal() * V.leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd inverse = root * root.transpose();
+  const double sigma = std::sqrt(std::max(1.0, result.reduced_chi_square));
+  const double least = std::max(s(0) * rank_threshold(problem.tolerance), 1e-150);
+  const Eigen::VectorXd lengths = sigma * s.cwiseMax(least).cwiseInverse();
+  result.spread = inverse_norms.asDiagonal() * V * lengths.asDiagonal();
+  result.root = root;
+  result.known = known_uncertainty(problem, optimum.z, root, threads);
+  const Eigen::MatrixXd priors = prior_information(problem, optimum.z, root);
+  std::vector<ScoreRows> scores;
+  std::vector<Eigen::MatrixXd> repeats;
+  Eigen::VectorXd coherent = Eigen::VectorXd::Zero(n);
+  if (rank > 0 && freedom > 0.0) {
+    scores = score_rows(problem, std::move(rows), root);
+    result.scatter = score_scatter(scores, priors, root);
+    repeats = scores_of_repeats(problem, optimum.z, scores, threads);
+    const auto noiseless = noiseless_channels(problem, optimum);
+    for (const auto& channels : noiseless)
+      result.noiseless += static_cast<int>(std::count(channels.begin(), channels.end(), true));
+    if (result.noiseless > 0) coherent = coherent_errors(scores, noiseless, root);
+    for (const ScoreScatter& each : result.scatter)
+      result.independent_residuals += each.independent_residuals;
+  }
+
+  // A parameter is named with those that share a null direction with it.
+  std::vector<std::vector<std::size_t>> directions;
+  for (Eigen::Index k = rank; k < n; ++k) {
+    std::vector<std::size_t>& members = directions.emplace_back();
+    const Eigen::VectorXd moves = (inverse_norms.array() * V.col(k).array()).abs();
+    for (Eigen::Index j = 0; j < n; ++j) {
+      if (std::abs(V(j, k)) > kFelt || moves(j) > kMoves * moves.maxCoeff())
+        members.push_back(static_cast<std::size_t>(j));
+    }
+  }
+  result.standard_error.resize(optimum.z.size());
+  result.robust_standard_error.resize(optimum.z.size());
+  result.robust_freedom.resize(optimum.z.size(), 0.0);
+  result.robust_quantile.resize(optimum.z.size(), 0.0);
+  result.from_repeats.resize(optimum.z.size(), false);
+  result.repeats_ratio.resize(optimum.z.size(), 0.0);
+  result.repeats_p.resize(optimum.z.size(), 1.0);
+  result.reason.resize(optimum.z.size());
+  result.correlation = Eigen::MatrixXd::Identity(n, n);
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const auto u = static_cast<std::size_t>(j);
+    if (norms(j) == 0.0) {
+      result.reason[u] = null_reason(problem, {}, u);
+      continue;
+    }
+    const auto direction =
+        std::find_if(directions.begin(), directions.end(), [u](const auto& members) {
+          return std::find(members.begin(), members.end(), u) != members.end();
+        });
+    if (direction != directions.end()) {
+      result.reason[u] = null_reason(problem, *direction, u);
+      continue;
+    }
+    const double slope = problem.map.slope(static_cast<int>(j), optimum.z[u]);
+    const bool exact = result.known.names.empty();
+    const double carried = exact ? 0.0 : result.known.response.row(j).norm();
+    const double plain = std::max(sigma * std::sqrt(inverse(j, j)), coherent(j));
+    result.standard_error[u] = slope * std::hypot(plain, carried);
+    if (!result.scatter.empty()) {
+      const RobustVariance robust = robust_variance(result.scatter, priors, root, j);
+      const RepeatVariance spread = repeat_variance(repeats, result.scatter, priors, root, j);
+      if (spread.freedom > 0.0 && robust.variance > 0.0) {
+        result.repeats_ratio[u] = std::sqrt(spread.variance / robust.variance);
+        result.repeats_p[u] = exceedance(spread, robust);
+        result.from_repeats[u] = rests_on_repeats(spread, robust);
+      }
+      const bool repeated = result.from_repeats[u];
+      const double error = std::sqrt(std::max(0.0, repeated ? spread.variance : robust.variance));
+      result.robust_standard_error[u] = slope * std::hypot(std::max(error, coherent(j)), carried);
+      result.robust_freedom[u] = repeated ? spread.freedom : robust.freedom;
+      result.robust_quantile[u] = repeated ? student_t(spread.freedom) : robust.quantile();
+    }
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const double scale = std::sqrt(inverse(j, j) * inverse(k, k));
+      if (k != j && scale > 0.0)
+        result.correlation(j, k) = std::clamp(inverse(j, k) / scale, -1.0, 1.0);
+    }
+  }
+  auto difference = likely_difference(problem, optimum.z, scores, repeats);
+  if (difference) difference->p = difference_by_noise(problem, optimum.z, difference->cause);
+  if (difference && (difference->p < kDifferenceLevel || result.repeats_differ()))
+    result.difference = difference;
+  return result;
+}
+
+}  // namespace rigcal::calib

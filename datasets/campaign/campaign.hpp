@@ -1,0 +1,268 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/error.hpp"
+#include "common/quantity.hpp"
+#include "datasets/campaign/diagnosis_settings.hpp"
+#include "datasets/campaign/report_settings.hpp"
+#include "datasets/record.hpp"
+#include "model/plant/parameter.hpp"
+#include "model/simulate.hpp"
+
+namespace rigcal::datasets {
+
+/// For whom one value of a fitted parameter holds.
+enum class Scope { rig, leak_level, condition };
+std::string_view to_string(Scope scope);
+
+struct Prior {
+  double mean = 0.0;
+  double sd = 0.0;
+};
+
+/// One entry of [rig.parameters] or [rig.controller], in SI.
+struct ParameterSetting {
+  int index = 0;       ///< row of the plant's parameter table
+  double value = 0.0;  ///< the known value, or the start of a fitted one
+  /// Bounds of the fit. Where the campaign gives none: value/10 to 10 value within the parameter's
+  /// limits (its limits where the value is 0). NaN: not given, and not `fit`.
+  double lower = 0.0;
+  double upper = 0.0;
+  bool fit = false;
+  Scope scope = Scope::rig;
+  std::optional<Prior> prior;
+  bool nuisance = false;  ///< estimated again in validation
+  /// It differs at random from one repeat to the next: one unknown per condition, whose prior is
+  /// that of a single repeat; in the mean of R repeats its standard deviation is over sqrt(R).
+  bool between_repeats = false;
+  Location where;
+};
+
+/// Known values over those of the rig: (table index, SI value).
+using Overrides = std::vector<std::pair<int, double>>;
+
+enum class ChannelRole { input, output, ignore };
+enum class Interpolation { hold, linear };
+
+/// One entry of [recording.channels].
+struct ChannelSetting {
+  Channel channel = Channel::position;
+  std::string column;        ///< empty: only where `columns` of a repeat names one
+  std::string minus;         ///< second column that is taken off `column`; empty: none
+  UnitConversion to_si;      ///< SI = conversion(gain * raw + offset), from the file's number
+  std::optional<double> sd;  ///< of the samples in the file, SI, after `gain`
+  ChannelRole role = ChannelRole::output;
+  Interpolation interpolation = Interpolation::hold;
+  bool in_counts = false;  ///< raw numbers of a converter: nothing says what they measure
+};
+
+enum class Waveform { sine, square, chirp, recorded };
+std::string_view to_string(Waveform waveform);
+
+enum class Use { fit, validate, diagnose, ignore };
+std::string_view to_string(Use use);
+
+/// One item of `repeats`: files (a pattern with * and ?), or columns of one file.
+struct RepeatPattern {
+  std::string file;
+  std::vector<std::string> numbers;        ///< what {n} stands for; empty: one repeat per file
+  std::map<Channel, std::string> columns;  ///< over the columns of the channels; {n} replaced
+};
+
+/// Limit of one metric: FAIL beyond `limit`, WARN between it and `warn`.
+struct AcceptanceLimit {
+  Channel channel = Channel::position;
+  std::string metric;  ///< name as in the results
+  std::optional<double> limit;
+  std::optional<double> warn;
+};
+
+/// What a result must be, beside the limits of its metrics, to be accepted without reservation.
+struct AcceptanceBounds {
+  /// Standard deviation of the model's error over that of the noise of a record's mean.
+  double model_error_to_noise = 0.5;
+  /// Parameters of which an estimate that cannot be told from zero does not matter up to here, SI.
+  std::map<int, double> negligible;
+};
+
+struct Condition {
+  std::string id;
+  Waveform waveform = Waveform::recorded;
+  std::optional<double> frequency_hz;      ///< of a chirp: at its start
+  std::optional<double> end_frequency_hz;  ///< of a chirp (`end_frequency`)
+  std::optional<double> sweep_s;           ///< of a chirp (`sweep_time`; the duration if left out)
+  bool logarithmic_sweep = false;          ///< `sweep = "logarithmic"`
+  std::optional<double> amplitude;         ///< [m], or [V] where no controller is in the loop
+  std::optional<std::string> leak_level;
+  Use use = Use::fit;
+  Overrides overrides;  ///< `parameters` and `controller` of this condition
+  std::vector<RepeatPattern> repeats;
+  std::optional<std::string> averaged;  ///< file that is averaged already
+  int repeats_averaged = 1;
+  std::vector<TimeWindow> windows;  ///< empty: the whole record counts
+  bool moving_windows = false;      ///< `windows = "moving"`: found from the record
+  std::optional<std::vector<AcceptanceLimit>> acceptance;  ///< in place of the campaign's
+  std::optional<double> duration_s;
+  std::optional<double> sample_rate_hz;
+  std::optional<double> temperature_k;
+  std::optional<std::string> date;
+  std::optional<std::string> specimen;  ///< which machine, where a campaign has several
+  Location where;
+
+  bool has_record() const { return averaged.has_value() || !repeats.empty(); }
+};
+
+enum class InitialMode { rest, record, fit };
+enum class Alignment { correlate, none };
+enum class SpikeTreatment { report, exclude };
+
+enum class Loss { squared, huber, cauchy, soft_l1 };
+
+/// [fit], all optional.
+struct FitSettings {
+  Loss loss = Loss::squared;
+  double loss_scale = 3.0;  ///< in standard deviations of a residual
+  int max_iterations = 200;
+  int starts = 1;
+  std::optional<double> max_seconds;  ///< of the whole fit
+  std::vector<Channel> outputs;       ///< compared with the model; empty: every output channel
+  /// A start goes through multiple shooting with pieces of this length; none: it does not.
+  std::optional<double> shooting_interval_s;
+};
+
+/// [synthetic]: a known rig and what disturbs its records.
+struct SyntheticSettings {
+  Overrides parameters;                               ///< the truth, over the campaign's values
+  std::map<std::string, Overrides> level_parameters;  ///< [synthetic.leak_level."..."]
+  int repeats = 5;
+  double duration_s = 0.0;  ///< where a condition has none; 0: none
+  double sample_rate_hz = 0.0;
+  std::map<Channel, double> noise_sd;      ///< white, of one repeat, SI
+  std::map<Channel, double> ar1_sd;        ///< stationary sd of an AR(1) noise, SI
+  double ar1_coefficient = 0.9;            ///< per sample
+  std::map<Channel, double> quantisation;  ///< step of the converter, SI
+  std::map<Channel, double> drift;         ///< linear, over the record, random sign, SI
+  double trigger_jitter_s = 0.0;           ///< sd of the start of each repeat
+  double supply_ripple_pa = 0.0;           ///< amplitude
+  double supply_ripple_hz = 50.0;
+  std::map<int, double> variation;  ///< relative sd between repeats, by parameter
+};
+
+struct SimulationSettings {
+  model::Method method = model::Method::rosenbrock;
+  std::optional<double> tolerance;  ///< none: from the noise of the records
+  double max_seconds = 120.0;
+};
+
+/// A campaign file, checked and in SI.
+struct Campaign {
+  std::filesystem::path file;
+  std::filesystem::path data_dir;  ///< where relative record paths start
+  std::string name;
+  bool synthetic = false;  ///< its records were made by `rigcal synthesize`
+  model::Rig rig;
+  std::vector<ParameterSetting> parameters;
+  std::map<std::string, Overrides> leak_levels;
+  InitialMode initial = InitialMode::rest;
+  double initial_window_s = 0.1;
+  char separator = 0;
+  std::optional<double> decimate_to_hz;
+  SpikeTreatment spikes = SpikeTreatment::report;
+  std::string time_column;
+  UnitConversion time_to_s;
+  bool time_in_counts = false;  ///< samples are numbered, nothing says how long one lasts
+  std::map<Channel, ChannelSetting> channels;
+  Alignment alignment = Alignment::correlate;
+  std::vector<AcceptanceLimit> acceptance;
+  AcceptanceBounds acceptance_bounds;
+  FitSettings fit;
+  SimulationSettings simulation;
+  DiagnosisSettings diagnosis;
+  ReportSettings report;
+  std::optional<SyntheticSettings> synthetic_settings;
+  std::vector<Condition> conditions;
+
+  const Condition* find(std::string_view id) const;
+  const ParameterSetting* setting(int index) const;
+  /// What a condition is judged by: its own limits, or the campaign's.
+  const std::vector<AcceptanceLimit>& limits(const Condition& condition) const;
+};
+
+/// Reads and checks a campaign file.
+///
+/// @param data_dir  where relative record paths start; the file's folder if empty
+/// @throws InputError  file:line:column with the key, what was found and what was expected; an
+///                     unknown key names the nearest known one
+Campaign load_campaign(const std::filesystem::path& file,
+                       const std::filesystem::path& data_dir = {});
+
+/// Changes a value as `--set name="value unit"` does (a fitted parameter stays fitted, from there).
+/// @throws UsageError  unknown name, wrong unit, value outside the parameter's limits or bounds, or
+///                     of no effect because every condition has its own
+void set_value(Campaign& campaign, std::string_view assignment);
+
+/// Makes exactly these parameters free, as `--free a,b` does. Bounds that the campaign does not
+/// give are value/10 to 10 value within the parameter's limits (its limits where the value is 0).
+/// @throws UsageError  unknown name, or a parameter that cannot be fitted
+void set_free(Campaign& campaign, const std::vector<std::string>& names);
+
+/// Checks that the values still belong together; call it after the last set_value() and set_free(),
+/// since one alone may leave a pair half given.
+/// @throws UsageError  naming the condition and what is missing or contradicts
+void check_values(const Campaign& campaign);
+
+/// What a condition lacks to be compared with the model, in words: parameters without a value, an
+/// unknown drive, time or unit, no output channel. Empty if nothing; conditions of use `fit` and
+/// `validate` that lack something but a unit are refused by load_campaign() already.
+std::vector<std::string> lacks_for_model(const Campaign& campaign, const Condition& condition);
+
+/// Values that hold in a condition: rig, then its leak level, then its own.
+model::ParameterValues values_in(const Campaign& campaign, const Condition& condition);
+
+/// One repeat of a condition: a file and the column of each channel.
+struct RepeatSource {
+  std::filesystem::path path;
+  std::string label;  ///< file name as in the campaign, with the column number if any
+  std::map<Channel, std::string> columns;
+};
+
+/// Files of a condition, patterns expanded and sorted by name.
+/// @throws InputError  a pattern that matches no file, with the folder that was searched
+std::vector<RepeatSource> repeat_sources(const Campaign& campaign, const Condition& condition);
+
+/// What drives the model in a condition.
+/// @param record  needed where the waveform is recorded; may be null otherwise
+model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& condition,
+                                  const model::ParameterValues& values, const Record* record);
+
+/// Sample times of a condition: of its record, or from its duration and sample rate.
+/// @throws InputError  neither is there
+std::vector<double> sample_times(const Condition& condition, const Record* record);
+
+/// The campaign file with known values in place of starts: what `fitted.toml` holds. `values` are
+/// (table index, level or condition or empty for the rig, SI value). Nuisance parameters stay free;
+/// a start goes where every condition has a value of its own; what --set and --free changed is
+/// written too. Relative record paths are rewritten so that they hold from `out_dir`. Comments of
+/// the file are lost, its order is kept.
+///
+/// @throws InputError             the campaign file is gone or was changed into a wrong one
+/// @throws std::invalid_argument  a value for a condition that is not there
+struct FittedValue {
+  int index = 0;
+  Scope scope = Scope::rig;
+  std::string level;
+  double value = 0.0;
+};
+std::string fitted_campaign_text(const Campaign& campaign, const std::vector<FittedValue>& values,
+                                 const std::filesystem::path& out_dir);
+
+}  // namespace rigcal::datasets

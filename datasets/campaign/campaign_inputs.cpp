@@ -1,0 +1,99 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/campaign_sections.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+model::Signal recorded_signal(const Campaign& campaign, const Record& record, Channel channel) {
+  const auto& mean = record.channels.at(channel).mean;
+  const bool linear = campaign.channels.at(channel).interpolation == Interpolation::linear;
+  return linear ? model::Signal::linear(record.time_s, mean)
+                : model::Signal::held(record.time_s, mean);
+}
+
+double sweep_time(const Condition& condition, const Record* record) {
+  if (condition.sweep_s) return *condition.sweep_s;
+  if (condition.duration_s) return *condition.duration_s;
+  if (record != nullptr && record->time_s.size() > 1) return record->time_s.back();
+  throw InputError(condition.where,
+                   fmt::format("condition \"{}\": the chirp has no end: expected sweep_time, "
+                               "duration or a record",
+                               condition.id));
+}
+
+model::Signal drive(const Campaign& campaign, const Condition& condition, const Record* record) {
+  const double amplitude = condition.amplitude.value_or(0.0);
+  const double frequency_hz = condition.frequency_hz.value_or(0.0);
+  switch (condition.waveform) {
+    case Waveform::sine:
+      return model::Signal::sine(amplitude, frequency_hz);
+    case Waveform::square:
+      return model::Signal::square(amplitude, frequency_hz);
+    case Waveform::chirp:
+      return model::Signal::chirp(amplitude, frequency_hz, condition.end_frequency_hz.value(),
+                                  sweep_time(condition, record), condition.logarithmic_sweep);
+    case Waveform::recorded:
+      break;
+  }
+  const Channel channel = drive_channel(campaign);
+  if (record == nullptr) {
+    throw std::invalid_argument(fmt::format(
+        "inputs_of: condition \"{}\" has a recorded waveform but no record", condition.id));
+  }
+  if (!record->channels.contains(channel)) {
+    throw InputError(condition.where,
+                     fmt::format("condition \"{}\": its record has no channel {}, which drives the "
+                                 "rig where the waveform is \"recorded\"",
+                                 condition.id, info(channel).key));
+  }
+  return recorded_signal(campaign, *record, channel);
+}
+
+/// A measured channel that acts on the rig besides the drive.
+std::optional<model::Signal> side_input(const Campaign& campaign, const Record* record,
+                                        Channel channel) {
+  const auto setting = campaign.channels.find(channel);
+  if (setting == campaign.channels.end() || setting->second.role != ChannelRole::input ||
+      record == nullptr || !record->channels.contains(channel)) {
+    return std::nullopt;
+  }
+  return recorded_signal(campaign, *record, channel);
+}
+
+}  // namespace
+
+model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& condition,
+                                  const model::ParameterValues& /*values*/, const Record* record) {
+  model::SimulationInputs inputs;
+  inputs.drive = drive(campaign, condition, record);
+  inputs.external_force_n = side_input(campaign, record, Channel::force);
+  inputs.supply_pressure_pa = side_input(campaign, record, Channel::supply_pressure);
+  inputs.tank_pressure_pa = side_input(campaign, record, Channel::tank_pressure);
+  return inputs;
+}
+
+std::vector<double> sample_times(const Condition& condition, const Record* record) {
+  if (record != nullptr) return record->time_s;
+  if (!condition.duration_s || !condition.sample_rate_hz) {
+    throw InputError(condition.where,
+                     fmt::format("condition \"{}\" has neither a record nor both duration and "
+                                 "sample_rate",
+                                 condition.id));
+  }
+  // A duration of a whole number of samples must not lose the last one to rounding.
+  constexpr double kSlack = 1e-9;
+  const auto intervals = static_cast<std::size_t>(
+      std::floor(*condition.duration_s * *condition.sample_rate_hz * (1.0 + kSlack)));
+  std::vector<double> times(intervals + 1);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    times[i] = static_cast<double>(i) / *condition.sample_rate_hz;
+  }
+  return times;
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <map>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/campaign_parameters.hpp"
+#include "datasets/campaign/campaign_sections.hpp"
+#include "datasets/campaign/leak_table_settings.hpp"
+#include "datasets/campaign/toml_reader.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr std::string_view kSchema = "rigcal.campaign/1";
+
+void check_schema(const TomlNode& root) {
+  const std::string expected = fmt::format("schema = \"{}\"", kSchema);
+  const TomlNode schema = root.require("schema", expected);
+  if (schema.string(expected) != kSchema) schema.fail_type(expected);
+}
+
+model::PlantKind read_plant(const TomlNode& rig) {
+  std::vector<std::pair<std::string, model::PlantKind>> choices;
+  for (const std::string& name : model::plant_names()) {
+    choices.emplace_back(name, *model::plant_from_name(name));
+  }
+  return rig.require("model", "the plant, such as \"load_pressure\"").choice(choices);
+}
+
+void read_controller(const TomlNode& node, Campaign& campaign) {
+  using Kind = model::ControllerKind;
+  campaign.rig.controller = node.require("type", "\"pid\" or \"none\"")
+                                .choice<Kind>({{"pid", Kind::pid}, {"none", Kind::none}});
+  const auto settings =
+      read_settings(node, campaign.rig.plant, ParameterGroup::controller, {"type"});
+  if (campaign.rig.controller == Kind::none && !settings.empty()) {
+    const std::string key(spec_of(campaign.rig.plant, settings.front().index).key);
+    node.require(key, "a gain").fail("is given, but type is \"none\": expected type = \"pid\"");
+  }
+  campaign.parameters.insert(campaign.parameters.end(), settings.begin(), settings.end());
+}
+
+void read_rig(const TomlNode& node, Campaign& campaign) {
+  node.allow_only({"model", "parameters", "controller"});
+  campaign.rig.plant = read_plant(node);
+  campaign.rig.controller = model::ControllerKind::none;
+  if (const auto parameters = node.find("parameters")) {
+    campaign.parameters = read_settings(*parameters, campaign.rig.plant, ParameterGroup::rig);
+  }
+  if (const auto controller = node.find("controller")) read_controller(*controller, campaign);
+}
+
+void read_leak_levels(const TomlNode& node, Campaign& campaign) {
+  for (const auto& [level, entry] : node.entries()) {
+    entry.allow_only({"parameters"});
+    if (level.empty()) entry.fail("a leak level needs a name: expected a text that is not empty");
+    const auto values = entry.find("parameters");
+    campaign.leak_levels[level] =
+        values ? read_overrides(*values, campaign.rig.plant, ParameterGroup::rig) : Overrides{};
+  }
+}
+
+std::string lower_case(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
+void read_conditions(const TomlNode& node, Campaign& campaign) {
+  if (!node.is_array()) node.fail_type("[[condition]], in double brackets");
+  std::map<std::string, std::string> ids;
+  for (const TomlNode& item : node.items()) {
+    const Condition condition = read_condition(item, campaign);
+    const auto [entry, is_new] = ids.emplace(lower_case(condition.id), condition.id);
+    if (!is_new) {
+      item.require("id", "a name")
+          .fail(entry->second == condition.id
+                    ? fmt::format("there is a condition \"{}\" already: expected an id of its own",
+                                  condition.id)
+                    : fmt::format("\"{}\" differs from \"{}\" by case only, and ids name files: "
+                                  "expected another id",
+                                  condition.id, entry->second));
+    }
+    campaign.conditions.push_back(condition);
+  }
+}
+
+/// [synthetic] says how long and how dense where a condition has neither record nor times.
+void fill_times(Campaign& campaign) {
+  if (!campaign.synthetic_settings) return;
+  const SyntheticSettings& synthetic = *campaign.synthetic_settings;
+  for (Condition& condition : campaign.conditions) {
+    if (condition.has_record()) continue;
+    if (!condition.duration_s && synthetic.duration_s > 0.0) {
+      condition.duration_s = synthetic.duration_s;
+    }
+    if (!condition.sample_rate_hz && synthetic.sample_rate_hz > 0.0) {
+      condition.sample_rate_hz = synthetic.sample_rate_hz;
+    }
+  }
+}
+
+/// `synthetic = true` labels records that were made; a table [synthetic] says how to make some.
+void read_synthetic_entry(const TomlNode& node, Campaign& campaign) {
+  if (node.is_table()) {
+    campaign.synthetic_settings = read_synthetic(node, campaign.rig.plant);
+  } else {
+    campaign.synthetic = node.boolean();
+  }
+}
+
+Alignment read_alignment(const TomlNode& node) {
+  node.allow_only({"align"});
+  const auto align = node.find("align");
+  if (!align) return Alignment::correlate;
+  return align->choice<Alignment>({{"correlate", Alignment::correlate}, {"none", Alignment::none}});
+}
+
+}  // namespace
+
+Campaign load_campaign(const std::filesystem::path& file, const std::filesystem::path& data_dir) {
+  const toml::table parsed = parse_toml_file(file);
+  const TomlNode root(parsed, file.string(), "");
+  check_schema(root);
+  root.allow_only({"schema", "name", "synthetic", "rig", "leak_level", "recording", "averaging",
+                   "acceptance", "fit", "simulation", "leak_table", "diagnosis", "report",
+                   "condition"});
+  Campaign campaign;
+  campaign.file = file;
+  campaign.data_dir = data_dir.empty() ? file.parent_path() : data_dir;
+  campaign.name = file.stem().string();
+  if (const auto name = root.find("name")) campaign.name = name->name();
+  read_rig(root.require("rig", "a table [rig] with model and parameters"), campaign);
+  // The order matters: the later sections are checked against the earlier ones.
+  if (const auto node = root.find("leak_level")) read_leak_levels(*node, campaign);
+  if (const auto node = root.find("recording")) read_recording(*node, campaign);
+  if (const auto node = root.find("averaging")) campaign.alignment = read_alignment(*node);
+  if (const auto node = root.find("acceptance")) read_acceptance(*node, campaign);
+  if (const auto node = root.find("fit")) campaign.fit = read_fit(*node, campaign);
+  if (const auto node = root.find("report")) campaign.report = read_report(*node);
+  if (const auto node = root.find("simulation")) campaign.simulation = read_simulation(*node);
+  if (const auto node = root.find("diagnosis")) campaign.diagnosis = read_diagnosis(*node);
+  if (const auto node = root.find("synthetic")) read_synthetic_entry(*node, campaign);
+  if (const auto node = root.find("condition")) read_conditions(*node, campaign);
+  if (const auto node = root.find("diagnosis")) check_duty(*node, campaign);
+  fill_times(campaign);
+  // Only its verbs use it, but whoever checks a campaign wants to know that all of it is right.
+  if (const auto node = root.find("leak_table")) read_leak_table(*node, campaign);
+  check_campaign(campaign, {file.string(), 1, 0});
+  return campaign;
+}
+
+}  // namespace rigcal::datasets

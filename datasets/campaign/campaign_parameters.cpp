@@ -1,0 +1,268 @@
+#include "datasets/campaign/campaign_parameters.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+
+bool belongs_to(const model::ParameterSpec& spec, ParameterGroup group) {
+  const bool of_controller = spec.kind == model::ParameterKind::controller;
+  return group == ParameterGroup::any || of_controller == (group == ParameterGroup::controller);
+}
+
+std::string with_unit(const model::ParameterSpec& spec, double value) {
+  return spec.unit == "1" ? fmt::format("{}", value) : fmt::format("{} {}", value, spec.unit);
+}
+
+/// Value of a parameter within the limits of its table row.
+double read_value(const TomlNode& node, const model::ParameterSpec& spec) {
+  const double value = node.quantity(spec.unit);
+  if (const auto problem = outside_limits(spec, value)) node.fail(*problem);
+  return value;
+}
+
+/// Index of a key that may stand in this table.
+int read_index(const TomlNode& table, std::string_view key, model::PlantKind plant,
+               ParameterGroup group, const std::vector<std::string>& others) {
+  const int index = model::parameter_index(plant, key);
+  if (index >= 0 && belongs_to(spec_of(plant, index), group)) return index;
+  if (index >= 0) {
+    table.require(key, "a parameter")
+        .fail(group == ParameterGroup::rig ? "is a value of the controller: it belongs in "
+                                             "[rig.controller], or in `controller` of a condition"
+                                           : "is no value of the controller: it belongs in "
+                                             "[rig.parameters], or in `parameters`");
+  }
+  std::vector<std::string> known = others;
+  const auto keys = parameter_keys(plant, group);
+  known.insert(known.end(), keys.begin(), keys.end());
+  table.fail_unknown(key, "parameter", known);
+}
+
+std::optional<Prior> read_prior(const TomlNode& node, const model::ParameterSpec& spec) {
+  const auto mean = node.find("prior");
+  const auto sd = node.find("prior_sd");
+  if (!mean && !sd) return std::nullopt;
+  if (!sd) mean->fail("has no prior_sd beside it: expected the standard deviation of the prior");
+  if (!mean) sd->fail("has no prior beside it: expected the mean of the prior");
+  const Prior prior{read_value(*mean, spec), sd->difference(spec.unit)};
+  if (!(prior.sd > 0.0)) sd->fail_type("a standard deviation above zero");
+  return prior;
+}
+
+void read_between_repeats(const TomlNode& node, const model::ParameterSpec& spec,
+                          ParameterSetting& setting) {
+  if (const auto problem = cannot_be_fitted(spec)) node.fail(*problem);
+  const double sd = node.difference(spec.unit);
+  if (!(sd > 0.0)) node.fail_type("a standard deviation above zero");
+  differ_between_repeats(spec, sd, setting);
+}
+
+/// { start = ..., lower = ..., ... }
+void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
+                        ParameterSetting& setting) {
+  node.allow_only({"start", "lower", "upper", "fit", "scope", "prior", "prior_sd", "nuisance",
+                   "between_repeats"});
+  const TomlNode start =
+      node.require("start", fmt::format("the value from which a fit starts, in {}", spec.unit));
+  setting.value = read_value(start, spec);
+  const auto lower = node.find("lower");
+  const auto upper = node.find("upper");
+  if (lower) setting.lower = read_value(*lower, spec);
+  if (upper) setting.upper = read_value(*upper, spec);
+  if (lower && upper && !(setting.lower < setting.upper)) {
+    lower->fail(fmt::format("lower ({}) is not below upper ({})", with_unit(spec, setting.lower),
+                            with_unit(spec, setting.upper)));
+  }
+  if ((lower && setting.value < setting.lower) || (upper && setting.value > setting.upper)) {
+    start.fail(fmt::format("{} lies outside its own bounds {} to {}",
+                           with_unit(spec, setting.value),
+                           lower ? with_unit(spec, setting.lower) : "(not given)",
+                           upper ? with_unit(spec, setting.upper) : "(not given)"));
+  }
+  if (const auto fit = node.find("fit")) {
+    setting.fit = fit->boolean();
+    if (const auto problem = cannot_be_fitted(spec); setting.fit && problem) fit->fail(*problem);
+  }
+  if (const auto scope = node.find("scope")) {
+    setting.scope = scope->choice<Scope>(
+        {{"rig", Scope::rig}, {"leak_level", Scope::leak_level}, {"condition", Scope::condition}});
+    if (setting.scope == Scope::leak_level && spec.kind == model::ParameterKind::controller) {
+      scope->fail("a leak level has no controller of its own: expected \"rig\" or \"condition\"");
+    }
+  }
+  setting.prior = read_prior(node, spec);
+  if (const auto nuisance = node.find("nuisance")) setting.nuisance = nuisance->boolean();
+  if (const auto between = node.find("between_repeats")) {
+    for (const char* key : {"fit", "scope", "prior", "prior_sd", "nuisance"}) {
+      if (const auto other = node.find(key))
+        other->fail(
+            "stands beside between_repeats, which says it already: the value differs at "
+            "random from repeat to repeat about `start`, and is estimated per condition");
+    }
+    read_between_repeats(*between, spec, setting);
+  }
+  if (!setting.fit) return;
+  if (const auto problem = complete_bounds(spec, setting)) start.fail(*problem);
+}
+
+}  // namespace
+
+void differ_between_repeats(const model::ParameterSpec& spec, double sd,
+                            ParameterSetting& setting) {
+  constexpr double kReach = 8.0;  // standard deviations; farther off the mean no repeat lies
+  setting.between_repeats = true;
+  setting.fit = true;
+  setting.scope = Scope::condition;
+  setting.nuisance = true;
+  setting.prior = Prior{setting.value, sd};
+  if (std::isnan(setting.lower)) setting.lower = std::max(spec.lower, setting.value - kReach * sd);
+  if (std::isnan(setting.upper)) setting.upper = std::min(spec.upper, setting.value + kReach * sd);
+}
+
+const model::ParameterSpec& spec_of(model::PlantKind plant, int index) {
+  return model::parameter_table(plant)[static_cast<std::size_t>(index)];
+}
+
+std::vector<std::string> parameter_keys(model::PlantKind plant, ParameterGroup group) {
+  std::vector<std::string> keys;
+  for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
+    if (belongs_to(spec, group)) keys.emplace_back(spec.key);
+  }
+  return keys;
+}
+
+std::optional<std::string> outside_limits(const model::ParameterSpec& spec, double value) {
+  if (value >= spec.lower && value <= spec.upper) return std::nullopt;
+  return fmt::format("{} makes no sense for {} ({}): expected {} to {}", with_unit(spec, value),
+                     spec.key, spec.meaning, with_unit(spec, spec.lower),
+                     with_unit(spec, spec.upper));
+}
+
+std::optional<std::string> complete_bounds(const model::ParameterSpec& spec,
+                                           ParameterSetting& setting) {
+  const double low = std::min(setting.value / 10.0, setting.value * 10.0);
+  const double high = std::max(setting.value / 10.0, setting.value * 10.0);
+  const bool zero = setting.value == 0.0;
+  if (std::isnan(setting.lower)) setting.lower = zero ? spec.lower : std::max(spec.lower, low);
+  if (std::isnan(setting.upper)) setting.upper = zero ? spec.upper : std::min(spec.upper, high);
+  if (!std::isfinite(setting.lower) || !std::isfinite(setting.upper)) {
+    return "a fit needs finite bounds here: expected `lower` and `upper`";
+  }
+  if (setting.lower < setting.upper && setting.value >= setting.lower &&
+      setting.value <= setting.upper) {
+    return std::nullopt;
+  }
+  return fmt::format("{} lies outside the bounds {} to {}", with_unit(spec, setting.value),
+                     with_unit(spec, setting.lower), with_unit(spec, setting.upper));
+}
+
+std::optional<std::string> cannot_be_fitted(const model::ParameterSpec& spec) {
+  if (spec.can_be_fitted) return std::nullopt;
+  return fmt::format("{} ({}) cannot be fitted: expected a known value", spec.key, spec.meaning);
+}
+
+std::vector<ParameterSetting> read_settings(const TomlNode& table, model::PlantKind plant,
+                                            ParameterGroup group,
+                                            const std::vector<std::string>& others) {
+  std::vector<ParameterSetting> settings;
+  for (const auto& [key, node] : table.entries()) {
+    if (std::find(others.begin(), others.end(), key) != others.end()) continue;
+    ParameterSetting setting;
+    setting.index = read_index(table, key, plant, group, others);
+    setting.lower = kNotGiven;
+    setting.upper = kNotGiven;
+    setting.where = node.where();
+    const model::ParameterSpec& spec = spec_of(plant, setting.index);
+    if (node.is_table()) {
+      read_setting_table(node, spec, setting);
+    } else {
+      setting.value = read_value(node, spec);
+    }
+    settings.push_back(setting);
+  }
+  return settings;
+}
+
+bool has_entry(const Overrides& overrides, int index) {
+  return std::any_of(overrides.begin(), overrides.end(),
+                     [&](const auto& entry) { return entry.first == index; });
+}
+
+Overrides read_overrides(const TomlNode& table, model::PlantKind plant, ParameterGroup group) {
+  Overrides overrides;
+  for (const auto& [key, node] : table.entries()) {
+    const int index = read_index(table, key, plant, group, {});
+    if (node.is_table()) {
+      node.fail_type(
+          "a known value: what is fitted stands in [rig.parameters] or [rig.controller], "
+          "with scope = \"leak_level\" or \"condition\" if it differs from run to run");
+    }
+    overrides.emplace_back(index, read_value(node, spec_of(plant, index)));
+  }
+  return overrides;
+}
+
+namespace {
+
+std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValues& values) {
+  if (values.plant != model::PlantKind::two_chamber) return std::nullopt;
+  const bool resistance = values.is_given("supply_resistance");
+  if (resistance == values.is_given("supply_capacity")) return std::nullopt;
+  return ParameterConflict{
+      resistance ? "supply_resistance" : "supply_capacity",
+      fmt::format("a supply that gives way needs both supply_resistance and supply_capacity: "
+                  "expected {} as well",
+                  resistance ? "supply_capacity" : "supply_resistance")};
+}
+
+}  // namespace
+
+std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
+                                               const model::ParameterValues& values) {
+  const auto given = [&](std::string_view key) { return values.is_given(key); };
+  if (const auto missing = values.missing(); !missing.empty()) {
+    return ParameterConflict{"", fmt::format("no value for {}: expected a known value or a start "
+                                             "in [rig.parameters]",
+                                             fmt::join(missing, ", "))};
+  }
+  if (given("valve_time_constant") && given("valve_frequency")) {
+    return ParameterConflict{"valve_time_constant",
+                             "valve_time_constant (a first-order valve) stands together with "
+                             "valve_frequency (a second-order one): expected one of them"};
+  }
+  if (given("valve_frequency") != given("valve_damping_ratio")) {
+    const bool frequency = given("valve_frequency");
+    return ParameterConflict{
+        frequency ? "valve_frequency" : "valve_damping_ratio",
+        fmt::format("a second-order valve needs both valve_frequency and valve_damping_ratio: "
+                    "expected {} as well",
+                    frequency ? "valve_damping_ratio" : "valve_frequency")};
+  }
+  if (given("valve_rate_limit") && !given("valve_time_constant") && !given("valve_frequency")) {
+    return ParameterConflict{"valve_rate_limit",
+                             "valve_rate_limit without the valve's own lag: expected "
+                             "valve_time_constant, or valve_frequency, as well"};
+  }
+  if (const auto conflict = find_supply_conflict(values)) return conflict;
+  if (rig.controller == model::ControllerKind::none) return std::nullopt;
+  if (!given("kp")) {
+    return ParameterConflict{"", "the pid controller has no kp: expected one in [rig.controller]"};
+  }
+  if (given("kd") && !given("derivative_filter")) {
+    return ParameterConflict{
+        "kd",
+        "kd without derivative_filter: expected the corner N of its filter, such as "
+        "derivative_filter = \"500 rad/s\""};
+  }
+  return std::nullopt;
+}
+
+}  // namespace rigcal::datasets

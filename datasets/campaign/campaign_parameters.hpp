@@ -1,0 +1,65 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/toml_reader.hpp"
+
+namespace rigcal::datasets {
+
+/// Where a parameter stands in the campaign file.
+enum class ParameterGroup {
+  rig,         ///< [rig.parameters]: everything but the controller's
+  controller,  ///< [rig.controller]
+  any,         ///< [synthetic] parameters
+};
+
+/// Declares a parameter to differ at random from repeat to repeat about its value
+/// (ParameterSetting::between_repeats). Bounds that are NaN become eight standard deviations,
+/// within the parameter's limits.
+void differ_between_repeats(const model::ParameterSpec& spec, double sd, ParameterSetting& setting);
+
+const model::ParameterSpec& spec_of(model::PlantKind plant, int index);
+
+/// Keys of a group in the order of the parameter table.
+std::vector<std::string> parameter_keys(model::PlantKind plant, ParameterGroup group);
+
+/// What is wrong with a value outside the limits of the parameter table; empty if nothing is.
+std::optional<std::string> outside_limits(const model::ParameterSpec& spec, double value);
+
+/// Puts bounds where none were given (NaN): value/10 to 10 value within the parameter's limits, or
+/// the limits themselves where the value is 0.
+///
+/// @return  what is wrong if a bound then is not finite or the value lies outside; else empty
+std::optional<std::string> complete_bounds(const model::ParameterSpec& spec,
+                                           ParameterSetting& setting);
+
+/// Why a parameter cannot be fitted; empty if it can.
+std::optional<std::string> cannot_be_fitted(const model::ParameterSpec& spec);
+
+/// Table [rig.parameters] or [rig.controller]; keys in `others` belong to someone else.
+///
+/// @throws InputError
+std::vector<ParameterSetting> read_settings(const TomlNode& table, model::PlantKind plant,
+                                            ParameterGroup group,
+                                            const std::vector<std::string>& others = {});
+
+/// Table of known values: `parameters = { }` or `controller = { }`.
+///
+/// @throws InputError
+Overrides read_overrides(const TomlNode& table, model::PlantKind plant, ParameterGroup group);
+
+/// Whether a table of known values has one for the parameter of this table index.
+bool has_entry(const Overrides& overrides, int index);
+
+/// Parameters that contradict or miss one another.
+struct ParameterConflict {
+  std::string key;
+  std::string message;
+};
+std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
+                                               const model::ParameterValues& values);
+
+}  // namespace rigcal::datasets

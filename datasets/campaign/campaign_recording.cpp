@@ -1,0 +1,181 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/quantity.hpp"
+#include "datasets/campaign/campaign_sections.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr double kDefaultWindowS = 0.1;
+
+constexpr std::string_view kCounts = "counts";
+
+bool is_in_counts(const TomlNode& node) {
+  const auto unit = node.find("unit");
+  return unit && unit->is_string() && unit->string() == kCounts;
+}
+
+/// Numbers that nothing converts stay as they are.
+UnitConversion read_counts(const TomlNode& node) {
+  for (const char* key : {"gain", "offset", "sd"}) {
+    if (const auto entry = node.find(key))
+      entry->fail("has no meaning for counts: expected the unit that the gain leads to");
+  }
+  return {};
+}
+
+/// SI = conversion(gain * raw + offset), the offset in the channel's own unit.
+UnitConversion read_conversion(const TomlNode& node, std::string_view si_unit) {
+  const TomlNode unit =
+      node.require("unit", fmt::format("the unit of the column, such as \"{}\"", si_unit));
+  const std::string name = unit.name("a unit in quotes");
+  UnitConversion conversion;
+  try {
+    conversion = unit_conversion(name, si_unit);
+  } catch (const QuantityError& error) {
+    unit.fail(error.what());
+  }
+  double gain = 1.0;
+  if (const auto entry = node.find("gain")) {
+    gain = entry->number();
+    if (gain == 0.0) entry->fail_type("a number other than zero");
+  }
+  double offset = 0.0;
+  if (const auto entry = node.find("offset")) offset = entry->difference(name);
+  return {conversion.scale * gain, conversion.scale * offset + conversion.offset};
+}
+
+ChannelRole default_role(Channel channel, model::ControllerKind controller) {
+  const bool pid = controller == model::ControllerKind::pid;
+  switch (channel) {
+    case Channel::reference:
+      return pid ? ChannelRole::input : ChannelRole::ignore;
+    case Channel::command:
+      return pid ? ChannelRole::ignore : ChannelRole::input;
+    case Channel::supply_pressure:
+    case Channel::tank_pressure:
+      return ChannelRole::input;
+    default:
+      return info(channel).is_output ? ChannelRole::output : ChannelRole::ignore;
+  }
+}
+
+/// The model has no use for some roles.
+void check_role(const TomlNode& node, Channel channel, ChannelRole role,
+                model::ControllerKind controller) {
+  const bool pid = controller == model::ControllerKind::pid;
+  const bool drives = channel == (pid ? Channel::reference : Channel::command);
+  const bool can_be_input = drives || channel == Channel::supply_pressure ||
+                            channel == Channel::tank_pressure || channel == Channel::force;
+  const bool can_be_output = info(channel).is_output || (channel == Channel::command && !drives);
+  if (role == ChannelRole::input && !can_be_input) {
+    node.fail(fmt::format("{} cannot be an input {}: expected \"output\" or \"ignore\"",
+                          info(channel).key,
+                          pid ? "where a pid controller is in the loop" : "without a controller"));
+  }
+  if (role == ChannelRole::output && !can_be_output) {
+    node.fail(fmt::format("the model does not compute {}: expected \"input\" or \"ignore\"",
+                          info(channel).key));
+  }
+}
+
+ChannelSetting read_channel(const TomlNode& node, Channel channel,
+                            model::ControllerKind controller) {
+  node.allow_only({"column", "minus", "unit", "gain", "offset", "sd", "role", "interpolation"});
+  ChannelSetting setting;
+  setting.channel = channel;
+  if (const auto column = node.find("column")) setting.column = column->name("a column name");
+  if (const auto minus = node.find("minus")) {
+    setting.minus = minus->name("a column name");
+    if (setting.column.empty())
+      minus->fail("nothing to take this column off: expected a column as well");
+  }
+  setting.in_counts = is_in_counts(node);
+  setting.to_si = setting.in_counts ? read_counts(node) : read_conversion(node, info(channel).unit);
+  if (const auto sd = node.find("sd")) {
+    setting.sd = sd->non_negative_difference(info(channel).unit);
+    if (*setting.sd == 0.0) sd->fail_type("a standard deviation above zero");
+  }
+  setting.role = default_role(channel, controller);
+  if (const auto role = node.find("role")) {
+    setting.role = role->choice<ChannelRole>({{"input", ChannelRole::input},
+                                              {"output", ChannelRole::output},
+                                              {"ignore", ChannelRole::ignore}});
+    check_role(*role, channel, setting.role, controller);
+  }
+  if (const auto interpolation = node.find("interpolation")) {
+    setting.interpolation = interpolation->choice<Interpolation>(
+        {{"hold", Interpolation::hold}, {"linear", Interpolation::linear}});
+  }
+  return setting;
+}
+
+void read_channels(const TomlNode& table, Campaign& campaign) {
+  for (const auto& [key, node] : table.entries()) {
+    if (key == "time") {
+      node.allow_only({"column", "unit", "gain", "offset"});
+      campaign.time_column =
+          node.require("column", "the name of the time column").name("a column name");
+      campaign.time_in_counts = is_in_counts(node);
+      campaign.time_to_s = campaign.time_in_counts ? read_counts(node) : read_conversion(node, "s");
+      continue;
+    }
+    const Channel channel = read_channel_key(table, key);
+    campaign.channels.emplace(channel, read_channel(node, channel, campaign.rig.controller));
+  }
+}
+
+}  // namespace
+
+void read_recording(const TomlNode& node, Campaign& campaign) {
+  node.allow_only({"initial", "initial_window", "separator", "decimate_to", "spikes", "channels"});
+  if (const auto initial = node.find("initial")) {
+    campaign.initial = initial->choice<InitialMode>(
+        {{"rest", InitialMode::rest}, {"record", InitialMode::record}, {"fit", InitialMode::fit}});
+  }
+  campaign.rig.initial = campaign.initial == InitialMode::rest ? model::InitialState::rest
+                                                               : model::InitialState::given;
+  campaign.initial_window_s = kDefaultWindowS;
+  if (const auto window = node.find("initial_window")) {
+    campaign.initial_window_s = window->positive_quantity("s");
+    if (campaign.initial == InitialMode::rest) {
+      window->fail("has no meaning where all states start at zero: expected initial = \"record\"");
+    }
+  }
+  if (const auto separator = node.find("separator")) {
+    campaign.separator = separator->choice<char>({{",", ','}, {";", ';'}, {"\t", '\t'}});
+  }
+  if (const auto rate = node.find("decimate_to")) {
+    campaign.decimate_to_hz = rate->positive_quantity("Hz");
+  }
+  if (const auto spikes = node.find("spikes")) {
+    campaign.spikes = spikes->choice<SpikeTreatment>(
+        {{"report", SpikeTreatment::report}, {"exclude", SpikeTreatment::exclude}});
+  }
+  if (const auto channels = node.find("channels")) read_channels(*channels, campaign);
+}
+
+Channel read_channel_key(const TomlNode& table, const std::string& key) {
+  const auto channel = channel_from_key(key);
+  if (channel) return *channel;
+  std::vector<std::string> known;
+  for (const ChannelInfo& row : channel_table()) known.emplace_back(row.key);
+  table.fail_unknown(key, "channel", known);
+}
+
+std::vector<Channel> output_channels(const Campaign& campaign) {
+  std::vector<Channel> outputs;
+  for (const auto& [channel, setting] : campaign.channels) {
+    if (setting.role == ChannelRole::output) outputs.push_back(channel);
+  }
+  return outputs;
+}
+
+Channel drive_channel(const Campaign& campaign) {
+  return campaign.rig.controller == model::ControllerKind::pid ? Channel::reference
+                                                               : Channel::command;
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/toml_reader.hpp"
+
+/// The sections of a campaign file, one reader each. All throw InputError with the key and its
+/// place.
+namespace rigcal::datasets {
+
+/// [recording] into the campaign, whose controller is known already.
+void read_recording(const TomlNode& node, Campaign& campaign);
+
+/// The limits in an `acceptance` of a condition; needs the channels.
+std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& campaign);
+
+/// [acceptance] into the campaign: limits, and what is asked beside them; needs rig and channels.
+void read_acceptance(const TomlNode& node, Campaign& campaign);
+
+/// [fit]; needs the channels.
+FitSettings read_fit(const TomlNode& node, const Campaign& campaign);
+
+/// [diagnosis]
+DiagnosisSettings read_diagnosis(const TomlNode& node);
+/// @throws InputError  `duty` names no condition of the campaign
+void check_duty(const TomlNode& node, const Campaign& campaign);
+
+/// [report]
+ReportSettings read_report(const TomlNode& node);
+
+/// [simulation]
+SimulationSettings read_simulation(const TomlNode& node);
+
+/// [synthetic]
+SyntheticSettings read_synthetic(const TomlNode& node, model::PlantKind plant);
+
+/// One [[condition]]; needs the rig and the channels.
+Condition read_condition(const TomlNode& node, const Campaign& campaign);
+
+/// Name of a channel as a key of a table, and what is known instead if it is none.
+Channel read_channel_key(const TomlNode& table, const std::string& key);
+
+/// Output channels of the records, in the order of the channel table.
+std::vector<Channel> output_channels(const Campaign& campaign);
+
+/// Channel that drives the rig where the waveform is recorded.
+Channel drive_channel(const Campaign& campaign);
+
+/// What no single section can tell: parameters without a value, contradictions, runs without
+/// records.
+///
+/// @param start  where the file starts
+void check_campaign(const Campaign& campaign, const Location& start);
+
+}  // namespace rigcal::datasets

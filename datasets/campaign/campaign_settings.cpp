@@ -1,0 +1,283 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "datasets/campaign/campaign_parameters.hpp"
+#include "datasets/campaign/campaign_sections.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr std::string_view kWarnPrefix = "warn_";
+constexpr const char* kModelError = "model_error_to_noise";
+constexpr const char* kNegligible = "negligible";
+
+/// A metric that may be limited. The unit is the channel's where `in_channel_unit`.
+struct MetricRow {
+  std::string_view name;
+  bool higher_is_better;
+  bool in_channel_unit;
+  double lowest;
+  double highest;
+};
+constexpr std::array kMetrics{
+    MetricRow{"rho2", true, false, -1e300, 1.0},
+    MetricRow{"r", true, false, -1.0, 1.0},
+    MetricRow{"ccc", true, false, -1.0, 1.0},
+    MetricRow{"absolute_error_percent", false, false, 0.0, 1e300},
+    MetricRow{"rmse", false, true, 0.0, 1e300},
+    MetricRow{"nrmse_fit_percent", true, false, -1e300, 100.0},
+    MetricRow{"maximum_error", false, true, 0.0, 1e300},
+};
+
+const MetricRow* metric_named(std::string_view name) {
+  const auto* row = std::find_if(kMetrics.begin(), kMetrics.end(),
+                                 [&](const MetricRow& metric) { return metric.name == name; });
+  return row == kMetrics.end() ? nullptr : row;
+}
+
+std::vector<std::string> known_limits() {
+  std::vector<std::string> names;
+  for (const MetricRow& row : kMetrics) names.emplace_back(row.name);
+  for (const MetricRow& row : kMetrics) {
+    names.push_back(std::string(kWarnPrefix) + std::string(row.name));
+  }
+  return names;
+}
+
+double read_limit(const TomlNode& node, const MetricRow& metric, Channel channel) {
+  const double value = metric.in_channel_unit ? node.difference(info(channel).unit) : node.number();
+  if (value < metric.lowest || value > metric.highest) {
+    node.fail(fmt::format("{} is out of the range of {}", value, metric.name));
+  }
+  return value;
+}
+
+using Limits = std::vector<AcceptanceLimit>;
+
+AcceptanceLimit& limit_of(Limits& limits, Channel channel, std::string_view metric) {
+  for (AcceptanceLimit& entry : limits) {
+    if (entry.channel == channel && entry.metric == metric) return entry;
+  }
+  limits.push_back({channel, std::string(metric), std::nullopt, std::nullopt});
+  return limits.back();
+}
+
+/// One limit, as it holds for a channel.
+void read_limit_into(Limits& limits, const TomlNode& node, std::string_view key, Channel channel) {
+  const bool warns = key.starts_with(kWarnPrefix);
+  const MetricRow& metric = *metric_named(warns ? key.substr(kWarnPrefix.size()) : key);
+  AcceptanceLimit& entry = limit_of(limits, channel, metric.name);
+  (warns ? entry.warn : entry.limit) = read_limit(node, metric, channel);
+  if (!entry.limit || !entry.warn || *entry.limit == *entry.warn) return;
+  if ((*entry.warn > *entry.limit) != metric.higher_is_better) {
+    node.fail(
+        fmt::format("warn_{0} is laxer than {0} ({1} is better): expected the warning to "
+                    "come before the failure",
+                    metric.name, metric.higher_is_better ? "higher" : "lower"));
+  }
+}
+
+std::vector<std::pair<Channel, double>> read_channel_values(const TomlNode& table) {
+  std::vector<std::pair<Channel, double>> values;
+  for (const auto& [key, node] : table.entries()) {
+    const Channel channel = read_channel_key(table, key);
+    values.emplace_back(channel, node.non_negative_difference(info(channel).unit));
+  }
+  return values;
+}
+
+std::map<Channel, double> channel_values(const TomlNode& node, std::string_view key) {
+  const auto table = node.find(key);
+  if (!table) return {};
+  const auto values = read_channel_values(*table);
+  return {values.begin(), values.end()};
+}
+
+std::map<int, double> read_variation(const TomlNode& table, model::PlantKind plant) {
+  std::map<int, double> variation;
+  for (const auto& [key, node] : table.entries()) {
+    const int index = model::parameter_index(plant, key);
+    if (index < 0) table.fail_unknown(key, "parameter", parameter_keys(plant, ParameterGroup::any));
+    const double sd = node.number();
+    if (sd < 0.0 || sd >= 1.0) {
+      node.fail_type("a relative standard deviation, at least 0 and below 1");
+    }
+    variation[index] = sd;
+  }
+  return variation;
+}
+
+std::map<std::string, Overrides> read_true_levels(const TomlNode& table, model::PlantKind plant) {
+  std::map<std::string, Overrides> levels;
+  for (const auto& [level, node] : table.entries()) {
+    node.allow_only({"parameters"});
+    const auto values = node.find("parameters");
+    levels[level] = values ? read_overrides(*values, plant, ParameterGroup::rig) : Overrides{};
+  }
+  return levels;
+}
+
+/// Limits of an `acceptance`, whose keys in `others` are none.
+Limits limits_but(const TomlNode& node, const Campaign& campaign,
+                  const std::vector<std::string_view>& others) {
+  std::vector<Channel> outputs = output_channels(campaign);
+  const bool has_position = outputs.empty() || std::find(outputs.begin(), outputs.end(),
+                                                         Channel::position) != outputs.end();
+  const std::vector<Channel> general =
+      has_position ? std::vector<Channel>{Channel::position} : outputs;
+  std::vector<std::string> names = known_limits();
+  const auto is_limit = [&](const std::string& key) {
+    return std::find(names.begin(), names.end(), key) != names.end();
+  };
+  Limits limits;
+  for (const auto& [key, entry] : node.entries()) {
+    if (!is_limit(key)) continue;
+    for (const Channel channel : general) read_limit_into(limits, entry, key, channel);
+  }
+  for (const auto& [key, entry] : node.entries()) {
+    if (is_limit(key) || std::find(others.begin(), others.end(), key) != others.end()) continue;
+    if (!entry.is_table()) {
+      names.insert(names.end(), others.begin(), others.end());
+      node.fail_unknown(key, "metric", names);
+    }
+    const Channel channel = read_channel_key(node, key);
+    if (std::find(outputs.begin(), outputs.end(), channel) == outputs.end()) {
+      entry.fail("is no output channel: expected one of those in [recording.channels]");
+    }
+    // What a channel's own table says replaces what holds in general.
+    for (const auto& limit : entry.entries()) {
+      const std::string& name = limit.first;
+      if (!is_limit(name)) entry.fail_unknown(name, "metric", names);
+      const std::string metric =
+          name.starts_with(kWarnPrefix) ? name.substr(kWarnPrefix.size()) : name;
+      std::erase_if(limits, [&](const AcceptanceLimit& old) {
+        return old.channel == channel && old.metric == metric;
+      });
+    }
+    for (const auto& [name, limit] : entry.entries()) {
+      read_limit_into(limits, limit, name, channel);
+    }
+  }
+  return limits;
+}
+
+}  // namespace
+
+std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& campaign) {
+  return limits_but(node, campaign, {});
+}
+
+void read_acceptance(const TomlNode& node, Campaign& campaign) {
+  campaign.acceptance = limits_but(node, campaign, {kModelError, kNegligible});
+  if (const auto ratio = node.find(kModelError)) {
+    campaign.acceptance_bounds.model_error_to_noise = ratio->number();
+    if (!(ratio->number() > 0.0)) ratio->fail_type("a number above zero");
+  }
+  if (const auto table = node.find(kNegligible)) {
+    for (const auto& [index, value] :
+         read_overrides(*table, campaign.rig.plant, ParameterGroup::any))
+      campaign.acceptance_bounds.negligible.emplace(index, std::abs(value));
+  }
+}
+
+FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
+  node.allow_only({"loss", "loss_scale", "max_iterations", "starts", "max_time", "outputs",
+                   "shooting_interval"});
+  FitSettings fit;
+  if (const auto loss = node.find("loss")) {
+    fit.loss = loss->choice<Loss>({{"squared", Loss::squared},
+                                   {"huber", Loss::huber},
+                                   {"cauchy", Loss::cauchy},
+                                   {"soft_l1", Loss::soft_l1}});
+  }
+  if (const auto scale = node.find("loss_scale")) {
+    fit.loss_scale = scale->number();
+    if (!(fit.loss_scale > 0.0)) scale->fail_type("a number above zero");
+  }
+  if (const auto count = node.find("max_iterations")) {
+    fit.max_iterations = count->integer(1, 1'000'000);
+  }
+  if (const auto count = node.find("starts")) fit.starts = count->integer(1, 100'000);
+  if (const auto time = node.find("max_time")) fit.max_seconds = time->positive_quantity("s");
+  if (const auto interval = node.find("shooting_interval")) {
+    fit.shooting_interval_s = interval->positive_quantity("s");
+  }
+  const auto outputs = node.find("outputs");
+  if (!outputs) return fit;
+  std::vector<std::string> known;
+  for (const Channel channel : output_channels(campaign)) known.emplace_back(info(channel).key);
+  std::vector<std::pair<std::string, Channel>> choices;
+  for (const std::string& key : known) choices.emplace_back(key, *channel_from_key(key));
+  for (const TomlNode& item : outputs->items()) fit.outputs.push_back(item.choice(choices));
+  if (fit.outputs.empty()) outputs->fail("is empty: expected at least one output channel");
+  return fit;
+}
+
+SimulationSettings read_simulation(const TomlNode& node) {
+  node.allow_only({"method", "tolerance", "max_seconds"});
+  SimulationSettings simulation;
+  if (const auto method = node.find("method")) {
+    simulation.method = method->choice<model::Method>({{"automatic", model::Method::automatic},
+                                                       {"rosenbrock", model::Method::rosenbrock},
+                                                       {"dopri5", model::Method::dopri5}});
+  }
+  if (const auto tolerance = node.find("tolerance")) {
+    simulation.tolerance = tolerance->number();
+    if (!(*simulation.tolerance >= 1e-13 && *simulation.tolerance <= 0.1)) {
+      tolerance->fail_type("a relative tolerance from 1e-13 to 0.1");
+    }
+  }
+  if (const auto seconds = node.find("max_seconds")) {
+    simulation.max_seconds = seconds->number();
+    if (!(simulation.max_seconds > 0.0)) seconds->fail_type("a number of seconds above zero");
+  }
+  return simulation;
+}
+
+SyntheticSettings read_synthetic(const TomlNode& node, model::PlantKind plant) {
+  node.allow_only({"parameters", "leak_level", "repeats", "duration", "sample_rate", "noise",
+                   "ar1_noise", "ar1_coefficient", "quantisation", "drift", "trigger_jitter",
+                   "supply_ripple", "supply_ripple_frequency", "variation"});
+  SyntheticSettings synthetic;
+  if (const auto values = node.find("parameters")) {
+    synthetic.parameters = read_overrides(*values, plant, ParameterGroup::any);
+  }
+  if (const auto levels = node.find("leak_level")) {
+    synthetic.level_parameters = read_true_levels(*levels, plant);
+  }
+  if (const auto count = node.find("repeats")) synthetic.repeats = count->integer(1, 10'000);
+  if (const auto value = node.find("duration")) {
+    synthetic.duration_s = value->positive_quantity("s");
+  }
+  if (const auto value = node.find("sample_rate")) {
+    synthetic.sample_rate_hz = value->positive_quantity("Hz");
+  }
+  synthetic.noise_sd = channel_values(node, "noise");
+  synthetic.ar1_sd = channel_values(node, "ar1_noise");
+  if (const auto value = node.find("ar1_coefficient")) {
+    synthetic.ar1_coefficient = value->number();
+    if (!(synthetic.ar1_coefficient >= 0.0 && synthetic.ar1_coefficient < 1.0)) {
+      value->fail_type("a coefficient per sample, at least 0 and below 1");
+    }
+  }
+  synthetic.quantisation = channel_values(node, "quantisation");
+  synthetic.drift = channel_values(node, "drift");
+  if (const auto value = node.find("trigger_jitter")) {
+    synthetic.trigger_jitter_s = value->non_negative_quantity("s");
+  }
+  if (const auto value = node.find("supply_ripple")) {
+    synthetic.supply_ripple_pa = value->non_negative_quantity("Pa");
+  }
+  if (const auto value = node.find("supply_ripple_frequency")) {
+    synthetic.supply_ripple_hz = value->positive_quantity("Hz");
+  }
+  if (const auto table = node.find("variation")) {
+    synthetic.variation = read_variation(*table, plant);
+  }
+  return synthetic;
+}
+
+}  // namespace rigcal::datasets

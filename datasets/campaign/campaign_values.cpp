@@ -1,0 +1,209 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "common/suggest.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/campaign_parameters.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+int index_of(const Campaign& campaign, std::string_view option, std::string_view name) {
+  const int index = model::parameter_index(campaign.rig.plant, name);
+  if (index < 0) {
+    throw UsageError(
+        fmt::format("{}: {}", option,
+                    unknown_name_message("parameter", name,
+                                         parameter_keys(campaign.rig.plant, ParameterGroup::any))));
+  }
+  if (spec_of(campaign.rig.plant, index).kind == model::ParameterKind::controller &&
+      campaign.rig.controller == model::ControllerKind::none) {
+    throw UsageError(
+        fmt::format("{}: the rig of this campaign has no controller, so {} has no "
+                    "effect",
+                    option, name));
+  }
+  return index;
+}
+
+ParameterSetting& setting_or_new(Campaign& campaign, int index, double value) {
+  for (ParameterSetting& setting : campaign.parameters) {
+    if (setting.index == index) return setting;
+  }
+  ParameterSetting setting;
+  setting.index = index;
+  setting.value = value;
+  setting.lower = std::numeric_limits<double>::quiet_NaN();
+  setting.upper = std::numeric_limits<double>::quiet_NaN();
+  setting.where = {campaign.file.string()};
+  campaign.parameters.push_back(setting);
+  return campaign.parameters.back();
+}
+
+const Overrides* level_overrides(const Campaign& campaign, const Condition& condition) {
+  if (!condition.leak_level) return nullptr;
+  const auto level = campaign.leak_levels.find(*condition.leak_level);
+  return level == campaign.leak_levels.end() ? nullptr : &level->second;
+}
+
+/// A value for the rig that every condition overrides would change nothing, silently.
+bool overridden_everywhere(const Campaign& campaign, int index) {
+  return std::all_of(campaign.conditions.begin(), campaign.conditions.end(),
+                     [&](const Condition& condition) {
+                       const Overrides* level = level_overrides(campaign, condition);
+                       return has_entry(condition.overrides, index) ||
+                              (level != nullptr && has_entry(*level, index));
+                     });
+}
+
+}  // namespace
+
+std::string_view to_string(Scope scope) {
+  switch (scope) {
+    case Scope::rig:
+      return "rig";
+    case Scope::leak_level:
+      return "leak_level";
+    case Scope::condition:
+      return "condition";
+  }
+  return "";
+}
+
+std::string_view to_string(Waveform waveform) {
+  switch (waveform) {
+    case Waveform::sine:
+      return "sine";
+    case Waveform::square:
+      return "square";
+    case Waveform::chirp:
+      return "chirp";
+    case Waveform::recorded:
+      return "recorded";
+  }
+  return "";
+}
+
+std::string_view to_string(Use use) {
+  switch (use) {
+    case Use::fit:
+      return "fit";
+    case Use::validate:
+      return "validate";
+    case Use::diagnose:
+      return "diagnose";
+    case Use::ignore:
+      return "ignore";
+  }
+  return "";
+}
+
+const Condition* Campaign::find(std::string_view id) const {
+  const auto found = std::find_if(conditions.begin(), conditions.end(),
+                                  [&](const Condition& condition) { return condition.id == id; });
+  return found == conditions.end() ? nullptr : &*found;
+}
+
+const std::vector<AcceptanceLimit>& Campaign::limits(const Condition& condition) const {
+  return condition.acceptance ? *condition.acceptance : acceptance;
+}
+
+const ParameterSetting* Campaign::setting(int index) const {
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(),
+                   [&](const ParameterSetting& entry) { return entry.index == index; });
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+void set_value(Campaign& campaign, std::string_view assignment) {
+  const std::string option = fmt::format("--set {}", assignment);
+  const std::size_t equals = assignment.find('=');
+  if (equals == std::string_view::npos || equals == 0) {
+    throw UsageError(option + ": expected name=\"value unit\", such as mass=\"60 kg\"");
+  }
+  const std::string_view name = assignment.substr(0, equals);
+  const int index = index_of(campaign, option, name);
+  const model::ParameterSpec& spec = spec_of(campaign.rig.plant, index);
+  double value = 0.0;
+  try {
+    value = parse_quantity(assignment.substr(equals + 1), spec.unit);
+  } catch (const QuantityError& error) {
+    throw UsageError(fmt::format("{}: {}", option, error.what()));
+  }
+  if (const auto problem = outside_limits(spec, value)) {
+    throw UsageError(fmt::format("{}: {}", option, *problem));
+  }
+  if (overridden_everywhere(campaign, index)) {
+    throw UsageError(
+        fmt::format("{}: every condition has a value of its own for {}, so a value "
+                    "for the rig has no effect: change the leak levels or conditions",
+                    option, name));
+  }
+  ParameterSetting changed = setting_or_new(campaign, index, value);
+  changed.value = value;
+  if (changed.between_repeats) changed.prior->mean = value;
+  if (changed.fit) {
+    if (const auto problem = complete_bounds(spec, changed)) {
+      throw UsageError(fmt::format("{}: {}", option, *problem));
+    }
+  }
+  setting_or_new(campaign, index, value) = changed;
+}
+
+void set_free(Campaign& campaign, const std::vector<std::string>& names) {
+  Campaign changed = campaign;
+  for (ParameterSetting& setting : changed.parameters) setting.fit = setting.between_repeats;
+  for (const std::string& name : names) {
+    const std::string option = fmt::format("--free {}", name);
+    const int index = index_of(changed, option, name);
+    const model::ParameterSpec& spec = spec_of(changed.rig.plant, index);
+    if (const auto problem = cannot_be_fitted(spec)) {
+      throw UsageError(fmt::format("{}: {}", option, *problem));
+    }
+    const double fallback = spec.default_value.value_or(std::numeric_limits<double>::quiet_NaN());
+    ParameterSetting& setting = setting_or_new(changed, index, fallback);
+    if (setting.between_repeats) {
+      throw UsageError(
+          fmt::format("{}: the campaign says by how much it differs between repeats, "
+                      "so its mean has to be known",
+                      option));
+    }
+    if (outside_limits(spec, setting.value)) {
+      throw UsageError(
+          fmt::format("{0}: {1} has no value to start from: expected one in the "
+                      "campaign, or --set {1}=\"value {2}\"",
+                      option, name, spec.unit));
+    }
+    setting.fit = true;
+    if (const auto problem = complete_bounds(spec, setting)) {
+      throw UsageError(fmt::format("{}: {}", option, *problem));
+    }
+  }
+  campaign = std::move(changed);
+}
+
+void check_values(const Campaign& campaign) {
+  for (const Condition& condition : campaign.conditions) {
+    if (condition.use == Use::ignore) continue;
+    if (const auto conflict = find_conflict(campaign.rig, values_in(campaign, condition))) {
+      throw UsageError(
+          fmt::format("--set, --free: condition \"{}\": {}", condition.id, conflict->message));
+    }
+  }
+}
+
+model::ParameterValues values_in(const Campaign& campaign, const Condition& condition) {
+  auto values = model::ParameterValues::defaults(campaign.rig.plant);
+  for (const ParameterSetting& setting : campaign.parameters) {
+    values.set(setting.index, setting.value);
+  }
+  if (const Overrides* level = level_overrides(campaign, condition)) {
+    for (const auto& [index, value] : *level) values.set(index, value);
+  }
+  for (const auto& [index, value] : condition.overrides) values.set(index, value);
+  return values;
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/campaign_parameters.hpp"
+#include "datasets/campaign/leak_table_settings.hpp"
+#include "datasets/campaign/toml_reader.hpp"
+#include "datasets/campaign/toml_writer.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A table within a table; made if it is not there.
+toml::table& child(toml::table& table, std::string_view key, bool is_inline) {
+  if (!table.contains(key)) {
+    toml::table added;
+    added.is_inline(is_inline);
+    table.insert(key, std::move(added));
+  }
+  return *table.get_as<toml::table>(key);
+}
+
+/// Sets a key to a value in the unit of the parameter table, exactly.
+void put(toml::table& table, const model::ParameterSpec& spec, std::string_view key, double value) {
+  if (spec.unit == "1") {
+    table.insert_or_assign(key, value);
+  } else {
+    table.insert_or_assign(key, fmt::format("{} {}", toml_number(value), spec.unit));
+  }
+}
+
+bool of_controller(const model::ParameterSpec& spec) {
+  return spec.kind == model::ParameterKind::controller;
+}
+
+/// [rig.parameters] or [rig.controller], wherever the parameter stands.
+toml::table& rig_table(toml::table& root, const model::ParameterSpec& spec) {
+  return child(child(root, "rig", false), of_controller(spec) ? "controller" : "parameters", false);
+}
+
+toml::table* condition_table(toml::table& root, std::string_view id) {
+  auto* conditions = root.get_as<toml::array>("condition");
+  if (conditions == nullptr) return nullptr;
+  for (toml::node& item : *conditions) {
+    auto* table = item.as_table();
+    if (table != nullptr && (*table)["id"].value_or(std::string_view{}) == id) return table;
+  }
+  return nullptr;
+}
+
+void write_value(toml::table& root, const model::ParameterSpec& spec, const FittedValue& fitted) {
+  switch (fitted.scope) {
+    case Scope::rig:
+      put(rig_table(root, spec), spec, spec.key, fitted.value);
+      return;
+    case Scope::leak_level: {
+      toml::table& level = child(child(root, "leak_level", false), fitted.level, false);
+      put(child(level, "parameters", true), spec, spec.key, fitted.value);
+      return;
+    }
+    case Scope::condition: {
+      toml::table* condition = condition_table(root, fitted.level);
+      if (condition == nullptr) {
+        throw std::invalid_argument(fmt::format(
+            "fitted_campaign_text: the campaign has no condition \"{}\"", fitted.level));
+      }
+      put(child(*condition, of_controller(spec) ? "controller" : "parameters", true), spec,
+          spec.key, fitted.value);
+      return;
+    }
+  }
+}
+
+/// Whether a condition has a value besides the rig's: a known one of its own or of its leak level,
+/// or a fitted one.
+bool has_own_value(const Campaign& campaign, const Condition& condition, int index,
+                   const std::vector<FittedValue>& values) {
+  if (has_entry(condition.overrides, index)) return true;
+  if (condition.leak_level) {
+    const auto level = campaign.leak_levels.find(*condition.leak_level);
+    if (level != campaign.leak_levels.end() && has_entry(level->second, index)) return true;
+  }
+  return std::any_of(values.begin(), values.end(), [&](const FittedValue& fitted) {
+    if (fitted.index != index) return false;
+    return fitted.scope == Scope::condition
+               ? fitted.level == condition.id
+               : fitted.scope == Scope::leak_level && fitted.level == condition.leak_level;
+  });
+}
+
+/// The start of a parameter with a value per leak level or condition. Where all conditions have
+/// their own it goes: a level that the fit never saw is then an error, not a start taken for a
+/// result.
+void write_scoped_start(toml::table& root, const Campaign& campaign,
+                        const ParameterSetting& setting, const std::vector<FittedValue>& values) {
+  const model::ParameterSpec& spec = spec_of(campaign.rig.plant, setting.index);
+  const bool everywhere = std::all_of(
+      campaign.conditions.begin(), campaign.conditions.end(), [&](const Condition& condition) {
+        return has_own_value(campaign, condition, setting.index, values);
+      });
+  toml::table& table = rig_table(root, spec);
+  if (everywhere) {
+    table.erase(spec.key);
+  } else {
+    put(table, spec, spec.key, setting.value);
+  }
+}
+
+/// Nuisance parameters are estimated again, from the value found where there is a single one.
+void write_nuisance_start(toml::table& root, const model::ParameterSpec& spec,
+                          const FittedValue& fitted) {
+  if (fitted.scope != Scope::rig) return;
+  toml::table& table = rig_table(root, spec);
+  if (auto* entry = table.get_as<toml::table>(spec.key)) put(*entry, spec, "start", fitted.value);
+}
+
+/// What --set and --free changed since the file was read.
+void write_changed_values(toml::table& root, const Campaign& campaign) {
+  const Campaign original = load_campaign(campaign.file, campaign.data_dir);
+  for (const ParameterSetting& setting : campaign.parameters) {
+    if (setting.fit) continue;
+    const ParameterSetting* before = original.setting(setting.index);
+    if (before != nullptr && !before->fit && before->value == setting.value) continue;
+    const model::ParameterSpec& spec = spec_of(campaign.rig.plant, setting.index);
+    put(rig_table(root, spec), spec, spec.key, setting.value);
+  }
+}
+
+/// A record path that holds from `out` if it held from `data`.
+std::string rebased(const std::string& file, const fs::path& data, const fs::path& out) {
+  if (fs::path(file).is_absolute()) return file;
+  const fs::path relative = (data / file).lexically_relative(out);
+  return (relative.empty() ? data / file : relative).generic_string();
+}
+
+void rebase_records(toml::table& root, const fs::path& data, const fs::path& out) {
+  const auto rebase = [&](toml::node& node) {
+    if (auto* text = node.as_string()) text->get() = rebased(text->get(), data, out);
+  };
+  auto* conditions = root.get_as<toml::array>("condition");
+  if (conditions == nullptr) return;
+  for (toml::node& item : *conditions) {
+    toml::table& condition = *item.as_table();
+    if (auto* averaged = condition.get("averaged")) rebase(*averaged);
+    auto* repeats = condition.get_as<toml::array>("repeats");
+    if (repeats == nullptr) continue;
+    for (toml::node& repeat : *repeats) {
+      auto* table = repeat.as_table();
+      if (table == nullptr) rebase(repeat);
+      if (table != nullptr && table->contains("file")) rebase(*table->get("file"));
+    }
+  }
+}
+
+fs::path resolved(const fs::path& folder) {
+  return fs::weakly_canonical(fs::absolute(folder.empty() ? fs::path(".") : folder));
+}
+
+}  // namespace
+
+std::string fitted_campaign_text(const Campaign& campaign, const std::vector<FittedValue>& values,
+                                 const fs::path& out_dir) {
+  toml::table root = parse_toml_file(campaign.file);
+  write_changed_values(root, campaign);
+  for (const FittedValue& fitted : values) {
+    const model::ParameterSpec& spec = spec_of(campaign.rig.plant, fitted.index);
+    const ParameterSetting* setting = campaign.setting(fitted.index);
+    if (setting != nullptr && setting->nuisance) {
+      write_nuisance_start(root, spec, fitted);
+    } else {
+      write_value(root, spec, fitted);
+      if (setting != nullptr && fitted.scope != Scope::rig) {
+        write_scoped_start(root, campaign, *setting, values);
+      }
+    }
+  }
+  rebase_records(root, resolved(campaign.data_dir), resolved(out_dir));
+  return fmt::format(
+      "# Written by rigcal fit from {}: the fitted values stand in place of the starts.\n"
+      "# Nuisance parameters stay free. Record paths start at the folder of this file.\n\n{}",
+      toml_quoted(campaign.file.filename().string()), toml_text(root));
+}
+
+std::string fitted_leak_table_text(const Campaign& campaign, const LeakTableSettings& settings,
+                                   const fs::path& out_dir) {
+  toml::table root = parse_toml_file(campaign.file);
+  write_changed_values(root, campaign);
+  toml::table& assumptions = child(child(root, "leak_table", false), "assumptions", false);
+  for (const Assumption& assumption : settings.assumptions) {
+    const model::ParameterSpec& spec = assumption_spec(campaign.rig.plant, assumption.index);
+    toml::table& entry = child(assumptions, spec.key, true);
+    put(entry, spec, "value", assumption.value);
+    entry.insert_or_assign("source", assumption.source);
+    if (!assumption.fit) continue;
+    entry.insert_or_assign("fit", true);
+    put(entry, spec, "start", assumption.start);
+    put(entry, spec, "lower", assumption.lower);
+    put(entry, spec, "upper", assumption.upper);
+  }
+  rebase_records(root, resolved(campaign.data_dir), resolved(out_dir));
+  return fmt::format(
+      "# Written by rigcal fit-tables from {}: the estimated values stand in\n"
+      "# [leak_table.assumptions]. Record paths start at the folder of this file.\n\n{}",
+      toml_quoted(campaign.file.filename().string()), toml_text(root));
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,94 @@
+#include "datasets/checks/clipped_sensor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "datasets/checks/drive_motion.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr std::size_t kShortestClip = 3;
+constexpr std::size_t kFewestClipped = 8;
+constexpr double kClipDriveMotion = 0.005;
+constexpr int kClipPassages = 2;
+constexpr std::size_t kBesideDip = 3;
+constexpr double kDepth = 3.0;
+constexpr std::size_t kFewestDips = 10;
+constexpr double kShareOfStep = 0.5;
+constexpr double kFallSteps = 2.0;  // one of a converter's rounding is not enough
+
+/// How long a value typically lasts that is not extreme: 1, or more where samples are held.
+double typical_length(const std::vector<EqualRun>& runs, double low, double high) {
+  std::size_t count = 0;
+  std::size_t samples = 0;
+  for (const EqualRun& run : runs) {
+    if (run.value <= low || run.value >= high) continue;
+    ++count;
+    samples += run.length;
+  }
+  return count == 0 ? 1.0 : static_cast<double>(samples) / static_cast<double>(count);
+}
+
+/// Whether the signal falls off its extreme value and returns to it within three samples, time and
+/// again, by three steps of the resolution: as noise does of which one side is cut away.
+bool noise_is_cut(const std::vector<EqualRun>& runs, double extreme, double smallest) {
+  std::size_t dips = 0;
+  std::size_t last = runs.size();  // index of the last run at the extreme
+  double depth = 0.0;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (runs[k].value != extreme) {
+      depth = std::max(depth, std::abs(runs[k].value - extreme));
+      continue;
+    }
+    if (last < runs.size() && runs[k].begin - runs[last].end() <= kBesideDip &&
+        depth > 0.97 * kDepth * smallest)  // steps are known to rounding only
+      ++dips;
+    last = k;
+    depth = 0.0;
+  }
+  return dips >= kFewestDips;
+}
+
+/// A parabola of which n samples look equal falls by (12/n + 36/n^2) steps of the resolution within
+/// the next three: it falls by one step within n/2 of its top.
+double flat_top_fall(std::size_t length) {
+  const auto n = static_cast<double>(length);
+  return 12.0 / n + 36.0 / (n * n);
+}
+
+}  // namespace
+
+std::vector<EqualRun> clipped_runs(std::span<const double> x, std::span<const double> drive,
+                                   RangeEnd end) {
+  std::vector<EqualRun> found;
+  const std::vector<EqualRun> runs = equal_runs(x);
+  if (runs.size() < 2 || drive.size() != x.size()) return found;
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  const double extreme = end == RangeEnd::lowest ? *low : *high;
+  const bool noisy = shows_noise(runs, *low, *high);
+  const double step = typical_step(runs);
+  const double smallest = resolution(runs);
+  const bool cut = noise_is_cut(runs, extreme, smallest);
+  const double shortest = static_cast<double>(kShortestClip) * typical_length(runs, *low, *high);
+  for (const EqualRun& run : runs) {
+    if (run.value != extreme || static_cast<double>(run.length) < shortest) continue;
+    if (cut) {
+      found.push_back(run);
+      continue;
+    }
+    const double least =
+        std::max(kShareOfStep * step, (kFallSteps + flat_top_fall(run.length)) * smallest);
+    if (!noisy && !cuts_a_motion(x, run, least)) continue;
+    if (drive_motion(drive, run) >= kClipDriveMotion && drive_passages(drive, run) < kClipPassages)
+      found.push_back(run);
+  }
+  const std::size_t samples =
+      std::accumulate(found.begin(), found.end(), std::size_t{0},
+                      [](std::size_t sum, const EqualRun& run) { return sum + run.length; });
+  if (samples < kFewestClipped) found.clear();
+  return found;
+}
+
+}  // namespace rigcal::datasets

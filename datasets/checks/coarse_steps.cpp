@@ -1,0 +1,37 @@
+#include "datasets/checks/coarse_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "datasets/prepare/equal_runs.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+/// Whether all values are multiples of the step, as a converter's are, but for rounding.
+bool on_a_grid(const std::vector<double>& values, double step) {
+  constexpr double kOffGrid = 0.05;  // of a step
+  return std::all_of(values.begin(), values.end(), [&](double value) {
+    const double multiple = (value - values.front()) / step;
+    return std::abs(multiple - std::round(multiple)) <= kOffGrid;
+  });
+}
+
+}  // namespace
+
+std::optional<double> coarse_step(const std::vector<Repeat>& repeats, Channel channel,
+                                  double noise_sd) {
+  // Noise of half a step and the rounding itself, a twelfth of its square.
+  const double enough = std::sqrt(0.25 + 1.0 / 12.0);
+  std::optional<double> coarsest;
+  for (const Repeat& repeat : repeats) {
+    const auto found = repeat.values.find(channel);
+    if (found == repeat.values.end()) continue;
+    const double step = resolution(equal_runs(found->second));
+    if (!(noise_sd < enough * step) || !on_a_grid(found->second, step)) continue;
+    coarsest = std::max(coarsest.value_or(0.0), step);
+  }
+  return coarsest;
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,554 @@
+#include "datasets/draft/draft_campaign.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <span>
+
+#include "common/error.hpp"
+#include "common/quantity.hpp"
+#include "datasets/campaign/toml_reader.hpp"
+#include "datasets/draft/column_guess.hpp"
+#include "datasets/draft/start_motion.hpp"
+#include "datasets/draft/waveform_guess.hpp"
+#include "datasets/read/load_csv.hpp"
+#include "datasets/read/load_mat.hpp"
+#include "datasets/read/mat_columns.hpp"
+#include "model/plant/parameter.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// "run_03" -> "run_" and "03".
+struct Numbered {
+  std::string stem;
+  std::string number;
+};
+
+Numbered split_number(const std::string& text) {
+  std::size_t at = text.size();
+  while (at > 0 && text[at - 1] >= '0' && text[at - 1] <= '9') --at;
+  return {text.substr(0, at), text.substr(at)};
+}
+
+std::vector<std::string> column_names(const fs::path& file) {
+  return is_mat_file(file) ? mat_columns(file) : csv_full_header(file);
+}
+
+std::vector<std::vector<double>> read(const fs::path& file, const std::string& time,
+                                      const std::string& column) {
+  if (is_mat_file(file)) return load_mat(file, {{time, column}, time});
+  CsvRequest request;
+  request.columns = {time, column};
+  request.time_column = time;
+  return load_csv(file, request).columns;
+}
+
+// ---- Columns -------------------------------------------------------------------------------
+
+/// A channel of a file: one column, or numbered ones that are repeats.
+struct ChannelColumns {
+  Channel channel = Channel::position;
+  std::string stem;                  ///< the name, without its number if there are several
+  std::vector<std::string> numbers;  ///< empty: a single column
+  std::string unit;
+};
+
+struct FileColumns {
+  std::string time;
+  std::string time_unit;
+  std::vector<ChannelColumns> channels;
+  std::vector<std::string> unknown;
+  /// Rows below the time of an array of Simulink's "To File", which has no names for them.
+  std::vector<std::string> rows;
+  std::string lacks;  ///< why the file is no recording, in words; empty if it is one
+};
+
+/// Simulink's block "To File" with the format "Array" saves one matrix: time in its first row, the
+/// signals in the others. The first matrix of the file that has such a time; empty if none has.
+std::vector<std::string> to_file_rows(const fs::path& file, const std::vector<std::string>& names) {
+  constexpr std::string_view kFirst = "(1,:)";
+  for (const std::string& name : names) {
+    if (!name.ends_with(kFirst)) continue;
+    const std::string stem = name.substr(0, name.size() - kFirst.size() + 1);  // "ans("
+    std::vector<std::string> rows;
+    for (const std::string& other : names)
+      if (other.starts_with(stem)) rows.push_back(other);
+    if (rows.size() < 2) continue;
+    try {
+      read(file, rows[0], rows[1]);
+      return rows;
+    } catch (const InputError&) {
+      continue;  // its first row is no time
+    }
+  }
+  return {};
+}
+
+/// A file without names that tell a time: an array of "To File", or why it is no recording.
+void without_time(const fs::path& file, const std::vector<std::string>& names, FileColumns& found) {
+  if (is_mat_file(file)) found.rows = to_file_rows(file, names);
+  if (!found.rows.empty()) {
+    found.time = found.rows.front();
+    found.time_unit = "s";  // Simulink knows no other
+    found.rows.erase(found.rows.begin());
+    std::erase_if(found.unknown, [&](const std::string& name) {
+      return name == found.time ||
+             std::find(found.rows.begin(), found.rows.end(), name) != found.rows.end();
+    });
+    return;
+  }
+  found.lacks = names.empty()
+                    ? fmt::format("it holds no vector or matrix of numbers; {}", kHowToSaveMat)
+                    : fmt::format("no column looks like a time (t, time, ...); the columns are {}",
+                                  fmt::join(names, ", "));
+}
+
+FileColumns columns_of(const fs::path& file) {
+  const auto names = column_names(file);
+  std::map<std::string, std::vector<std::string>> numbers;  // by stem
+  for (const std::string& name : names) {
+    const Numbered numbered = split_number(name);
+    if (!numbered.number.empty()) numbers[numbered.stem].push_back(numbered.number);
+  }
+  FileColumns found;
+  for (const std::string& name : names) {
+    const Numbered numbered = split_number(name);
+    const bool several = !numbered.number.empty() && numbers[numbered.stem].size() > 1;
+    // "p1", "p2" are two pressures, not two repeats.
+    const bool own_word = guess_column(name).channel && !guess_column(numbered.stem).channel;
+    const bool repeated = several && !own_word;
+    const std::string shown = repeated ? numbered.stem : name;
+    const ColumnGuess guess = guess_column(shown);
+    if (guess.is_time && found.time.empty()) {
+      found.time = name;
+      found.time_unit = guess.unit;
+    } else if (guess.channel) {
+      const bool known = std::any_of(found.channels.begin(), found.channels.end(),
+                                     [&](const ChannelColumns& c) { return c.stem == shown; });
+      if (!known)
+        found.channels.push_back({*guess.channel, shown,
+                                  repeated ? numbers[numbered.stem] : std::vector<std::string>{},
+                                  guess.unit});
+    } else {
+      found.unknown.push_back(name);
+    }
+  }
+  if (found.time.empty()) {
+    without_time(file, names, found);
+  } else if (found.channels.empty()) {
+    found.lacks = fmt::format(
+        "no column looks like a channel (reference, command, position, "
+        "pressure_a, ...); the columns are {}",
+        fmt::join(names, ", "));
+  }
+  return found;
+}
+
+/// Columns that a single repeat carries: a new set begins where a channel comes again.
+std::vector<std::vector<ChannelColumns>> column_sets(const FileColumns& columns) {
+  std::vector<std::vector<ChannelColumns>> sets;
+  for (const ChannelColumns& column : columns.channels) {
+    if (column.numbers.empty()) continue;
+    const bool again =
+        !sets.empty() &&
+        (sets.back().front().numbers != column.numbers ||
+         std::any_of(sets.back().begin(), sets.back().end(),
+                     [&](const ChannelColumns& c) { return c.channel == column.channel; }));
+    if (sets.empty() || again) sets.emplace_back();
+    sets.back().push_back(column);
+  }
+  return sets;
+}
+
+// ---- Text ----------------------------------------------------------------------------------
+
+std::string comment(const std::string& text) { return "  # " + text; }
+
+/// One line of [recording.channels]; a column of another dimension than the channel needs a gain.
+std::string channel_line(Channel channel, const std::string& column, const std::string& unit) {
+  const ChannelInfo& about = info(channel);
+  std::string shown_unit = unit.empty() ? kBlank : unit;
+  std::string remark;
+  if (unit.empty()) {
+    remark = comment(fmt::format("the unit of the column, such as \"{}\"", about.unit));
+  } else {
+    try {
+      unit_conversion(unit, about.unit);
+    } catch (const QuantityError&) {
+      shown_unit = kBlank;
+      remark = comment(fmt::format(
+          "the column is in {0}: a unit such as \"{1}\", with gain = ... in that unit per {0}",
+          unit, about.unit));
+    }
+  }
+  const std::string name = column.empty() ? "" : fmt::format("column = {}, ", toml_quoted(column));
+  return fmt::format("{} = {{ {}unit = {} }}{}\n", about.key, name, toml_quoted(shown_unit),
+                     remark);
+}
+
+std::string channels_text(const FileColumns& columns) {
+  std::string text = "[recording.channels]\n";
+  text += fmt::format("time = {{ column = {}, unit = {} }}{}\n", toml_quoted(columns.time),
+                      toml_quoted(columns.time_unit.empty() ? "s" : columns.time_unit),
+                      columns.time_unit.empty() ? comment("assumed: its name tells no unit") : "");
+  std::vector<Channel> done;
+  for (const ChannelColumns& column : columns.channels) {
+    const bool again = std::find(done.begin(), done.end(), column.channel) != done.end();
+    if (!again) {
+      done.push_back(column.channel);
+      text += channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit);
+    } else if (column.numbers.empty()) {
+      text += fmt::format("# '{}' also looks like {}\n", column.stem, info(column.channel).key);
+    }
+  }
+  if (!columns.unknown.empty())
+    text += fmt::format("# not used: {}\n", fmt::join(columns.unknown, ", "));
+  return text;
+}
+
+/// The rows of a "To File" array with their ranges, by which the user knows them again.
+std::string rows_text(const fs::path& file, const FileColumns& columns) {
+  if (columns.rows.empty()) return {};
+  std::string text =
+      "# An array of Simulink's \"To File\": time in its first row, and nothing names the others.\n"
+      "# Give each channel its row and unit, reference = { ... } too if one drives a controller:\n";
+  for (const std::string& row : columns.rows) {
+    const auto values = read(file, columns.time, row).at(1);
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    text += fmt::format("# {}: {:.6g} to {:.6g}\n", row, *low, *high);
+  }
+  return text + fmt::format("position = {{ column = {0}, unit = {0} }}{1}\n", toml_quoted(kBlank),
+                            comment("one of these rows"));
+}
+
+/// Optional terms that a cylinder with both chambers mostly has.
+constexpr std::array<std::string_view, 9> kTwoChamberTerms{
+    "retracted_position", "valve_dead_band", "valve_time_constant",
+    "valve_null_leakage", "laminar_leakage", "gravity",
+    "coulomb_friction",   "air_fraction",    "stop_stiffness"};
+
+/// And those that a servo-valve and a symmetric cylinder have.
+constexpr std::array<std::string_view, 6> kLoadPressureTerms{
+    "valve_offset",       "valve_dead_band", "valve_time_constant",
+    "valve_null_leakage", "laminar_leakage", "coulomb_friction"};
+
+/// Terms that may join, as comments.
+std::string terms_text(model::PlantKind plant) {
+  const bool two_chambers = plant == model::PlantKind::two_chamber;
+  const std::span<const std::string_view> terms =
+      two_chambers ? std::span<const std::string_view>(kTwoChamberTerms) : kLoadPressureTerms;
+  std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
+  for (const std::string_view key : terms) {
+    const int row = model::parameter_index(plant, key);
+    const model::ParameterSpec& spec = model::parameter_table(plant)[static_cast<std::size_t>(row)];
+    text += fmt::format("# {} = {}{}\n", key,
+                        spec.unit == "1" ? "..." : fmt::format("\"... {}\"", spec.unit),
+                        comment(fmt::format("{}: {}", spec.symbol, spec.meaning)));
+  }
+  return text;
+}
+
+std::string rig_text(model::PlantKind plant, bool closed_loop) {
+  const bool two_chambers = plant == model::PlantKind::two_chamber;
+  std::string text =
+      two_chambers
+          ? "[rig]\n"
+            "model = \"two_chamber\"  # single-rod or double-rod, with both chamber pressures\n"
+          : "[rig]\n"
+            "model = \"load_pressure\"  # a symmetric cylinder on one servo-valve\n";
+  text +=
+      "# What a data sheet does not tell is fitted: { start = ..., lower = ..., upper = ..., fit = "
+      "true }\n"
+      "[rig.parameters]\n";
+  for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
+    if (spec.kind != model::ParameterKind::plant || spec.default_value) continue;
+    const std::string blank = spec.unit == "1"
+                                  ? toml_quoted(kBlank)
+                                  : toml_quoted(fmt::format("{} {}", kBlank, spec.unit));
+    text += fmt::format("{} = {}{}\n", spec.key, blank,
+                        comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
+                                            spec.unit == "1" ? " (a plain number)" : "")));
+  }
+  text += terms_text(plant);
+  return text +
+         (closed_loop
+              ? "[rig.controller]\ntype = \"pid\"\n" +
+                    fmt::format("kp = \"{} V/m\"{}\n", kBlank,
+                                comment("proportional gain; ki, kd, output_limit if there are any"))
+              : "[rig.controller]\ntype = \"none\"  # the recorded command drives the "
+                "valve\n");
+}
+
+std::string relative_text(const fs::path& file, const fs::path& folder) {
+  const fs::path absolute = fs::weakly_canonical(fs::absolute(file));
+  const fs::path relative = absolute.lexically_relative(fs::weakly_canonical(fs::absolute(folder)));
+  return toml_quoted((relative.empty() ? absolute : relative).generic_string());
+}
+
+std::string numbers_text(const std::vector<std::string>& numbers) {
+  bool consecutive = true;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    const bool same_width = numbers[i].size() == numbers[0].size();
+    consecutive = consecutive && same_width && numbers[0].size() < 9 &&
+                  std::stol(numbers[i]) == std::stol(numbers[0]) + static_cast<long>(i);
+  }
+  if (consecutive) return toml_quoted(numbers.front() + ".." + numbers.back());
+  std::vector<std::string> quoted;
+  for (const std::string& number : numbers) quoted.push_back(toml_quoted(number));
+  return fmt::format("[{}]", fmt::join(quoted, ", "));
+}
+
+std::string repeats_text(const std::vector<fs::path>& files, const FileColumns& columns,
+                         const fs::path& folder) {
+  std::vector<std::string> entries;
+  for (const fs::path& file : files) {
+    const auto sets = column_sets(columns);
+    if (sets.empty()) entries.push_back(relative_text(file, folder));
+    for (const auto& set : sets) {
+      std::vector<std::string> named;
+      for (const ChannelColumns& column : set)
+        named.push_back(
+            fmt::format("{} = {}", info(column.channel).key, toml_quoted(column.stem + "{n}")));
+      entries.push_back(fmt::format("{{ file = {}, n = {}, columns = {{ {} }} }}",
+                                    relative_text(file, folder), numbers_text(set.front().numbers),
+                                    fmt::join(named, ", ")));
+    }
+  }
+  return fmt::format("repeats = [ {} ]\n", fmt::join(entries, ",\n            "));
+}
+
+/// Files of one condition: their names differ in the last number only.
+struct FileGroup {
+  std::string id;
+  std::vector<fs::path> files;
+};
+
+// ---- Conditions ----------------------------------------------------------------------------
+
+std::string id_of(const std::string& stem) {
+  std::string id;
+  for (const char c : stem) {
+    const bool allowed = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                         (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
+    id += allowed ? c : '_';
+  }
+  while (!id.empty() && (id.back() == '_' || id.back() == '-' || id.back() == '.')) id.pop_back();
+  return id.empty() ? "record" : id;
+}
+
+const ChannelColumns* find(const FileColumns& columns, Channel channel) {
+  const auto found = std::find_if(columns.channels.begin(), columns.channels.end(),
+                                  [&](const ChannelColumns& c) { return c.channel == channel; });
+  return found == columns.channels.end() ? nullptr : &*found;
+}
+
+/// What drives the rig, as far as it is recorded.
+const ChannelColumns* drive_of(const FileColumns& columns) {
+  const ChannelColumns* reference = find(columns, Channel::reference);
+  return reference != nullptr ? reference : find(columns, Channel::command);
+}
+
+/// Time and a channel of a file, the first of several columns.
+/// @return  empty if its time has no unit of time
+std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
+    const fs::path& file, const FileColumns& columns, const ChannelColumns& channel) {
+  const std::string column =
+      channel.numbers.empty() ? channel.stem : channel.stem + channel.numbers.front();
+  auto data = read(file, columns.time, column);
+  try {
+    const double to_s =
+        unit_conversion(columns.time_unit.empty() ? "s" : columns.time_unit, "s").scale;
+    for (double& t : data[0]) t *= to_s;
+  } catch (const QuantityError&) {
+    return std::nullopt;
+  }
+  return std::pair{std::move(data[0]), std::move(data[1])};
+}
+
+/// How runs start: as the record does, unless one of them begins in motion.
+std::string initial_text(const std::vector<FileGroup>& groups) {
+  const double window_s = Campaign().initial_window_s;
+  for (const FileGroup& group : groups) {
+    const FileColumns columns = columns_of(group.files.front());
+    const ChannelColumns* position = find(columns, Channel::position);
+    if (position == nullptr) continue;
+    const auto signal = signal_of(group.files.front(), columns, *position);
+    if (!signal || !motion_at_start(signal->first, signal->second, window_s)) continue;
+    return fmt::format(
+        "initial = \"fit\"  # estimated: {} moves within its first {:g} s; \"record\": their mean, "
+        "\"rest\": from zero\n",
+        group.id, window_s);
+  }
+  return fmt::format(
+      "initial = \"record\"  # the mean of the first {:g} s; \"rest\": from zero; \"fit\": "
+      "estimate "
+      "it\n",
+      window_s);
+}
+
+std::string waveform_text(const fs::path& file, const FileColumns& columns) {
+  const ChannelColumns* drive = drive_of(columns);
+  if (drive == nullptr)
+    return fmt::format(
+        "waveform = \"{}\"{}\n", kBlank,
+        comment("sine or square, with frequency and amplitude: neither reference nor "
+                "command was recorded"));
+  const auto signal = signal_of(file, columns, *drive);
+  if (!signal)
+    return fmt::format("waveform = \"recorded\"{}\n", comment("its time has no unit of time"));
+  const auto& [time_s, values] = *signal;
+  const double rate_hz =
+      time_s.size() < 2 ? 0.0
+                        : static_cast<double>(time_s.size() - 1) / (time_s.back() - time_s.front());
+  const WaveformGuess guess = guess_waveform(time_s, values);
+  const bool periodic = guess.waveform == Waveform::sine || guess.waveform == Waveform::square;
+  std::string text =
+      fmt::format("# {}: {}; {} samples at {:.6g} Hz, {:.6g} s\n", info(drive->channel).key,
+                  guess.description, time_s.size(), rate_hz, time_s.back() - time_s.front());
+  text += fmt::format(
+      "waveform = \"{}\"{}\n",
+      to_string(periodic && guess.can_be_generated ? guess.waveform : Waveform::recorded),
+      periodic && !guess.can_be_generated ? comment("not generated: it has an offset or a phase")
+                                          : "");
+  if (!guess.frequency_hz || !guess.amplitude) return text;
+  text += fmt::format("frequency = \"{:.4g} Hz\"\n", *guess.frequency_hz);
+  const std::string_view wanted = drive->channel == Channel::reference ? "m" : "V";
+  std::string unit = drive->unit.empty() ? kBlank : drive->unit;
+  try {
+    if (!drive->unit.empty()) unit_conversion(drive->unit, wanted);
+  } catch (const QuantityError&) {
+    unit = kBlank;
+  }
+  const bool known = unit != kBlank;
+  return text +
+         fmt::format("amplitude = \"{:.4g} {}\"{}\n", *guess.amplitude, unit,
+                     known ? "" : comment("half of peak to peak, after the gain, with unit"));
+}
+
+/// Files without a time or a channel, as a summary beside the recordings, are named in `left_out`.
+/// @throws InputError  no file is a recording
+std::vector<fs::path> recordings_among(const std::vector<fs::path>& files,
+                                       std::vector<std::string>& left_out) {
+  std::vector<fs::path> recordings;
+  std::string first;
+  for (const fs::path& file : files) {
+    const std::string lacks = columns_of(file).lacks;
+    if (lacks.empty()) {
+      recordings.push_back(file);
+      continue;
+    }
+    if (first.empty()) first = lacks;
+    left_out.push_back(fmt::format("{} ({})", file.filename().string(), lacks));
+  }
+  if (recordings.empty()) throw InputError({files.at(0).string()}, first);
+  return recordings;
+}
+
+std::vector<FileGroup> groups_of(const std::vector<fs::path>& files) {
+  std::vector<std::pair<std::pair<fs::path, std::string>, FileGroup>> groups;
+  for (const fs::path& file : files) {
+    const std::string stem = split_number(file.stem().string()).stem;
+    const std::pair key{file.parent_path(), stem + file.extension().string()};
+    auto found = std::find_if(groups.begin(), groups.end(),
+                              [&](const auto& group) { return group.first == key; });
+    if (found == groups.end()) found = groups.insert(groups.end(), {key, {id_of(stem), {}}});
+    found->second.files.push_back(file);
+  }
+  std::vector<FileGroup> result;
+  std::vector<std::string> ids;
+  for (auto& [key, group] : groups) {
+    if (group.files.size() == 1) group.id = id_of(group.files[0].stem().string());
+    const auto same = std::count(ids.begin(), ids.end(), group.id);
+    ids.push_back(group.id);
+    if (same > 0) group.id += fmt::format("-{}", same + 1);
+    result.push_back(group);
+  }
+  return result;
+}
+
+/// Reads what a draft is made from: time and drive of the first file of each group. Where it cannot
+/// be read, as where several runs stand below each other and the time restarts, the file is named
+/// in `left_out` and the next one of its group takes its place.
+/// @throws InputError  of the first file that cannot be read, if no group remains
+std::vector<FileGroup> readable_among(std::vector<FileGroup> groups,
+                                      std::vector<std::string>& left_out) {
+  std::optional<InputError> first;
+  const auto reads = [&](const fs::path& file) {
+    const FileColumns columns = columns_of(file);
+    const ChannelColumns* drive = drive_of(columns);
+    ChannelColumns any;
+    if (drive != nullptr) {
+      any = *drive;
+    } else if (!columns.channels.empty()) {
+      any = columns.channels.front();
+    } else {
+      any.stem = columns.rows.front();
+    }
+    try {
+      signal_of(file, columns, any);
+    } catch (const InputError& error) {
+      if (!first) first = error;
+      left_out.push_back(file.filename().string() +
+                         std::string(error.what()).substr(error.where().file.size()));
+      return false;
+    }
+    return true;
+  };
+  for (FileGroup& group : groups)
+    while (!group.files.empty() && !reads(group.files.front()))
+      group.files.erase(group.files.begin());
+  groups.erase(std::remove_if(groups.begin(), groups.end(),
+                              [](const FileGroup& group) { return group.files.empty(); }),
+               groups.end());
+  if (groups.empty()) throw *first;
+  return groups;
+}
+
+}  // namespace
+
+Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder) {
+  std::vector<std::string> left_out;
+  const auto groups = readable_among(groups_of(recordings_among(files, left_out)), left_out);
+  const FileColumns columns = columns_of(groups.at(0).files.at(0));
+  // Rows without names: that of the reference may be among them, as where an experiment is run.
+  const bool closed_loop = find(columns, Channel::reference) != nullptr || !columns.rows.empty();
+  const bool chambers = std::any_of(groups.begin(), groups.end(), [](const FileGroup& group) {
+    const FileColumns own = columns_of(group.files.front());
+    return find(own, Channel::pressure_a) != nullptr || find(own, Channel::pressure_b) != nullptr;
+  });
+  std::string text = fmt::format(
+      "# Draft by rigcal init. Replace every \"{}\", delete what does not apply, then run\n"
+      "# rigcal check on this file. docs/campaign-file.md explains every key.\n"
+      "schema = \"rigcal.campaign/1\"\nname = \"New rig\"\n\n",
+      kBlank);
+  for (const std::string& file : left_out) text += fmt::format("# left out: {}\n", file);
+  if (!left_out.empty()) text += "\n";
+  text += rig_text(chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure,
+                   closed_loop);
+  text += "\n[recording]\n" + initial_text(groups);
+  text += "# decimate_to = \"1 kHz\"  # if the records are denser than the model needs\n";
+  text += channels_text(columns) + rows_text(groups.at(0).files.at(0), columns);
+  text +=
+      "\n[averaging]\n"
+      "align = \"correlate\"  # or \"none\" if all repeats share one trigger\n"
+      "\n# [acceptance]  # what PASS means\n# rho2 = 0.99\n# absolute_error_percent = 1.0\n";
+  for (const FileGroup& group : groups) {
+    const FileColumns own = columns_of(group.files.front());
+    text += fmt::format("\n[[condition]]\nid = {}\n", toml_quoted(group.id));
+    text += waveform_text(group.files.front(), own);
+    text += "use = \"fit\"  # or \"validate\": keep some back that the fit does not see\n";
+    text += "# leak_level = \"none\"  # names the state of the rig, if there are several\n";
+    text += repeats_text(group.files, own, folder);
+  }
+  return {text, left_out};
+}
+
+}  // namespace rigcal::datasets

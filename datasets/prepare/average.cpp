@@ -1,0 +1,365 @@
+#include "datasets/prepare/average.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "datasets/checks/coarse_steps.hpp"
+#include "datasets/checks/identical_repeats.hpp"
+#include "datasets/checks/mains_hum.hpp"
+#include "datasets/prepare/alignment.hpp"
+#include "datasets/prepare/lag.hpp"
+#include "datasets/prepare/median.hpp"
+#include "datasets/prepare/resample.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// One channel of the repeats that carry it, on the common time base; NaN where one has no sample.
+struct Stack {
+  std::vector<std::size_t> carriers;  ///< indices of the repeats
+  std::vector<std::vector<double>> rows;
+};
+
+/// A held signal must not ring at its edges; a measured one must keep its noise and amplitude.
+Interpolator interpolator_of(Channel channel) {
+  return channel == Channel::reference || channel == Channel::command ? Interpolator::linear
+                                                                      : Interpolator::band_limited;
+}
+
+std::map<Channel, Stack> stack_channels(const std::vector<Repeat>& repeats,
+                                        const std::vector<double>& shift) {
+  std::map<Channel, Stack> stacks;
+  const std::size_t samples = repeats.front().time_s.size();
+  for (std::size_t r = 0; r < repeats.size(); ++r) {
+    for (const auto& [channel, values] : repeats[r].values) {
+      stacks[channel].carriers.push_back(r);
+      stacks[channel].rows.push_back(shifted(values, shift[r], samples, interpolator_of(channel)));
+    }
+  }
+  return stacks;
+}
+
+/// The longest run of samples at which every channel has at least one repeat.
+struct Span {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+Span covered_span(const std::map<Channel, Stack>& stacks, std::size_t samples) {
+  const auto covered = [&](std::size_t i) {
+    return std::all_of(stacks.begin(), stacks.end(), [&](const auto& entry) {
+      return std::any_of(entry.second.rows.begin(), entry.second.rows.end(),
+                         [&](const auto& row) { return !std::isnan(row[i]); });
+    });
+  };
+  Span longest;
+  Span run;
+  for (std::size_t i = 0; i < samples; ++i) {
+    if (!covered(i))
+      run = {i + 1, i + 1};
+    else
+      run.end = i + 1;
+    if (run.end - run.begin > longest.end - longest.begin) longest = run;
+  }
+  return longest;
+}
+
+/// Value of the first row that has sample i.
+double value_at(const Stack& stack, std::size_t i) {
+  const auto found = std::find_if(stack.rows.begin(), stack.rows.end(),
+                                  [i](const auto& row) { return !std::isnan(row[i]); });
+  return (*found)[i];
+}
+
+bool all_equal(const Stack& stack, std::size_t i) {
+  const double value = value_at(stack, i);
+  return std::all_of(stack.rows.begin(), stack.rows.end(),
+                     [&](const auto& row) { return std::isnan(row[i]) || row[i] == value; });
+}
+
+/// Mean, sd and count at each sample of a span.
+Series moments(const Stack& stack, Span span) {
+  Series series;
+  series.repeats = static_cast<int>(stack.rows.size());
+  const bool several = stack.rows.size() > 1;
+  double sum_of_variances = 0.0;
+  long with_variance = 0;
+  for (std::size_t i = span.begin; i < span.end; ++i) {
+    double sum = 0.0;
+    int count = 0;
+    for (const auto& row : stack.rows) {
+      if (std::isnan(row[i])) continue;
+      sum += row[i];
+      ++count;
+    }
+    // Of equal values the sum rounds, and a command that all repeats share would seem to have
+    // noise.
+    const double mean = all_equal(stack, i) ? value_at(stack, i) : sum / count;
+    series.mean.push_back(mean);
+    series.count.push_back(count);
+    if (!several) continue;
+    double squares = 0.0;
+    for (const auto& row : stack.rows)
+      if (!std::isnan(row[i])) squares += (row[i] - mean) * (row[i] - mean);
+    series.sd.push_back(count > 1 ? std::sqrt(squares / (count - 1)) : kNan);
+    if (count < 2) continue;
+    sum_of_variances += squares / (count - 1);
+    ++with_variance;
+  }
+  if (with_variance > 0)
+    series.pooled_sd = std::sqrt(sum_of_variances / static_cast<double>(with_variance));
+  return series;
+}
+
+/// Each row minus the mean over the span.
+std::vector<std::vector<double>> deviations_from(const Stack& stack, const Series& series,
+                                                 Span span) {
+  std::vector<std::vector<double>> result;
+  for (const auto& row : stack.rows) {
+    std::vector<double>& own = result.emplace_back();
+    for (std::size_t i = span.begin; i < span.end; ++i)
+      own.push_back(row[i] - series.mean[i - span.begin]);
+  }
+  return result;
+}
+
+/// Fills in the standard deviations that a fit divides by.
+void conclude_sd(Series& series, Channel channel, const AverageOptions& options,
+                 std::vector<std::string>& warnings) {
+  const auto known = options.known_sd.find(channel);
+  if (series.pooled_sd > 0.0) {
+    series.sd_of_mean = series.pooled_sd / std::sqrt(series.repeats);
+    return;
+  }
+  if (series.pooled_sd == 0.0 && info(channel).is_output)
+    warnings.push_back(fmt::format(
+        "{}: the repeats are identical, so they tell nothing about the noise", info(channel).key));
+  series.pooled_sd = known == options.known_sd.end() ? kNan : known->second;
+  series.sd_of_mean = series.pooled_sd;
+}
+
+double rms_over(Span span, const auto& difference) {
+  double squares = 0.0;
+  long count = 0;
+  for (std::size_t i = span.begin; i < span.end; ++i) {
+    const double d = difference(i);
+    if (std::isnan(d)) continue;
+    squares += d * d;
+    ++count;
+  }
+  return count == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(count));
+}
+
+/// Rms distance of each row from the mean of the other rows.
+std::vector<double> distances_from_others(const Stack& stack, const Series& series, Span span) {
+  std::vector<double> distances;
+  for (const auto& row : stack.rows)
+    distances.push_back(rms_over(span, [&](std::size_t i) {
+      const std::size_t at = i - span.begin;
+      const double n = series.count[at];
+      // x - (n mean - x) / (n - 1)
+      return n < 2.0 ? kNan : (row[i] - series.mean[at]) * n / (n - 1.0);
+    }));
+  return distances;
+}
+
+/// Rms distance of each row from the sample-wise median of all rows.
+std::vector<double> distances_from_median(const Stack& stack, Span span) {
+  std::vector<double> centre(span.end, kNan);
+  std::vector<double> values;
+  for (std::size_t i = span.begin; i < span.end; ++i) {
+    values.clear();
+    for (const auto& row : stack.rows)
+      if (!std::isnan(row[i])) values.push_back(row[i]);
+    centre[i] = median(values);
+  }
+  std::vector<double> distances;
+  for (const auto& row : stack.rows)
+    distances.push_back(rms_over(span, [&](std::size_t i) { return row[i] - centre[i]; }));
+  return distances;
+}
+
+/// Standard deviation of the noise of one row, from its second differences: what is smooth at the
+/// scale of three samples cancels.
+double noise_sd(const std::vector<double>& row, Span span) {
+  if (span.end - span.begin < 3) return 0.0;
+  const Span inner{span.begin + 1, span.end - 1};
+  return rms_over(inner, [&](std::size_t i) { return row[i - 1] - 2.0 * row[i] + row[i + 1]; }) /
+         std::sqrt(6.0);
+}
+
+/// Two repeats cannot tell which of them is wrong, only that they differ by more than their noise.
+void warn_of_pair(const Stack& stack, const Series& series, Channel channel, Span span,
+                  const AverageOptions& options, const std::vector<Repeat>& repeats,
+                  std::vector<std::string>& warnings) {
+  const auto& a = stack.rows[0];
+  const auto& b = stack.rows[1];
+  const double distance = rms_over(span, [&](std::size_t i) { return a[i] - b[i]; });
+  const double expected = std::hypot(noise_sd(a, span), noise_sd(b, span));
+  const auto [low, high] = std::minmax_element(series.mean.begin(), series.mean.end());
+  if (distance <= options.outlier_ratio * expected || distance <= 0.01 * (*high - *low)) return;
+  warnings.push_back(fmt::format(
+      "{}: {} and {} differ by {:.3g} {} rms, {:.3g} % of the range; with two repeats it cannot be "
+      "told which one is wrong",
+      info(channel).key, repeats[stack.carriers[0]].source, repeats[stack.carriers[1]].source,
+      distance, info(channel).unit, 100.0 * distance / (*high - *low)));
+}
+
+/// Names repeats that are one recording given twice.
+void warn_of_copies(const Stack& stack, const std::vector<std::size_t>& first, Channel channel,
+                    const std::vector<Repeat>& repeats, std::vector<std::string>& warnings) {
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (first[k] == k) continue;
+    warnings.push_back(
+        fmt::format("{}: {} and {} are identical, as one recording given twice is; both count, so "
+                    "that the noise is underestimated",
+                    info(channel).key, repeats[stack.carriers[first[k]]].source,
+                    repeats[stack.carriers[k]].source));
+  }
+}
+
+/// The rows that are no copies of an earlier one.
+Stack distinct_rows(const Stack& stack, const std::vector<std::size_t>& first) {
+  Stack distinct;
+  for (std::size_t k = 0; k < first.size(); ++k) {
+    if (first[k] != k) continue;
+    distinct.carriers.push_back(stack.carriers[k]);
+    distinct.rows.push_back(stack.rows[k]);
+  }
+  return distinct;
+}
+
+/// Names the outliers of one channel.
+/// @param stack  without copies, which would vouch for each other
+void warn_of_outliers(const Stack& stack, Channel channel, Span span, const AverageOptions& options,
+                      Record& record) {
+  const auto from_median = distances_from_median(stack, span);
+  const double typical = median(from_median);
+  for (std::size_t k = 0; k < stack.rows.size(); ++k) {
+    if (!(from_median[k] > options.outlier_ratio * typical)) continue;
+    RepeatReport& report = record.repeat_reports[stack.carriers[k]];
+    report.outlier = true;
+    record.warnings.push_back(fmt::format(
+        "{}: {} lies {:.3g} {} rms from the median of the {} repeats, {}; it stays in the mean",
+        info(channel).key, report.source, from_median[k], info(channel).unit, stack.rows.size(),
+        typical > 0.0 ? fmt::format("{:.3g} times as far as is typical", from_median[k] / typical)
+                      : std::string("where the others agree exactly")));
+  }
+}
+
+/// Enters the deviation of each repeat, and names copies and outliers of one channel.
+void judge_repeats(const Stack& stack, const Series& series, Channel channel, Span span,
+                   const AverageOptions& options, const std::vector<Repeat>& repeats,
+                   Record& record) {
+  if (stack.rows.size() < 2 || !(series.pooled_sd > 0.0)) return;
+  const auto from_others = distances_from_others(stack, series, span);
+  for (std::size_t k = 0; k < stack.rows.size(); ++k) {
+    RepeatReport& report = record.repeat_reports[stack.carriers[k]];
+    report.deviation = std::max(report.deviation, from_others[k] / series.pooled_sd);
+  }
+  const auto first = first_identical(repeats, stack.carriers, channel);
+  const Stack distinct = distinct_rows(stack, first);
+  if (distinct.rows.size() == 1) return;  // conclude_sd() says so
+  warn_of_copies(stack, first, channel, repeats, record.warnings);
+  if (distinct.rows.size() == 2)
+    warn_of_pair(distinct, series, channel, span, options, repeats, record.warnings);
+  else
+    warn_of_outliers(distinct, channel, span, options, record);
+}
+
+/// Names noise that the mean of the repeats and their scatter do not stand for.
+/// @param deviations  of each row from the mean
+void warn_of_noise(const std::vector<std::vector<double>>& deviations, const Series& series,
+                   Channel channel, const AverageOptions& options,
+                   const std::vector<Repeat>& repeats, std::vector<std::string>& warnings) {
+  if (!info(channel).is_output || !(series.pooled_sd > 0.0)) return;
+  const ChannelInfo& about = info(channel);
+  const std::vector<double>& time_s = repeats.front().time_s;
+  const double rate_hz = static_cast<double>(time_s.size() - 1) / (time_s.back() - time_s.front());
+  if (const auto hum = mains_hum(deviations, rate_hz, options.drive_hz)) {
+    warnings.push_back(fmt::format(
+        "{}: hum of the mains, {:.0f} Hz with an amplitude of {:.2g} {} in every repeat; what it "
+        "leaves in their mean counts as noise, which it is not",
+        about.key, hum->frequency_hz, hum->amplitude, about.unit));
+  }
+  if (const auto step = coarse_step(repeats, channel, series.pooled_sd)) {
+    warnings.push_back(fmt::format(
+        "{}: readings come in steps of {:.3g} {}, and the repeats scatter by {:.2g} {} only: each "
+        "is rounded alike, which their mean does not remove and their scatter does not show",
+        about.key, *step, about.unit, series.pooled_sd, about.unit));
+  }
+}
+
+/// Names repeats that leave more than a hundredth of the record uncovered.
+void warn_of_gaps(const std::vector<Repeat>& repeats, const std::vector<double>& shift,
+                  std::vector<std::string>& warnings) {
+  const auto samples = static_cast<double>(repeats.front().time_s.size());
+  for (std::size_t r = 0; r < repeats.size(); ++r) {
+    const auto own = static_cast<double>(repeats[r].time_s.size());
+    const double begin = std::max(0.0, -shift[r]);
+    const double end = std::min(samples, own - shift[r]);
+    if (end - begin < 0.99 * samples)
+      warnings.push_back(fmt::format("{} covers {:.3g} % of the samples of {}", repeats[r].source,
+                                     100.0 * std::max(0.0, end - begin) / samples,
+                                     repeats.front().source));
+    if (own > 1.01 * samples)
+      warnings.push_back(
+          fmt::format("{} is longer than {}, which sets the length: {:.0f} of its "
+                      "samples are used",
+                      repeats[r].source, repeats.front().source, std::max(0.0, end - begin)));
+  }
+}
+
+}  // namespace
+
+Record average(const std::string& condition, const std::vector<Repeat>& repeats,
+               const AverageOptions& options) {
+  const AlignedRepeats aligned = align(repeats, options.align);
+  const Repeat& first = repeats.front();
+  const auto stacks = stack_channels(repeats, aligned.shift);
+  const Span span = covered_span(stacks, first.time_s.size());
+  if (span.end == span.begin)
+    throw std::invalid_argument(fmt::format(
+        "the repeats of {} have no sample at which every channel is recorded", condition));
+
+  Record record;
+  record.condition = condition;
+  record.warnings = aligned.warnings;
+  record.repeats =
+      repeats.size() == 1 ? options.repeats_averaged : static_cast<int>(repeats.size());
+  for (std::size_t r = 0; r < repeats.size(); ++r)
+    record.repeat_reports.push_back(
+        {repeats[r].source, aligned.offset_s[r], 0.0, false, aligned.shifted_s[r]});
+  record.time_s.assign(first.time_s.begin() + static_cast<std::ptrdiff_t>(span.begin),
+                       first.time_s.begin() + static_cast<std::ptrdiff_t>(span.end));
+  warn_of_gaps(repeats, aligned.shift, record.warnings);
+  for (const auto& [channel, stack] : stacks) {
+    Series series = moments(stack, span);
+    conclude_sd(series, channel, options, record.warnings);
+    judge_repeats(stack, series, channel, span, options, repeats, record);
+    if (stack.rows.size() > 1) {
+      auto deviations = deviations_from(stack, series, span);
+      warn_of_noise(deviations, series, channel, options, repeats, record.warnings);
+      if (options.keep_deviations) series.deviations = std::move(deviations);
+    }
+    if (repeats.size() == 1) series.repeats = options.repeats_averaged;
+    record.channels.emplace(channel, std::move(series));
+  }
+  if (repeats.size() == 1 && options.repeats_averaged == 1)
+    record.warnings.emplace_back("a single repeat: its repeatability is not known");
+  return record;
+}
+
+std::optional<double> lag_in_samples(const std::vector<double>& a, const std::vector<double>& b,
+                                     int max_lag) {
+  const auto lag = find_lag(a, b, max_lag);
+  if (!lag) return std::nullopt;
+  return lag->samples;
+}
+
+}  // namespace rigcal::datasets

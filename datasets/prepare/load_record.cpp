@@ -1,0 +1,197 @@
+#include "datasets/prepare/load_record.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <stdexcept>
+
+#include "common/parallel.hpp"
+#include "datasets/campaign/campaign_sections.hpp"
+#include "datasets/checks/sensor_warnings.hpp"
+#include "datasets/checks/short_records.hpp"
+#include "datasets/prepare/average.hpp"
+#include "datasets/prepare/condition_repeats.hpp"
+#include "datasets/prepare/moving_windows.hpp"
+#include "datasets/read/load_csv.hpp"
+#include "datasets/read/load_mat.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+AverageOptions options_of(const Campaign& campaign, const Condition& condition) {
+  AverageOptions options;
+  options.align = campaign.alignment == Alignment::correlate;
+  if (condition.frequency_hz && !condition.end_frequency_hz)
+    options.drive_hz = *condition.frequency_hz;
+  options.repeats_averaged = condition.averaged ? condition.repeats_averaged : 1;
+  for (const auto& [channel, setting] : campaign.channels)
+    if (setting.sd) options.known_sd[channel] = *setting.sd;
+  return options;
+}
+
+[[noreturn]] void refuse(const Condition& condition, const std::string& message) {
+  throw InputError(condition.where, fmt::format("condition \"{}\": {}", condition.id, message));
+}
+
+/// Columns of a CSV or MAT file, the time first; what is doubtful about the file goes to the
+/// repeat.
+std::vector<std::vector<double>> read_columns(const Campaign& campaign,
+                                              const std::filesystem::path& path,
+                                              std::vector<std::string> names, Repeat& repeat) {
+  if (is_mat_file(path)) return load_mat(path, {std::move(names), campaign.time_column});
+  CsvRequest request;
+  request.separator = campaign.separator;
+  request.time_column = campaign.time_column;
+  request.columns = std::move(names);
+  CsvTable table = load_csv(path, request);
+  if (!table.cut_short.empty()) repeat.warnings.push_back(table.cut_short);
+  return std::move(table.columns);
+}
+
+/// What drives the rig at each sample of the record.
+std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& condition,
+                                     const Record& record) {
+  const auto drive = inputs_of(campaign, condition, values_in(campaign, condition), &record).drive;
+  std::vector<double> result(record.time_s.size());
+  std::transform(record.time_s.begin(), record.time_s.end(), result.begin(),
+                 [&](double t) { return drive.value(t); });
+  return result;
+}
+
+/// Enters the windows of `windows = "moving"`.
+void find_moving_windows(const Campaign& campaign, const Condition& condition, Record& record) {
+  const auto position = record.channels.find(Channel::position);
+  if (position == record.channels.end())
+    refuse(condition,
+           "windows = \"moving\" are found from the position, which its records do not carry: "
+           "expected a position channel, or window = [\"0.5 s\", \"12 s\"]");
+  const Series& x = position->second;
+  const auto motions =
+      find_motions(record.time_s, drive_at_samples(campaign, condition, record), x.mean, x.sd);
+  if (motions.empty())
+    refuse(condition,
+           fmt::format("windows = \"moving\": no step of the {} moves the piston in its record; "
+                       "expected a command that steps and is held, or window = [\"0.5 s\", \"12 "
+                       "s\"]",
+                       info(drive_channel(campaign)).key));
+  for (const Motion& motion : motions) {
+    record.windows.push_back(motion.window);
+    record.notes.push_back(fmt::format(
+        "moving window {}: {:.6g} s to {:.6g} s, {:.5g} mm to {:.5g} mm, {}", record.windows.size(),
+        motion.window.start_s, motion.window.end_s, 1e3 * motion.from_m, 1e3 * motion.to_m,
+        motion.arrived ? fmt::format("ends {:.3g} mm before the stop", 1e3 * motion.margin_m)
+                       : "still moving at its end"));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> files_of(const Campaign& campaign, const Condition& condition) {
+  std::vector<std::string> files;
+  for (const RepeatSource& source : repeat_sources(campaign, condition)) {
+    const std::string file = source.path.string();
+    if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+  }
+  return files;
+}
+
+Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
+  if (campaign.time_column.empty())
+    throw InputError(
+        {campaign.file.string()},
+        "recording.channels.time is missing: expected the column and unit of the time");
+  if (source.columns.empty())
+    throw InputError({campaign.file.string()},
+                     fmt::format("no channel of '{}' is declared; expected at least one, such as "
+                                 "recording.channels.position",
+                                 source.label));
+  std::vector<std::string> names{campaign.time_column};
+  for (const auto& [channel, column] : source.columns) names.push_back(column);
+  // Columns that a repeat names itself stand alone.
+  const auto minus_of = [&](Channel channel, const std::string& column) {
+    const ChannelSetting& setting = campaign.channels.at(channel);
+    return column == setting.column ? setting.minus : std::string();
+  };
+  for (const auto& [channel, column] : source.columns)
+    if (const auto minus = minus_of(channel, column); !minus.empty()) names.push_back(minus);
+  Repeat repeat;
+  repeat.source = source.label;
+  auto columns = read_columns(campaign, source.path, std::move(names), repeat);
+
+  const auto converted = [&](std::size_t column, const UnitConversion& to_si) {
+    std::vector<double> values = std::move(columns[column]);
+    std::transform(values.begin(), values.end(), values.begin(), to_si);
+    return values;
+  };
+  repeat.time_s = converted(0, campaign.time_to_s);
+  std::size_t column = 1;
+  std::size_t minus = 1 + source.columns.size();
+  for (const auto& [channel, name] : source.columns) {
+    if (!minus_of(channel, name).empty()) {
+      const std::vector<double>& taken_off = columns[minus++];
+      std::transform(columns[column].begin(), columns[column].end(), taken_off.begin(),
+                     columns[column].begin(), std::minus<>());
+    }
+    repeat.values[channel] = converted(column++, campaign.channels.at(channel).to_si);
+  }
+  return repeat;
+}
+
+std::vector<Repeat> load_all_repeats(const Campaign& campaign, const Condition& condition) {
+  std::vector<Repeat> repeats;
+  for (const RepeatSource& source : repeat_sources(campaign, condition))
+    repeats.push_back(load_repeat(campaign, source));
+  if (repeats.empty()) refuse(condition, "has no record: expected repeats or averaged");
+  return repeats;
+}
+
+Record average_of(const Campaign& campaign, const Condition& condition,
+                  std::vector<Repeat>& repeats, bool keep_deviations) {
+  try {
+    const auto faults = sensor_faults(campaign, condition, repeats);
+    std::vector<std::string> seen;
+    for (const Repeat& repeat : repeats)
+      seen.insert(seen.end(), repeat.warnings.begin(), repeat.warnings.end());
+    const Conditioning done = condition_repeats(campaign, repeats);
+    AverageOptions options = options_of(campaign, condition);
+    options.keep_deviations = keep_deviations;
+    for (auto& [channel, sd] : options.known_sd) sd *= done.noise_gain;
+    Record record = average(condition.id, repeats, options);
+    record.notes = done.notes;
+    seen.insert(seen.end(), done.warnings.begin(), done.warnings.end());
+    record.warnings.insert(record.warnings.end(), seen.begin(), seen.end());
+    record.windows = condition.windows;
+    if (condition.moving_windows) find_moving_windows(campaign, condition, record);
+    const auto stuck = sensor_warnings(faults, record.windows);
+    record.warnings.insert(record.warnings.end(), stuck.begin(), stuck.end());
+    return record;
+  } catch (const std::invalid_argument& error) {
+    refuse(condition, error.what());
+  }
+}
+
+Record load_record(const Campaign& campaign, const Condition& condition, bool keep_deviations) {
+  std::vector<Repeat> repeats = load_all_repeats(campaign, condition);
+  Record record = average_of(campaign, condition, repeats, keep_deviations);
+  record.files = files_of(campaign, condition);
+  return record;
+}
+
+std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use>& uses,
+                                 int threads, bool keep_deviations) {
+  std::vector<const Condition*> wanted;
+  for (const Condition& condition : campaign.conditions)
+    if (std::find(uses.begin(), uses.end(), condition.use) != uses.end())
+      wanted.push_back(&condition);
+  std::vector<Record> records(wanted.size());
+  parallel_for(wanted.size(), threads, [&](std::size_t i) {
+    records[i] = load_record(campaign, *wanted[i], keep_deviations);
+  });
+  std::vector<Record*> all;
+  for (Record& record : records) all.push_back(&record);
+  warn_of_short_records(campaign, all);
+  return records;
+}
+
+}  // namespace rigcal::datasets

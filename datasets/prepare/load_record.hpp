@@ -1,0 +1,37 @@
+#pragma once
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
+
+namespace rigcal::datasets {
+
+/// Every file of a condition, once.
+/// @throws InputError  a pattern that matches no file
+std::vector<std::string> files_of(const Campaign& campaign, const Condition& condition);
+
+/// Reads the files of one repeat and converts them to SI.
+/// @throws InputError
+Repeat load_repeat(const Campaign& campaign, const RepeatSource& source);
+
+/// Reads every repeat of a condition, or the one file that is averaged already.
+/// @throws InputError  a file is wrong, or there is none
+std::vector<Repeat> load_all_repeats(const Campaign& campaign, const Condition& condition);
+
+/// Averages the repeats of a condition as the campaign says.
+/// @param repeats  decimated and cleared of spikes first, where the campaign asks for it
+/// @param keep_deviations  those of each repeat from the mean
+/// @throws InputError  the repeats do not belong together
+Record average_of(const Campaign& campaign, const Condition& condition,
+                  std::vector<Repeat>& repeats, bool keep_deviations = false);
+
+/// Reads every repeat of a condition and averages them.
+/// @throws InputError  a file is wrong, or the repeats do not belong together
+Record load_record(const Campaign& campaign, const Condition& condition,
+                   bool keep_deviations = false);
+
+/// Records of all conditions whose use is among `uses`, in the campaign's order; files are read in
+/// parallel.
+std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use>& uses,
+                                 int threads, bool keep_deviations = false);
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
+
+namespace rigcal::datasets {
+
+/// A condition's average and, on the same time base, each of its repeats as a record of its own.
+struct RepeatRecords {
+  Record average;
+  /// In the order of the files; empty where the file is averaged already or there is one repeat.
+  std::vector<Record> singles;
+  /// Per single the times that it covers.
+  std::vector<TimeWindow> covered;
+};
+
+/// Aligns and averages as average_of(); a single repeat is shifted to the common time base as it is
+/// for the average. Its standard deviation is the pooled one of the repeats.
+///
+/// @throws InputError  as average_of()
+RepeatRecords repeat_records(const Campaign& campaign, const Condition& condition,
+                             std::vector<Repeat> repeats);
+
+/// Those of the files of a condition.
+/// @throws InputError  as load_record()
+RepeatRecords load_repeats(const Campaign& campaign, const Condition& condition);
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,91 @@
+#include "datasets/prepare/spikes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "datasets/prepare/median.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr std::size_t kFewestForSpikes = 16;
+constexpr std::size_t kLongestRun = 2;
+constexpr double kDeviations = 10.0;
+constexpr double kSteps = 4.0;              // of neighbours
+constexpr double kNeighbourFactor = 3.0;    // times the difference of the neighbours
+constexpr double kMedianOfNormal = 0.6745;  // of |N(0, 1)|
+
+/// How far samples [begin, begin + length) lie off the line between the samples around them, all on
+/// one side: the least of them, signed; 0 if they lie on both sides.
+struct Excursion {
+  double least = 0.0;
+  double farthest = 0.0;
+};
+
+Excursion excursion(const std::vector<double>& x, std::size_t begin, std::size_t length) {
+  const double left = x[begin - 1];
+  const double right = x[begin + length];
+  Excursion result{std::numeric_limits<double>::infinity(), 0.0};
+  for (std::size_t k = 0; k < length; ++k) {
+    const double share = static_cast<double>(k + 1) / static_cast<double>(length + 1);
+    const double off = x[begin + k] - (left + share * (right - left));
+    if (k > 0 && (off > 0.0) != (result.farthest > 0.0)) return {};
+    if (std::abs(off) < std::abs(result.least)) result.least = off;
+    if (std::abs(off) > std::abs(result.farthest)) result.farthest = off;
+  }
+  return result;
+}
+
+/// Median of the differences of neighbours that are not zero: where a converter is coarser than the
+/// noise, its step.
+double typical_step(const std::vector<double>& x) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < x.size(); ++i)
+    if (x[i] != x[i - 1]) steps.push_back(std::abs(x[i] - x[i - 1]));
+  return steps.empty() ? 0.0 : median(std::move(steps));
+}
+
+double limit_of(const std::vector<double>& x) {
+  std::vector<double> off;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i)
+    off.push_back(std::abs(excursion(x, i, 1).farthest));
+  return std::max(kDeviations * median(std::move(off)) / kMedianOfNormal, kSteps * typical_step(x));
+}
+
+}  // namespace
+
+std::vector<Spike> find_spikes(const std::vector<double>& x) {
+  std::vector<Spike> spikes;
+  if (x.size() < kFewestForSpikes) return spikes;
+  const double limit = limit_of(x);
+  if (!(limit > 0.0)) return spikes;
+  for (std::size_t i = 2; i + 3 < x.size(); ++i) {
+    for (std::size_t length = 1; length <= kLongestRun; ++length) {
+      const Excursion off = excursion(x, i, length);
+      // On each side two samples must agree, or the run is part of an edge or an oscillation.
+      const std::size_t after = i + length;
+      const auto [low, high] = std::minmax({x[i - 2], x[i - 1], x[after], x[after + 1]});
+      if (std::abs(off.least) <= std::max(limit, kNeighbourFactor * (high - low))) continue;
+      spikes.push_back({i, length, off.farthest});
+      i = after;
+      break;
+    }
+  }
+  return spikes;
+}
+
+std::vector<double> without_spikes(std::vector<double> x, const std::vector<Spike>& spikes) {
+  for (const Spike& spike : spikes) {
+    const double left = x[spike.sample - 1];
+    const double right = x[spike.sample + spike.length];
+    for (std::size_t k = 0; k < spike.length; ++k) {
+      const double share = static_cast<double>(k + 1) / static_cast<double>(spike.length + 1);
+      x[spike.sample + k] = left + share * (right - left);
+    }
+  }
+  return x;
+}
+
+}  // namespace rigcal::datasets

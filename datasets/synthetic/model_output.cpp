@@ -1,0 +1,28 @@
+#include "datasets/synthetic/model_output.hpp"
+
+namespace rigcal::datasets {
+
+std::optional<model::Output> model_output(Channel channel) {
+  switch (channel) {
+    case Channel::position:
+      return model::Output::position;
+    case Channel::load_pressure:
+      return model::Output::load_pressure;
+    case Channel::pressure_a:
+      return model::Output::pressure_a;
+    case Channel::pressure_b:
+      return model::Output::pressure_b;
+    case Channel::force:
+      return model::Output::force;
+    case Channel::command:
+      return model::Output::command;
+    case Channel::reference:
+    case Channel::supply_pressure:
+    case Channel::tank_pressure:
+    case Channel::temperature:
+      break;
+  }
+  return std::nullopt;
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+
+#include "datasets/campaign/campaign.hpp"
+
+namespace rigcal::datasets {
+
+/// What `synthesize` wrote.
+struct SynthesisReport {
+  std::filesystem::path campaign_file;
+  int files = 0;
+  long samples = 0;
+};
+
+/// Records of a known rig: simulates every condition of the campaign at its true values
+/// ([synthetic]), adds what [synthetic] asks for, and writes `campaign.toml`, `records/*.csv` and
+/// `truth.json` into `out`, each labelled as synthetic. The same seed gives the same bytes on any
+/// machine and for any number of threads; every repeat and channel has a random stream of its own.
+///
+/// @throws InputError     no [synthetic] section, or a condition without duration and sample rate
+/// @throws NoResultError  a condition could not be simulated
+SynthesisReport synthesize(const Campaign& campaign, std::uint64_t seed,
+                           const std::filesystem::path& out, int threads);
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,68 @@
+#pragma once
+
+#include "model/arithmetic/smooth.hpp"
+#include "model/plant/layout.hpp"
+
+namespace rigcal::model {
+
+/// Output of the PID before and after its limit [V].
+template <typename X>
+struct ControllerOutput {
+  X wanted{};
+  X limited{};
+};
+
+/// u = K_p e + I + K_d N (e - e_f), then the limit.
+///
+/// @param error_m  reference minus position [m]
+/// @param state    the whole state vector; `layout` says where integral and filter stand
+template <typename X, typename State, typename P>
+ControllerOutput<X> controller_output(const X& error_m, const State& state, const P& p,
+                                      const Layout& layout) {
+  X wanted = error_m * p.kp_v_per_m;
+  if (layout.integral >= 0) wanted = wanted + state[static_cast<std::size_t>(layout.integral)];
+  if (layout.filter >= 0) {
+    wanted = wanted + (error_m - state[static_cast<std::size_t>(layout.filter)]) *
+                          (p.kd_v_s_per_m * p.derivative_filter_rad_per_s);
+  }
+  return {wanted, clamp_symmetric(wanted, p.output_limit_v)};
+}
+
+/// Rate at which an integral under saturation is pulled back to the limit [1/s]: K_i / K_p, the
+/// tracking time constant being the integral time (back-calculation; Astrom and Hagglund, 1995).
+/// A pure integral controller is pulled back within 10 ms.
+template <typename P>
+auto anti_windup_rate(const P& p) {
+  using C = std::remove_cvref_t<decltype(p.kp_v_per_m)>;
+  if (value_of(p.kp_v_per_m) > 0.0) return C(p.ki_v_per_m_s / p.kp_v_per_m);
+  return C(100.0);
+}
+
+/// Time derivative of the integral [V/s] under back-calculation.
+template <typename X, typename P>
+X integral_rate(const X& error_m, const ControllerOutput<X>& u, const P& p) {
+  return error_m * p.ki_v_per_m_s + (u.limited - u.wanted) * anti_windup_rate(p);
+}
+
+/// One tick of the sampled controller: the filter by backward Euler, the output held until the next
+/// tick, the integral advanced by forward Euler with the same back-calculation, which reaches the
+/// limit within one period at the fastest and so cannot overshoot it.
+template <typename X, typename State, typename P>
+void controller_tick(const X& error_m, State& state, const P& p, const Layout& layout) {
+  const double period_s = value_of(p.sample_time_s);
+  if (layout.filter >= 0) {
+    auto& filtered = state[static_cast<std::size_t>(layout.filter)];
+    const X step = X(p.derivative_filter_rad_per_s * period_s);
+    filtered = (filtered + step * error_m) / (1.0 + step);
+  }
+  const ControllerOutput<X> u = controller_output(error_m, state, p, layout);
+  if (layout.integral >= 0) {
+    auto& integral = state[static_cast<std::size_t>(layout.integral)];
+    auto pull = anti_windup_rate(p) * period_s;
+    if (value_of(pull) > 1.0) pull = 1.0;
+    integral = integral + error_m * (p.ki_v_per_m_s * period_s) + (u.limited - u.wanted) * pull;
+  }
+  state[static_cast<std::size_t>(layout.held)] = u.limited;
+}
+
+}  // namespace rigcal::model

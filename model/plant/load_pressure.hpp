@@ -1,0 +1,167 @@
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "model/plant/plant_input.hpp"
+#include "model/plant/terms.hpp"
+
+namespace rigcal::model {
+
+/// The paper's plant: piston and load pressure of a symmetric cylinder of constant volume.
+///
+///   m x''  = A P_L - b x' - k x - F_dry(x') - F_ext                    eq. 12
+///   P_L'   = (4 beta / V_t) (Q_L - Q_leak - A x')                      eq. 13
+///
+/// A plant is a parameter table (`Parameters`), a right-hand side and its outputs.
+struct LoadPressurePlant {
+  static constexpr int kStates = 3;
+  enum State { position, velocity, load_pressure };
+  template <typename T>
+  using Parameters = LoadPressureParameters<T>;
+  /// Parameters, and what follows from them alone.
+  template <typename C>
+  struct Coefficients : Parameters<C> {
+    C valve_conductance{};  ///< servo flow per spool travel and root of pressure
+    C leak_conductance{};   ///< orifice leakage per root of pressure
+    C inverse_mass{};       ///< [1/kg]
+    C inverse_capacity{};   ///< pressure rate per flow, 4 beta / V_t [Pa/m3]
+
+    Coefficients() = default;
+    explicit Coefficients(const Parameters<C>& p)
+        : Parameters<C>(p),
+          valve_conductance(model::valve_conductance(p.discharge_coefficient, p.area_gradient_m,
+                                                     p.density_kg_per_m3)),
+          leak_conductance(model::orifice_conductance(p.leakage_coefficient, p.leakage_area_m2,
+                                                      p.density_kg_per_m3)),
+          inverse_mass(1.0 / p.mass_kg),
+          inverse_capacity(4.0 * p.bulk_modulus_pa / p.total_volume_m3) {}
+  };
+  template <typename T>
+  static constexpr const auto& fields() {
+    return kLoadPressureFields<T>;
+  }
+  /// Size below which a state counts as zero in the error control [m, m/s, Pa].
+  static constexpr std::array<double, kStates> kFloor{1e-6, 1e-5, 100.0};
+
+  /// The state that an output reads, but for its sensor; none: it takes more.
+  static constexpr std::optional<int> state_of(Output output) {
+    switch (output) {
+      case Output::position:
+        return position;
+      case Output::velocity:
+        return velocity;
+      case Output::load_pressure:
+        return load_pressure;
+      default:
+        return std::nullopt;
+    }
+  }
+
+  /// Whether reversed inputs reverse the states and an output: all terms are odd functions but for
+  /// what acts in one direction; the chamber pressures trade places.
+  static bool reversible(Output output, const PresentTerms& terms) {
+    return !terms.external_force && !terms.valve_offset && output != Output::pressure_a &&
+           output != Output::pressure_b;
+  }
+
+  /// Spool travel [m], eq. 6: x_v = k_sv u, after null shift and overlap.
+  template <typename X, typename C>
+  static X spool(const PlantInput<X>& in, const Coefficients<C>& p, const PresentTerms& terms) {
+    if (!terms.spool_shape) return in.spool_command_v * p.valve_gain_m_per_v;
+    return dead_band(X(in.spool_command_v + p.valve_offset_v), p.valve_dead_band_v) *
+           p.valve_gain_m_per_v;
+  }
+
+  /// Flow of the servo valve to the load [m3/s], eq. 4, less the loss across its null.
+  template <typename X, typename C>
+  static X servo_flow(const X& P_L, const PlantInput<X>& in, const Coefficients<C>& p,
+                      const PresentTerms& terms) {
+    const X flow = model::servo_flow(spool(in, p, terms), P_L, in.supply_pressure_pa,
+                                     p.valve_conductance, p.leakage_smoothing_pa);
+    if (!terms.null_leak) return flow;
+    return flow - P_L * p.valve_null_leakage_m3_per_s_pa;
+  }
+
+  /// Internal leakage across the piston [m3/s]: orifice (eq. 11) and laminar path.
+  template <typename X, typename C>
+  static X leakage_flow(const X& P_L, const Coefficients<C>& p, const PresentTerms& terms) {
+    if (!terms.laminar_leak)
+      return terms.orifice_leak ? orifice_leakage(P_L, p.leak_conductance, p.leakage_smoothing_pa)
+                                : X(0.0);
+    const X laminar = P_L * p.laminar_leakage_m3_per_s_pa;
+    if (!terms.orifice_leak) return laminar;
+    return laminar + orifice_leakage(P_L, p.leak_conductance, p.leakage_smoothing_pa);
+  }
+
+  /// Time derivative of the state [m/s, m/s2, Pa/s].
+  ///
+  /// @param x  shape (kStates or more): the plant's states come first
+  template <typename X, std::size_t M, typename C>
+  static std::array<X, kStates> derivative(const std::array<X, M>& x, const PlantInput<X>& in,
+                                           const Coefficients<C>& p, const PresentTerms& terms) {
+    const X& v = x[velocity];
+    const X& P_L = x[load_pressure];
+    const C& A = p.piston_area_m2;
+    X force = P_L * A - v * p.damping_n_s_per_m - x[position] * p.stiffness_n_per_m;
+    if (terms.friction) force = force - friction(v, p, terms);
+    if (terms.external_force) force = force - in.external_force_n;
+    const X flow = servo_flow(P_L, in, p, terms) - leakage_flow(P_L, p, terms) - v * A;
+    return {v, force * p.inverse_mass, flow * p.inverse_capacity};
+  }
+
+  /// What the plant tells beside position and velocity. Its chamber pressures share the load
+  /// pressure equally; `force` is what a load cell in the rod reads: the force that the rod passes
+  /// to mass, damper and spring of the load, A P_L less the dry friction of the cylinder
+  /// (docs/model.md).
+  template <typename C, std::size_t M>
+  static C output(Output output, const std::array<C, M>& x, const PlantInput<C>& in,
+                  const Coefficients<C>& p, const PresentTerms& terms) {
+    const C& P_L = x[load_pressure];
+    switch (output) {
+      case Output::load_pressure:
+        return P_L;
+      case Output::pressure_a:
+        return 0.5 * (in.supply_pressure_pa + P_L);
+      case Output::pressure_b:
+        return 0.5 * (in.supply_pressure_pa - P_L);
+      case Output::force:
+        return P_L * p.piston_area_m2 - friction(x[velocity], p, terms);
+      case Output::spool:
+        return spool(in, p, terms);
+      case Output::servo_flow:
+        return servo_flow(P_L, in, p, terms);
+      case Output::leakage_flow:
+        return leakage_flow(P_L, p, terms);
+      case Output::work_flow:
+        return x[velocity] * p.piston_area_m2;
+      case Output::position:
+      case Output::velocity:
+      case Output::command:
+        break;
+    }
+    return C(0.0);
+  }
+
+  /// State at rest: zero.
+  template <typename C>
+  static std::array<C, kStates> rest(const PlantInput<C>& /*in*/, const Coefficients<C>& /*p*/,
+                                     const PresentTerms& /*terms*/) {
+    return {C(0.0), C(0.0), C(0.0)};
+  }
+
+  /// Initial state: recorded position and load pressure as their sensors mean them; where no
+  /// initial load pressure is given, the one that holds load and spring in equilibrium.
+  template <typename C>
+  static std::array<C, kStates> initial(const PlantInput<C>& /*in*/, const Coefficients<C>& p,
+                                        const PresentTerms& terms) {
+    const C x = (p.initial_position_m - p.position_offset_m) / p.position_gain;
+    const C P_L =
+        terms.initial_load_pressure
+            ? C((p.initial_load_pressure_pa - p.load_pressure_offset_pa) / p.load_pressure_gain)
+            : C((p.external_force_n + p.stiffness_n_per_m * x) / p.piston_area_m2);
+    return {x, p.initial_velocity_m_per_s, P_L};
+  }
+};
+
+}  // namespace rigcal::model

@@ -1,0 +1,120 @@
+#include "model/plant/parameter.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+#include "model/plant/parameter_values.hpp"
+#include "model/plant/two_chamber_parameters.hpp"
+
+namespace rigcal::model {
+namespace {
+
+template <typename Fields>
+constexpr auto table_of(const Fields& fields) {
+  std::array<ParameterSpec, std::tuple_size_v<Fields>> table{};
+  for (std::size_t i = 0; i < fields.size(); ++i) table[i] = fields[i].spec;
+  return table;
+}
+constexpr auto kLoadPressureTable = table_of(kLoadPressureFields<double>);
+constexpr auto kTwoChamberTable = table_of(kTwoChamberFields<double>);
+
+int checked_index(PlantKind plant, std::string_view key) {
+  const int index = parameter_index(plant, key);
+  if (index < 0) throw std::invalid_argument(fmt::format("unknown parameter '{}'", key));
+  return index;
+}
+
+}  // namespace
+
+std::string_view to_string(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::plant:
+      return "plant";
+    case ParameterKind::term:
+      return "optional term";
+    case ParameterKind::controller:
+      return "controller";
+    case ParameterKind::sensor:
+      return "sensor";
+    case ParameterKind::initial:
+      return "initial state";
+  }
+  return "";
+}
+
+std::optional<PlantKind> plant_from_name(std::string_view name) {
+  if (name == "load_pressure") return PlantKind::load_pressure;
+  if (name == "two_chamber") return PlantKind::two_chamber;
+  return std::nullopt;
+}
+
+std::string_view to_string(PlantKind plant) {
+  switch (plant) {
+    case PlantKind::load_pressure:
+      return "load_pressure";
+    case PlantKind::two_chamber:
+      return "two_chamber";
+  }
+  return "";
+}
+
+std::vector<std::string> plant_names() { return {"load_pressure", "two_chamber"}; }
+
+std::span<const ParameterSpec> parameter_table(PlantKind plant) {
+  switch (plant) {
+    case PlantKind::load_pressure:
+      return kLoadPressureTable;
+    case PlantKind::two_chamber:
+      return kTwoChamberTable;
+  }
+  return {};
+}
+
+int parameter_index(PlantKind plant, std::string_view key) {
+  const auto table = parameter_table(plant);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i].key == key) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+ParameterValues ParameterValues::defaults(PlantKind plant) {
+  ParameterValues values;
+  values.plant = plant;
+  for (const ParameterSpec& spec : parameter_table(plant)) {
+    values.value.push_back(spec.default_value.value_or(0.0));
+    values.given.push_back(false);
+  }
+  return values;
+}
+
+double ParameterValues::operator[](std::string_view key) const {
+  return value[static_cast<std::size_t>(checked_index(plant, key))];
+}
+
+bool ParameterValues::is_given(std::string_view key) const {
+  return given[static_cast<std::size_t>(checked_index(plant, key))];
+}
+
+void ParameterValues::set(std::string_view key, double value_si) {
+  set(checked_index(plant, key), value_si);
+}
+
+void ParameterValues::set(int index, double value_si) {
+  value.at(static_cast<std::size_t>(index)) = value_si;
+  given.at(static_cast<std::size_t>(index)) = true;
+}
+
+std::vector<std::string> ParameterValues::missing() const {
+  std::vector<std::string> keys;
+  const auto table = parameter_table(plant);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    if (table[i].kind == ParameterKind::plant && !table[i].default_value && !given[i]) {
+      keys.emplace_back(table[i].key);
+    }
+  }
+  return keys;
+}
+
+}  // namespace rigcal::model

@@ -1,0 +1,224 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include "model/plant/parameter.hpp"
+
+namespace rigcal::model {
+
+/// One parameter of a plant: the member that holds its value and the row that describes it.
+template <typename Parameters, typename T>
+struct ParameterField {
+  T Parameters::*member;
+  ParameterSpec spec;
+};
+
+/// Parameters that every plant shares: piston, valve, friction, leakage, controller, sensors.
+/// SI; the unit ends the name.
+///
+/// @tparam T  double, or a dual number when derivatives are wanted
+template <typename T>
+struct CommonParameters {
+  T mass_kg{};
+  T damping_n_s_per_m{};
+  T stiffness_n_per_m{};
+  T supply_pressure_pa{};
+  T density_kg_per_m3{};
+  T bulk_modulus_pa{};
+  T discharge_coefficient{};
+  T area_gradient_m{};
+  T valve_gain_m_per_v{};
+  T leakage_coefficient{};
+  T leakage_area_m2{};
+  T leakage_smoothing_pa{};
+  T valve_time_constant_s{};
+  T valve_frequency_rad_per_s{};
+  T valve_damping_ratio{};
+  T valve_offset_v{};
+  T valve_dead_band_v{};
+  T valve_rate_limit_v_per_s{};
+  T valve_null_leakage_m3_per_s_pa{};
+  T coulomb_friction_n{};
+  T stribeck_friction_n{};
+  T stribeck_velocity_m_per_s{};
+  T friction_smoothing_m_per_s{};
+  T external_force_n{};
+  T laminar_leakage_m3_per_s_pa{};
+  T transport_delay_s{};
+  T position_gain{};
+  T load_pressure_gain{};
+  T pressure_a_gain{};
+  T pressure_b_gain{};
+  T force_gain{};
+  T position_lag_s{};
+  T load_pressure_lag_s{};
+  T pressure_a_lag_s{};
+  T pressure_b_lag_s{};
+  T force_lag_s{};
+  T position_maximum_m{};
+  T load_pressure_maximum_pa{};
+  T pressure_a_maximum_pa{};
+  T pressure_b_maximum_pa{};
+  T force_maximum_n{};
+  T position_offset_m{};
+  T load_pressure_offset_pa{};
+  T pressure_a_offset_pa{};
+  T pressure_b_offset_pa{};
+  T force_offset_n{};
+  T initial_position_m{};
+  T initial_velocity_m_per_s{};
+  T kp_v_per_m{};
+  T ki_v_per_m_s{};
+  T kd_v_s_per_m{};
+  T derivative_filter_rad_per_s{};
+  T output_limit_v{};
+  T sample_time_s{};
+};
+
+/// The paper's plant: a symmetric cylinder described by its load pressure.
+template <typename T>
+struct LoadPressureParameters : CommonParameters<T> {
+  T piston_area_m2{};
+  T total_volume_m3{};
+  T initial_load_pressure_pa{};
+};
+
+/// Rows one after the other.
+template <typename F, std::size_t... N>
+constexpr auto joined(const std::array<F, N>&... rows) {
+  std::array<F, (N + ...)> all{};
+  std::size_t next = 0;
+  const auto append = [&](const auto& part) {
+    for (const F& row : part) all[next++] = row;
+  };
+  (append(rows), ...);
+  return all;
+}
+
+// Rows that every plant shares. To add a parameter: a member above and a row here; the campaign
+// file, the results, the fit and the documents follow.
+
+/// Mass, damper and spring.
+template <template <typename> class Parameters, typename T>
+constexpr auto motion_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
+      F{&P::mass_kg, {"mass", "mass_kg", "m", "kg", "piston, rods and load", "eq. 12", K::plant, 1e-3, 1e6}},
+      F{&P::damping_n_s_per_m, {"damping", "damping_n_s_per_m", "b", "N s/m", "viscous friction", "eq. 12", K::plant, 0, 1e9}},
+      F{&P::stiffness_n_per_m, {"stiffness", "stiffness_n_per_m", "k", "N/m", "spring of the load", "eq. 12", K::plant, 0, 1e12}},
+      // clang-format on
+  };
+}
+
+/// Oil, valve, leak, friction, sensors, and the initial motion.
+template <template <typename> class Parameters, typename T>
+constexpr auto shared_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
+      F{&P::supply_pressure_pa, {"supply_pressure", "supply_pressure_pa", "P_s", "Pa", "supply above tank", "eq. 4", K::plant, 1e3, 1e9}},
+      F{&P::density_kg_per_m3, {"density", "density_kg_per_m3", "rho", "kg/m3", "density of the oil", "eqs. 4, 11", K::plant, 100, 5000}},
+      F{&P::bulk_modulus_pa, {"bulk_modulus", "bulk_modulus_pa", "beta", "Pa", "effective bulk modulus", "eq. 13", K::plant, 1e5, 1e11}},
+      F{&P::discharge_coefficient, {"discharge_coefficient", "discharge_coefficient", "C_d", "1", "discharge coefficient of the valve", "eq. 4", K::plant, 1e-3, 10}},
+      F{&P::area_gradient_m, {"area_gradient", "area_gradient_m", "w", "m", "orifice area per spool travel (m2/m)", "eq. 4", K::plant, 1e-7, 10}},
+      F{&P::valve_gain_m_per_v, {"valve_gain", "valve_gain_m_per_v", "k_sv", "m/V", "spool travel per volt", "eq. 6", K::plant, 1e-12, 1}},
+      F{&P::leakage_coefficient, {"leakage_coefficient", "leakage_coefficient", "C_leak", "1", "discharge coefficient of the internal leak; 0: no leak", "eq. 11", K::plant, 0, 1e3}},
+      F{&P::leakage_area_m2, {"leakage_area", "leakage_area_m2", "w_leak", "m2", "orifice area of the internal leak", "eq. 11", K::plant, 0, 1}},
+      F{&P::leakage_smoothing_pa, {"leakage_smoothing", "leakage_smoothing_pa", "eps", "Pa", "pressure below which the root of an orifice is straightened", "docs/model.md", K::plant, 1e-3, 1e6, 100.0, false}},
+      F{&P::valve_time_constant_s, {"valve_time_constant", "valve_time_constant_s", "tau_v", "s", "first-order lag of the valve", "docs/model.md", K::term, 1e-6, 10, 0.0}},
+      F{&P::valve_frequency_rad_per_s, {"valve_frequency", "valve_frequency_rad_per_s", "omega_v", "rad/s", "natural frequency of a second-order valve", "docs/model.md", K::term, 1, 1e6, 0.0}},
+      F{&P::valve_damping_ratio, {"valve_damping_ratio", "valve_damping_ratio", "zeta_v", "1", "damping ratio of a second-order valve", "docs/model.md", K::term, 0.01, 100, 0.0}},
+      F{&P::valve_offset_v, {"valve_offset", "valve_offset_v", "u_0", "V", "voltage added at the spool: null shift", "docs/model.md", K::term, -100, 100, 0.0}},
+      F{&P::valve_dead_band_v, {"valve_dead_band", "valve_dead_band_v", "u_db", "V", "half width of the spool overlap, in volts", "docs/model.md", K::term, 0, 100, 0.0}},
+      F{&P::valve_rate_limit_v_per_s, {"valve_rate_limit", "valve_rate_limit_v_per_s", "r_v", "V/s", "fastest change of the spool signal, both signs", "docs/model.md", K::term, 1e-3, 1e9, 0.0}},
+      F{&P::valve_null_leakage_m3_per_s_pa, {"valve_null_leakage", "valve_null_leakage_m3_per_s_pa", "G_0", "m3/(s Pa)", "laminar leak of each closed metering edge: servo flow lost per load pressure", "docs/model.md", K::term, 0, 1, 0.0}},
+      F{&P::coulomb_friction_n, {"coulomb_friction", "coulomb_friction_n", "F_c", "N", "dry friction of piston and rod", "docs/model.md", K::term, 0, 1e8, 0.0}},
+      F{&P::stribeck_friction_n, {"stribeck_friction", "stribeck_friction_n", "F_st", "N", "friction at breakaway above Coulomb's", "docs/model.md", K::term, 0, 1e8, 0.0}},
+      F{&P::stribeck_velocity_m_per_s, {"stribeck_velocity", "stribeck_velocity_m_per_s", "v_st", "m/s", "velocity at which the breakaway friction fades", "docs/model.md", K::term, 1e-6, 100, 0.01}},
+      F{&P::friction_smoothing_m_per_s, {"friction_smoothing", "friction_smoothing_m_per_s", "v_0", "m/s", "velocity below which dry friction is straightened", "docs/model.md", K::term, 1e-6, 10, 1e-3, false}},
+      F{&P::external_force_n, {"external_force", "external_force_n", "F_ext", "N", "constant load against positive travel", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
+      F{&P::laminar_leakage_m3_per_s_pa, {"laminar_leakage", "laminar_leakage_m3_per_s_pa", "G_leak", "m3/(s Pa)", "laminar internal leak", "docs/model.md", K::term, 0, 1, 0.0}},
+      F{&P::transport_delay_s, {"transport_delay", "transport_delay_s", "T_d", "s", "dead time of the reference or command", "docs/model.md", K::term, 0, 10, 0.0}},
+      F{&P::position_gain, {"position_gain", "position_gain", "s_x", "1", "recorded position per position", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::load_pressure_gain, {"load_pressure_gain", "load_pressure_gain", "s_PL", "1", "recorded load pressure per load pressure", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::pressure_a_gain, {"pressure_a_gain", "pressure_a_gain", "s_pA", "1", "recorded pressure A per pressure A", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::pressure_b_gain, {"pressure_b_gain", "pressure_b_gain", "s_pB", "1", "recorded pressure B per pressure B", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::force_gain, {"force_gain", "force_gain", "s_F", "1", "recorded force per force", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::position_lag_s, {"position_lag", "position_lag_s", "tau_x", "s", "first-order lag of the position sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::load_pressure_lag_s, {"load_pressure_lag", "load_pressure_lag_s", "tau_PL", "s", "first-order lag of the load pressure sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::pressure_a_lag_s, {"pressure_a_lag", "pressure_a_lag_s", "tau_pA", "s", "first-order lag of the pressure A sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::pressure_b_lag_s, {"pressure_b_lag", "pressure_b_lag_s", "tau_pB", "s", "first-order lag of the pressure B sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::force_lag_s, {"force_lag", "force_lag_s", "tau_F", "s", "first-order lag of the force sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::position_maximum_m, {"position_maximum", "position_maximum_m", "max_x", "m", "largest position that its sensor and converter can tell", "docs/model.md", K::sensor, -100, kInf, kInf, false}},
+      F{&P::load_pressure_maximum_pa, {"load_pressure_maximum", "load_pressure_maximum_pa", "max_PL", "Pa", "largest load pressure that its sensor and converter can tell", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
+      F{&P::pressure_a_maximum_pa, {"pressure_a_maximum", "pressure_a_maximum_pa", "max_pA", "Pa", "largest pressure A that its sensor and converter can tell", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
+      F{&P::pressure_b_maximum_pa, {"pressure_b_maximum", "pressure_b_maximum_pa", "max_pB", "Pa", "largest pressure B that its sensor and converter can tell", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
+      F{&P::force_maximum_n, {"force_maximum", "force_maximum_n", "max_F", "N", "largest force that its sensor and converter can tell", "docs/model.md", K::sensor, -1e8, kInf, kInf, false}},
+      F{&P::position_offset_m, {"position_offset", "position_offset_m", "x_0", "m", "recorded position minus position", "docs/model.md", K::sensor, -100, 100, 0.0}},
+      F{&P::load_pressure_offset_pa, {"load_pressure_offset", "load_pressure_offset_pa", "P_L0", "Pa", "recorded load pressure minus load pressure", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
+      F{&P::pressure_a_offset_pa, {"pressure_a_offset", "pressure_a_offset_pa", "p_A0", "Pa", "recorded pressure A minus pressure A", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
+      F{&P::pressure_b_offset_pa, {"pressure_b_offset", "pressure_b_offset_pa", "p_B0", "Pa", "recorded pressure B minus pressure B", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
+      F{&P::force_offset_n, {"force_offset", "force_offset_n", "F_0", "N", "recorded force minus force", "docs/model.md", K::sensor, -1e8, 1e8, 0.0}},
+      F{&P::initial_position_m, {"initial_position", "initial_position_m", "x(0)", "m", "recorded position at the first sample", "docs/model.md", K::initial, -100, 100, 0.0}},
+      F{&P::initial_velocity_m_per_s, {"initial_velocity", "initial_velocity_m_per_s", "v(0)", "m/s", "velocity at the first sample", "docs/model.md", K::initial, -100, 100, 0.0}},
+      // clang-format on
+  };
+}
+
+/// The controller.
+template <template <typename> class Parameters, typename T>
+constexpr auto controller_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
+      F{&P::kp_v_per_m, {"kp", "kp_v_per_m", "K_p", "V/m", "proportional gain", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::ki_v_per_m_s, {"ki", "ki_v_per_m_s", "K_i", "V/(m s)", "integral gain", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::kd_v_s_per_m, {"kd", "kd_v_s_per_m", "K_d", "V s/m", "derivative gain", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::derivative_filter_rad_per_s, {"derivative_filter", "derivative_filter_rad_per_s", "N", "rad/s", "corner of the derivative's filter", "docs/model.md", K::controller, 1e-3, 1e6, 0.0}},
+      F{&P::output_limit_v, {"output_limit", "output_limit_v", "u_max", "V", "limit of the controller's output, both signs", "docs/model.md", K::controller, 1e-6, kInf, kInf}},
+      F{&P::sample_time_s, {"sample_time", "sample_time_s", "T_s", "s", "period of a sampled controller; continuous if not given", "docs/model.md", K::controller, 1e-6, 100, 0.0, false}},
+      // clang-format on
+  };
+}
+
+/// The load-pressure plant, in the order of `rigcal params`.
+template <typename T>
+constexpr auto load_pressure_fields() {
+  using P = LoadPressureParameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  const auto cylinder = std::array{
+      // clang-format off
+      F{&P::piston_area_m2, {"piston_area", "piston_area_m2", "A", "m2", "annulus area of the piston", "eqs. 12, 13", K::plant, 1e-8, 10}},
+      F{&P::total_volume_m3, {"total_volume", "total_volume_m3", "V_t", "m3", "oil in both chambers and hoses", "eq. 13", K::plant, 1e-9, 10}},
+      // clang-format on
+  };
+  const auto initial = std::array{
+      // clang-format off
+      F{&P::initial_load_pressure_pa, {"initial_load_pressure", "initial_load_pressure_pa", "P_L(0)", "Pa", "load pressure at the first sample", "docs/model.md", K::initial, -1e9, 1e9, 0.0}},
+      // clang-format on
+  };
+  return joined(motion_rows<LoadPressureParameters, T>(), cylinder,
+                shared_rows<LoadPressureParameters, T>(), initial,
+                controller_rows<LoadPressureParameters, T>());
+}
+
+template <typename T>
+inline constexpr auto kLoadPressureFields = load_pressure_fields<T>();
+
+static_assert(kLoadPressureFields<double>.size() * sizeof(double) ==
+                  sizeof(LoadPressureParameters<double>),
+              "a parameter was added to the struct but not to the table");
+
+}  // namespace rigcal::model

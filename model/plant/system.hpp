@@ -1,0 +1,454 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "model/arithmetic/state.hpp"
+#include "model/plant/controller.hpp"
+#include "model/plant/layout.hpp"
+#include "model/plant/plant_input.hpp"
+#include "model/signal/input_track.hpp"
+#include "model/simulate.hpp"
+
+namespace rigcal::model {
+
+/// Plant, valve and controller as one system of N states with sensitivities to P parameters.
+template <typename Plant, int N, int P>
+class System {
+ public:
+  using C = Active<P>;
+  using X = State<N, P>;
+  template <typename T>
+  using Coefficients = typename Plant::template Coefficients<T>;
+
+  /// @param free  table indices of the P (or fewer) parameters of the sensitivity columns
+  System(const Layout& layout, const ParameterValues& values, std::span<const int> free,
+         InputTrack drive, std::optional<InputTrack> external_force,
+         std::optional<InputTrack> supply_pressure, std::optional<InputTrack> tank_pressure)
+      : layout_(layout),
+        drive_(std::move(drive)),
+        external_force_(std::move(external_force)),
+        supply_pressure_(std::move(supply_pressure)),
+        tank_pressure_(std::move(tank_pressure)) {
+    passive_ = coefficients<double>(values, free);
+    if constexpr (P > 0) {
+      active_ = coefficients<C>(values, free);
+      for (std::size_t b = 0; b < kBlocks; ++b) {
+        const std::size_t first = std::min(b * kBlock, free.size());
+        const std::size_t count = std::min<std::size_t>(kBlock, free.size() - first);
+        active_blocks_[b] = coefficients<Dual<kBlock>>(values, free.subspan(first, count));
+      }
+      const auto table = Plant::template fields<double>();
+      for (std::size_t j = 0; j < free.size(); ++j) {
+        const auto& spec = table[static_cast<std::size_t>(free[j])].spec;
+        if (spec.key == "transport_delay") delay_direction_ = static_cast<int>(j);
+      }
+    }
+  }
+
+  const Layout& layout() const { return layout_; }
+  const Coefficients<double>& parameters() const { return passive_; }
+  InputTrack& drive() { return drive_; }
+  std::optional<InputTrack>& external_force() { return external_force_; }
+  std::optional<InputTrack>& supply_pressure() { return supply_pressure_; }
+  std::optional<InputTrack>& tank_pressure() { return tank_pressure_; }
+  /// Sensitivity column of the transport delay among the P directions, or -1.
+  int delay_direction() const { return delay_direction_; }
+
+  /// Derivative of the states and, by the chain rule, of their sensitivities.
+  [[gnu::flatten]] X derivative(const X& x, double t) const {
+    return right_hand_side(ByParameters{}, x, t);
+  }
+
+  /// Derivative of the states alone.
+  [[gnu::flatten]] Values<N> derivative_of_values(const Values<N>& x, double t) const {
+    return right_hand_side(Plain{}, x, t);
+  }
+
+  /// f and its partial derivatives by states, time and parameters.
+  Linearisation<N, P> linearise(const Values<N>& x, double t) const {
+    if constexpr (N <= Plant::kStates + 1) {
+      return linearise_inlined(x, t);
+    } else {
+      return linearise_by_calls(x, t);
+    }
+  }
+
+  /// Whether the drive acts on controller and valve alone: the plant sees the states of the valve.
+  bool drive_stops_at_valve() const { return N > Plant::kStates && layout_.valve_order > 0; }
+
+  /// Brings a linearisation at (x, t) up to date after a jump of the drive, which stops at the
+  /// valve: the rows of controller and valve. A recorded command jumps at every sample.
+  void follow_drive(const Values<N>& x, double t, Linearisation<N, P>& lin) const {
+    if constexpr (N > Plant::kStates) {
+      Numbers<ByStates> rates{};
+      loop_rates(ByStates{}, lifted(x), input_value(ByStates{}, drive_, t, true), rates);
+      for (std::size_t i = Plant::kStates; i < N; ++i) {
+        if (is_of_loop(i)) take_row(rates[i], i, lin);
+      }
+      if constexpr (P > 0) {
+        X by_parameters{};
+        loop_rates(ByParameters{}, held<ByParameters>(x),
+                   input_value(ByParameters{}, drive_, t, true), by_parameters);
+        for (std::size_t i = Plant::kStates; i < N; ++i) {
+          if (is_of_loop(i)) lin.f_p[i] = by_parameters[i].derivative;
+        }
+      }
+    }
+  }
+
+  /// The sampled controller's tick at t.
+  void tick(X& x, double t) const {
+    const C error = input_value(ByParameters{}, drive_, t, true) - x[Plant::position];
+    controller_tick(error, x, parameters_of(ByParameters{}), layout_);
+  }
+
+  /// Value of each wanted output, with sensitivities; sensors come after (sensors.hpp).
+  void observe(const X& x, double t, std::span<const Output> outputs, std::span<C> result) const {
+    C command{};
+    PlantInput<C> in{};
+    const bool of_states_alone = std::all_of(outputs.begin(), outputs.end(),
+                                             [](Output output) { return Plant::state_of(output); });
+    if (!of_states_alone) {
+      command = valve_command(ByParameters{}, x, input_value(ByParameters{}, drive_, t, true));
+      in = plant_input(ByParameters{}, x, command, t);
+    }
+    for (std::size_t k = 0; k < outputs.size(); ++k) {
+      switch (outputs[k]) {
+        case Output::position:
+          result[k] = x[Plant::position];
+          break;
+        case Output::velocity:
+          result[k] = x[Plant::velocity];
+          break;
+        case Output::command:
+          result[k] = command;
+          break;
+        default:
+          result[k] =
+              Plant::output(outputs[k], x, in, parameters_of(ByParameters{}), layout_.terms);
+      }
+    }
+  }
+
+  /// State at the first sample.
+  X initial(InitialState mode, double t) const {
+    const Coefficients<C>& p = parameters_of(ByParameters{});
+    X states;
+    states.fill(C(0.0));
+    if (layout_.supply >= 0)
+      states[static_cast<std::size_t>(layout_.supply)] = source_pressure(ByParameters{}, t);
+    const PlantInput<C> in = plant_input(ByParameters{}, states, C(0.0), t);
+    const bool given = mode == InitialState::given;
+    const auto plant =
+        given ? Plant::initial(in, p, layout_.terms) : Plant::rest(in, p, layout_.terms);
+    for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
+    if constexpr (requires { p.hose_yield_pa; }) {
+      if (layout_.hoses >= 0) {
+        const auto first = static_cast<std::size_t>(layout_.hoses);
+        states[first] = Plant::hose_memory(plant[Plant::pressure_a], in);
+        states[first + 1] = Plant::hose_memory(plant[Plant::pressure_b], in);
+      }
+    }
+    if (given) {
+      // The loop was closed before the record began: no kick of the derivative, spool at rest.
+      const C drive = input_value(ByParameters{}, drive_, t, true);
+      if (layout_.filter >= 0) {
+        states[static_cast<std::size_t>(layout_.filter)] = drive - plant[Plant::position];
+      }
+      if (layout_.sampled()) {
+        states[static_cast<std::size_t>(layout_.held)] =
+            controller_output(C(drive - plant[Plant::position]), states, p, layout_).limited;
+      }
+      if (layout_.valve_order > 0) {
+        states[static_cast<std::size_t>(layout_.valve)] =
+            valve_command(ByParameters{}, states, drive);
+      }
+    }
+    return states;
+  }
+
+  /// States that the outputs are made of.
+  static std::vector<std::size_t> observed_states(std::span<const Output> outputs) {
+    std::vector<std::size_t> states;
+    for (std::size_t i = 0; i < N; ++i) {
+      const bool seen = std::any_of(outputs.begin(), outputs.end(), [i](Output output) {
+        const auto state = Plant::state_of(output);
+        return !state || static_cast<std::size_t>(*state) == i;
+      });
+      if (seen) states.push_back(i);
+    }
+    return states;
+  }
+
+ private:
+  // What a right-hand side is computed with: numbers alone, or numbers and their derivatives by the
+  // parameters, by a few of these, or by the states and time.
+  struct Plain {
+    using Number = double;
+  };
+  struct ByParameters {
+    using Number = C;
+  };
+  struct ByStates {
+    using Number = Dual<N + 1>;  ///< directions: the states, then time
+  };
+  static constexpr int kTime = N;
+  static constexpr int kBlock = 4;
+  static constexpr std::size_t kBlocks = P / kBlock;
+  static_assert(P % kBlock == 0);
+  /// The derivatives by more parameters at a time do not stay in registers.
+  struct ByBlock {
+    using Number = Dual<kBlock>;
+    std::size_t block;  ///< of the parameters
+  };
+  template <typename K>
+  using Number = typename K::Number;
+  template <typename K>
+  using Numbers = std::array<Number<K>, static_cast<std::size_t>(N)>;
+
+  template <typename T>
+  static Coefficients<T> coefficients(const ParameterValues& values, std::span<const int> free) {
+    const auto& fields = Plant::template fields<T>();
+    typename Plant::template Parameters<T> parameters;
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      parameters.*(fields[i].member) = T(values.value[i]);
+    }
+    if constexpr (!std::is_same_v<T, double>) {
+      for (std::size_t j = 0; j < free.size(); ++j) {
+        const auto& field = fields[static_cast<std::size_t>(free[j])];
+        (parameters.*(field.member)).derivative.set(j, 1.0);
+      }
+    }
+    return Coefficients<T>(parameters);
+  }
+
+  /// The parameters, with their derivatives where Number<K> is to have derivatives by them.
+  template <typename K>
+  const auto& parameters_of([[maybe_unused]] K by) const {
+    if constexpr (P > 0 && std::is_same_v<K, ByParameters>) {
+      return active_;
+    } else if constexpr (P > 0 && std::is_same_v<K, ByBlock>) {
+      return active_blocks_[by.block];
+    } else {
+      return passive_;
+    }
+  }
+
+  /// Direction of the transport delay among those of a number, or -1.
+  int direction_of_delay(ByParameters /*by*/) const { return delay_direction_; }
+  int direction_of_delay(ByBlock by) const {
+    const int direction = delay_direction_ - kBlock * static_cast<int>(by.block);
+    return direction < kBlock ? std::max(direction, -1) : -1;
+  }
+
+  /// An input at one instant: with its derivative by time, or by the transport delay, -d/dt, where
+  /// it is delayed and that is a parameter of the sensitivities.
+  template <typename K>
+  Number<K> input_value(K by, const InputTrack& track, double t, bool delayed) const {
+    if constexpr (std::is_same_v<Number<K>, double>) {
+      return track.value(t);
+    } else if constexpr (!std::is_same_v<K, ByStates>) {
+      const int direction = direction_of_delay(by);
+      if (!delayed || direction < 0) return Number<K>(track.value(t));
+      const SignalSample s = track.sample(t);
+      Number<K> value(s.value);
+      value.derivative.set(static_cast<std::size_t>(direction), -s.slope);
+      return value;
+    } else {
+      const SignalSample s = track.sample(t);
+      Number<K> value(s.value);
+      value.derivative.set(kTime, s.slope);
+      return value;
+    }
+  }
+
+  /// Whether loop_rates() gives the derivative of a state.
+  bool is_of_loop(std::size_t i) const {
+    const int state = static_cast<int>(i);
+    return state == layout_.integral || state == layout_.filter ||
+           (state >= layout_.valve && state < layout_.valve + layout_.valve_order);
+  }
+
+  /// The states as independent variables, or as numbers without derivatives by the parameters.
+  static Numbers<ByStates> lifted(const Values<N>& x) {
+    Numbers<ByStates> result;
+    for (std::size_t i = 0; i < N; ++i) {
+      result[i].value = x[i];
+      result[i].derivative = Pack<N + 1>::unit(i);
+    }
+    return result;
+  }
+  template <typename K>
+  static Numbers<K> held(const Values<N>& x) {
+    Numbers<K> result;
+    for (std::size_t i = 0; i < N; ++i) result[i] = x[i];
+    return result;
+  }
+  static void take_row(const Number<ByStates>& f, std::size_t i, Linearisation<N, P>& lin) {
+    lin.f[i] = f.value;
+    lin.f_t[i] = f.derivative[kTime];
+    for (std::size_t k = 0; k < N; ++k) lin.jacobian[i][k] = f.derivative[k];
+  }
+
+  /// By states and time, then by the parameters.
+  Linearisation<N, P> linearise_by_calls(const Values<N>& x, double t) const {
+    const auto f = right_hand_side(ByStates{}, lifted(x), t);
+    Linearisation<N, P> lin;
+    for (std::size_t i = 0; i < N; ++i) take_row(f[i], i, lin);
+    for (std::size_t block = 0; block < kBlocks; ++block) {
+      const auto by_parameters = right_hand_side(ByBlock{block}, held<ByBlock>(x), t);
+      for (std::size_t i = 0; i < N; ++i) put(by_parameters[i].derivative, block, lin.f_p[i]);
+    }
+    return lin;
+  }
+
+  /// An eighth of a simulation with sensitivities is saved where all of it is inlined. With more
+  /// states that would take long to compile.
+  [[gnu::flatten]] Linearisation<N, P> linearise_inlined(const Values<N>& x, double t) const {
+    return linearise_by_calls(x, t);
+  }
+
+  /// What the valve is told: the held output, the controller's, or the recorded command.
+  template <typename K>
+  Number<K> valve_command(K by, const Numbers<K>& x, const Number<K>& drive) const {
+    if (!layout_.pid) return drive;
+    const Number<K> error = drive - x[Plant::position];
+    if constexpr (N == Plant::kStates) {
+      constexpr Layout kNoStates;
+      return controller_output(error, x, parameters_of(by), kNoStates).limited;
+    } else {
+      if (layout_.sampled()) return x[static_cast<std::size_t>(layout_.held)];
+      return controller_output(error, x, parameters_of(by), layout_).limited;
+    }
+  }
+
+  template <typename K>
+  PlantInput<Number<K>> plant_input(K by, const Numbers<K>& x, const Number<K>& command,
+                                    double t) const {
+    const auto& p = parameters_of(by);
+    PlantInput<Number<K>> in;
+    in.spool_command_v = command;
+    if constexpr (N > Plant::kStates) {
+      if (layout_.valve_order > 0) in.spool_command_v = x[static_cast<std::size_t>(layout_.valve)];
+    }
+    if (layout_.terms.external_force) {
+      in.external_force_n = Number<K>(p.external_force_n);
+      if (external_force_)
+        in.external_force_n = in.external_force_n + input_value(by, *external_force_, t, false);
+    }
+    in.supply_pressure_pa =
+        layout_.supply >= 0 ? x[static_cast<std::size_t>(layout_.supply)] : source_pressure(by, t);
+    if constexpr (requires { p.tank_pressure_pa; }) {
+      in.tank_pressure_pa = tank_pressure_ ? input_value(by, *tank_pressure_, t, false)
+                                           : Number<K>(p.tank_pressure_pa);
+    }
+    return in;
+  }
+
+  /// Supply pressure before its resistance.
+  template <typename K>
+  Number<K> source_pressure(K by, double t) const {
+    return supply_pressure_ ? input_value(by, *supply_pressure_, t, false)
+                            : Number<K>(parameters_of(by).supply_pressure_pa);
+  }
+
+  /// Rate of the spool signal within its limit [V/s].
+  template <typename K>
+  Number<K> spool_rate(K by, const Number<K>& rate) const {
+    return layout_.terms.valve_rate_limit
+               ? clamp_symmetric(rate, parameters_of(by).valve_rate_limit_v_per_s)
+               : rate;
+  }
+
+  template <typename K>
+  Numbers<K> right_hand_side(K by, const Numbers<K>& x, double t) const {
+    const Number<K> drive = input_value(by, drive_, t, true);
+    if constexpr (N == Plant::kStates) {
+      const Number<K> command = valve_command(by, x, drive);
+      return Plant::derivative(x, plant_input(by, x, command, t), parameters_of(by), layout_.terms);
+    } else {
+      return with_states_of_the_loop(by, x, drive, t);
+    }
+  }
+
+  /// The derivatives of controller and valve; the others are left as they are.
+  ///
+  /// @return  what the valve is told
+  template <typename K>
+  Number<K> loop_rates(K by, const Numbers<K>& x, const Number<K>& drive, Numbers<K>& dx) const {
+    const auto& p = parameters_of(by);
+    Number<K> command = drive;
+    if (layout_.pid) {
+      if (layout_.sampled()) {
+        command = x[static_cast<std::size_t>(layout_.held)];
+      } else {
+        const Number<K> error = drive - x[Plant::position];
+        const ControllerOutput<Number<K>> u = controller_output(error, x, p, layout_);
+        command = u.limited;
+        if (layout_.integral >= 0) {
+          dx[static_cast<std::size_t>(layout_.integral)] = integral_rate(error, u, p);
+        }
+        if (layout_.filter >= 0) {
+          const auto filter = static_cast<std::size_t>(layout_.filter);
+          dx[filter] = (error - x[filter]) * p.derivative_filter_rad_per_s;
+        }
+      }
+    }
+    if (layout_.valve_order == 1) {
+      const auto spool = static_cast<std::size_t>(layout_.valve);
+      dx[spool] = spool_rate(by, Number<K>((command - x[spool]) / p.valve_time_constant_s));
+    } else if (layout_.valve_order == 2) {
+      const auto spool = static_cast<std::size_t>(layout_.valve);
+      const auto& omega = p.valve_frequency_rad_per_s;
+      dx[spool] = spool_rate(by, x[spool + 1]);
+      dx[spool + 1] = (command - x[spool]) * (omega * omega) -
+                      x[spool + 1] * (2.0 * p.valve_damping_ratio * omega);
+    }
+    return command;
+  }
+
+  /// The derivative of valve, controller and plant together.
+  template <typename K>
+  Numbers<K> with_states_of_the_loop(K by, const Numbers<K>& x, const Number<K>& drive,
+                                     double t) const {
+    const auto& p = parameters_of(by);
+    Numbers<K> dx{};
+    const Number<K> command = loop_rates(by, x, drive, dx);
+    const PlantInput<Number<K>> in = plant_input(by, x, command, t);
+    const auto plant_dx = Plant::derivative(x, in, p, layout_.terms);
+    for (std::size_t i = 0; i < plant_dx.size(); ++i) dx[i] = plant_dx[i];
+    if constexpr (requires { p.hose_yield_pa; }) {
+      if (layout_.hoses >= 0) {
+        const auto rates = Plant::hose_rates(x, plant_dx, p, layout_.terms);
+        dx[static_cast<std::size_t>(layout_.hoses)] = rates[0];
+        dx[static_cast<std::size_t>(layout_.hoses) + 1] = rates[1];
+      }
+    }
+    if constexpr (requires { p.supply_capacity_m3_per_pa; }) {
+      if (layout_.supply >= 0) {
+        const Number<K> inflow =
+            (source_pressure(by, t) - in.supply_pressure_pa) / p.supply_resistance_pa_s_per_m3;
+        dx[static_cast<std::size_t>(layout_.supply)] =
+            (inflow - Plant::supply_flow(x, in, p, layout_.terms)) / p.supply_capacity_m3_per_pa;
+      }
+    }
+    return dx;
+  }
+
+  Layout layout_;
+  Coefficients<double> passive_{};
+  Coefficients<C> active_{};  ///< with derivatives by the free parameters
+  std::array<Coefficients<Dual<kBlock>>, kBlocks> active_blocks_{};  ///< the same, by blocks
+  InputTrack drive_;
+  std::optional<InputTrack> external_force_;
+  std::optional<InputTrack> supply_pressure_;
+  std::optional<InputTrack> tank_pressure_;
+  int delay_direction_ = -1;
+};
+
+}  // namespace rigcal::model

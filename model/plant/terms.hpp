@@ -1,0 +1,155 @@
+#pragma once
+
+#include <cmath>
+
+#include "model/arithmetic/smooth.hpp"
+
+namespace rigcal::model {
+
+/// Flow of a servo valve per spool travel and root of pressure: C_d w / sqrt(rho).
+template <typename C>
+C valve_conductance(const C& discharge_coefficient, const C& area_gradient_m,
+                    const C& density_kg_per_m3) {
+  using std::sqrt;
+  return discharge_coefficient * area_gradient_m / sqrt(density_kg_per_m3);
+}
+
+/// Flow of a matched symmetric servo valve to the load, eqs. 4, 6, 7 with the sign put right:
+/// Q = C_d w x_v sqrt((P_s - sgn(x_v) P_L) / rho).
+///
+/// @param spool_m      x_v [m]
+/// @param conductance  valve_conductance()
+/// @return             [m3/s], positive into chamber A
+/// @deviation          the paper prints P_s - P_L for both signs; the root is signed and
+///                     straightened within `smoothing_pa`, so that the flow reverses when P_L
+///                     passes P_s
+template <typename X, typename C, typename S>
+X servo_flow(const X& spool_m, const X& load_pressure_pa, const S& supply_pressure_pa,
+             const C& conductance, const C& smoothing_pa) {
+  const X head = value_of(spool_m) < 0.0 ? X(supply_pressure_pa + load_pressure_pa)
+                                         : X(supply_pressure_pa - load_pressure_pa);
+  return spool_m * conductance * signed_sqrt(head, smoothing_pa);
+}
+
+/// Flow of the leak per root of pressure: C_leak w_leak sqrt(2 / rho).
+template <typename C>
+C orifice_conductance(const C& coefficient, const C& area_m2, const C& density_kg_per_m3) {
+  using std::sqrt;
+  return coefficient * area_m2 * sqrt(2.0 / density_kg_per_m3);
+}
+
+/// Turbulent internal leakage, eq. 11: C_leak w_leak sgn(P_L) sqrt(2 |P_L| / rho).
+///
+/// @param conductance  orifice_conductance()
+template <typename X, typename C>
+X orifice_leakage(const X& load_pressure_pa, const C& conductance, const C& smoothing_pa) {
+  return signed_sqrt(load_pressure_pa, smoothing_pa) * conductance;
+}
+
+/// Dry friction: (F_c + F_st exp(-(v / v_st)^2)) sgn(v), the sign straightened within v_0.
+template <typename X, typename C>
+X dry_friction(const X& velocity_m_per_s, const C& coulomb_n, const C& stribeck_n,
+               const C& stribeck_velocity_m_per_s, const C& smoothing_m_per_s) {
+  using std::exp;
+  const X ratio = velocity_m_per_s / stribeck_velocity_m_per_s;
+  return (coulomb_n + stribeck_n * exp(-(ratio * ratio))) *
+         smooth_sign(velocity_m_per_s, smoothing_m_per_s);
+}
+
+/// Opening of a metering edge that leaks while it is covered: c + y where it is open, c^2 / (c - y)
+/// beyond, so that the leak fades as the land covers more of it. Continuous with its slope.
+///
+/// @param y  spool travel since the land's edge met the port's, positive when open
+/// @param c  opening at y = 0, > 0, in the unit of y
+/// @source   B. Eryilmaz and B. H. Wilson, Unified modeling and analysis of a proportional valve,
+///           J. Franklin Institute 343 (2006) 48-68, with k = 1
+template <typename X, typename C>
+X leaking_opening(const X& y, const C& c) {
+  if (value_of(y) > 0.0) return y + c;
+  return c * c / (c - y);
+}
+
+/// Opening of the one orifice that passes what an edge and a fixed orifice in series with it pass:
+/// 1 / o^2 = 1 / y^2 + 1 / l^2.
+///
+/// @param y  opening of the edge, >= 0
+/// @param l  opening of an edge that throttles as bores and lines do, > 0, in the unit of y
+template <typename X, typename C>
+X series_opening(const X& y, const C& l) {
+  using std::sqrt;
+  const X share = y / l;
+  return y / sqrt(share * share + 1.0);
+}
+
+/// Force of an end stop on the piston [N], away from the stop: k d (1 + lambda d'), never a pull.
+///
+/// @param depth_m     d, how far the piston is beyond the stop; no force where negative
+/// @param approach_m_per_s  d'
+/// @source   K. H. Hunt and F. R. E. Crossley, Coefficient of restitution interpreted as damping in
+///           vibroimpact, J. Applied Mechanics 42 (1975) 440-445, with exponent 1
+template <typename X, typename C>
+X stop_force(const X& depth_m, const X& approach_m_per_s, const C& stiffness_n_per_m,
+             const C& damping_s_per_m) {
+  return positive_part(depth_m) * stiffness_n_per_m *
+         positive_part(X(approach_m_per_s * damping_s_per_m + 1.0));
+}
+
+constexpr double kAtmosphere_pa = 101325.0;
+
+/// Absolute pressure [Pa] of one that counts from the atmosphere; at 1 kPa its fall ends.
+template <typename X>
+X absolute_pressure(const X& pressure_pa) {
+  constexpr double kLeast_pa = 1e3;
+  return at_least(X(pressure_pa + kAtmosphere_pa), kLeast_pa);
+}
+
+/// Change of pressure after a turn over which a hose begins to yield [Pa]. The threads of a braid
+/// hold each other by dry friction, which grows with the pressure that presses them together.
+///
+/// @param constant_pa  what does not grow
+/// @param ratio        of what grows to the absolute pressure
+/// @source   B. Tondu and P. Lopez, Modeling and control of McKibben artificial muscle robot
+///           actuators, IEEE Control Systems Magazine 20 (2000) 2, 15-38: the thread's friction
+template <typename X, typename C>
+X hose_yield(const X& pressure_pa, const C& constant_pa, const C& ratio) {
+  return absolute_pressure(pressure_pa) * ratio + constant_pa;
+}
+
+/// Share of a braided hose that yields to a change of pressure: none where the pressure turns, all
+/// of it once it has gone on in one direction.
+///
+/// @param memory  z, from -1 (has yielded to falling pressure) to 1 (to rising): it follows as
+///                z' = (1 - share) p' / hose_yield()
+/// @param rises   the direction in which the pressure goes now
+/// @source   an operator of the kind of Bouc and Wen: Y.-K. Wen, Method for random vibration of
+///           hysteretic systems, J. Engineering Mechanics Division 102 (1976) 249-263; the
+///           exponent 2 from the records of docs/festo.md
+template <typename X>
+X yielding_share(const X& memory, bool rises) {
+  const X along = rises ? X(memory) : X(-memory);
+  const X half = positive_part(X(0.5 * along + 0.5));
+  return value_of(half) < 1.0 ? X(half * half) : X(half * 0.0 + 1.0);
+}
+
+/// Bulk modulus of oil with undissolved air [Pa]: the air is compressed polytropically, the oil at
+/// its own modulus.
+///
+///   beta = (1 - a + a r) / ((1 - a) / beta_l + a r / (n p)),  r = (p_0 / p)^(1/n)
+///
+/// @param pressure_pa  above atmosphere; at 1 kPa absolute the fall ends
+/// @param air_fraction a, volume share at atmospheric pressure p_0
+/// @source   H. Gholizadeh, R. Burton and G. Schoenau, Fluid bulk modulus: a literature survey,
+/// Int.
+///           J. Fluid Power 12 (2011) 5-15: the compression only model
+template <typename X, typename C>
+X aerated_bulk_modulus(const X& pressure_pa, const C& oil_pa, const C& air_fraction,
+                       const C& exponent) {
+  using std::exp;
+  using std::log;
+  const X p = absolute_pressure(pressure_pa);
+  const X air = exp(log(kAtmosphere_pa / p) / exponent) * air_fraction;
+  const C oil = 1.0 - air_fraction;
+  return (air + oil) / (air / (p * exponent) + oil / oil_pa);
+}
+
+}  // namespace rigcal::model

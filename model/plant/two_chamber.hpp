@@ -1,0 +1,301 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include "model/plant/plant_input.hpp"
+#include "model/plant/terms.hpp"
+#include "model/plant/two_chamber_parameters.hpp"
+
+namespace rigcal::model {
+
+/// Piston and both chamber pressures of a cylinder behind a valve of four metering edges.
+///
+///   m v'  = A_A p_A - A_B p_B - b v - k x - F_dry(v) + F_stops - m g - F_ext
+///   p_A'  = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) - A_A v),  V_A = V_A0 + A_A (x - x_R)
+///   p_B'  = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + A_B v),  V_B = V_B0 + A_B (x_R + H -
+///   x)
+///
+/// Q_A flows from the valve into chamber A, Q_B from chamber B into the valve.
+struct TwoChamberPlant {
+  static constexpr int kStates = 4;
+  enum State { position, velocity, pressure_a, pressure_b };
+  template <typename T>
+  using Parameters = TwoChamberParameters<T>;
+  /// Parameters, and what follows from them alone.
+  template <typename C>
+  struct Coefficients : Parameters<C> {
+    C edge_conductance{};  ///< flow of an edge per volt of opening and root of pressure
+    C leak_conductance{};  ///< orifice leakage per root of pressure
+    C inverse_mass{};      ///< [1/kg]
+
+    Coefficients() = default;
+    explicit Coefficients(const Parameters<C>& p)
+        : Parameters<C>(p),
+          edge_conductance(
+              orifice_conductance(p.discharge_coefficient, p.area_gradient_m, p.density_kg_per_m3) *
+              p.valve_gain_m_per_v),
+          leak_conductance(
+              orifice_conductance(p.leakage_coefficient, p.leakage_area_m2, p.density_kg_per_m3)),
+          inverse_mass(1.0 / p.mass_kg) {}
+  };
+  template <typename T>
+  static constexpr const auto& fields() {
+    return kTwoChamberFields<T>;
+  }
+  /// Size below which a state counts as zero in the error control [m, m/s, Pa, Pa].
+  static constexpr std::array<double, kStates> kFloor{1e-6, 1e-5, 100.0, 100.0};
+
+  /// The state that an output reads, but for its sensor; none: it takes more.
+  static constexpr std::optional<int> state_of(Output output) {
+    switch (output) {
+      case Output::position:
+        return position;
+      case Output::velocity:
+        return velocity;
+      case Output::pressure_a:
+        return pressure_a;
+      case Output::pressure_b:
+        return pressure_b;
+      default:
+        return std::nullopt;
+    }
+  }
+
+  /// Spool travel [m], eq. 6, after null shift; the overlap is that of the edges.
+  template <typename X, typename C>
+  static X spool(const PlantInput<X>& in, const Coefficients<C>& p) {
+    return p.valve_gain_m_per_v * (in.spool_command_v + p.valve_offset_v);
+  }
+
+  /// Flow of one edge [m3/s] at a spool signal that opens it when positive [V]: its orifice, and
+  /// the laminar leak of its clearance.
+  template <typename X, typename C>
+  static X edge(const X& signal_v, const C& gain, const C& overlap_v, const X& up_pa,
+                const X& down_pa, const Coefficients<C>& p, const PresentTerms& terms) {
+    const X travel_v = signal_v - p.valve_dead_band_v - overlap_v;
+    if (!terms.null_opening && !(value_of(travel_v) > 0.0))  // covered, as half of them always are
+      return terms.null_leak ? (up_pa - down_pa) * p.valve_null_leakage_m3_per_s_pa : X(0.0);
+    X opening_v = terms.null_opening ? leaking_opening(travel_v, p.valve_null_opening_v) : travel_v;
+    if (terms.line_loss) opening_v = series_opening(opening_v, p.valve_line_opening_v);
+    const X head_pa = up_pa - down_pa;
+    const X orifice =
+        opening_v * (gain * p.edge_conductance) * signed_sqrt(head_pa, p.leakage_smoothing_pa);
+    if (!terms.null_leak) return orifice;
+    return orifice + head_pa * p.valve_null_leakage_m3_per_s_pa;
+  }
+
+  template <typename X>
+  struct ValveFlows {
+    X supply_to_a{}, a_to_tank{}, supply_to_b{}, b_to_tank{};
+  };
+
+  template <typename X, std::size_t M, typename C>
+  static ValveFlows<X> valve_flows(const std::array<X, M>& x, const PlantInput<X>& in,
+                                   const Coefficients<C>& p, const PresentTerms& terms) {
+    const X out = in.spool_command_v + p.valve_offset_v;
+    const X back = -out;
+    const X &p_A = x[pressure_a], &p_B = x[pressure_b];
+    const X &P_s = in.supply_pressure_pa, &P_t = in.tank_pressure_pa;
+    return {edge(out, p.gain_supply_to_a, p.overlap_supply_to_a_v, P_s, p_A, p, terms),
+            edge(back, p.gain_a_to_tank, p.overlap_a_to_tank_v, p_A, P_t, p, terms),
+            edge(back, p.gain_supply_to_b, p.overlap_supply_to_b_v, P_s, p_B, p, terms),
+            edge(out, p.gain_b_to_tank, p.overlap_b_to_tank_v, p_B, P_t, p, terms)};
+  }
+
+  /// What the valve takes from the supply [m3/s].
+  template <typename X, std::size_t M, typename C>
+  static X supply_flow(const std::array<X, M>& x, const PlantInput<X>& in, const Coefficients<C>& p,
+                       const PresentTerms& terms) {
+    const ValveFlows<X> q = valve_flows(x, in, p, terms);
+    return q.supply_to_a + q.supply_to_b;
+  }
+
+  /// Internal leakage across the piston, A to B [m3/s]: orifice (eq. 11) and laminar path.
+  template <typename X, std::size_t M, typename C>
+  static X leakage_flow(const std::array<X, M>& x, const Coefficients<C>& p,
+                        const PresentTerms& terms) {
+    const X P_L = x[pressure_a] - x[pressure_b];
+    const X laminar = P_L * p.laminar_leakage_m3_per_s_pa;
+    if (!terms.orifice_leak) return laminar;
+    return laminar + orifice_leakage(P_L, p.leak_conductance, p.leakage_smoothing_pa);
+  }
+
+  template <typename X, typename C>
+  static X bulk_modulus(const X& pressure_pa, const Coefficients<C>& p, const PresentTerms& terms) {
+    if (!terms.air) return X(p.bulk_modulus_pa);
+    return aerated_bulk_modulus(pressure_pa, p.bulk_modulus_pa, p.air_fraction, p.air_exponent);
+  }
+
+  /// Force of both stops on the piston, positive outwards [N].
+  template <typename X, typename C>
+  static X stops_force(const X& x, const X& v, const Coefficients<C>& p,
+                       const PresentTerms& terms) {
+    const C retracted = retracted_stop(p, terms);
+    return stop_force(X(retracted - x), X(-v), p.stop_stiffness_n_per_m, p.stop_damping_s_per_m) -
+           stop_force(X(x - retracted - p.stroke_m), v, p.stop_stiffness_n_per_m,
+                      p.stop_damping_s_per_m);
+  }
+
+  template <typename C>
+  static C retracted_stop(const Coefficients<C>& p, const PresentTerms& terms) {
+    return terms.retracted_position ? p.retracted_position_m : C(-0.5 * p.stroke_m);
+  }
+
+  /// Oil in the chambers [m3]. A piston pressed into its stop does not squeeze the oil below a
+  /// thousandth of the swept volume.
+  template <typename X, typename C>
+  static std::array<X, 2> volumes(const X& x, const Coefficients<C>& p, const PresentTerms& terms) {
+    const X extended = x - retracted_stop(p, terms);
+    return {at_least(X(extended * p.area_a_m2 + p.dead_volume_a_m3),
+                     1e-3 * value_of(p.area_a_m2) * value_of(p.stroke_m)),
+            at_least(X((p.stroke_m - extended) * p.area_b_m2 + p.dead_volume_b_m3),
+                     1e-3 * value_of(p.area_b_m2) * value_of(p.stroke_m))};
+  }
+
+  /// Time derivative of the state [m/s, m/s2, Pa/s, Pa/s].
+  template <typename X, std::size_t M, typename C>
+  static std::array<X, kStates> derivative(const std::array<X, M>& x, const PlantInput<X>& in,
+                                           const Coefficients<C>& p, const PresentTerms& terms) {
+    const X& v = x[velocity];
+    X force = x[pressure_a] * p.area_a_m2 - x[pressure_b] * p.area_b_m2 - v * p.damping_n_s_per_m -
+              x[position] * p.stiffness_n_per_m + stops_force(x[position], v, p, terms) -
+              p.mass_kg * p.gravity_m_per_s2;
+    if (terms.friction) force = force - friction(v, p, terms);
+    if (terms.external_force) force = force - in.external_force_n;
+    const ValveFlows<X> q = valve_flows(x, in, p, terms);
+    const X leak = leakage_flow(x, p, terms);
+    const auto volume = volumes(x[position], p, terms);
+    X flow_a = q.supply_to_a - q.a_to_tank - leak - v * p.area_a_m2;
+    X flow_b = q.supply_to_b - q.b_to_tank + leak + v * p.area_b_m2;
+    if (terms.external_leak) {
+      flow_a = flow_a - (x[pressure_a] - in.tank_pressure_pa) * p.external_leakage_a_m3_per_s_pa;
+      flow_b = flow_b - (x[pressure_b] - in.tank_pressure_pa) * p.external_leakage_b_m3_per_s_pa;
+    }
+    const X take_a = volume[0] / bulk_modulus(x[pressure_a], p, terms);
+    const X take_b = volume[1] / bulk_modulus(x[pressure_b], p, terms);
+    const auto yields = hose_shares(x, flow_a, flow_b, terms);
+    return {v, force * p.inverse_mass, flow_a / (take_a + yields[0] * p.hose_capacity_a_m3_per_pa),
+            flow_b / (take_b + yields[1] * p.hose_capacity_b_m3_per_pa)};
+  }
+
+  /// Share of each hose that yields; a pressure goes where the flow into its chamber goes.
+  template <typename X, std::size_t M>
+  static std::array<X, 2> hose_shares(const std::array<X, M>& x, const X& toward_a,
+                                      const X& toward_b, const PresentTerms& terms) {
+    if constexpr (M > kStates + 1) {
+      if (terms.hoses >= 0) {
+        const auto first = static_cast<std::size_t>(terms.hoses);
+        return {yielding_share(x[first], value_of(toward_a) > 0.0),
+                yielding_share(x[first + 1], value_of(toward_b) > 0.0)};
+      }
+    }
+    return {X(0.0), X(0.0)};
+  }
+
+  /// Time derivative of the hoses' memory [1/s].
+  /// @param dx  derivative() of the plant
+  template <typename X, std::size_t M, typename C>
+  static std::array<X, 2> hose_rates(const std::array<X, M>& x, const std::array<X, kStates>& dx,
+                                     const Coefficients<C>& p, const PresentTerms& terms) {
+    const auto yields = hose_shares(x, dx[pressure_a], dx[pressure_b], terms);
+    const X yield_a = hose_yield(x[pressure_a], p.hose_yield_pa, p.hose_yield_ratio);
+    const X yield_b = hose_yield(x[pressure_b], p.hose_yield_pa, p.hose_yield_ratio);
+    return {(1.0 - yields[0]) * dx[pressure_a] / yield_a,
+            (1.0 - yields[1]) * dx[pressure_b] / yield_b};
+  }
+
+  /// Memory of hoses that came to their pressure in one go, from the tank's or from the supply's.
+  template <typename X, typename C>
+  static X hose_memory(const X& pressure_pa, const PlantInput<C>& in) {
+    return clamp_symmetric(X((2.0 * pressure_pa - in.supply_pressure_pa - in.tank_pressure_pa) /
+                             (in.supply_pressure_pa - in.tank_pressure_pa)),
+                           C(1.0));
+  }
+
+  /// What the plant tells beside position and velocity. Servo and work flow are the means of both
+  /// chambers: Q_L = (Q_A + Q_B) / 2.
+  template <typename C, std::size_t M>
+  static C output(Output output, const std::array<C, M>& x, const PlantInput<C>& in,
+                  const Coefficients<C>& p, const PresentTerms& terms) {
+    switch (output) {
+      case Output::load_pressure:
+        return x[pressure_a] - x[pressure_b];
+      case Output::pressure_a:
+        return x[pressure_a];
+      case Output::pressure_b:
+        return x[pressure_b];
+      case Output::force:
+        return x[pressure_a] * p.area_a_m2 - x[pressure_b] * p.area_b_m2 -
+               friction(x[velocity], p, terms) + stops_force(x[position], x[velocity], p, terms);
+      case Output::spool:
+        return spool(in, p);
+      case Output::servo_flow: {
+        const ValveFlows<C> q = valve_flows(x, in, p, terms);
+        return 0.5 * (q.supply_to_a - q.a_to_tank + q.b_to_tank - q.supply_to_b);
+      }
+      case Output::leakage_flow:
+        return leakage_flow(x, p, terms);
+      case Output::work_flow:
+        return x[velocity] * (0.5 * (p.area_a_m2 + p.area_b_m2));
+      case Output::position:
+      case Output::velocity:
+      case Output::command:
+        break;
+    }
+    return C(0.0);
+  }
+
+  /// State at rest: where x = 0 lies, or at the nearer stop; pressures that hold the load, their
+  /// sum that of supply and tank.
+  template <typename C>
+  static std::array<C, kStates> rest(const PlantInput<C>& in, const Coefficients<C>& p,
+                                     const PresentTerms& terms) {
+    return settled({C(0.0), C(0.0), C(0.0), C(0.0)}, in, p, terms, false, false);
+  }
+
+  /// Initial state: what the sensors read, as far as it was read; missing pressures hold the load.
+  template <typename C>
+  static std::array<C, kStates> initial(const PlantInput<C>& in, const Coefficients<C>& p,
+                                        const PresentTerms& terms) {
+    return settled({C((p.initial_position_m - p.position_offset_m) / p.position_gain),
+                    p.initial_velocity_m_per_s,
+                    C((p.initial_pressure_a_pa - p.pressure_a_offset_pa) / p.pressure_a_gain),
+                    C((p.initial_pressure_b_pa - p.pressure_b_offset_pa) / p.pressure_b_gain)},
+                   in, p, terms, terms.initial_pressure_a, terms.initial_pressure_b);
+  }
+
+ private:
+  /// Fills in the pressures that are not given and puts a piston that reads as beyond a stop onto
+  /// it: a reading is off by more than a stop gives way.
+  template <typename C>
+  static std::array<C, kStates> settled(std::array<C, kStates> x, const PlantInput<C>& in,
+                                        const Coefficients<C>& p, const PresentTerms& terms,
+                                        bool given_a, bool given_b) {
+    C load = p.mass_kg * p.gravity_m_per_s2 + p.stiffness_n_per_m * x[position];
+    if (terms.external_force) load = load + in.external_force_n;
+    const C &A = p.area_a_m2, &B = p.area_b_m2;
+    if (!given_a && !given_b) {
+      x[pressure_a] = (B * (in.supply_pressure_pa + in.tank_pressure_pa) + load) / (A + B);
+      given_a = true;
+    }
+    if (!given_a) x[pressure_a] = (B * x[pressure_b] + load) / A;
+    if (!given_b) x[pressure_b] = (A * x[pressure_a] - load) / B;
+    const C push = A * x[pressure_a] - B * x[pressure_b] - load;
+    const C depth = push / p.stop_stiffness_n_per_m;
+    const C retracted = retracted_stop(p, terms);
+    const C extended = retracted + p.stroke_m;
+    if (value_of(x[position]) <= value_of(retracted)) {
+      x[position] = value_of(push) < 0.0 ? retracted + depth : retracted;
+      x[velocity] = C(0.0);
+    } else if (value_of(x[position]) >= value_of(extended)) {
+      x[position] = value_of(push) > 0.0 ? extended + depth : extended;
+      x[velocity] = C(0.0);
+    }
+    return x;
+  }
+};
+
+}  // namespace rigcal::model

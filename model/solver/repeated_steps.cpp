@@ -1,0 +1,36 @@
+#include "model/solver/repeated_steps.hpp"
+
+#include <algorithm>
+
+namespace rigcal::model {
+namespace {
+
+// Of the step planned, whose error would be two thirds of what is allowed: a longer one would be
+// rejected, a shorter one wasted. One that was forced is worth taking if it is much shorter, since
+// that planned would be rejected again.
+constexpr double kLongest = 1.1;
+constexpr double kShortest = 0.7;
+constexpr double kShortestForced = 0.05;
+// So close, in steps or in time itself, an end a period ago is the present instant.
+constexpr double kSame = 1e-6;
+constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+
+}  // namespace
+
+RepeatedSteps::Step RepeatedSteps::follow(double t, double planned) {
+  const double ago = t - period_s_;
+  const Step as_planned{planned, false};
+  if (ago < 0.0) return as_planned;
+  const double now = ago + std::max(kSame * planned, kRounding * t);
+  while (next_ < ends_.size() && ends_[next_].t_s <= now) ++next_;
+  // The last end within reach, but not beyond one that was forced.
+  const double reach = ago + kLongest * planned;
+  std::size_t k = next_;
+  while (k + 1 < ends_.size() && !ends_[k].forced && ends_[k + 1].t_s <= reach) ++k;
+  if (k >= ends_.size() || ends_[k].t_s > reach) return as_planned;
+  const Step repeated{ends_[k].t_s - ago, ends_[k].forced};
+  const double shortest = repeated.forced ? kShortestForced : kShortest;
+  return repeated.size_s < shortest * planned ? as_planned : repeated;
+}
+
+}  // namespace rigcal::model

@@ -1,0 +1,129 @@
+#include "model/solver/simulate_sized.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/solver/run.hpp"
+#include RIGCAL_PLANT_HEADER
+
+#if !defined(RIGCAL_STATES) || !defined(RIGCAL_PLANT) || !defined(RIGCAL_INSTRUCTION_SET) || \
+    !defined(RIGCAL_WIDTHS)
+#error "compiled once per plant, number of states and instruction set: model/CMakeLists.txt"
+#endif
+
+namespace rigcal::model {
+namespace {
+
+/// Typical size of a state over its floor, where it is near zero.
+constexpr double kFloorsOfAState = 1e3;
+
+/// Typical size of a parameter, for the error scale of its sensitivity.
+double scale_of(const ParameterSpec& spec, double value) {
+  if (value != 0.0) return std::abs(value);
+  const double range = std::max(std::abs(spec.lower), std::abs(spec.upper));
+  return std::isfinite(range) && range > 0.0 ? 1e-3 * range : 1.0;
+}
+
+/// The state to go on from, with its own directions among [first, first + count) of all columns.
+template <int N, int P>
+State<N, P> state_to_go_on_from(const SizedRequest& request, int first, int count) {
+  State<N, P> x;
+  x.fill(Active<P>(0.0));
+  const Eigen::VectorXd& state = *request.state;
+  const auto parameters = static_cast<int>(request.free.size());
+  for (int i = 0; i < static_cast<int>(state.size()); ++i) {
+    Active<P>& each = x[static_cast<std::size_t>(i)];
+    each = Active<P>(state(i));
+    const int column = parameters + i - first;
+    if constexpr (P > 0) {
+      if (column >= 0 && column < count) each.derivative.set(static_cast<std::size_t>(column), 1.0);
+    }
+  }
+  return x;
+}
+
+/// One pass with at most P columns of the sensitivities: those of the free parameters, then those
+/// of the state to go on from.
+template <typename Plant, int N, int P>
+void pass(const SizedRequest& request, int first, int count, Simulation& result) {
+  const double start_s = request.times_s.front();
+  const auto track = [start_s](const Signal& signal, double delay_s) {
+    return InputTrack(signal, start_s, delay_s);
+  };
+  std::optional<InputTrack> force;
+  std::optional<InputTrack> supply;
+  std::optional<InputTrack> tank;
+  if (request.inputs.external_force_n) force = track(*request.inputs.external_force_n, 0.0);
+  if (request.inputs.supply_pressure_pa) supply = track(*request.inputs.supply_pressure_pa, 0.0);
+  if (request.inputs.tank_pressure_pa) tank = track(*request.inputs.tank_pressure_pa, 0.0);
+  const auto of_parameters = static_cast<int>(request.free.size());
+  const int begin = std::min(first, of_parameters);
+  const int end = std::min(first + count, of_parameters);
+  const auto free =
+      request.free.subspan(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
+  std::array<double, static_cast<std::size_t>(P)> scale;
+  scale.fill(1.0);
+  const auto table = parameter_table(request.parameters.plant);
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const auto index = static_cast<std::size_t>(free[j]);
+    scale[j] = scale_of(table[index], request.parameters.value[index]);
+  }
+  using ThisRun = Run<Plant, N, P>;
+  const auto floors = ThisRun::floors(request.layout);
+  for (int column = std::max(first, of_parameters); column < first + count; ++column) {
+    const int i = column - of_parameters;
+    scale[static_cast<std::size_t>(column - first)] = std::max(
+        std::abs((*request.state)(i)), kFloorsOfAState * floors[static_cast<std::size_t>(i)]);
+  }
+  System<Plant, N, P> system(request.layout, request.parameters, free,
+                             track(request.inputs.drive, request.parameters["transport_delay"]),
+                             std::move(force), std::move(supply), std::move(tank));
+  const State<N, P> start = request.state != nullptr
+                                ? state_to_go_on_from<N, P>(request, first, count)
+                                : system.initial(request.initial, 0.0);
+  ThisRun run(std::move(system), scale, request.times_s, request.outputs, request.options,
+              request.period, request.started);
+  run(start, result, first, count);
+}
+
+/// Columns beyond which explicit steps take longer for one pass than for two: unlike implicit ones
+/// they take the derivatives by all parameters at once, which do not stay in the registers.
+constexpr int kWidestExplicit = 8;
+
+/// The pass from column `first` on: with the first of the widths that has room for what is left, or
+/// the last.
+///
+/// @return  number of columns that had their turn
+template <typename Plant, int N, int Width, int... Wider>
+int next_pass(const SizedRequest& request, int first, int left, Simulation& result) {
+  if constexpr (sizeof...(Wider) > 0) {
+    const bool implicit = request.options.method == Method::rosenbrock;
+    if (left > Width && (implicit || Width < kWidestExplicit))
+      return next_pass<Plant, N, Wider...>(request, first, left, result);
+  }
+  const int count = std::min(left, Width);
+  pass<Plant, N, Width>(request, first, count, result);
+  return count;
+}
+
+/// Passes until every column of the sensitivities had its turn.
+template <typename Plant, int N>
+void passes(const SizedRequest& request, Simulation& result) {
+  const int columns = static_cast<int>(request.free.size()) +
+                      (request.state != nullptr ? request.layout.states : 0);
+  if (columns == 0) return pass<Plant, N, 0>(request, 0, 0, result);
+  for (int first = 0; first < columns && result.ok();)
+    first += next_pass<Plant, N, RIGCAL_WIDTHS>(request, first, columns - first, result);
+}
+
+}  // namespace
+
+template <typename Plant, int N, InstructionSet Set>
+void simulate_sized(const SizedRequest& request, Simulation& result) {
+  passes<Plant, N>(request, result);
+}
+
+template void simulate_sized<RIGCAL_PLANT, RIGCAL_STATES, InstructionSet::RIGCAL_INSTRUCTION_SET>(
+    const SizedRequest&, Simulation&);
+
+}  // namespace rigcal::model

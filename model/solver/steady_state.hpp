@@ -1,0 +1,149 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "model/arithmetic/state.hpp"
+#include "model/signal/sampled_period.hpp"
+#include "model/solver/error_norm.hpp"
+
+namespace rigcal::model {
+
+/// Tells when a run with periodic inputs has come so near to its periodic steady state that the
+/// rest of it is known: the states, with their sensitivities, are where they were a period ago; or
+/// each period adds a fixed share of what the one before it added, as where one slow mode is left
+/// (docs/decisions/0012). Where a period reverses the inputs, a period ago is meant with the other
+/// sign.
+///
+/// Looks a few times a period, at instants that are whole shares of a period before the end, so
+/// that the state at the end is one that was seen, or follows from one.
+template <int N, int P>
+class SteadyState {
+ public:
+  using X = State<N, P>;
+  using C = Active<P>;
+
+  SteadyState(const std::optional<SampledPeriod>& period, double end_s) {
+    if (!period) return;
+    samples_ = period->samples;
+    sign_ = period->sign();
+    looks_a_period_ = period->reversed ? kLooks / 2 : kLooks;
+    interval_s_ = period->duration_s / static_cast<double>(looks_a_period_);
+    end_s_ = end_s;
+    looks_left_ = static_cast<long>(std::ceil(end_s / interval_s_)) - 1;
+  }
+
+  /// When to look next; infinity if never.
+  double next_look_s() const {
+    return looks_left_ > 0 ? end_s_ - static_cast<double>(looks_left_) * interval_s_
+                           : std::numeric_limits<double>::infinity();
+  }
+
+  /// Looks at the state at that instant.
+  ///
+  /// @return  whether the rest of the run is known
+  [[gnu::cold]] bool look(const X& x, const ErrorNorm<N, P>& norm) {
+    const auto phase = static_cast<std::size_t>(looks_left_ % looks_a_period_);
+    periods_left_ = static_cast<double>(looks_left_) / static_cast<double>(looks_a_period_);
+    --looks_left_;
+    ++looks_;
+    X change = x;
+    add_scaled(change, -1.0, seen_[phase]);
+    const X before = change_[phase];
+    seen_[phase] = next(x);
+    change_[phase] = next(change);
+    if (looks_ <= looks_a_period_) return false;
+    // A drift too slow to be told from none adds as much again in each period to come.
+    reached_ = std::max(1.0, periods_left_) * size(change, norm) <= kSteady;
+    if (reached_) return true;
+    return looks_ > 2 * looks_a_period_ && follows(change, before, norm, phase == 0);
+  }
+
+  /// Whether it is in its steady state; else it comes nearer by a fixed share in each period.
+  bool reached() const { return reached_; }
+  /// What the next `periods` add, in shares of what the last one added.
+  [[gnu::cold]] C growth(long periods) const {
+    C sum(0.0);
+    for (long k = 0; k < periods; ++k) sum = ratio_ * (sum + 1.0);
+    return sum;
+  }
+  std::size_t samples() const { return samples_; }  ///< of one period
+  double sign() const { return sign_; }             ///< of one period to the next
+  /// State at the end of the run, once the rest of it is known.
+  [[gnu::cold]] X at_end() const {
+    // From the last look at this phase of a period on.
+    const long periods = std::lround(std::ceil(periods_left_));
+    X x = seen_[0];
+    if (!reached_) {
+      const C share = growth(periods);
+      for (std::size_t i = 0; i < N; ++i) x[i] = x[i] + change_[0][i] * share;
+    }
+    return periods % 2 == 0 ? next(x) : x;
+  }
+
+ private:
+  /// A whole period: four for half of one, so that a step is cut short as often.
+  static constexpr long kLooks = 8;
+  // By how many tolerances of a step the rest of the run may be off, if it is taken for the steady
+  // state, and if it is foreseen; sensitivities are off by more than the states in any run.
+  static constexpr double kSteady = 1.0;
+  static constexpr double kForeseen = 2.0;
+  static constexpr double kLooserSensitivities = 10.0;
+
+  /// What a state of one period would be in the next one, if it repeated itself.
+  X next(X x) const {
+    for (std::size_t i = 0; i < N; ++i) x[i] = x[i] * sign_;
+    return x;
+  }
+
+  static double size(const X& change, const ErrorNorm<N, P>& norm) {
+    return std::max(norm.of_states(change, change),
+                    norm.of_sensitivities(change, change) / kLooserSensitivities);
+  }
+
+  /// Whether all changes of a period are the same share of those of the period before.
+  ///
+  /// @param ends  whether the period does; only then it is told
+  [[gnu::cold]] bool follows(const X& change, const X& before, const ErrorNorm<N, P>& norm,
+                             bool ends) {
+    // So many times the present change is still to come.
+    const double to_come = std::min(periods_left_, 1.0 / std::max(1.0 - value_of(ratio_), 1e-3));
+    X missed = change;
+    for (std::size_t i = 0; i < N; ++i) missed[i] = missed[i] - ratio_ * before[i];
+    follows_ = follows_ && to_come * size(missed, norm) <= kForeseen;
+    along_ = along_ + norm.inner(change, before);
+    square_ = square_ + norm.inner(before, before);
+    if (!ends) return false;
+    // The share itself changes as the changes become small: as much again in each of these periods.
+    const C ratio = along_ / square_;
+    X drift = change;
+    for (std::size_t i = 0; i < N; ++i) drift[i] = drift[i] * (ratio - ratio_);
+    const bool result = follows_ && std::abs(value_of(ratio)) < 1.0 &&
+                        to_come * to_come * to_come * size(drift, norm) <= kForeseen;
+    ratio_ = ratio;
+    along_ = square_ = C(0.0);
+    follows_ = true;
+    return result;
+  }
+
+  std::array<X, static_cast<std::size_t>(kLooks)> seen_{};    ///< next() of each phase
+  std::array<X, static_cast<std::size_t>(kLooks)> change_{};  ///< next() of that since a period ago
+  C ratio_{0.0};  ///< of the changes in the last complete period to those in the one before it
+  C along_{0.0};  ///< sums of this period, for the next one
+  C square_{0.0};
+  bool follows_ = false;
+  bool reached_ = false;
+  double periods_left_ = 0.0;
+  std::size_t samples_ = 0;
+  double sign_ = 1.0;
+  long looks_a_period_ = kLooks;
+  double interval_s_ = 0.0;
+  double end_s_ = 0.0;
+  long looks_ = 0;
+  long looks_left_ = 0;  ///< before the end
+};
+
+}  // namespace rigcal::model

@@ -1,0 +1,183 @@
+#include "report/figure/pdf.hpp"
+
+#include <fmt/format.h>
+#include <hpdf.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+#include <string_view>
+#include <type_traits>
+
+#include "report/figure/figure_font.hpp"
+#include "report/figure/plot_scene.hpp"
+
+namespace rigcal::report {
+namespace {
+
+constexpr double kPointsPerPixel = 0.75;
+constexpr float kBandOpacity = 0.22F;
+
+/// How figure.css draws a class.
+struct Ink {
+  std::string_view style;
+  unsigned rgb;
+  double width;
+  std::array<HPDF_UINT16, 2> dash;  ///< points on and off; nothing where zero
+};
+constexpr std::array kInks{
+    Ink{"grid", 0xcccccc, 0.6, {}},     Ink{"level", 0x444444, 1.0, {3, 2}},
+    Ink{"measured", 0x000000, 1.2, {}}, Ink{"model", 0xd55e00, 1.6, {}},
+    Ink{"residual", 0x0072b2, 1.2, {}}, Ink{"reference", 0x777777, 1.2, {4, 2}},
+    Ink{"servo", 0x009e73, 1.2, {}},    Ink{"leak", 0xb04a88, 1.6, {}},
+    Ink{"axis", 0x000000, 1.2, {}},
+};
+constexpr Ink kOther{"", 0x444444, 1.2, {}};
+
+const Ink& ink_of(const std::string& style) {
+  const auto found =
+      std::find_if(kInks.begin(), kInks.end(), [&](const Ink& ink) { return ink.style == style; });
+  return found == kInks.end() ? kOther : *found;
+}
+
+/// A document of one page, and the first error that the library tells of.
+class PdfPage {
+ public:
+  PdfPage(double width, double height) : height_(height) {
+    if (!document_) throw std::runtime_error("PDF: out of memory");
+    HPDF_SetCompressionMode(document_.get(), HPDF_COMP_ALL);
+    page_ = HPDF_AddPage(document_.get());
+    HPDF_Page_SetWidth(page_, real(width));
+    HPDF_Page_SetHeight(page_, real(height));
+    HPDF_UseUTFEncodings(document_.get());
+    const char* name =
+        HPDF_LoadTTFontFromFile(document_.get(), figure_font_file().c_str(), HPDF_TRUE);
+    if (name == nullptr)
+      throw std::runtime_error(fmt::format("PDF: error {:#x} of libharu", error_));
+    HPDF_Page_SetFontAndSize(page_, HPDF_GetFont(document_.get(), name, "UTF-8"), real(kFontSize));
+  }
+
+  void line(const Shape& shape, const Ink& ink) {
+    set_ink(ink);
+    bool pen_down = false;
+    bool drawn = false;
+    for (const Point& point : shape.points) {
+      if (std::isnan(point.x)) {
+        pen_down = false;
+        continue;
+      }
+      if (pen_down) {
+        HPDF_Page_LineTo(page_, real(point.x), up(point.y));
+        drawn = true;
+      } else {
+        HPDF_Page_MoveTo(page_, real(point.x), up(point.y));
+      }
+      pen_down = true;
+    }
+    if (drawn) {
+      HPDF_Page_Stroke(page_);
+    } else if (pen_down) {
+      HPDF_Page_EndPath(page_);
+    }
+  }
+
+  void area(const Shape& shape, const Ink& ink) {
+    if (shape.points.size() < 3) return;
+    set_ink(ink);
+    HPDF_Page_GSave(page_);
+    HPDF_ExtGState see_through = HPDF_CreateExtGState(document_.get());
+    HPDF_ExtGState_SetAlphaFill(see_through, kBandOpacity);
+    HPDF_Page_SetExtGState(page_, see_through);
+    HPDF_Page_MoveTo(page_, real(shape.points.front().x), up(shape.points.front().y));
+    for (const Point& point : shape.points) HPDF_Page_LineTo(page_, real(point.x), up(point.y));
+    HPDF_Page_ClosePath(page_);
+    HPDF_Page_Fill(page_);
+    HPDF_Page_GRestore(page_);
+  }
+
+  void dots(const Shape& shape, const Ink& ink) {
+    set_ink(ink);
+    for (const Point& point : shape.points) {
+      HPDF_Page_Circle(page_, real(point.x), up(point.y), real(kDotRadius));
+      HPDF_Page_Fill(page_);
+    }
+  }
+
+  void text(const Shape& shape, const Ink& ink) {
+    set_ink(ink);
+    const float width = HPDF_Page_TextWidth(page_, shape.text.c_str());
+    const float shift = shape.anchor == Shape::Anchor::middle ? 0.5F * width
+                        : shape.anchor == Shape::Anchor::end  ? width
+                                                              : 0.0F;
+    HPDF_Page_BeginText(page_);
+    HPDF_Page_TextOut(page_, real(shape.points.front().x) - shift, up(shape.points.front().y),
+                      shape.text.c_str());
+    HPDF_Page_EndText(page_);
+  }
+
+  std::string bytes() {
+    HPDF_SaveToStream(document_.get());
+    std::string result(HPDF_GetStreamSize(document_.get()), '\0');
+    auto size = static_cast<HPDF_UINT32>(result.size());
+    HPDF_ReadFromStream(document_.get(), reinterpret_cast<HPDF_BYTE*>(result.data()), &size);
+    result.resize(size);
+    if (error_ != 0) throw std::runtime_error(fmt::format("PDF: error {:#x} of libharu", error_));
+    return result;
+  }
+
+ private:
+  static float real(double pixels) { return static_cast<float>(kPointsPerPixel * pixels); }
+  float up(double y) const { return real(height_ - y); }
+
+  void set_ink(const Ink& ink) {
+    const auto part = [&](unsigned shift) {
+      return static_cast<float>(ink.rgb >> shift & 255U) / 255.0F;
+    };
+    HPDF_Page_SetRGBStroke(page_, part(16), part(8), part(0));
+    HPDF_Page_SetRGBFill(page_, part(16), part(8), part(0));
+    HPDF_Page_SetLineWidth(page_, real(ink.width));
+    HPDF_Page_SetDash(page_, ink.dash.data(), ink.dash[0] > 0 ? 2 : 0, 0);
+  }
+
+  static void note(HPDF_STATUS error, HPDF_STATUS /*detail*/, void* first) {
+    auto& kept = *static_cast<HPDF_STATUS*>(first);
+    if (kept == 0) kept = error;
+  }
+
+  struct Free {
+    void operator()(HPDF_Doc document) const { HPDF_Free(document); }
+  };
+
+  double height_;
+  HPDF_STATUS error_ = 0;
+  std::unique_ptr<std::remove_pointer_t<HPDF_Doc>, Free> document_{HPDF_New(&note, &error_)};
+  HPDF_Page page_ = nullptr;
+};
+
+}  // namespace
+
+std::string pdf(const Plot& plot) {
+  PdfPage page(plot.width, plot.height);
+  for (const Shape& shape : plot_scene(plot)) {
+    const Ink& ink = ink_of(shape.style);
+    switch (shape.kind) {
+      case Shape::Kind::line:
+        page.line(shape, ink);
+        break;
+      case Shape::Kind::area:
+        page.area(shape, ink);
+        break;
+      case Shape::Kind::dots:
+        page.dots(shape, ink);
+        break;
+      case Shape::Kind::text:
+        page.text(shape, ink);
+        break;
+    }
+  }
+  return page.bytes();
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,68 @@
+#include "report/figure/svg.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "report/figure/plot_scene.hpp"
+#include "report/text/escape.hpp"
+
+namespace rigcal::report {
+namespace {
+
+/// One decimal of a pixel tells more than a screen shows.
+void put_path(std::string& out, const Shape& shape, const char* css, const char* end) {
+  out += fmt::format("<path class=\"{}{}\" d=\"", css, shape.style);
+  bool pen_down = false;
+  for (const Point& point : shape.points) {
+    if (std::isnan(point.x)) {
+      pen_down = false;
+      continue;
+    }
+    out += fmt::format("{}{:.1f} {:.1f}", pen_down ? 'L' : 'M', point.x, point.y);
+    pen_down = true;
+  }
+  out += end;
+}
+
+void put_text(std::string& out, const Shape& shape) {
+  const char* anchor = shape.anchor == Shape::Anchor::middle ? " text-anchor=\"middle\""
+                       : shape.anchor == Shape::Anchor::end  ? " text-anchor=\"end\""
+                                                             : "";
+  const std::string css =
+      shape.style.empty() ? std::string() : fmt::format(" class=\"{}\"", shape.style);
+  out += fmt::format("<text{} x=\"{:.1f}\" y=\"{:.1f}\"{}>{}</text>", css, shape.points.front().x,
+                     shape.points.front().y, anchor, escaped(shape.text));
+}
+
+}  // namespace
+
+std::string svg(const Plot& plot, const std::string& style_sheet) {
+  std::string out = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0:g} {1:g}\" role=\"img\" "
+      "class=\"static\"><title>{2}</title>",
+      plot.width, plot.height, escaped(plot.title));
+  if (!style_sheet.empty()) out += "<style>" + style_sheet + "</style>";
+  for (const Shape& shape : plot_scene(plot)) {
+    switch (shape.kind) {
+      case Shape::Kind::line:
+        put_path(out, shape, "line ", "\"/>");
+        break;
+      case Shape::Kind::area:
+        put_path(out, shape, "band ", "Z\"/>");
+        break;
+      case Shape::Kind::dots:
+        for (const Point& point : shape.points) {
+          out += fmt::format("<circle class=\"point {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>",
+                             shape.style, point.x, point.y, kDotRadius);
+        }
+        break;
+      case Shape::Kind::text:
+        put_text(out, shape);
+        break;
+    }
+  }
+  return out + "</svg>";
+}
+
+}  // namespace rigcal::report

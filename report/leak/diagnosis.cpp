@@ -1,0 +1,418 @@
+#include "report/leak/diagnosis.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <map>
+
+#include "diagnosis/signal_name.hpp"
+#include "report/leak/machine_state.hpp"
+#include "report/store/csv_fields.hpp"
+#include "report/store/identity.hpp"
+#include "report/text/gathered_warnings.hpp"
+#include "report/text/text_table.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using datasets::LeakClass;
+using diagnosis::Accuracy;
+using diagnosis::DetectionLimit;
+using diagnosis::RecordDiagnosis;
+using diagnosis::SignalDiagnosis;
+using Align = TextTable::Align;
+
+constexpr double kLitresPerMinute = 60e3;  ///< per m3/s
+constexpr double kPercent = 100.0;
+
+Json class_or_null(const std::optional<LeakClass>& leak_class) {
+  return leak_class ? Json(std::string(to_string(*leak_class))) : Json(nullptr);
+}
+
+Json interval_json(const std::pair<double, double>& range, double scale = 1.0) {
+  return Json::array({number(scale * range.first), number(scale * range.second)});
+}
+
+Json diagnosed_json(const RecordDiagnosis& record) {
+  const bool ok = record.fit.ok();
+  const diagnosis::LeakEstimate& e = record.estimate;
+  const auto value = [&](double x) { return ok ? number(x) : Json(nullptr); };
+  Json json;
+  json["condition"] = record.condition;
+  json["repeat"] = record.repeat ? Json(*record.repeat) : Json(nullptr);
+  json["repeats_averaged"] = record.repeats;
+  json["signal"] = record.signal;
+  json["reference_repeats"] = record.reference_repeats;
+  json["is_reference"] = record.is_reference;
+  json["failure"] = ok ? Json(nullptr) : Json(record.fit.failure);
+  json["leakage_coefficient"] = value(std::max(0.0, e.coefficient));
+  json["ci95"] = ok ? interval_json(e.ci95) : Json(nullptr);
+  json["standard_error"] = value(e.standard_error);
+  json["unbounded_leakage_coefficient"] = value(e.coefficient);
+  json["leak_share_percent"] = value(kPercent * e.share);
+  json["leak_share_ci95_percent"] = ok ? interval_json(e.share_ci95, kPercent) : Json(nullptr);
+  json["leak_share_upper_limit_percent"] =
+      ok && e.share_upper_limit ? value(kPercent * *e.share_upper_limit) : Json(nullptr);
+  json["leak_flow_l_per_min"] = value(kLitresPerMinute * e.leak_flow_m3_per_s);
+  json["leak_detected"] = ok ? Json(e.leak_detected) : Json(nullptr);
+  json["class"] = class_or_null(record.leak_class);
+  json["class_probabilities"] = Json::object();
+  for (std::size_t i = 0; i < diagnosis::kClassCount; ++i) {
+    json["class_probabilities"][std::string(to_string(datasets::kLeakClasses[i]))] =
+        value(e.probability[i]);
+  }
+  json["undecided"] = !record.leak_class.has_value();
+  json["explained_by_leak"] = ok ? Json(!record.unexplained) : Json(nullptr);
+  json["features"] = {{"mean_m", value(record.features.mean)},
+                      {"rms_m", value(record.features.rms)},
+                      {"std_m", value(record.features.std)}};
+  json["parity_rms_m"] = value(record.fit.parity_rms_m);
+  json["misfit_rms_m"] = value(record.fit.misfit_rms_m);
+  json["noise_rms_m"] = value(record.fit.noise_rms_m);
+  json["log_slope"] =
+      ok && e.share > 0.0 ? number(e.share_slope * e.coefficient / e.share) : Json(nullptr);
+  json["class_by_features"] = class_or_null(record.by_features);
+  json["class_by_features_of_other_signals"] = class_or_null(record.by_features_of_other_signals);
+  json["true_class"] = class_or_null(record.truth);
+  json["true_share_percent"] =
+      record.true_share ? number(kPercent * *record.true_share) : Json(nullptr);
+  json["warnings"] = record.warnings;
+  return json;
+}
+
+Json confusion_json(const Accuracy& accuracy) {
+  Json json;
+  json["truth"] = Json::array();
+  for (const LeakClass each : datasets::kLeakClasses)
+    json["truth"].push_back(std::string(to_string(each)));
+  json["found"] = json["truth"];
+  json["found"].push_back("undecided");
+  json["counts"] = accuracy.confusion;
+  return json;
+}
+
+Json accuracy_json(const Accuracy& accuracy) {
+  const bool any = accuracy.records > 0;
+  Json json;
+  json["records"] = accuracy.records;
+  json["conditions"] = accuracy.conditions;
+  json["right"] = accuracy.right;
+  json["undecided"] = accuracy.undecided;
+  json["off_by_two_or_more"] = accuracy.off_by_two;
+  json["accuracy"] = any ? number(accuracy.accuracy) : Json(nullptr);
+  json["accuracy_ci95"] = any ? interval_json(accuracy.ci95) : Json(nullptr);
+  json["confusion"] = confusion_json(accuracy);
+  return json;
+}
+
+Json limit_json(const std::optional<DetectionLimit>& limit) {
+  return limit ? number(kLitresPerMinute * limit->leak_flow_m3_per_s) : Json(nullptr);
+}
+
+Json smallest_leak_json(const SignalDiagnosis& signal) {
+  Json json;
+  json["signal"] = signal.signal;
+  json["repeats_averaged"] = signal.repeats;
+  json["averaged"] = limit_json(signal.smallest_leak);
+  json["single"] = limit_json(signal.smallest_single_leak);
+  json["averaged_share_percent"] =
+      signal.smallest_leak ? number(kPercent * signal.smallest_leak->share) : Json(nullptr);
+  json["repeat_sd_m"] = number(signal.errors.repeat_m);
+  json["healthy_leak_m"] = number(signal.errors.healthy_m);
+  json["reason"] = signal.reason.empty() ? Json(nullptr) : Json(signal.reason);
+  return json;
+}
+
+Json class_settings_json(const datasets::DiagnosisSettings& settings) {
+  Json json;
+  json["limits_percent"] = Json::object();
+  for (std::size_t i = 0; i < settings.limits.size(); ++i) {
+    json["limits_percent"][std::string(to_string(datasets::kLeakClasses[i]))] =
+        number(kPercent * settings.limits[i]);
+  }
+  json["least_probability"] = settings.least_probability;
+  json["false_alarms"] = settings.false_alarms;
+  json["detection"] = settings.detection;
+  return json;
+}
+
+std::string drive_of(const datasets::Campaign& campaign, const TableLimit& limit) {
+  datasets::Condition condition;
+  condition.waveform = limit.waveform;
+  condition.frequency_hz = limit.frequency_hz;
+  condition.amplitude = limit.amplitude;
+  return diagnosis::signal_name(campaign, condition);
+}
+
+Json class_limit_json(const datasets::Campaign& campaign, const TableLimit& limit) {
+  Json json;
+  json["signal"] = drive_of(campaign, limit);
+  json["share_percent"] = number(limit.target_percent);
+  json["class"] = class_or_null(class_ending_at(campaign.diagnosis, limit.target_percent));
+  json["coefficients"] = numbers(limit.coefficients);
+  json["coefficients_ci95"] = Json::array();
+  for (const auto& range : limit.ranges_95) {
+    json["coefficients_ci95"].push_back(
+        range ? Json::array({number(range->front()), number(range->back())}) : Json(nullptr));
+  }
+  return json;
+}
+
+std::string number_field(bool is_there, double value) {
+  return is_there && std::isfinite(value) ? fmt::format("{}", value) : std::string();
+}
+
+std::string class_name(const std::optional<LeakClass>& leak_class, const char* otherwise = "") {
+  return leak_class ? std::string(to_string(*leak_class)) : otherwise;
+}
+
+std::string record_row(const RecordDiagnosis& record) {
+  const bool ok = record.fit.ok();
+  const diagnosis::LeakEstimate& e = record.estimate;
+  std::vector<std::string> fields{record.condition,
+                                  record.repeat ? fmt::format("{}", *record.repeat) : std::string(),
+                                  csv_text(record.signal),
+                                  number_field(ok, std::max(0.0, e.coefficient)),
+                                  number_field(ok, e.ci95.first),
+                                  number_field(ok, e.ci95.second),
+                                  number_field(ok, kPercent * e.share),
+                                  number_field(ok, kPercent * e.share_ci95.first),
+                                  number_field(ok, kPercent * e.share_ci95.second),
+                                  number_field(ok, kLitresPerMinute * e.leak_flow_m3_per_s),
+                                  class_name(record.leak_class, "undecided")};
+  for (const double probability : e.probability) fields.push_back(number_field(ok, probability));
+  fields.insert(
+      fields.end(),
+      {number_field(ok, record.features.mean), number_field(ok, record.features.rms),
+       number_field(ok, record.features.std), class_name(record.by_features),
+       class_name(record.truth),
+       number_field(record.true_share.has_value(), kPercent * record.true_share.value_or(0.0)),
+       csv_text(ok ? fmt::format("{}", fmt::join(record.warnings, "; ")) : record.fit.failure)});
+  return fmt::format("{}\n", fmt::join(fields, ","));
+}
+
+std::string in_colour(const std::string& text, const char* code, const Style& style) {
+  return style.colour ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : text;
+}
+
+std::string record_table(const diagnosis::Diagnosis& found) {
+  TextTable table({{"condition"},
+                   {"repeats", Align::right},
+                   {"C_leak", Align::right},
+                   {"95 % interval", Align::right},
+                   {"share %", Align::right},
+                   {"95 % interval", Align::right},
+                   {"leak L/min", Align::right},
+                   {"class"},
+                   {"probability", Align::right},
+                   {"by features"},
+                   {"known class"}});
+  for (const RecordDiagnosis& record : found.records) {
+    if (record.repeat) continue;
+    const diagnosis::LeakEstimate& e = record.estimate;
+    if (!record.fit.ok()) {
+      table.add({record.condition, fmt::format("{}", record.repeats), "-", "-", "-", "-", "-",
+                 "not fitted", "-", "-", class_name(record.truth, "-")});
+      continue;
+    }
+    const double best = e.probability[static_cast<std::size_t>(e.most_probable)];
+    table.add({record.condition, fmt::format("{}", record.repeats),
+               fmt::format("{:.4g}", std::max(0.0, e.coefficient)),
+               fmt::format("{:.3g} .. {:.3g}", e.ci95.first, e.ci95.second),
+               fmt::format("{:.2f}", kPercent * e.share),
+               fmt::format("{:.2f} .. {:.2f}", kPercent * e.share_ci95.first,
+                           kPercent * e.share_ci95.second),
+               fmt::format("{:.4f}", kLitresPerMinute * e.leak_flow_m3_per_s),
+               record.unexplained ? "not explained" : class_name(record.leak_class, "undecided"),
+               fmt::format("{:.3f}", best), class_name(record.by_features, "-"),
+               class_name(record.truth, "-")});
+  }
+  return table.text();
+}
+
+std::string accuracy_table(const diagnosis::Diagnosis& found) {
+  TextTable table({{"method"},
+                   {"records"},
+                   {"right", Align::right},
+                   {"accuracy %", Align::right},
+                   {"95 % (Wilson, over conditions)", Align::right},
+                   {"undecided", Align::right},
+                   {"off by two", Align::right}});
+  const auto add = [&](const char* method, const char* records, const Accuracy& accuracy) {
+    if (accuracy.records == 0) return;
+    table.add({method, records, fmt::format("{} of {}", accuracy.right, accuracy.records),
+               fmt::format("{:.1f}", kPercent * accuracy.accuracy),
+               fmt::format("{:.1f} .. {:.1f}", kPercent * accuracy.ci95.first,
+                           kPercent * accuracy.ci95.second),
+               fmt::format("{}", accuracy.undecided), fmt::format("{}", accuracy.off_by_two)});
+  };
+  add("fitted leak", "single repeats", found.single);
+  add("fitted leak", "averages", found.averaged);
+  add("paper's features, without this repeat", "single repeats", found.features);
+  add("paper's features, without this signal", "single repeats", found.features_of_other_signals);
+  return table.empty() ? std::string() : table.text();
+}
+
+std::string limit_table(const diagnosis::Diagnosis& found) {
+  TextTable table({{"signal"},
+                   {"single, L/min", Align::right},
+                   {"averaged, L/min", Align::right},
+                   {"averaged, share %", Align::right}});
+  const auto flow = [](const std::optional<DetectionLimit>& limit) {
+    return limit ? fmt::format("{:.4f}", kLitresPerMinute * limit->leak_flow_m3_per_s) : "-";
+  };
+  for (const SignalDiagnosis& signal : found.signals) {
+    table.add({signal.signal, flow(signal.smallest_single_leak), flow(signal.smallest_leak),
+               signal.smallest_leak ? fmt::format("{:.2f}", kPercent * signal.smallest_leak->share)
+                                    : signal.reason});
+  }
+  return table.empty() ? std::string() : table.text();
+}
+
+/// Per signal the coefficient at which each class ends: the column of a leak table.
+std::string class_limit_table(const DiagnosisResult& result) {
+  std::vector<std::string> signals;
+  std::map<std::string, std::map<double, std::string>> cells;
+  std::map<double, std::string> heads;
+  for (const TableLimit& limit : result.class_limits) {
+    const auto ends = class_ending_at(result.campaign.diagnosis, limit.target_percent);
+    if (!ends) continue;
+    const std::string signal = drive_of(result.campaign, limit);
+    if (!cells.contains(signal)) signals.push_back(signal);
+    heads[limit.target_percent] =
+        fmt::format("{} to {:g} %", to_string(*ends), limit.target_percent);
+    std::string cell;
+    for (std::size_t i = 0; i < limit.coefficients.size(); ++i) {
+      cell += fmt::format("{}{:.3g}", cell.empty() ? "" : ", ", limit.coefficients[i]);
+      if (const auto& range = limit.ranges_95[i])
+        cell += fmt::format(" ({:.4g} .. {:.4g})", range->front(), range->back());
+    }
+    cells[signal][limit.target_percent] = cell;
+  }
+  std::vector<TextTable::Column> columns{{"signal"}};
+  for (const auto& [percent, head] : heads) columns.push_back({head, Align::right});
+  TextTable table(columns);
+  for (const std::string& signal : signals) {
+    std::vector<std::string> row{signal};
+    for (const auto& [percent, head] : heads)
+      row.push_back(cells[signal][percent].empty() ? "-" : cells[signal][percent]);
+    table.add(row);
+  }
+  return table.empty() ? std::string() : table.text();
+}
+
+/// What failed, and the warnings of averages, of repeats that no leak explains, and of all.
+std::string warning_lines(const diagnosis::Diagnosis& found) {
+  std::vector<std::pair<std::string, std::string>> told;
+  for (const RecordDiagnosis& record : found.records) {
+    const std::string name = record.repeat
+                                 ? fmt::format("{} repeat {}", record.condition, *record.repeat)
+                                 : record.condition;
+    if (!record.fit.ok()) told.emplace_back(name, record.fit.failure);
+    if (record.repeat && !record.unexplained) continue;  // the table files name them all
+    for (const std::string& warning : record.warnings) told.emplace_back(name, warning);
+  }
+  std::string text;
+  for (const std::string& line : gathered_by_text(told)) text += fmt::format("  {}\n", line);
+  for (const std::string& warning : found.warnings) text += fmt::format("warning: {}\n", warning);
+  return text;
+}
+
+}  // namespace
+
+std::string status_of(const DiagnosisResult& result) {
+  if (!result.reasons.empty()) return "declined";
+  return result.diagnosis.usable() ? "done" : "failed";
+}
+
+Json diagnosis_json(const DiagnosisResult& result) {
+  const diagnosis::Diagnosis& found = result.diagnosis;
+  Json json;
+  json["status"] = status_of(result);
+  json["schema"] = kDiagnosisSchema;
+  json["reasons"] = result.reasons;
+  json["campaign"] = result.campaign.name;
+  json["synthetic"] = result.campaign.synthetic;
+  json["report"] = identity_json(result.campaign);
+  json["settings"] = class_settings_json(result.campaign.diagnosis);
+  json["class_limits"] = Json::array();
+  for (const TableLimit& limit : result.class_limits)
+    json["class_limits"].push_back(class_limit_json(result.campaign, limit));
+  json["states"] = Json::array();
+  for (const diagnosis::MachineState& state : found.states)
+    json["states"].push_back(state_json(state));
+  json["records"] = Json::array();
+  for (const RecordDiagnosis& record : found.records)
+    json["records"].push_back(diagnosed_json(record));
+  const Json single = accuracy_json(found.single);
+  json["confusion"] = single["confusion"];
+  json["accuracy"] = single["accuracy"];
+  json["accuracy_ci95"] = single["accuracy_ci95"];
+  json["methods"] = {
+      {"fitted_leak_single", single},
+      {"fitted_leak_averaged", accuracy_json(found.averaged)},
+      {"features_leave_one_repeat_out", accuracy_json(found.features)},
+      {"features_leave_one_signal_out", accuracy_json(found.features_of_other_signals)}};
+  json["smallest_leak_l_per_min"] = Json::array();
+  for (const SignalDiagnosis& signal : found.signals)
+    json["smallest_leak_l_per_min"].push_back(smallest_leak_json(signal));
+  json["warnings"] = found.warnings;
+  json["provenance"] = provenance_json(result.provenance);
+  return json;
+}
+
+std::string diagnosis_csv(const DiagnosisResult& result) {
+  std::string text;
+  if (const std::string status = status_of(result); status != "done") {
+    text = fmt::format("# status: {}: {}\n", status, fmt::join(result.reasons, "; "));
+  }
+  text +=
+      "condition,repeat,signal,leakage_coefficient,ci95_low,ci95_high,leak_share_percent,"
+      "leak_share_ci95_low_percent,leak_share_ci95_high_percent,leak_flow_l_per_min,class";
+  for (const LeakClass each : datasets::kLeakClasses)
+    text += fmt::format(",probability_{}", to_string(each));
+  text +=
+      ",feature_mean_m,feature_rms_m,feature_std_m,class_by_features,true_class,"
+      "true_share_percent,warnings\n";
+  for (const RecordDiagnosis& record : result.diagnosis.records) text += record_row(record);
+  return text;
+}
+
+std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
+  const diagnosis::Diagnosis& found = result.diagnosis;
+  const std::string status = status_of(result);
+  if (status == "declined") {
+    std::string text = in_colour("declined: these records cannot be diagnosed", "31", style) + "\n";
+    for (const std::string& reason : result.reasons) text += fmt::format("  - {}\n", reason);
+    return text;
+  }
+  std::string text = in_colour("State of the machine", "1", style) + "\n";
+  for (const diagnosis::MachineState& state : found.states)
+    text += wrapped("  " + state_sentence(state), 80, 4) + "\n";
+  text += "\n" + in_colour("Leak in the average of each condition", "1", style) + "\n" +
+          record_table(found);
+  if (const std::string table = accuracy_table(found); !table.empty()) {
+    text += "\n" + in_colour("Against the known classes (undecided counts as wrong)", "1", style) +
+            "\n" + table;
+  }
+  if (const std::string table = class_limit_table(result); !table.empty())
+    text += "\n" +
+            in_colour("Coefficient at which each class ends, by the leak table", "1", style) +
+            "\n" + table;
+  if (const std::string table = limit_table(found); !table.empty()) {
+    const datasets::DiagnosisSettings& settings = result.campaign.diagnosis;
+    text += "\n" +
+            in_colour(fmt::format("Smallest leak told from none ({:g} % false alarms, found in "
+                                  "{:g} %)",
+                                  kPercent * settings.false_alarms, kPercent * settings.detection),
+                      "1", style) +
+            "\n" + table;
+  }
+  text += "\nstatus: " + in_colour(status, status == "done" ? "32" : "31", style) + "\n";
+  text += warning_lines(found);
+  if (result.campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
+  return text;
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,145 @@
+#include "report/leak/fit_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "report/text/readable.hpp"
+#include "report/text/text_table.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using calib::FitStatus;
+using Align = TextTable::Align;
+
+constexpr double kWeakHalfWidth = 0.2;  ///< of an interval, over the value
+constexpr double kOpenHalfWidth = 1.0;
+
+/// Relative half width of the interval; infinite without one.
+double half_width(const calib::FittedAssumption& p) {
+  if (!p.ci95 || p.value == 0.0) return HUGE_VAL;
+  return 0.5 * (p.ci95->second - p.ci95->first) / std::abs(p.value);
+}
+
+calib::Identifiability identifiability(const calib::FittedAssumption& p) {
+  if (half_width(p) > kOpenHalfWidth) return calib::Identifiability::not_identifiable;
+  return half_width(p) > kWeakHalfWidth ? calib::Identifiability::weak
+                                        : calib::Identifiability::identified;
+}
+
+std::string reason(const calib::FittedAssumption& p) {
+  if (p.at_bound) return "at its bound";
+  if (!p.standard_error) return "the published numbers do not determine it";
+  if (identifiability(p) == calib::Identifiability::identified) return "";
+  return fmt::format("half width of the interval is {:.0f} % of the value", 100.0 * half_width(p));
+}
+
+Json parameter_json(const TablesFitResult& result, const calib::FittedAssumption& p) {
+  const auto& spec = datasets::assumption_spec(result.campaign.rig.plant, p.index);
+  const bool failed = result.fit.status == FitStatus::failed;
+  Json json;
+  json["name"] = std::string(spec.name);
+  json["key"] = std::string(spec.key);
+  json["symbol"] = std::string(spec.symbol);
+  json["unit"] = std::string(spec.unit);
+  json["scope"] = "rig";
+  json["level"] = nullptr;
+  json["value"] = failed ? Json(nullptr) : number(p.value);
+  json["start"] = number(p.start);
+  json["lower"] = number(p.lower);
+  json["upper"] = number(p.upper);
+  json["fitted"] = true;
+  json["nuisance"] = false;
+  json["standard_error"] = number(p.standard_error);
+  json["robust_standard_error"] = nullptr;
+  json["ci95"] =
+      p.ci95 ? Json::array({number(p.ci95->first), number(p.ci95->second)}) : Json(nullptr);
+  json["at_bound"] = p.at_bound;
+  json["identifiability"] = std::string(to_string(identifiability(p)));
+  json["reason"] = reason(p);
+  return json;
+}
+
+}  // namespace
+
+Json tables_fit_json(const TablesFitResult& result) {
+  const calib::TablesFit& fit = result.fit;
+  const bool failed = fit.status == FitStatus::failed;
+  Json json;
+  json["status"] = std::string(to_string(fit.status));
+  json["schema"] = kFitSchema;
+  json["verdict"] = nullptr;
+  json["message"] = fit.message;
+  json["campaign"] = result.campaign.name;
+  json["of"] = "published tables";
+  json["cost"] = failed ? Json(nullptr) : number(fit.cost);
+  json["residual_count"] = fit.residuals.size();
+  json["rms"] = failed ? Json(nullptr) : number(fit.rms);
+  json["evaluations"] = fit.evaluations;
+  json["iterations"] = fit.iterations;
+  json["wall_seconds"] = number(fit.wall_seconds);
+  json["parameters"] = Json::array();
+  std::vector<std::string> names;
+  for (const calib::FittedAssumption& p : fit.parameters) {
+    json["parameters"].push_back(parameter_json(result, p));
+    names.emplace_back(datasets::assumption_spec(result.campaign.rig.plant, p.index).name);
+  }
+  json["correlation"] = correlation_json(names, fit.correlation);
+  json["residuals"] = Json::array();
+  for (const calib::TableResidual& residual : fit.residuals) {
+    Json entry;
+    entry["of"] = residual.what;
+    entry["weight"] = residual.weight;
+    entry["log_ratio"] = number(residual.log_ratio);
+    json["residuals"].push_back(std::move(entry));
+  }
+  json["left_out"] = fit.left_out;
+  json["provenance"] = provenance_json(result.provenance);
+  return json;
+}
+
+std::string tables_fit_text(const TablesFitResult& result, const Style& style) {
+  const calib::TablesFit& fit = result.fit;
+  std::string text = style.colour ? "\x1b[1mEstimated from the published tables\x1b[0m\n"
+                                  : "Estimated from the published tables\n";
+  TextTable table({{"parameter"},
+                   {"value", Align::right},
+                   {"unit"},
+                   {"std. error", Align::right},
+                   {"95 % interval", Align::right},
+                   {"start", Align::right},
+                   {"identifiability"}});
+  for (const calib::FittedAssumption& p : fit.parameters) {
+    const auto& spec = datasets::assumption_spec(result.campaign.rig.plant, p.index);
+    const ReadableUnit unit = readable_unit(p.value, spec.unit);
+    const auto shown = [&](double value) { return fmt::format("{:.4g}", value / unit.si); };
+    table.add({std::string(spec.key), fit.status == FitStatus::failed ? "-" : shown(p.value),
+               std::string(unit.name), p.standard_error ? shown(*p.standard_error) : "-",
+               p.ci95 ? shown(p.ci95->first) + " .. " + shown(p.ci95->second) : "-", shown(p.start),
+               std::string(to_string(identifiability(p)))});
+  }
+  text += table.text();
+  if (fit.correlation.rows() > 1) {
+    text += "correlation:\n";
+    for (Eigen::Index i = 1; i < fit.correlation.rows(); ++i) {
+      const auto name = [&](Eigen::Index k) {
+        const int index = fit.parameters[static_cast<std::size_t>(k)].index;
+        return datasets::assumption_spec(result.campaign.rig.plant, index).key;
+      };
+      for (Eigen::Index j = 0; j < i; ++j) {
+        text += fmt::format("  {}, {}: {:.2f}\n", name(j), name(i), fit.correlation(i, j));
+      }
+    }
+  }
+  if (!fit.left_out.empty()) text += "left out:\n";
+  for (const std::string& left_out : fit.left_out) text += fmt::format("  {}\n", left_out);
+  text += fmt::format("status: {}: {}", to_string(fit.status), fit.message);
+  if (fit.status != FitStatus::failed) {
+    text += fmt::format("; {} published numbers, weighted logarithms off by {:.1f} % rms",
+                        fit.residuals.size(), 100.0 * fit.rms);
+  }
+  return text + "\n";
+}
+
+}  // namespace rigcal::report

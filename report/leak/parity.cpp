@@ -1,0 +1,249 @@
+#include "report/leak/parity.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/store/csv_fields.hpp"
+#include "report/store/identity.hpp"
+#include "report/text/readable.hpp"
+#include "report/text/text_table.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using diagnosis::ParityCondition;
+using diagnosis::ParityRecord;
+using diagnosis::ParitySignal;
+using Align = TextTable::Align;
+
+constexpr int kTextDigits = 3;
+
+Json or_null(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
+
+const ParitySignal* signal_of(const ParityResult& result, const ParityRecord& record) {
+  for (const ParitySignal& signal : result.parity.signals)
+    if (signal.signal == record.signal) return &signal;
+  return nullptr;
+}
+
+/// Whether a record exceeds a threshold; null where there is none.
+Json exceeds(const std::optional<double>& threshold, double value) {
+  return threshold ? Json(value > *threshold) : Json(nullptr);
+}
+
+Json record_json(const ParityResult& result, const ParityRecord& record) {
+  const bool ok = record.failure.empty();
+  const ParitySignal* signal = signal_of(result, record);
+  const bool judged = ok && signal != nullptr && signal->threshold_m && !record.sets_threshold;
+  const datasets::Condition& condition = *result.campaign.find(record.condition);
+  const auto value = [&](double x) { return ok ? number(x) : Json(nullptr); };
+  Json json;
+  json["condition"] = record.condition;
+  json["repeat"] = record.repeat ? Json(*record.repeat) : Json(nullptr);
+  json["signal"] = record.signal;
+  json["leak_level"] = condition.leak_level ? Json(*condition.leak_level) : Json(nullptr);
+  json["healthy"] = record.is_healthy;
+  json["sets_threshold"] = record.sets_threshold;
+  json["reference_records"] = record.reference_records;
+  json["failure"] = ok ? Json(nullptr) : Json(record.failure);
+  json["peak_m"] = value(record.peak_m);
+  json["alarm"] = judged ? Json(record.alarm) : Json(nullptr);
+  json["time_to_alarm_s"] = judged && record.alarm ? number(record.alarm_time_s) : Json(nullptr);
+  json["features"] = {{"mean_m", value(record.features.mean)},
+                      {"rms_m", value(record.features.rms)},
+                      {"std_m", value(record.features.std)}};
+  const diagnosis::FeatureThresholds none;
+  const diagnosis::FeatureThresholds& limits = ok && signal ? signal->features : none;
+  json["exceeds"] = {{"mean_m", exceeds(limits.mean, record.features.mean)},
+                     {"rms_m", exceeds(limits.rms, record.features.rms)},
+                     {"std_m", exceeds(limits.std, record.features.std)}};
+  return json;
+}
+
+Json signal_json(const ParitySignal& signal) {
+  Json json;
+  json["signal"] = signal.signal;
+  json["window_s"] = number(signal.window_s);
+  json["healthy_records"] = signal.healthy_records;
+  json["threshold_m"] = or_null(signal.threshold_m);
+  json["feature_thresholds"] = {{"mean_m", or_null(signal.features.mean)},
+                                {"rms_m", or_null(signal.features.rms)},
+                                {"std_m", or_null(signal.features.std)}};
+  json["reason"] = signal.reason.empty() ? Json(nullptr) : Json(signal.reason);
+  return json;
+}
+
+std::string repeat_name(const ParityRecord& record) {
+  return record.repeat ? fmt::format("{}", *record.repeat) : std::string("mean");
+}
+
+std::string series_csv(const ParityCondition& condition) {
+  std::vector<std::string> titles{"time_s", "healthy_model_m"};
+  for (const ParityRecord& record : condition.records) {
+    if (!record.failure.empty()) continue;
+    for (const char* column : {"parity", "residual", "moving_rms"})
+      titles.push_back(fmt::format("{}_{}_m", column, repeat_name(record)));
+  }
+  std::string text = csv_row(titles);
+  for (std::size_t i = 0; i < condition.time_s.size(); ++i) {
+    std::vector<std::string> row{csv_number(condition.time_s[i]), csv_number(condition.model_m[i])};
+    for (const ParityRecord& record : condition.records) {
+      if (!record.failure.empty()) continue;
+      for (const auto* column : {&record.parity_m, &record.residual_m, &record.moving_rms_m})
+        row.push_back(csv_number((*column)[i]));
+    }
+    text += csv_row(row);
+  }
+  return text;
+}
+
+std::string length_text(const std::optional<double>& value_m) {
+  return value_m ? readable(*value_m, "m", kTextDigits) : std::string("-");
+}
+
+std::string condition_table(const ParityResult& result) {
+  TextTable table({{"condition"},
+                   {"leak level", Align::left, 1},
+                   {"alarms", Align::right},
+                   {"largest", Align::right},
+                   {"threshold", Align::right},
+                   {"first alarm", Align::right}});
+  for (const ParityCondition& condition : result.parity.conditions) {
+    int alarms = 0;
+    int judged = 0;
+    int references = 0;
+    double largest = 0.0;
+    std::optional<double> first_s;
+    const ParitySignal* signal = nullptr;
+    for (const ParityRecord& record : condition.records) {
+      if (!record.failure.empty()) continue;
+      signal = signal_of(result, record);
+      ++(record.sets_threshold ? references : judged);
+      largest = std::max(largest, record.peak_m);
+      if (!record.alarm) continue;
+      ++alarms;
+      first_s = std::min(first_s.value_or(record.alarm_time_s), record.alarm_time_s);
+    }
+    const bool has_threshold = signal != nullptr && signal->threshold_m;
+    const auto& level = result.campaign.find(condition.condition)->leak_level;
+    table.add({condition.condition, level.value_or("-"),
+               judged + references == 0 ? "failed"
+               : !has_threshold         ? "not judged"
+               : judged == 0            ? "reference"
+                                        : fmt::format("{} of {}", alarms, judged),
+               judged + references == 0 ? "-" : length_text(largest),
+               has_threshold ? length_text(signal->threshold_m) : "-",
+               first_s ? readable(*first_s, "s", kTextDigits) : "-"});
+  }
+  return table.text();
+}
+
+std::string check_text(const ParityResult& result) {
+  const diagnosis::FalseAlarmCheck& check = result.parity.check;
+  if (check.records == 0) {
+    return "false alarms: not checked: no healthy record but those that the thresholds rest on\n";
+  }
+  return fmt::format(
+      "false alarms: {} of {} healthy records that no threshold rests on; {:.3g} expected at {:g} "
+      "% ({})\n",
+      check.alarms, check.records, result.false_alarm * check.records, 100.0 * result.false_alarm,
+      p_value_text(check.p));
+}
+
+}  // namespace
+
+std::string status_of(const ParityResult& result) {
+  if (!result.reasons.empty()) return "declined";
+  return result.parity.usable() ? "done" : "failed";
+}
+
+Json parity_json(const ParityResult& result) {
+  Json json;
+  json["status"] = status_of(result);
+  json["schema"] = kParitySchema;
+  json["reasons"] = result.reasons;
+  json["campaign"] = result.campaign.name;
+  json["synthetic"] = result.campaign.synthetic;
+  json["report"] = identity_json(result.campaign);
+  json["false_alarm_probability"] = number(result.false_alarm);
+  json["signals"] = Json::array();
+  for (const ParitySignal& signal : result.parity.signals)
+    json["signals"].push_back(signal_json(signal));
+  json["records"] = Json::array();
+  for (const ParityCondition& condition : result.parity.conditions)
+    for (const ParityRecord& record : condition.records)
+      json["records"].push_back(record_json(result, record));
+  const diagnosis::FalseAlarmCheck& check = result.parity.check;
+  json["false_alarm_check"] = {{"records", check.records},
+                               {"alarms", check.alarms},
+                               {"expected", number(result.false_alarm * check.records)},
+                               {"p_value", check.records > 0 ? number(check.p) : Json(nullptr)}};
+  json["warnings"] = result.parity.warnings;
+  json["provenance"] = provenance_json(result.provenance);
+  return json;
+}
+
+std::string parity_csv(const ParityResult& result) {
+  std::string text;
+  if (const std::string status = status_of(result); status != "done")
+    text =
+        csv_comment(fmt::format("status: {}: {}", status, fmt::join(result.reasons, "; "))) + "\n";
+  text += csv_row({"condition", "repeat", "signal", "leak_level", "healthy", "sets_threshold",
+                   "peak_m", "threshold_m", "alarm", "time_to_alarm_s", "feature_mean_m",
+                   "feature_rms_m", "feature_std_m", "failure"});
+  for (const ParityCondition& condition : result.parity.conditions) {
+    for (const ParityRecord& record : condition.records) {
+      const bool ok = record.failure.empty();
+      const ParitySignal* signal = signal_of(result, record);
+      const bool judged = ok && signal != nullptr && signal->threshold_m && !record.sets_threshold;
+      const auto value = [&](double x) { return ok ? csv_number(x) : std::string(); };
+      text += csv_row({csv_text(record.condition), repeat_name(record), csv_text(record.signal),
+                       csv_text(result.campaign.find(record.condition)->leak_level.value_or("")),
+                       record.is_healthy ? "1" : "0", record.sets_threshold ? "1" : "0",
+                       value(record.peak_m), judged ? csv_number(signal->threshold_m) : "",
+                       judged ? (record.alarm ? "1" : "0") : "",
+                       judged && record.alarm ? csv_number(record.alarm_time_s) : "",
+                       value(record.features.mean), value(record.features.rms),
+                       value(record.features.std), csv_text(record.failure)});
+    }
+  }
+  return text;
+}
+
+std::vector<ResultFile> parity_series(const ParityResult& result) {
+  std::vector<ResultFile> files;
+  for (const ParityCondition& condition : result.parity.conditions) {
+    if (condition.model_m.empty()) continue;
+    files.push_back(
+        {std::filesystem::path("parity") / (condition.condition + ".csv"), series_csv(condition)});
+  }
+  return files;
+}
+
+std::string parity_text(const ParityResult& result, const Style& style) {
+  const std::string status = status_of(result);
+  std::string text;
+  if (status == "declined") {
+    text = "declined: these records have no parity residual\n";
+    for (const std::string& reason : result.reasons) text += fmt::format("  - {}\n", reason);
+    return text;
+  }
+  text = "Moving root mean square of the parity residual, against its threshold\n" +
+         condition_table(result) + "\n" + check_text(result);
+  for (const ParitySignal& signal : result.parity.signals)
+    if (!signal.reason.empty()) text += fmt::format("{}: {}\n", signal.signal, signal.reason);
+  for (const ParityCondition& condition : result.parity.conditions)
+    for (const ParityRecord& record : condition.records)
+      if (!record.failure.empty())
+        text += fmt::format("{} {}: {}\n", record.condition, repeat_name(record), record.failure);
+  for (const std::string& warning : result.parity.warnings)
+    text += wrapped("warning: " + warning, style.columns, 2) + "\n";
+  text += "status: " + status + "\n";
+  if (result.campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
+  return text;
+}
+
+}  // namespace rigcal::report

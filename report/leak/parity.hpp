@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "diagnosis/parity.hpp"
+#include "report/store/folder.hpp"
+#include "report/store/json.hpp"
+#include "report/store/provenance.hpp"
+#include "report/text/terminal.hpp"
+
+namespace rigcal::report {
+
+inline constexpr const char* kParitySchema = "rigcal.parity/1";
+
+/// Parity residuals with all that their files are made from. Borrows everything.
+struct ParityResult {
+  const datasets::Campaign& campaign;
+  const diagnosis::Parity& parity;
+  const std::vector<std::string>& reasons;  ///< why it was declined; empty if it was not
+  double false_alarm = 0.0;                 ///< stated probability for a healthy record
+  const Provenance& provenance;
+};
+
+/// "done"; "declined" where it gives reasons; "failed" where no residual could be made.
+std::string status_of(const ParityResult& result);
+
+/// parity.json as docs/parity.md describes it.
+Json parity_json(const ParityResult& result);
+
+/// parity.csv: one row per record.
+std::string parity_csv(const ParityResult& result);
+
+/// parity/<condition>.csv: time_s, the healthy model's position, and for each repeat the parity
+/// residual, the residual less what healthy records leave, and its moving root mean square. Empty
+/// fields where a sample does not count.
+std::vector<ResultFile> parity_series(const ParityResult& result);
+
+/// Alarms per condition, thresholds per signal, warnings.
+std::string parity_text(const ParityResult& result, const Style& style);
+
+}  // namespace rigcal::report

@@ -1,0 +1,128 @@
+#include "report/leak/read_leak_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/leak/leak_table.hpp"
+#include "report/store/json_node.hpp"
+#include "report/store/read_json.hpp"
+#include "report/text/readable.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using datasets::Waveform;
+
+TableLimit read_entry(const JsonNode& entry, bool closed_loop) {
+  TableLimit limit;
+  limit.waveform = one_of(entry["waveform"], std::array{Waveform::sine, Waveform::square});
+  limit.frequency_hz = entry["frequency_hz"].real();
+  limit.amplitude = entry[closed_loop ? "amplitude_m" : "amplitude_v"].real();
+  limit.target_percent = entry["target_percent"].real();
+  for (const JsonNode& root : entry["coefficients"].items())
+    limit.coefficients.push_back(root.real());
+  const JsonNode ranges = entry["coefficients_ci95"];
+  for (const JsonNode& range : ranges.items()) {
+    const auto ends = range.range();
+    limit.ranges_95.push_back(ends ? std::optional(std::array{ends->low, ends->high})
+                                   : std::nullopt);
+  }
+  if (limit.ranges_95.size() != limit.coefficients.size())
+    ranges.fail("an interval, or null, for each coefficient");
+  return limit;
+}
+
+/// To the last digits that a file in between may cost.
+bool alike(double a, double b) {
+  constexpr double kRounding = 1e-12;
+  return a == b || std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b));
+}
+
+}  // namespace
+
+EarlierLeakTable read_leak_table(const std::filesystem::path& file, model::PlantKind plant) {
+  const Json json = read_json(file, "the leak_table.json of a leak table");
+  const JsonNode root(json, file.string(), "", "leak_table.json");
+  if (root["schema"].string() != kLeakTableSchema)
+    root["schema"].fail(fmt::format("\"{}\"", kLeakTableSchema));
+  EarlierLeakTable table;
+  for (const JsonNode& value : root["assumptions"].items()) {
+    if (value["key"].string() == "residual_scale") continue;  // no parameter of the rig
+    table.rig.emplace_back(parameter_row(value["name"], plant), value["value"].real());
+  }
+  const auto entries = root["entries"].items();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const bool closed_loop = json["entries"][i].contains("amplitude_m");
+    table.limits.push_back(read_entry(entries[i], closed_loop));
+    table.targets_percent.push_back(table.limits.back().target_percent);
+  }
+  std::sort(table.targets_percent.begin(), table.targets_percent.end());
+  table.targets_percent.erase(
+      std::unique(table.targets_percent.begin(), table.targets_percent.end()),
+      table.targets_percent.end());
+  return table;
+}
+
+std::vector<std::string> rig_differences(const EarlierLeakTable& table,
+                                         const datasets::Campaign& campaign,
+                                         const std::vector<datasets::FittedValue>& fitted) {
+  const auto parameters = model::parameter_table(campaign.rig.plant);
+  auto values = model::ParameterValues::defaults(campaign.rig.plant);
+  for (const datasets::ParameterSetting& setting : campaign.parameters)
+    values.set(setting.index, setting.value);
+  for (const datasets::FittedValue& value : fitted) {
+    if (value.scope == datasets::Scope::rig) values.set(value.index, value.value);
+  }
+  auto of_table = model::ParameterValues::defaults(campaign.rig.plant);
+  for (const auto& [index, value] : table.rig) of_table.set(index, value);
+  std::vector<std::string> differences;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const model::ParameterSpec& spec = parameters[i];
+    const datasets::ParameterSetting* setting = campaign.setting(static_cast<int>(i));
+    const bool moves_oil = spec.kind != model::ParameterKind::sensor &&
+                           spec.key != "leakage_coefficient" &&
+                           (setting == nullptr || !setting->nuisance);
+    const double here = values.value[i];
+    const double there = of_table.value[i];
+    if (!moves_oil || alike(here, there) || (std::isnan(here) && std::isnan(there))) continue;
+    differences.push_back(fmt::format("{} is {} in the table, {} in the diagnosis", spec.key,
+                                      readable(there, spec.unit, 8), readable(here, spec.unit, 8)));
+  }
+  return differences;
+}
+
+void take_limits(datasets::DiagnosisSettings& settings, const std::vector<double>& targets_percent,
+                 const std::string& file) {
+  constexpr std::size_t kFewest = 3;
+  const std::size_t rows = targets_percent.size();
+  const std::size_t most = datasets::kLeakClasses.size();
+  if (rows < kFewest || rows > most) {
+    throw InputError({file}, fmt::format("the table has {} rows: expected the limits of slight, "
+                                         "medium and critical, such as --targets 10,20,30, or "
+                                         "five with that of normal and one beyond",
+                                         rows));
+  }
+  const std::size_t first = rows == most ? 0 : 1;
+  for (std::size_t i = first; i < settings.limits.size(); ++i)
+    settings.limits[i] = targets_percent[i - first] / 100.0;
+  if (!(settings.limits[0] < settings.limits[1])) {
+    throw InputError(
+        {file},
+        fmt::format("the first of {} rows, {:g} %, would be the limit of slight, but normal "
+                    "ends at {:g} %: expected five rows where the first is the limit of "
+                    "normal, or another limits_percent of normal in [diagnosis]",
+                    rows, targets_percent.front(), 100.0 * settings.limits[0]));
+  }
+}
+
+std::optional<datasets::LeakClass> class_ending_at(const datasets::DiagnosisSettings& settings,
+                                                   double target_percent) {
+  for (std::size_t i = 0; i < settings.limits.size(); ++i) {
+    if (alike(100.0 * settings.limits[i], target_percent)) return datasets::kLeakClasses[i];
+  }
+  return std::nullopt;
+}
+
+}  // namespace rigcal::report

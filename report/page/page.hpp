@@ -1,0 +1,27 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "report/store/stored.hpp"
+
+namespace rigcal::report {
+
+/// report.html of a result folder: every result in it, from its files alone. The same files give
+/// the same bytes. A result that cannot be read is named on the page and left out, unless it is the
+/// only one.
+///
+/// @param where    the folder, named in errors
+/// @throws InputError  there is no result, or none that this version can read
+std::string result_page(const ReadFile& read, const std::string& where, int threads);
+
+/// Every picture as a file of its own beneath figures/, as SVG and as PDF: <condition>_<plot>,
+/// leak_table, leak_levels, diagnosis, comparison_<parameter>, trend_<along>_<level>.
+///
+/// @throws InputError  a file is missing, or is not what this version writes
+std::vector<std::pair<std::filesystem::path, std::string>> result_figures(const ReadFile& read,
+                                                                          const std::string& where);
+
+}  // namespace rigcal::report

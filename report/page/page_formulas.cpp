@@ -1,0 +1,122 @@
+#include <array>
+
+#include "metrics/metric_table.hpp"
+#include "report/page/page_parts.hpp"
+
+namespace rigcal::report {
+namespace {
+
+struct Formula {
+  const char* name;
+  const char* formula;
+};
+
+/// What the page shows beside the metrics of metrics/metric_table.hpp.
+constexpr std::array kFormulas{
+    Formula{"noise floor",
+            "what a model equal to the true signal would score: rho2 = 1 - sigma^2 / var(y), sigma "
+            "the standard deviation of the mean of the repeats"},
+    Formula{"gain ratio, phase, delay",
+            "simulated over measured amplitude, and phase, of the least-squares sine at the "
+            "fundamental; delay = -phase / (360 f)"},
+    Formula{
+        "verdict",
+        "of a condition: the worst of its limits; FAIL beyond a limit, WARN beyond its warning; "
+        "of the whole: the worst of its conditions"},
+    Formula{"share of a limit that is used",
+            "distance of the metric from its ideal (1, 100 % or 0) over that of the limit"},
+    Formula{"cost",
+            "half the sum over all samples and channels of ((s - y) / sigma)^2, priors included"},
+    Formula{"reduced chi-square", "2 cost / (residuals - rank); 1 where the noise explains all"},
+    Formula{"standard error",
+            "root of the diagonal of max(1, chi-square) (J'J)^-1, J the Jacobian of the weighted "
+            "residuals"},
+    Formula{"robust standard error",
+            "sandwich (J'J)^-1 S (J'J)^-1, S the covariance of J'r, with residuals r as correlated "
+            "in time as they are"},
+    Formula{
+        "intervals under the errors",
+        "value ± 1.96 times the error: what it alone says, the plain (naive) one and the robust "
+        "one"},
+    Formula{
+        "95 % interval",
+        "value ± q times the robust standard error, cut at the limits of the parameter; q = t / "
+        "root of (1 - b + b t^2), t Student's with the freedom of that error, b the share of it "
+        "that the error of the value itself makes up; where residuals are below half of the "
+        "noise, or too few to tell their correlation, value ± t times the plain error; half "
+        "width: over the value"},
+    Formula{"identified, weak, not identifiable",
+            "half width of the interval up to 20 %, up to 100 %, above 100 % of the value; of the "
+            "width of the bounds where zero is arbitrary or the effect may be absent"},
+    Formula{"correlation of estimates",
+            "C(i,j) / root of C(i,i) C(j,j), C the covariance of the "
+            "standard errors"},
+    Formula{"singular values",
+            "of J with columns of length 1; a direction whose value is nil is not determined"},
+    Formula{"profile",
+            "(lowest cost with the parameter held - cost) over the rise at which the 95 % interval "
+            "ends: 1/2 (half width / standard error)^2 max(1, chi-square)"},
+    Formula{"bootstrap",
+            "percentiles of fits to redrawn repeats, or residuals in blocks, widened by t over the "
+            "normal quantile; bias: their mean - value"},
+    Formula{"lack of fit",
+            "F = variance of the residual / variance of the mean of the repeats; each sum of n "
+            "squares counts n / (1 + 2 sum rho^2) degrees of freedom; all tests together at 5 % "
+            "(Bonferroni)"},
+    Formula{"AIC, BIC",
+            "2 cost w + 2 rank, 2 cost w + rank ln(n_e); n_e of n residuals independent, w = "
+            "min(1, n_e / n)"},
+    Formula{"shift by a condition left out",
+            "largest |value without it - value| over the standard error"},
+    Formula{"autocorrelation",
+            "rho(k) = sum e(t) e(t-k) / sum e^2; band ± 1.96 / sqrt(n); test of Ljung and Box over "
+            "25 lags"},
+    Formula{"effective sample size",
+            "n / (1 + 2 sum of rho) up to the first rho that is not positive"},
+    Formula{"cross-correlation",
+            "sum e(t) u(t-lag) / (n std(e) std(u)), u the reference or command; band by the "
+            "effective sample size, Bonferroni for the peak"},
+    Formula{"periodogram",
+            "power of each line of the Fourier transform, averaged over 30 bins a decade; test of "
+            "the cumulative periodogram (Bartlett)"},
+    Formula{"quantiles",
+            "of (e - mean) / std over those of the normal distribution; test of Jarque and Bera "
+            "with the effective sample size"},
+    Formula{"drift",
+            "mean and least-squares slope of e, each against its standard error by the effective "
+            "sample size"},
+    Formula{"share of the servo flow",
+            "mean |Q_leak| / mean |Q_servo| of the model, over whole periods; a leak table looks "
+            "for all coefficients at which it is the target"},
+    Formula{"error of a leak coefficient",
+            "computed / published - 1, of the root nearest on a scale of ratios"},
+    Formula{"weighted logarithms",
+            "rms of weight ln(computed / published) over the published numbers"},
+    Formula{"class of a leak",
+            "by the share's place between the limits; probabilities by the share's interval, given "
+            "that it is not negative (docs/diagnosis.md)"},
+    Formula{"smallest leak",
+            "told from none with the stated false alarms, and found in the stated share of cases "
+            "(Currie's detection limit)"},
+    Formula{"accuracy", "right / all; interval of Wilson"},
+    Formula{"difference, p",
+            "two-sided, of (b - a) / root of the sum of the squared errors, each the larger of "
+            "standard and robust; for all parameters together by Holm's steps"},
+    Formula{"trend",
+            "weighted least squares; its error is widened by the root of reduced chi-square where "
+            "that exceeds 1, t with n - 2 degrees of freedom"},
+    Formula{"sign test", "exact binomial, two-sided, over the conditions that both results have"},
+};
+
+}  // namespace
+
+Json formulas_view() {
+  Json rows = Json::array();
+  for (const metrics::MetricSpec& metric : metrics::kMetrics)
+    rows.push_back({{"name", metric.name}, {"formula", metric.formula}});
+  for (const Formula& each : kFormulas)
+    rows.push_back({{"name", each.name}, {"formula", each.formula}});
+  return rows;
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,238 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "report/figure/decimate.hpp"
+#include "report/page/page_parts.hpp"
+
+namespace rigcal::report {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+constexpr std::size_t kPoints = 1200;  ///< of one line of a picture
+constexpr int kLengthDigits = 3;
+
+const Json* signal_of(const Json& parity, const Json& record) {
+  for (const Json& signal : parity.at("signals"))
+    if (signal.at("signal") == record.at("signal")) return &signal;
+  return nullptr;
+}
+
+/// What is told of the repeats of one condition together.
+struct Summary {
+  std::string condition, level;
+  std::vector<const Json*> records;
+  const Json* signal = nullptr;
+  bool healthy = false;
+  bool reference = false;  ///< its records set the threshold
+  int judged = 0;
+  int alarms = 0;
+  std::optional<double> first_s;
+  double largest_m = 0.0;
+  std::string failure;
+};
+
+std::vector<Summary> summaries(const Json& parity) {
+  std::vector<Summary> list;
+  for (const Json& record : parity.at("records")) {
+    const std::string name = text_of(record, "condition");
+    if (list.empty() || list.back().condition != name) {
+      Summary& fresh = list.emplace_back();
+      fresh.condition = name;
+      fresh.level = text_of(record, "leak_level");
+      fresh.signal = signal_of(parity, record);
+      fresh.healthy = record.at("healthy").get<bool>();
+    }
+    Summary& own = list.back();
+    own.records.push_back(&record);
+    if (!text_of(record, "failure").empty()) own.failure = text_of(record, "failure");
+    own.reference = own.reference || record.at("sets_threshold").get<bool>();
+    own.largest_m = std::max(own.largest_m, number_of(record, "peak_m").value_or(0.0));
+    if (!record.at("alarm").is_boolean()) continue;
+    ++own.judged;
+    if (!record.at("alarm").get<bool>()) continue;
+    ++own.alarms;
+    const double at_s = record.at("time_to_alarm_s").get<double>();
+    own.first_s = std::min(own.first_s.value_or(at_s), at_s);
+  }
+  return list;
+}
+
+Json alarm_badge(const Summary& summary) {
+  if (summary.judged == 0 && summary.reference && summary.failure.empty())
+    return {{"word", "reference"}, {"mark", "○"}, {"class", "none"}};
+  if (summary.judged == 0)
+    return {{"word", summary.failure.empty() ? "not judged" : "failed"},
+            {"mark", "○"},
+            {"class", "none"}};
+  if (summary.alarms == 0) return {{"word", "no alarm"}, {"mark", "✓"}, {"class", "good"}};
+  return {{"word", fmt::format("alarm in {} of {}", summary.alarms, summary.judged)},
+          {"mark", "!"},
+          {"class", "warn"}};
+}
+
+std::vector<double> in_millimetres(const std::vector<double>& metres) {
+  std::vector<double> result = metres;
+  for (double& value : result) value *= kMillimetres;
+  return result;
+}
+
+/// Columns of all repeats whose names begin so, thinned.
+void add_lines(const Table& series, const std::string& column, const char* style, const char* name,
+               Plot& plot) {
+  const std::vector<double>* time = series.find("time_s");
+  if (time == nullptr) return;
+  const Buckets thin = buckets(time->size(), kPoints);
+  for (const auto& title : series.names) {
+    if (title.rfind(column + "_", 0) != 0) continue;
+    Trace line = empty_trace(Trace::Kind::line, style, plot.traces.empty() ? name : "");
+    line.x = thinned_times(*time, thin);
+    line.y = thinned(in_millimetres(*series.find(title)), thin);
+    plot.traces.push_back(std::move(line));
+  }
+}
+
+Plot residual_plot(const Summary& summary, const Table& series) {
+  Plot plot;
+  plot.title = fmt::format("Parity residual of {}, all repeats", summary.condition);
+  plot.x_label = "time [s]";
+  plot.y_label = "residual [mm]";
+  add_lines(series, "residual", "residual", "each repeat", plot);
+  return plot;
+}
+
+Plot alarm_plot(const Summary& summary, const Table& series) {
+  Plot plot;
+  plot.title = fmt::format("Moving root mean square of {}, all repeats, and its threshold",
+                           summary.condition);
+  plot.x_label = "time [s]";
+  plot.y_label = "moving rms [mm]";
+  plot.height = 160.0;
+  add_lines(series, "moving_rms", "model", "each repeat", plot);
+  if (summary.signal != nullptr)
+    if (const auto threshold = number_of(*summary.signal, "threshold_m"))
+      plot.levels.push_back(kMillimetres * *threshold);
+  return plot;
+}
+
+std::string sentence_of(const Json& parity, const std::vector<Summary>& list) {
+  const std::string status = text_of(parity, "status");
+  if (status == "declined") return "These records have no parity residual.";
+  if (status != "done") return "No parity residual could be made: nothing below may be used.";
+  int judged = 0;
+  int alarmed = 0;
+  for (const Summary& each : list) {
+    judged += each.judged > 0 ? 1 : 0;
+    alarmed += each.alarms > 0 ? 1 : 0;
+  }
+  if (judged == 0) return "Nothing could be judged: no signal has enough healthy records.";
+  return fmt::format(
+      "{} of {} conditions raise an alarm; a healthy record does with a probability "
+      "of {:g} %.",
+      alarmed, judged, 100.0 * parity.at("false_alarm_probability").get<double>());
+}
+
+}  // namespace
+
+Json parity_headline(const Json& parity) {
+  const auto list = summaries(parity);
+  const std::string sentence = sentence_of(parity, list);
+  if (text_of(parity, "status") != "done") {
+    Json view = make_headline(text_of(parity, "status") == "declined" ? "DECLINED" : "FAILED", "✕",
+                              "bad", sentence);
+    for (const Json& reason : parity.at("reasons"))
+      add_reason(view, reason.get<std::string>(), "parity");
+    return view;
+  }
+  const bool judged =
+      std::any_of(list.begin(), list.end(), [](const Summary& each) { return each.judged > 0; });
+  const bool alarm =
+      std::any_of(list.begin(), list.end(), [](const Summary& each) { return each.alarms > 0; });
+  Json view = !judged ? make_headline("NOT JUDGED", "○", "none", sentence)
+              : alarm ? make_headline("ALARM", "!", "warn", sentence)
+                      : make_headline("NO ALARM", "✓", "good", sentence);
+  for (const Summary& each : list) {
+    if (each.alarms == 0) continue;
+    add_reason(view,
+               fmt::format("{}: alarm in {} of {} records, after {:.3g} s", each.condition,
+                           each.alarms, each.judged, *each.first_s),
+               "parity");
+  }
+  return view;
+}
+
+std::vector<Figure> parity_figures(const ParityFiles& stored) {
+  std::vector<Figure> figures;
+  for (const Summary& each : summaries(stored.parity)) {
+    const auto series = stored.series.find(each.condition);
+    if (series == stored.series.end()) continue;
+    figures.push_back({each.condition + "_parity", residual_plot(each, series->second)});
+    figures.push_back({each.condition + "_alarm", alarm_plot(each, series->second)});
+  }
+  return figures;
+}
+
+Json parity_view(const ParityFiles& stored) {
+  const Json& parity = stored.parity;
+  const auto list = summaries(parity);
+  Json view;
+  view["sentence"] = sentence_of(parity, list);
+  view["done"] = text_of(parity, "status") == "done";
+  view["reasons"] = parity.at("reasons");
+  view["rate"] = fmt::format("{:g}", 100.0 * parity.at("false_alarm_probability").get<double>());
+  view["conditions"] = Json::array();
+  view["pictures"] = Json::array();
+  for (const Summary& each : list) {
+    const Json threshold = each.signal == nullptr ? Json() : each.signal->at("threshold_m");
+    view["conditions"].push_back(
+        {{"condition", each.condition},
+         {"level", each.level},
+         {"healthy", each.healthy},
+         {"badge", alarm_badge(each)},
+         {"largest", shown_in(Json(each.largest_m), 1.0 / kMillimetres, kLengthDigits)},
+         {"threshold", shown_in(threshold, 1.0 / kMillimetres, kLengthDigits)},
+         {"first", shown_in(each.first_s ? Json(*each.first_s) : Json(), 1.0, kLengthDigits)},
+         {"failure", each.failure},
+         {"failed", !each.failure.empty()}});
+    const auto series = stored.series.find(each.condition);
+    if (series == stored.series.end()) continue;
+    view["pictures"].push_back({{"name", each.condition},
+                                {"badge", alarm_badge(each)},
+                                {"residual_html", svg(residual_plot(each, series->second))},
+                                {"alarm_html", svg(alarm_plot(each, series->second))}});
+  }
+  view["has_conditions"] = !view["conditions"].empty();
+  view["signals"] = Json::array();
+  for (const Json& signal : parity.at("signals")) {
+    const auto millimetres = [&](const Json& value) {
+      return shown_in(value, 1.0 / kMillimetres, kLengthDigits);
+    };
+    const Json& features = signal.at("feature_thresholds");
+    view["signals"].push_back(
+        {{"signal", text_of(signal, "signal")},
+         {"window", shown_in(signal.at("window_s"), 1.0, kLengthDigits)},
+         {"healthy", fmt::format("{}", signal.at("healthy_records").get<int>())},
+         {"threshold", millimetres(signal.at("threshold_m"))},
+         {"mean", millimetres(features.at("mean_m"))},
+         {"rms", millimetres(features.at("rms_m"))},
+         {"std", millimetres(features.at("std_m"))},
+         {"reason", text_of(signal, "reason")}});
+  }
+  const Json& check = parity.at("false_alarm_check");
+  const int checked = check.at("records").get<int>();
+  view["check"] =
+      checked == 0
+          ? std::string(
+                "No healthy record is left to check the thresholds with: all of them set one.")
+          : fmt::format(
+                "Of {} healthy records that set no threshold {} raise{} an alarm; {:.3g} "
+                "would be expected.",
+                checked, check.at("alarms").get<int>(),
+                check.at("alarms").get<int>() == 1 ? "s" : "", check.at("expected").get<double>());
+  view["warnings"] = parity.at("warnings");
+  view["has_warnings"] = !view["warnings"].empty();
+  return view;
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,180 @@
+#include "report/store/checkpoint.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "common/error.hpp"
+#include "common/file.hpp"
+#include "report/store/json.hpp"
+#include "report/store/read_json.hpp"
+
+namespace rigcal::report {
+namespace {
+
+constexpr const char* kSchema = "rigcal.checkpoint/1";
+
+/// What must be the same for a fit to go on.
+Json identity(const Provenance& provenance) {
+  Json json;
+  json["version"] = std::string(version());
+  json["revision"] = std::string(revision());
+  json["seed"] = provenance.seed;
+  json["options"] = Json::object();
+  for (const auto& [name, value] : provenance.options) json["options"][name] = value;
+  json["inputs"] = Json::array();
+  for (const InputFile& input : provenance.inputs) json["inputs"].push_back(input.sha256);
+  return json;
+}
+
+/// What a checkpoint cannot hold; what() says it in words.
+class NoCheckpoint : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A whole number of a range. (Conversion of any other number is undefined, or another value.)
+template <typename Integer>
+Integer whole(const Json& json, const std::string& key, Integer lowest, Integer highest) {
+  const Json& value = json.at(key);
+  const double number = value.is_number_integer() ? value.get<double>() : std::nan("");
+  if (number >= static_cast<double>(lowest) && number <= static_cast<double>(highest))
+    return value.get<Integer>();
+  throw NoCheckpoint(fmt::format("key '{}': found {}, expected a whole number from {} to {}", key,
+                                 value.is_number() ? value.dump() : "no number", lowest, highest));
+}
+
+constexpr int kMostCounted = 1'000'000'000;
+
+Json start_json(const calib::StartReport& start) {
+  return {{"number", start.number},
+          {"start_values", start.start_values},
+          {"end_values", start.end_values},
+          {"initial_cost", start.initial_cost},
+          {"final_cost", start.final_cost},
+          {"iterations", start.iterations},
+          {"status", static_cast<int>(start.status)},
+          {"message", start.message}};
+}
+
+calib::StartReport start_from(const Json& json) {
+  calib::StartReport start;
+  start.number = whole(json, "number", 1, kMostCounted);
+  start.start_values = json.at("start_values").get<std::vector<double>>();
+  start.end_values = json.at("end_values").get<std::vector<double>>();
+  start.initial_cost = json.at("initial_cost").get<double>();
+  start.final_cost = json.at("final_cost").get<double>();
+  start.iterations = whole(json, "iterations", 0, kMostCounted);
+  start.status = static_cast<calib::FitStatus>(
+      whole(json, "status", 0, static_cast<int>(calib::FitStatus::failed)));
+  start.message = json.at("message").get<std::string>();
+  return start;
+}
+
+Json ledger_json(const calib::EvaluationLedger& ledger) {
+  Json failures = Json::array();
+  for (const calib::SimulationFailure& each : ledger.failures) {
+    failures.push_back({{"condition", each.condition},
+                        {"parameters", each.parameters},
+                        {"time_s", each.time_s},
+                        {"reason", each.reason},
+                        {"start", each.start}});
+  }
+  Json kept = Json::array();
+  for (const auto& [key, count] : ledger.kept)
+    kept.push_back({key.first, static_cast<int>(key.second), count});
+  return {{"evaluations", ledger.evaluations},
+          {"failure_count", ledger.failure_count},
+          {"failures", failures},
+          {"kept", kept}};
+}
+
+calib::EvaluationLedger ledger_from(const Json& json) {
+  calib::EvaluationLedger ledger;
+  constexpr long kMostEvaluations = long{1} << 53;
+  ledger.evaluations = whole(json, "evaluations", 0L, kMostEvaluations);
+  ledger.failure_count = whole(json, "failure_count", 0L, kMostEvaluations);
+  for (const Json& each : json.at("failures")) {
+    calib::SimulationFailure& failure = ledger.failures.emplace_back();
+    failure.condition = each.at("condition").get<std::string>();
+    failure.parameters = each.at("parameters").get<std::vector<std::pair<std::string, double>>>();
+    failure.time_s = each.at("time_s").get<double>();
+    failure.reason = each.at("reason").get<std::string>();
+    failure.start = whole(each, "start", 0, kMostCounted);
+  }
+  for (const Json& each : json.at("kept")) {
+    // [condition, status, count]
+    const Json entry{{"condition", each.at(0)}, {"status", each.at(1)}, {"count", each.at(2)}};
+    const auto status = static_cast<model::SimulationStatus>(
+        whole(entry, "status", 0, static_cast<int>(model::SimulationStatus::cancelled)));
+    const auto condition = static_cast<std::size_t>(whole(entry, "condition", 0, kMostCounted));
+    ledger.kept[{condition, status}] = whole(entry, "count", 0, kMostCounted);
+  }
+  return ledger;
+}
+
+void require_same_fit(const std::string& file, const Json& found, const Json& expected) {
+  for (const auto& [key, value] : expected.items()) {
+    const auto other = found.find(key);
+    if (other != found.end() && *other == value) continue;
+    throw InputError({file}, fmt::format("is the checkpoint of another fit: its {} differ{}; "
+                                         "expected the same, or a fit without --resume",
+                                         key, key.back() == 's' ? "" : "s"));
+  }
+}
+
+/// Numbers that are possible may still be others than were written.
+void require_own_hash(Json json) {
+  const std::string hash = json.at("sha256").get<std::string>();
+  json.erase("sha256");
+  if (sha256_of_text(json_text(json)) != hash)
+    throw NoCheckpoint(
+        "was changed since it was written; expected it as it was, or a fit without --resume");
+}
+
+}  // namespace
+
+std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenance& provenance) {
+  Json json;
+  json["schema"] = kSchema;
+  json["fit"] = identity(provenance);
+  json["starts"] = Json::array();
+  for (const calib::StartReport& start : checkpoint.starts)
+    json["starts"].push_back(start_json(start));
+  json["best"] = checkpoint.best;
+  json["best_z"] = checkpoint.best_z;
+  json["ledger"] = ledger_json(checkpoint.ledger);
+  json["sha256"] = sha256_of_text(json_text(json));
+  return json_text(json);
+}
+
+calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Provenance& provenance) {
+  const Json json = read_json(file, "a checkpoint of rigcal fit, or a fit without --resume");
+  try {
+    if (json.at("schema") != kSchema) {
+      throw InputError({file.string()}, fmt::format("key 'schema': expected \"{}\"", kSchema));
+    }
+    require_same_fit(file.string(), json.at("fit"), identity(provenance));
+    calib::Checkpoint checkpoint;
+    for (const Json& start : json.at("starts")) {
+      checkpoint.starts.push_back(start_from(start));
+      // They are kept in the order in which they were made.
+      if (checkpoint.starts.back().number != static_cast<int>(checkpoint.starts.size()))
+        throw NoCheckpoint("key 'starts': expected them numbered from 1");
+    }
+    checkpoint.best = whole(json, "best", 0, static_cast<int>(checkpoint.starts.size()));
+    checkpoint.best_z = json.at("best_z").get<std::vector<double>>();
+    checkpoint.ledger = ledger_from(json.at("ledger"));
+    require_own_hash(json);
+    return checkpoint;
+  } catch (const NoCheckpoint& error) {
+    throw InputError({file.string()}, error.what());
+  } catch (const Json::exception& error) {
+    throw InputError({file.string()},
+                     fmt::format("is no checkpoint of rigcal fit: {}; expected one, or a fit "
+                                 "without --resume",
+                                 error.what()));
+  }
+}
+
+}  // namespace rigcal::report

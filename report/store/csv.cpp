@@ -1,0 +1,217 @@
+#include "report/store/csv.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "metrics/metric_table.hpp"
+#include "report/store/csv_fields.hpp"
+
+namespace rigcal::report {
+namespace {
+
+std::string status_line(const calib::Fit& fit) {
+  const calib::FitStatus status = status_of(fit);
+  if (status == calib::FitStatus::converged) return {};
+  return csv_comment(fmt::format("status: {}: {}", to_string(status), fit.message));
+}
+
+std::vector<std::string> score_fields(const calib::ChannelScore& score) {
+  std::vector<std::string> fields;
+  for (const metrics::MetricSpec& metric : metrics::kMetrics) {
+    fields.push_back(score.agreement ? csv_number((*score.agreement).*metric.value)
+                                     : std::string());
+  }
+  const auto& floor = score.noise_floor;
+  fields.push_back(floor ? csv_number(floor->rho2) : std::string());
+  fields.push_back(floor ? csv_number(floor->ccc) : std::string());
+  fields.push_back(floor ? csv_number(floor->absolute_error_percent) : std::string());
+  fields.push_back(csv_number(score.gain_ratio));
+  fields.push_back(csv_number(score.phase_deg));
+  fields.push_back(csv_number(score.delay_s));
+  return fields;
+}
+
+double at(std::span<const double> values, std::size_t i) {
+  return i < values.size() ? values[i] : std::nan("");
+}
+
+/// Scatter of the repeats about their mean, shape (samples); empty where there is but one.
+std::span<const double> sd_of(const Result& result, const std::string& condition,
+                              datasets::Channel channel) {
+  for (const datasets::Record& record : result.records) {
+    if (record.condition != condition) continue;
+    const auto series = record.channels.find(channel);
+    if (series != record.channels.end() && series->second.repeats > 1) return series->second.sd;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string scorecard_csv(const Result& result) {
+  const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
+  std::vector<std::string> titles{"condition",
+                                  "use",
+                                  "waveform",
+                                  "frequency_hz",
+                                  closed_loop ? "amplitude_m" : "amplitude_v",
+                                  "leak_level",
+                                  "samples",
+                                  "verdict",
+                                  "channel",
+                                  "unit"};
+  for (const metrics::MetricSpec& metric : metrics::kMetrics) titles.emplace_back(metric.name);
+  for (const char* title :
+       {"noise_floor_rho2", "noise_floor_ccc", "noise_floor_absolute_error_percent", "gain_ratio",
+        "phase_deg", "delay_s", "problem"}) {
+    titles.emplace_back(title);
+  }
+  std::string text = status_line(result.fit) + csv_row(titles);
+  for (const calib::ConditionScore& score : result.fit.conditions) {
+    const datasets::Condition* condition = result.campaign.find(score.id);
+    if (condition == nullptr) continue;
+    const std::vector<std::string> of_condition{
+        score.id,
+        std::string(to_string(score.use)),
+        std::string(to_string(condition->waveform)),
+        csv_number(condition->frequency_hz),
+        csv_number(condition->amplitude),
+        csv_text(condition->leak_level.value_or("")),
+        fmt::format("{}", score.samples),
+        score.verdict ? std::string(to_string(*score.verdict)) : std::string()};
+    const auto add = [&](const std::string& channel, const std::string& unit,
+                         const calib::ChannelScore& values, const std::string& problem) {
+      std::vector<std::string> fields = of_condition;
+      fields.push_back(channel);
+      fields.push_back(unit);
+      for (std::string& field : score_fields(values)) fields.push_back(std::move(field));
+      fields.push_back(csv_text(problem));
+      text += csv_row(fields);
+    };
+    if (score.channels.empty()) add("", "", {}, score.failure);
+    for (const calib::ChannelScore& channel : score.channels) {
+      const datasets::ChannelInfo& about = info(channel.channel);
+      add(std::string(about.key), std::string(about.unit), channel,
+          channel.problem.empty() ? score.failure : channel.problem);
+    }
+  }
+  return text;
+}
+
+std::string residuals_csv(const Result& result, const calib::ConditionScore& score) {
+  std::string text = status_line(result.fit);
+  if (!score.failure.empty()) text += csv_comment("not simulated: " + score.failure);
+  std::vector<std::string> titles{"time_s"};
+  for (const auto& [channel, series] : score.series) {
+    for (const char* what : {"measured", "simulated", "residual", "sd"}) {
+      titles.push_back(fmt::format("{}_{}", what, info(channel).name));
+    }
+  }
+  const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
+  titles.insert(titles.end(), {"in_window", closed_loop ? "reference_m" : "command_v",
+                               "servo_flow_m3_per_s", "leakage_flow_m3_per_s"});
+  text += csv_row(titles);
+  std::vector<std::span<const double>> scatter;
+  for (const auto& [channel, series] : score.series)
+    scatter.push_back(sd_of(result, score.id, channel));
+  for (std::size_t i = 0; i < score.time_s.size(); ++i) {
+    std::vector<std::string> fields{csv_number(score.time_s[i])};
+    auto sd = scatter.begin();
+    for (const auto& [channel, series] : score.series) {
+      // A condition that could not be simulated has a measured side alone.
+      const auto& [measured, simulated] = series;
+      const double y = at(measured, i);
+      const double s = at(simulated, i);
+      fields.push_back(csv_number(y));
+      fields.push_back(csv_number(s));
+      fields.push_back(csv_number(y - s));
+      fields.push_back(csv_number(at(*sd++, i)));
+    }
+    fields.emplace_back(score.in_window.empty() || score.in_window[i] ? "1" : "0");
+    fields.push_back(csv_number(at(score.drive, i)));
+    fields.push_back(csv_number(at(score.servo_flow_m3_per_s, i)));
+    fields.push_back(csv_number(at(score.leakage_flow_m3_per_s, i)));
+    text += csv_row(fields);
+  }
+  return text;
+}
+
+std::string averaged_csv(const datasets::Record& record) {
+  std::vector<std::string> titles{"time_s"};
+  for (const auto& [channel, series] : record.channels) {
+    for (const char* what : {"mean", "sd", "count"}) {
+      titles.push_back(fmt::format("{}_{}", info(channel).name, what));
+    }
+  }
+  std::string text = csv_row(titles);
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    std::vector<std::string> fields{csv_number(record.time_s[i])};
+    for (const auto& [channel, series] : record.channels) {
+      fields.push_back(csv_number(series.mean[i]));
+      fields.push_back(series.sd.empty() ? std::string() : csv_number(series.sd[i]));
+      fields.push_back(series.count.empty() ? std::string() : fmt::format("{}", series.count[i]));
+    }
+    text += csv_row(fields);
+  }
+  return text;
+}
+
+std::string repeatability_csv(const std::vector<datasets::Record>& records) {
+  std::string text =
+      csv_row({"condition", "channel", "unit", "repeats", "pooled_sd", "sd_of_mean",
+               "noise_floor_rho2", "noise_floor_ccc", "noise_floor_absolute_error_percent",
+               "offset_range_s", "repeat_offsets_s", "repeat_deviations", "outliers"});
+  for (const datasets::Record& record : records) {
+    std::vector<std::string> offsets;
+    std::vector<std::string> deviations;
+    for (const datasets::RepeatReport& report : record.repeat_reports) {
+      offsets.push_back(csv_number(report.offset_s));
+      deviations.push_back(csv_number(report.deviation));
+    }
+    for (const datasets::Repeatability& r : datasets::repeatability(record)) {
+      const datasets::ChannelInfo& about = info(r.channel);
+      const auto& floor = r.noise_floor;
+      text += csv_row(
+          {record.condition, std::string(about.key), std::string(about.unit),
+           fmt::format("{}", r.repeats), csv_number(r.pooled_sd), csv_number(r.sd_of_mean),
+           floor ? csv_number(floor->rho2) : "", floor ? csv_number(floor->ccc) : "",
+           floor ? csv_number(floor->absolute_error_percent) : "",
+           csv_number(datasets::offset_range_s(record)), fmt::format("{}", fmt::join(offsets, " ")),
+           fmt::format("{}", fmt::join(deviations, " ")),
+           csv_text(fmt::format("{}", fmt::join(datasets::outliers(record), "; ")))});
+    }
+  }
+  return text;
+}
+
+std::string simulation_csv(std::span<const double> time_s, std::span<const double> reference_m,
+                           std::span<const model::Output> outputs,
+                           const model::Simulation& simulation) {
+  std::string text;
+  if (!simulation.ok()) {
+    const char* status =
+        simulation.status == model::SimulationStatus::cancelled ? "stopped" : "failed";
+    text += csv_comment(fmt::format("status: {}: {} at {:.6g} s: {}", status,
+                                    to_string(simulation.status), simulation.failed_at_s,
+                                    simulation.reason));
+  }
+  std::vector<std::string> titles{"time_s"};
+  if (!reference_m.empty()) titles.emplace_back("reference_m");
+  for (const model::Output output : outputs) titles.emplace_back(output_name(output));
+  text += csv_row(titles);
+  if (!simulation.ok()) return text;
+  for (std::size_t i = 0; i < time_s.size(); ++i) {
+    std::vector<std::string> fields{csv_number(time_s[i])};
+    if (!reference_m.empty()) fields.push_back(csv_number(reference_m[i]));
+    for (std::size_t k = 0; k < outputs.size(); ++k) {
+      fields.push_back(csv_number(
+          simulation.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k))));
+    }
+    text += csv_row(fields);
+  }
+  return text;
+}
+
+}  // namespace rigcal::report

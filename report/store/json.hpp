@@ -1,0 +1,77 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
+#include "report/store/result.hpp"
+#include "report/store/validity.hpp"
+
+namespace rigcal::report {
+
+/// Keeps the order in which keys are put in.
+using Json = nlohmann::ordered_json;
+
+inline constexpr const char* kFitSchema = "rigcal.fit/1";
+inline constexpr const char* kValidationSchema = "rigcal.validation/1";
+
+/// A number, or null where it is not finite: JSON knows neither NaN nor infinity.
+Json number(double value);
+Json number(const std::optional<double>& value);
+/// A list of such.
+Json numbers(const std::vector<double>& values);
+
+/// `correlation` of a result: names of the estimates and the matrix, shape (names)^2.
+Json correlation_json(const std::vector<std::string>& names, const Eigen::MatrixXd& correlation);
+
+/// What a result was made from, as every result file holds it.
+Json provenance_json(const Provenance& provenance);
+
+/// fit.json or validation.json as docs/command-line.md describes them; `status` comes first.
+Json result_json(const Result& result);
+
+/// Text of a JSON file: two blanks of indentation, final newline, numbers that read back to the
+/// same bits. Bytes that are not UTF-8 are replaced.
+std::string json_text(const Json& json);
+
+/// A record as `check` and `average` tell of it: sampling, repeats, noise of each channel.
+Json record_json(const datasets::Condition& condition, const datasets::Record& record);
+
+/// The parameter table of a plant.
+Json parameters_json(model::PlantKind plant);
+
+/// What `validate` needs of an earlier fit.
+struct EarlierFit {
+  calib::FitStatus status = calib::FitStatus::failed;
+  std::string message;
+  std::vector<datasets::FittedValue> values;  ///< of the fitted parameters, without nuisance
+  std::vector<datasets::FittedValue> known;   ///< of the others, scope rig
+  std::vector<std::pair<std::string, datasets::Use>> conditions;  ///< id and use of each scored
+  std::vector<std::string> input_hashes;                          ///< SHA-256
+  /// As the fit judged them; not assessed where it says nothing.
+  calib::Aspect adequacy;
+  calib::Aspect parameters;
+  Validity validity;
+  std::vector<int> indices;  ///< table rows of the fitted values of scope rig that have an error
+  /// Of these, SI, shape (indices)^2: the larger of standard and robust error, and the correlation.
+  Eigen::MatrixXd covariance;
+};
+
+/// Reads fit.json strictly.
+///
+/// @throws InputError  file (and line:column where it is no JSON, or the key where it is not what a
+///                     fit.json holds), what was found and what was expected; a fit that failed
+EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant);
+
+/// Values of the truth.json that `synthesize` wrote.
+///
+/// @throws InputError  as read_fit()
+std::vector<datasets::FittedValue> read_truth(const std::filesystem::path& file,
+                                              model::PlantKind plant);
+
+}  // namespace rigcal::report

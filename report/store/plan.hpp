@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+#include "calib/trust/plan.hpp"
+#include "report/store/json.hpp"
+#include "report/store/provenance.hpp"
+
+namespace rigcal::report {
+
+/// plan.json (docs/command-line.md).
+Json plan_json(const datasets::Campaign& campaign, const calib::Plan& plan,
+               const Provenance& provenance);
+
+/// Table of relative standard deviations per record, and what is wanting, for the terminal.
+std::string plan_text(const datasets::Campaign& campaign, const calib::Plan& plan);
+
+}  // namespace rigcal::report

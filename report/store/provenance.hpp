@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
+
+namespace rigcal::report {
+
+/// "0.1.0"
+std::string_view version();
+/// Git revision of the sources, or "unknown" where they were no git checkout.
+std::string_view revision();
+
+/// Operating system, processor family and number of processors.
+std::string machine();
+
+/// A file that a result depends on.
+struct InputFile {
+  std::string path;  ///< as it was opened
+  std::string sha256;
+};
+
+/// What a result was made from, and how: enough to make it again.
+struct Provenance {
+  std::string command;  ///< the command line
+  std::uint64_t seed = 1;
+  std::vector<std::pair<std::string, std::string>> options;  ///< that change numbers
+  std::vector<InputFile> inputs;
+};
+
+/// Hashes of the campaign file, of every record file once, in the order of reading, and of `more`.
+///
+/// @throws InputError  a file cannot be read
+std::vector<InputFile> hash_inputs(const datasets::Campaign& campaign,
+                                   const std::vector<datasets::Record>& records,
+                                   const std::vector<std::filesystem::path>& more = {});
+
+}  // namespace rigcal::report

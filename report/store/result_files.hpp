@@ -1,0 +1,28 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "report/store/folder.hpp"
+#include "report/store/stored.hpp"
+
+// The files of one run belong together: the result in JSON names the others with their SHA-256, and
+// who reads them back refuses what another run has left in their place.
+
+namespace rigcal::report {
+
+/// Adds `provenance.files`: path and SHA-256 of each of `files`, in their order.
+void name_files(const std::vector<ResultFile>& files, Json& result);
+
+/// Reads the files of a result's own run.
+///
+/// @param read    the folder, borrowed
+/// @param result  borrowed; one that names no files, of an earlier version, takes any
+/// @param where   the folder, for messages
+/// @param file    of the result, for messages
+/// @return        throws InputError where a file is not the one that the result names
+ReadFile files_of_run(const ReadFile& read, const Json& result, const std::string& where,
+                      const std::string& file);
+
+}  // namespace rigcal::report

@@ -1,0 +1,126 @@
+#include "report/store/stored.hpp"
+
+#include <fmt/format.h>
+
+#include <system_error>
+
+#include "common/error.hpp"
+#include "common/file.hpp"
+#include "common/parallel.hpp"
+#include "datasets/campaign/condition_id.hpp"
+#include "report/store/json_fields.hpp"
+#include "report/store/read_json.hpp"
+#include "report/store/result_files.hpp"
+
+namespace rigcal::report {
+namespace {
+
+/// Of a table. One of 20 columns has two million rows then.
+constexpr std::size_t kMostTableBytes = std::size_t{512} << 20;
+
+std::string path_in(const std::string& where, const std::string& name) {
+  return (std::filesystem::path(where) / name).string();
+}
+
+Json parsed(const ReadFile& read, const std::string& where, const std::string& name) {
+  const auto text = read(name);
+  if (!text)
+    throw InputError({path_in(where, name)}, "is missing; make the result again with this version");
+  return parse_json(*text, path_in(where, name));
+}
+
+/// The id of a condition, by which its file is found: whoever made the result, that is no way
+/// elsewhere.
+std::string checked_id(const Json& entry, const char* key, const std::string& file) {
+  const std::string id = text_of(entry, key);
+  if (datasets::is_condition_id(id)) return id;
+  throw InputError({file}, fmt::format("key '{}' of a condition: found \"{}\", expected {}", key,
+                                       id.substr(0, 40), datasets::condition_id_rule()));
+}
+
+}  // namespace
+
+ReadFile files_in(const std::filesystem::path& folder) {
+  return [folder](const std::filesystem::path& path) -> std::optional<std::string> {
+    std::error_code error;
+    if (!std::filesystem::exists(folder / path, error)) return std::nullopt;
+    const std::size_t most = path.extension() == ".json" ? JsonLimits().bytes : kMostTableBytes;
+    return read_file(folder / path, most, "a result of rigcal");
+  };
+}
+
+Json load_json(const ReadFile& read, const std::string& where, const std::string& name) {
+  Json json = parsed(read, where, name);
+  const std::string expected =
+      fmt::format("rigcal.{}/1", std::filesystem::path(name).stem().string());
+  const bool has_schema = json.is_object() && json.contains("schema");
+  if (has_schema && json["schema"] == expected) return json;
+  throw InputError(
+      {path_in(where, name)},
+      fmt::format("found {}; expected \"schema\": \"{}\"",
+                  has_schema ? "\"schema\": " + json["schema"].dump() : "no schema", expected));
+}
+
+Calibration load_calibration(const ReadFile& read, const std::string& where, int threads) {
+  Calibration stored;
+  const bool has_fit = read("fit.json").has_value();
+  const bool both = has_fit && read("validation.json").has_value();
+  const bool is_fit =
+      both ? text_of(parsed(read, where, "residual_tests.json"), "of") == "rigcal.fit/1" : has_fit;
+  stored.file = is_fit ? "fit.json" : "validation.json";
+  stored.result = load_json(read, where, stored.file);
+  stored.of_tables =
+      stored.result.is_object() && text_of(stored.result, "of") == "published tables";
+  if (stored.of_tables) return stored;
+  const ReadFile own = files_of_run(read, stored.result, where, stored.file);
+  stored.curves = parsed(own, where, "residual_tests.json");
+  const Json& conditions = stored.result.at("conditions");
+  stored.series.resize(conditions.size());
+  parallel_for(conditions.size(), threads, [&](std::size_t i) {
+    const std::string id = checked_id(conditions.at(i), "id", path_in(where, stored.file));
+    const std::string name = "residuals/" + id + ".csv";
+    if (const auto text = own(name)) stored.series[i] = parse_table(*text, path_in(where, name));
+  });
+  return stored;
+}
+
+LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
+  LeakTableFiles stored;
+  stored.table = load_json(read, where, "leak_table.json");
+  const ReadFile own = files_of_run(read, stored.table, where, "leak_table.json");
+  for (const Json& feature : stored.table.at("features")) {
+    const std::string level = text_of(feature, "level");
+    const std::string name = "levels/" + level_file(level);
+    if (const auto series = own(name))
+      stored.levels.emplace_back(level, parse_table(*series, path_in(where, name)));
+  }
+  return stored;
+}
+
+ParityFiles load_parity(const ReadFile& read, const std::string& where) {
+  ParityFiles stored;
+  stored.parity = load_json(read, where, "parity.json");
+  const ReadFile own = files_of_run(read, stored.parity, where, "parity.json");
+  for (const Json& record : stored.parity.at("records")) {
+    const std::string condition = checked_id(record, "condition", path_in(where, "parity.json"));
+    if (stored.series.contains(condition)) continue;
+    const std::string name = "parity/" + condition + ".csv";
+    if (const auto series = own(name))
+      stored.series.emplace(condition, parse_table(*series, path_in(where, name)));
+  }
+  return stored;
+}
+
+std::string plain_name(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                       c == '.' || c == '-';
+    name += plain ? c : '_';
+  }
+  return name;
+}
+
+std::string level_file(const std::string& level) { return plain_name(level) + ".csv"; }
+
+}  // namespace rigcal::report

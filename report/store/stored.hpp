@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "report/store/table.hpp"
+
+// The files of a result folder, read back. All throw InputError where a file is missing, or is no
+// JSON or table; `where` is the folder, named in errors.
+
+namespace rigcal::report {
+
+using Json = nlohmann::ordered_json;
+
+/// The text of a result file by its path in the result folder; nothing where there is none.
+using ReadFile = std::function<std::optional<std::string>(const std::filesystem::path&)>;
+
+/// Reads from a folder on disk.
+ReadFile files_in(const std::filesystem::path& folder);
+
+/// A fit or validation.
+struct Calibration {
+  std::string file;  ///< fit.json or validation.json
+  Json result;
+  bool of_tables = false;     ///< made from published tables: it has no records
+  Json curves;                ///< residual_tests.json
+  std::vector<Table> series;  ///< residuals/, shape (conditions)
+};
+
+/// Where a fit and a validation lie in one folder, the one to which residual_tests.json belongs.
+///
+/// @param threads  read the series
+Calibration load_calibration(const ReadFile& read, const std::string& where, int threads);
+
+/// A leak table, and the series of its features by level.
+struct LeakTableFiles {
+  Json table;
+  std::vector<std::pair<std::string, Table>> levels;
+};
+LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where);
+
+/// Parity residuals, and the series of each condition, by its id.
+struct ParityFiles {
+  Json parity;
+  std::map<std::string, Table> series;
+};
+ParityFiles load_parity(const ReadFile& read, const std::string& where);
+
+/// A result in JSON, whose schema is that of the name of its file.
+Json load_json(const ReadFile& read, const std::string& where, const std::string& name);
+
+/// A text as part of the name of a file: letters, digits, ".", "-", and "_" for all else.
+std::string plain_name(const std::string& text);
+
+/// File of one leak level's series beneath levels/.
+std::string level_file(const std::string& level);
+
+}  // namespace rigcal::report

@@ -1,0 +1,73 @@
+#include "report/store/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+
+#include "common/error.hpp"
+
+namespace rigcal::report {
+namespace {
+
+constexpr std::size_t kMostColumns = 10'000;
+
+std::vector<std::string> split(std::string_view line) {
+  std::vector<std::string> fields;
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(',', begin), line.size());
+    fields.emplace_back(line.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return fields;
+}
+
+}  // namespace
+
+const std::vector<double>* Table::find(std::string_view name) const {
+  const auto found = std::find(names.begin(), names.end(), name);
+  return found == names.end() ? nullptr : &columns[static_cast<std::size_t>(found - names.begin())];
+}
+
+Table parse_table(std::string_view text, const std::string& file) {
+  Table table;
+  long line_number = 0;
+  while (!text.empty()) {
+    ++line_number;
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.empty() || line.front() == '#') continue;
+    if (table.names.empty()) {
+      table.names = split(line);
+      if (table.names.size() > kMostColumns)
+        throw InputError({file, line_number}, fmt::format("{} columns; expected at most {}",
+                                                          table.names.size(), kMostColumns));
+      table.columns.resize(table.names.size());
+      continue;
+    }
+    const char* at = line.data();
+    const char* const stop = line.data() + line.size();
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      const auto fail = [&](const std::string& expected) {
+        const auto column = static_cast<long>(at - line.data()) + 1;
+        throw InputError({file, line_number, column},
+                         fmt::format("column '{}': expected {}", table.names[i], expected));
+      };
+      double value = std::numeric_limits<double>::quiet_NaN();
+      if (at != stop && *at != ',') {
+        const auto [next, error] = std::from_chars(at, stop, value);
+        if (error != std::errc() || (next != stop && *next != ',')) fail("a number");
+        at = next;
+      }
+      table.columns[i].push_back(value);
+      const bool last = i + 1 == table.columns.size();
+      if (last != (at == stop)) fail(fmt::format("{} fields in a row", table.names.size()));
+      if (!last) ++at;
+    }
+  }
+  return table;
+}
+
+}  // namespace rigcal::report

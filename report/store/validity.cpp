@@ -1,0 +1,124 @@
+#include "report/store/validity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/plant/parameter.hpp"
+#include "report/text/readable.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using datasets::Campaign;
+using datasets::Channel;
+using datasets::Condition;
+using datasets::Record;
+
+void extend(std::optional<Range>& range, double value) {
+  if (!std::isfinite(value)) return;
+  if (!range) range = Range{value, value};
+  range->low = std::min(range->low, value);
+  range->high = std::max(range->high, value);
+}
+
+const Record* record_of(const std::vector<Record>& records, const std::string& id) {
+  const auto found = std::find_if(records.begin(), records.end(),
+                                  [&](const Record& r) { return r.condition == id; });
+  return found == records.end() ? nullptr : &*found;
+}
+
+std::optional<Range> range_of(const Record* record, Channel channel) {
+  if (record == nullptr) return std::nullopt;
+  const auto series = record->channels.find(channel);
+  if (series == record->channels.end()) return std::nullopt;
+  std::optional<Range> range;
+  for (const double value : series->second.mean) extend(range, value);
+  return range;
+}
+
+/// Value that holds in a condition, fitted or known; the narrower scope wins.
+double value_in(const Campaign& campaign, const Condition& condition, const calib::Fit& fit,
+                std::string_view key) {
+  const int index = model::parameter_index(campaign.rig.plant, key);
+  double value = datasets::values_in(campaign, condition)[key];
+  auto narrowest = datasets::Scope::rig;
+  for (const calib::FittedParameter& p : fit.parameters) {
+    if (p.index != index || p.scope < narrowest) continue;
+    if (p.scope == datasets::Scope::leak_level && p.level != condition.leak_level) continue;
+    if (p.scope == datasets::Scope::condition && p.level != condition.id) continue;
+    narrowest = p.scope;
+    // What cannot be told from zero covers zero, not 8.8e-07.
+    value = p.identifiability == calib::Identifiability::bounded ? 0.0 : p.value;
+  }
+  return value;
+}
+
+/// How far a range may leave what is covered before it matters, as a share of the bound it leaves.
+constexpr double kSlack = 0.1;
+
+/// "5 mm", "0.1 to 10 Hz": both ends in the unit of the upper one.
+std::string in_words(const Range& range, std::string_view unit) {
+  const ReadableUnit readable = readable_unit(range.high, unit);
+  const auto number = [&](double value) { return fmt::format("{:.4g}", value / readable.si); };
+  const std::string low = number(range.low);
+  const std::string high = number(range.high);
+  const std::string suffix = readable.name.empty() ? "" : fmt::format(" {}", readable.name);
+  return low == high ? high + suffix : fmt::format("{} to {}{}", low, high, suffix);
+}
+
+void compare(std::vector<std::string>& result, std::string_view what, std::string_view unit,
+             const std::optional<Range>& asked, const std::optional<Range>& covered) {
+  if (!asked || !covered) return;
+  const bool below = asked->low < covered->low - kSlack * std::abs(covered->low);
+  const bool above = asked->high > covered->high + kSlack * std::abs(covered->high);
+  if (!below && !above) return;
+  result.push_back(fmt::format("{} {} is used, but the fit covers only {}", what,
+                               in_words(*asked, unit), in_words(*covered, unit)));
+}
+
+}  // namespace
+
+Validity coverage(const Campaign& campaign, const std::vector<Record>& records,
+                  const calib::Fit& fit, const std::vector<datasets::Use>& uses) {
+  const Channel drive =
+      campaign.rig.controller == model::ControllerKind::pid ? Channel::reference : Channel::command;
+  Validity result;
+  result.amplitude_unit = info(drive).unit;
+  for (const Condition& condition : campaign.conditions) {
+    if (std::find(uses.begin(), uses.end(), condition.use) == uses.end()) continue;
+    const Record* record = record_of(records, condition.id);
+    if (condition.frequency_hz) extend(result.frequency_hz, *condition.frequency_hz);
+    if (condition.end_frequency_hz) extend(result.frequency_hz, *condition.end_frequency_hz);
+    if (condition.amplitude) {
+      extend(result.amplitude, *condition.amplitude);
+    } else if (const auto range = range_of(record, drive)) {
+      extend(result.amplitude, 0.5 * (range->high - range->low));
+    }
+    if (const auto range = range_of(record, Channel::supply_pressure)) {
+      extend(result.supply_pressure_pa, range->low);
+      extend(result.supply_pressure_pa, range->high);
+    } else {
+      extend(result.supply_pressure_pa, value_in(campaign, condition, fit, "supply_pressure"));
+    }
+    extend(result.leakage_coefficient, value_in(campaign, condition, fit, "leakage_coefficient"));
+    if (condition.leak_level && std::find(result.leak_levels.begin(), result.leak_levels.end(),
+                                          *condition.leak_level) == result.leak_levels.end()) {
+      result.leak_levels.push_back(*condition.leak_level);
+    }
+  }
+  return result;
+}
+
+std::vector<std::string> outside(const Validity& asked, const Validity& covered) {
+  std::vector<std::string> result;
+  compare(result, "frequency", "Hz", asked.frequency_hz, covered.frequency_hz);
+  compare(result, "amplitude", asked.amplitude_unit, asked.amplitude, covered.amplitude);
+  compare(result, "supply pressure", "Pa", asked.supply_pressure_pa, covered.supply_pressure_pa);
+  compare(result, "leakage coefficient", "1", asked.leakage_coefficient,
+          covered.leakage_coefficient);
+  return result;
+}
+
+}  // namespace rigcal::report

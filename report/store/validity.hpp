@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "calib/fit.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
+
+namespace rigcal::report {
+
+struct Range {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// What the conditions of a fit cover; a range is empty where no condition tells it.
+struct Validity {
+  std::optional<Range> frequency_hz;
+  std::optional<Range> amplitude;  ///< half of peak to peak of the drive: [m], or [V] in open loop
+  std::string_view amplitude_unit = "m";
+  std::optional<Range> supply_pressure_pa;
+  std::optional<Range> leakage_coefficient;
+  std::vector<std::string> leak_levels;
+};
+
+/// What the conditions of one use cover, with the values of `fit` where it has them.
+///
+/// @param records  those that were compared; where a condition states no amplitude, or its supply
+///                 was recorded, its record tells
+Validity coverage(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
+                  const calib::Fit& fit, const std::vector<datasets::Use>& uses);
+
+/// In words and in readable units, each way in which `asked` leaves `covered` by more than 10 % of
+/// the bound.
+std::vector<std::string> outside(const Validity& asked, const Validity& covered);
+
+}  // namespace rigcal::report

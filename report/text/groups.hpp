@@ -1,0 +1,33 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "calib/fit.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "metrics/agreement.hpp"
+
+namespace rigcal::report {
+
+/// Agreement of one channel over several conditions.
+struct GroupScore {
+  int conditions = 0;  ///< that have a score
+  metrics::Agreement mean;
+  metrics::Agreement worst;  ///< metric by metric
+};
+
+/// Conditions that have something in common.
+struct Group {
+  std::string by;     ///< "use", "signal", "frequency", "waveform", "leak_level"
+  std::string label;  ///< "fit", "sine 0.1 Hz", "0.1 Hz", "sine", "33.33 %"
+  std::vector<std::string> conditions;
+  std::map<datasets::Channel, GroupScore> channels;
+};
+
+/// The scores of a result gathered by use, signal (waveform and frequency), frequency, waveform and
+/// leak level (in the order of the campaign). A condition that lacks the property is in no such
+/// group.
+std::vector<Group> groups(const datasets::Campaign& campaign, const calib::Fit& fit);
+
+}  // namespace rigcal::report

@@ -1,0 +1,77 @@
+#include "report/text/readable.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "common/significant.hpp"
+
+namespace rigcal::report {
+namespace {
+
+struct Relative {
+  std::string_view si_unit;
+  ReadableUnit unit;
+};
+
+/// Largest first within an SI unit; the last takes what is smaller still.
+constexpr std::array kRelatives{
+    Relative{"Pa", {"GPa", 1e9}},    Relative{"Pa", {"MPa", 1e6}},
+    Relative{"Pa", {"kPa", 1e3}},    Relative{"Pa", {"Pa", 1.0}},
+    Relative{"m", {"m", 1.0}},       Relative{"m", {"mm", 1e-3}},
+    Relative{"m", {"um", 1e-6}},     Relative{"m2", {"cm2", 1e-4}},
+    Relative{"m2", {"mm2", 1e-6}},   Relative{"m3", {"L", 1e-3}},
+    Relative{"m3", {"cm3", 1e-6}},   Relative{"m3/s", {"L/min", 1e-3 / 60.0}},
+    Relative{"s", {"s", 1.0}},       Relative{"s", {"ms", 1e-3}},
+    Relative{"m/V", {"m/V", 1.0}},   Relative{"m/V", {"mm/V", 1e-3}},
+    Relative{"m/V", {"um/V", 1e-6}}, Relative{"N", {"kN", 1e3}},
+    Relative{"N", {"N", 1.0}},       Relative{"m/s", {"m/s", 1.0}},
+    Relative{"m/s", {"mm/s", 1e-3}},
+};
+
+}  // namespace
+
+ReadableUnit readable_unit(double value_si, std::string_view si_unit) {
+  ReadableUnit found{si_unit == "1" ? std::string_view{} : si_unit, 1.0};
+  for (const Relative& relative : kRelatives) {
+    if (relative.si_unit != si_unit) continue;
+    // Zero has no size of its own.
+    if (value_si == 0.0) return {si_unit, 1.0};
+    found = relative.unit;
+    if (std::abs(value_si) >= 0.9999999 * found.si) break;
+  }
+  return found;
+}
+
+std::string readable(double value_si, std::string_view si_unit, int digits) {
+  if (!std::isfinite(value_si)) return "-";
+  const ReadableUnit unit = readable_unit(value_si, si_unit);
+  std::string text = significant(value_si / unit.si, digits);
+  if (!unit.name.empty()) text.append(" ").append(unit.name);
+  return text;
+}
+
+std::string matched(double value, double uncertainty) {
+  constexpr int kUnknown = 6;
+  constexpr int kMostDecimals = 15;
+  if (value == 0.0) return "0";
+  if (!(uncertainty > 0.0) || !std::isfinite(uncertainty)) return significant(value, kUnknown);
+  constexpr double kRounding = 1e-9;  // 0.1 may have become 0.0999999999
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(uncertainty) + kRounding));
+  if (decimals > kMostDecimals) return significant(value, kUnknown);
+  if (decimals >= 0) return fmt::format("{:.{}f}", value, decimals);
+  const double step = std::pow(10.0, -decimals);
+  return fmt::format("{:.0f}", std::round(value / step) * step);
+}
+
+std::string agreement_text(double value) {
+  const std::string text = fmt::format("{:.4f}", value);
+  return text == "1.0000" && value < 1.0 ? std::string("> 0.9999") : text;
+}
+
+std::string p_value_text(double p) {
+  return p < 1e-4 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p);
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,334 @@
+#include "report/text/terminal.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "common/significant.hpp"
+#include "report/text/groups.hpp"
+#include "report/text/readable.hpp"
+#include "report/text/text_table.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using calib::AspectState;
+using calib::FitStatus;
+using calib::Verdict;
+using datasets::Channel;
+using Align = TextTable::Align;
+
+std::string coloured(const std::string& text, const char* code, const Style& style) {
+  return style.colour ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : text;
+}
+
+std::string coloured(Verdict verdict, const Style& style) {
+  const char* code = verdict == Verdict::pass ? "32" : verdict == Verdict::warn ? "33" : "31";
+  return coloured(std::string(to_string(verdict)), code, style);
+}
+
+/// The channel of the terminal's scorecard.
+std::optional<Channel> shown_channel(const calib::Fit& fit) {
+  std::optional<Channel> first;
+  for (const calib::ConditionScore& condition : fit.conditions) {
+    for (const calib::ChannelScore& score : condition.channels) {
+      if (score.channel == Channel::position) return score.channel;
+      if (!first) first = score.channel;
+    }
+  }
+  return first;
+}
+
+std::string percent(double value) { return fmt::format("{:.3f}", value); }
+
+TextTable condition_table(const Result& result, Channel channel, const Style& style) {
+  TextTable table({{"condition"},
+                   {"use", Align::left, 1},
+                   {"waveform", Align::left, 6},
+                   {"frequency", Align::right, 5},
+                   {"leak level", Align::left, 4},
+                   {"rho2", Align::right},
+                   {"R", Align::right, 3},
+                   {"CCC", Align::right},
+                   {"error %", Align::right},
+                   {"floor %", Align::right, 2},
+                   {"verdict"}});
+  for (const calib::ConditionScore& score : result.fit.conditions) {
+    const datasets::Condition* condition = result.campaign.find(score.id);
+    std::vector<std::string> row{score.id, std::string(to_string(score.use)), "-", "-", "-"};
+    if (condition != nullptr) {
+      row[2] = to_string(condition->waveform);
+      if (condition->frequency_hz) row[3] = fmt::format("{:.6g} Hz", *condition->frequency_hz);
+      row[4] = condition->leak_level.value_or("-");
+    }
+    const auto found =
+        std::find_if(score.channels.begin(), score.channels.end(),
+                     [&](const calib::ChannelScore& s) { return s.channel == channel; });
+    const bool scored = found != score.channels.end() && found->agreement;
+    row.push_back(scored ? agreement_text(found->agreement->rho2) : "-");
+    row.push_back(scored ? agreement_text(found->agreement->r) : "-");
+    row.push_back(scored ? agreement_text(found->agreement->ccc) : "-");
+    row.push_back(scored ? percent(found->agreement->absolute_error_percent) : "-");
+    row.push_back(scored && found->noise_floor ? percent(found->noise_floor->absolute_error_percent)
+                                               : "-");
+    row.push_back(!score.not_scored.empty() ? coloured("not scored", "33", style)
+                  : !score.failure.empty()  ? coloured("not simulated", "31", style)
+                  : score.verdict           ? coloured(*score.verdict, style)
+                                            : "-");
+    table.add(std::move(row));
+  }
+  return table;
+}
+
+TextTable group_table(const Result& result, Channel channel) {
+  TextTable table({{"by"},
+                   {"group"},
+                   {"conditions", Align::right, 2},
+                   {"rho2", Align::right},
+                   {"R", Align::right, 5},
+                   {"CCC", Align::right, 4},
+                   {"error %", Align::right},
+                   {"worst rho2", Align::right, 1},
+                   {"worst error %", Align::right, 3}});
+  for (const Group& group : groups(result.campaign, result.fit)) {
+    const auto found = group.channels.find(channel);
+    if (found == group.channels.end()) continue;
+    const GroupScore& score = found->second;
+    table.add({group.by == "leak_level" ? "leak level" : group.by, group.label,
+               fmt::format("{}", score.conditions), agreement_text(score.mean.rho2),
+               agreement_text(score.mean.r), agreement_text(score.mean.ccc),
+               percent(score.mean.absolute_error_percent), agreement_text(score.worst.rho2),
+               percent(score.worst.absolute_error_percent)});
+  }
+  return table;
+}
+
+/// What a narrow terminal does not show.
+std::string narrow_note(const TextTable& table, const char* file, const Style& style) {
+  const std::vector<std::string> left_out = table.left_out(style.columns);
+  if (left_out.empty()) return {};
+  return wrapped(fmt::format("  columns hidden (narrow terminal): {}; see {}",
+                             fmt::join(left_out, ", "), file),
+                 style.columns, 2) +
+         "\n";
+}
+
+std::string identifiability_text(const calib::FittedParameter& p, const Style& style) {
+  using calib::Identifiability;
+  std::string text = p.identifiability == Identifiability::not_identifiable
+                         ? "not identifiable"
+                         : std::string(to_string(p.identifiability));
+  if (p.at_bound) text += ", at a bound";
+  const char* code = p.identifiability == Identifiability::not_identifiable           ? "31"
+                     : p.at_bound || p.identifiability != Identifiability::identified ? "33"
+                                                                                      : "32";
+  return coloured(text, code, style);
+}
+
+/// Numbers of one parameter, all in the unit of its value.
+std::string in_unit(double value_si, const ReadableUnit& unit, int digits) {
+  if (!std::isfinite(value_si)) return "-";
+  return significant(value_si / unit.si, digits);
+}
+
+std::string limits(double low, double high, const ReadableUnit& unit, int digits) {
+  return fmt::format("{} .. {}", in_unit(low, unit, digits), in_unit(high, unit, digits));
+}
+
+/// The standard error on which the interval rests.
+double error_of(const calib::FittedParameter& p) {
+  return p.interval == calib::IntervalSource::robust_standard_error
+             ? p.robust_standard_error.value_or(0.0)
+             : p.standard_error.value_or(0.0);
+}
+
+/// What the digits of a value are chosen by: half width of its interval; 0 where there is none.
+double uncertainty_of(const calib::FittedParameter& p) {
+  return p.ci95 ? 0.5 * (p.ci95->second - p.ci95->first) : 0.0;
+}
+
+/// One line per reason, led by all that it holds for; "all" where that is more than one and every
+/// one.
+std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& reasons,
+                       std::size_t parameters, std::size_t columns) {
+  std::string text;
+  for (std::size_t i = 0; i < reasons.size(); ++i) {
+    const auto same = [&](const auto& other) { return other.second == reasons[i].second; };
+    const auto here = reasons.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::any_of(reasons.begin(), here, same)) continue;  // told already
+    std::vector<std::string> whose;
+    for (const auto& reason : reasons) {
+      if (same(reason)) whose.push_back(reason.first);
+    }
+    const bool all = whose.size() > 1 && whose.size() == parameters;
+    text += wrapped(fmt::format("  {}: {}", all ? "all" : fmt::format("{}", fmt::join(whose, ", ")),
+                                reasons[i].second),
+                    columns, 4);
+    text += "\n";
+  }
+  return text;
+}
+
+/// State of an aspect; what speaks against it, the gravest first; then what speaks for it.
+std::string aspect_text(std::string_view name, const calib::Aspect& aspect, const Style& style) {
+  constexpr std::size_t kShown = 3;  // of one state; the files hold all
+  const auto code = [](AspectState state) {
+    return state == AspectState::pass ? "32" : state == AspectState::fail ? "31" : "33";
+  };
+  const auto words = [](AspectState state) {
+    return state == AspectState::not_assessed ? std::string("not assessed")
+                                              : std::string(to_string(state));
+  };
+  std::string text =
+      fmt::format("  {}: {}\n", name, coloured(words(aspect.state), code(aspect.state), style));
+  std::map<AspectState, std::size_t> told;
+  for (const calib::Reason& reason : aspect.reasons) {
+    if (++told[reason.state] > kShown) continue;
+    const char* mark = reason.state == AspectState::pass ? "+" : "-";
+    text += wrapped(fmt::format("    {} {}", mark, reason.words), style.columns, 6) + "\n";
+  }
+  for (const auto& [state, count] : told) {
+    if (count <= kShown) continue;
+    text +=
+        fmt::format("    {} and {} more\n", state == AspectState::pass ? "+" : "-", count - kShown);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string scorecard_text(const Result& result, const Style& style) {
+  const std::optional<Channel> channel = shown_channel(result.fit);
+  if (!channel) return "No channel was compared.\n";
+  const TextTable conditions = condition_table(result, *channel, style);
+  std::string text = coloured(fmt::format("Agreement of {}", info(*channel).key), "1", style) +
+                     "\n" + conditions.text(style.columns) +
+                     narrow_note(conditions, "scorecard.csv", style);
+  const TextTable gathered = group_table(result, *channel);
+  if (!gathered.empty()) {
+    text += "\n" + coloured("Summary by group (mean and worst)", "1", style) + "\n" +
+            gathered.text(style.columns) +
+            narrow_note(gathered, result.kind == ResultKind::fit ? "fit.json" : "validation.json",
+                        style);
+  }
+  return text;
+}
+
+std::string parameters_text(const Result& result, const Style& style) {
+  const auto table = model::parameter_table(result.campaign.rig.plant);
+  TextTable text({{"parameter"},
+                  {"for"},
+                  {"value", Align::right},
+                  {"unit"},
+                  {"std. error", Align::right, 1},
+                  {"95 % interval", Align::right},
+                  {"bounds", Align::right, 2},
+                  {"identifiability"}});
+  std::vector<std::pair<std::string, std::string>> reasons;  // whose, why
+  for (const calib::FittedParameter& p : result.fit.parameters) {
+    if (!p.fitted) continue;
+    const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
+    const ReadableUnit unit = readable_unit(p.value, spec.unit);
+    const std::string whose = p.scope == datasets::Scope::rig ? "rig" : p.level;
+    const double uncertainty = uncertainty_of(p);
+    text.add({std::string(spec.key) + (p.nuisance ? " (nuisance)" : ""), whose,
+              matched(p.value / unit.si, uncertainty / unit.si), std::string(unit.name),
+              p.standard_error ? in_unit(error_of(p), unit, 2) : "-",
+              p.ci95
+                  ? fmt::format("{} .. {}", matched(p.ci95->first / unit.si, uncertainty / unit.si),
+                                matched(p.ci95->second / unit.si, uncertainty / unit.si))
+                  : "-",
+              limits(p.lower, p.upper, unit, 4), identifiability_text(p, style)});
+    if (!p.reason.empty()) reasons.emplace_back(fmt::format("{} ({})", spec.key, whose), p.reason);
+  }
+  if (text.empty()) {
+    return result.kind == ResultKind::validation ? "All parameters as given.\n"
+                                                 : "No parameter was estimated.\n";
+  }
+  return coloured("Parameters", "1", style) + "\n" + text.text(style.columns) +
+         foot_notes(reasons, text.rows(), style.columns);
+}
+
+std::string verdict_text(const Result& result, const Style& style) {
+  const calib::Fit& fit = result.fit;
+  const FitStatus status = status_of(fit);
+  const char* code = status == FitStatus::converged ? "32"
+                     : status == FitStatus::stopped ? "33"
+                                                    : "31";
+  std::string text;
+  const auto say = [&](const std::string& line, std::size_t indent) {
+    text += wrapped(line, style.columns, indent) + "\n";
+  };
+  // Where nothing was estimated nothing converged.
+  const bool only_scored = status == FitStatus::converged && fit.starts.empty();
+  const std::string word =
+      coloured(only_scored ? "done" : std::string(to_string(status)), code, style);
+  say(fit.message.empty() ? "status: " + word : fmt::format("status: {}: {}", word, fit.message),
+      2);
+  say(fit.verdict ? "verdict: " + coloured(*fit.verdict, style) +
+                        (*fit.verdict == Verdict::warn ? " (passed with reservations)" : "")
+      : fit.conditions.empty() ? std::string("verdict: none (no condition was scored)")
+                               : std::string("verdict: none (the campaign has no [acceptance])"),
+      2);
+  const auto& [agreement, validation, adequacy, parameters] = fit.assessment;
+  for (const auto& [name, aspect] :
+       {std::pair{"agreement", &agreement}, std::pair{"validation", &validation},
+        std::pair{"adequacy", &adequacy}, std::pair{"parameters", &parameters}})
+    text += aspect_text(name, *aspect, style);
+  if (!fit.agreement.empty()) say("starts: " + fit.agreement, 2);
+  if (!fit.bootstrap_message.empty()) say("bootstrap: " + fit.bootstrap_message, 2);
+  if (!fit.interval_advice.empty()) say("intervals: " + fit.interval_advice, 2);
+  for (const std::string& warning : fit.warnings) say("warning: " + warning, 2);
+  if (result.campaign.synthetic) say("note: the records of this campaign are synthetic", 2);
+  return text;
+}
+
+std::string record_text(const datasets::Condition& condition, const datasets::Record& record) {
+  const double duration_s =
+      record.time_s.empty() ? 0.0 : record.time_s.back() - record.time_s.front();
+  const double rate_hz =
+      duration_s > 0.0 ? static_cast<double>(record.time_s.size() - 1) / duration_s : 0.0;
+  std::string channels;
+  for (const auto& [channel, series] : record.channels) {
+    const datasets::ChannelInfo& about = info(channel);
+    channels += fmt::format(
+        "{}{} ({}sd {})", channels.empty() ? "" : ", ", about.key,
+        series.repeats == record.repeats ? "" : fmt::format("{} repeats, ", series.repeats),
+        std::isfinite(series.pooled_sd) ? readable(series.pooled_sd, about.unit, 3) : "unknown");
+  }
+  std::string text =
+      fmt::format("{}: {}, {} samples at {:.6g} Hz, {:.6g} s, {} repeat{}, {}, {} file{}\n",
+                  condition.id, to_string(condition.use), record.time_s.size(), rate_hz, duration_s,
+                  record.repeats, record.repeats == 1 ? "" : "s", channels, record.files.size(),
+                  record.files.size() == 1 ? "" : "s");
+  for (const std::string& note : record.notes) text += fmt::format("  note: {}\n", note);
+  for (const std::string& warning : record.warnings) {
+    text += fmt::format("  warning: {}\n", warning);
+  }
+  return text;
+}
+
+std::string parameter_table_text(model::PlantKind plant) {
+  TextTable table({{"key"},
+                   {"symbol"},
+                   {"unit"},
+                   {"default", Align::right},
+                   {"lowest", Align::right},
+                   {"highest", Align::right},
+                   {"kind"},
+                   {"meaning"},
+                   {"source"}});
+  for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
+    table.add({std::string(spec.key), std::string(spec.symbol), std::string(spec.unit),
+               spec.default_value ? fmt::format("{:g}", *spec.default_value) : "-",
+               fmt::format("{:g}", spec.lower), fmt::format("{:g}", spec.upper),
+               std::string(to_string(spec.kind)), std::string(spec.meaning),
+               std::string(spec.source)});
+  }
+  return table.text();
+}
+
+}  // namespace rigcal::report

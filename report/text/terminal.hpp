@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "datasets/record.hpp"
+#include "report/store/result.hpp"
+
+namespace rigcal::report {
+
+/// How text is shown.
+struct Style {
+  bool colour = false;
+  std::size_t columns = 0;  ///< of the terminal; 0: tables as wide as they are
+};
+
+/// Agreement per condition, then gathered by use, frequency, waveform and leak level. The channel
+/// is the position, or the first that was compared; every other is in scorecard.csv.
+std::string scorecard_text(const Result& result, const Style& style);
+
+/// Fitted parameters in readable units with errors, bounds and what is to be thought of them.
+std::string parameters_text(const Result& result, const Style& style);
+
+/// Status and verdict in one line each, with the reasons of WARN and FAIL, and the warnings.
+std::string verdict_text(const Result& result, const Style& style);
+
+/// One line on a record and one on each of its warnings.
+std::string record_text(const datasets::Condition& condition, const datasets::Record& record);
+
+/// The parameter table of a plant.
+std::string parameter_table_text(model::PlantKind plant);
+
+}  // namespace rigcal::report

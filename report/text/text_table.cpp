@@ -1,0 +1,129 @@
+#include "report/text/text_table.hpp"
+
+#include <algorithm>
+
+namespace rigcal::report {
+namespace {
+
+constexpr std::size_t kGap = 2;  ///< blanks between columns
+
+/// Control characters as blanks, but for sequences that colour: names of files may hold any.
+std::string on_one_line(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\x1b') {
+      const std::size_t end = text.find_first_not_of("[;0123456789", i + 1);
+      if (end != std::string::npos && text[end] == 'm') {
+        i = end;
+        continue;
+      }
+    }
+    if (static_cast<unsigned char>(text[i]) < 0x20U || text[i] == '\x7f') text[i] = ' ';
+  }
+  return text;
+}
+
+}  // namespace
+
+std::size_t text_width(std::string_view text) {
+  std::size_t width = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '\x1b') {
+      i = std::min(text.find('m', i), text.size() - 1);
+      continue;
+    }
+    if ((static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U) ++width;
+  }
+  return width;
+}
+
+std::string wrapped(std::string_view line, std::size_t columns, std::size_t indent) {
+  if (columns == 0 || text_width(line) <= columns) return std::string(line);
+  std::string result;
+  std::size_t width = 0;
+  for (std::size_t begin = 0; begin < line.size();) {
+    // A word with the blanks before it, so that an indented line stays indented.
+    const std::size_t letters = std::min(line.find_first_not_of(' ', begin), line.size());
+    const std::size_t end = std::min(line.find(' ', letters), line.size());
+    std::string_view word = line.substr(begin, end - begin);
+    if (width > 0 && width + text_width(word) > columns) {
+      word = line.substr(letters, end - letters);
+      result += "\n" + std::string(indent, ' ');
+      width = indent;
+    }
+    result += word;
+    width += text_width(word);
+    begin = end;
+  }
+  return result;
+}
+
+void TextTable::add(std::vector<std::string> row) {
+  for (std::string& text : row) text = on_one_line(text);
+  rows_.push_back(std::move(row));
+}
+
+std::vector<std::size_t> TextTable::widths() const {
+  std::vector<std::size_t> width;
+  for (const Column& column : columns_) width.push_back(text_width(column.title));
+  for (const auto& row : rows_) {
+    for (std::size_t i = 0; i < width.size(); ++i)
+      width[i] = std::max(width[i], text_width(row[i]));
+  }
+  return width;
+}
+
+std::size_t TextTable::width() const {
+  std::size_t all = 0;
+  for (const std::size_t each : widths()) all += each + kGap;
+  return all > kGap ? all - kGap : 0;
+}
+
+std::vector<bool> TextTable::shown(std::size_t columns) const {
+  const std::vector<std::size_t> width = widths();
+  std::vector<bool> is_shown(width.size(), true);
+  std::size_t all = 0;
+  for (const std::size_t each : width) all += each + kGap;
+  while (columns > 0 && all > columns + kGap) {
+    std::size_t next = width.size();
+    for (std::size_t i = 0; i < width.size(); ++i) {
+      if (!is_shown[i] || columns_[i].spare == 0) continue;
+      if (next == width.size() || columns_[i].spare > columns_[next].spare) next = i;
+    }
+    if (next == width.size()) break;
+    is_shown[next] = false;
+    all -= width[next] + kGap;
+  }
+  return is_shown;
+}
+
+std::vector<std::string> TextTable::left_out(std::size_t columns) const {
+  const std::vector<bool> is_shown = shown(columns);
+  std::vector<std::string> titles;
+  for (std::size_t i = 0; i < is_shown.size(); ++i)
+    if (!is_shown[i]) titles.push_back(columns_[i].title);
+  return titles;
+}
+
+std::string TextTable::text(std::size_t columns) const {
+  const std::vector<std::size_t> width = widths();
+  const std::vector<bool> is_shown = shown(columns);
+  std::string result;
+  const auto add_line = [&](const auto& cell) {
+    std::string line;
+    for (std::size_t i = 0; i < width.size(); ++i) {
+      if (!is_shown[i]) continue;
+      const std::string& text = cell(i);
+      const std::string blanks(width[i] - text_width(text), ' ');
+      if (i > 0) line += std::string(kGap, ' ');
+      line += columns_[i].align == Align::left ? text + blanks : blanks + text;
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    result += line + "\n";
+  };
+  add_line([&](std::size_t i) -> const std::string& { return columns_[i].title; });
+  for (const auto& row : rows_)
+    add_line([&](std::size_t i) -> const std::string& { return row[i]; });
+  return result;
+}
+
+}  // namespace rigcal::report

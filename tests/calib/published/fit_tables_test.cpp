@@ -1,0 +1,141 @@
+#include "calib/published/fit_tables.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "calib/published/table_residuals.hpp"
+#include "common/error.hpp"
+#include "tests/calib/leak_rig.hpp"
+
+using namespace rigcal;
+using Catch::Contains;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+namespace {
+
+/// The last column of Table 3, a sine of 10 Hz, and three rows of Table 4.
+test::LeakRig small_rig() {
+  test::LeakRig rig;
+  rig.settings.signals.erase(rig.settings.signals.begin(), rig.settings.signals.begin() + 5);
+  rig.settings.features.resize(3);  // Normal, Slight, Medium
+  return rig;
+}
+
+/// Coarse enough to be quick.
+calib::LeakTableOptions quick() {
+  calib::LeakTableOptions options;
+  options.periodic.simulation.tolerance = 1e-4;
+  options.periodic.tolerance = 1e-3;
+  options.series_samples = 400;
+  return options;
+}
+
+std::vector<int> free_of(const datasets::LeakTableSettings& settings) {
+  std::vector<int> free;
+  for (const auto& assumption : settings.assumptions) {
+    if (assumption.fit) free.push_back(assumption.index);
+  }
+  return free;
+}
+
+}  // namespace
+
+TEST_CASE("table_residuals: count, names and weights of what is published", "[calib]") {
+  const test::LeakRig rig;
+  const calib::TableResiduals all(rig.campaign, rig.settings, free_of(rig.settings), {});
+  // 24 shares, Normal's servo flow, 5 numbers of each leaking row but the slight std.
+  CHECK(all.size() == 24 + 1 + 4 * 5 - 1);
+  double weights = 0.0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CHECK(all.name(i) != "std, Slight");
+    CHECK((all.name(i).find("Normal") == std::string::npos || all.name(i) == "servo_flow, Normal"));
+    weights += all.weight(i);
+  }
+  CHECK(weights == 24 * calib::kShareWeight + 20.0);
+}
+
+TEST_CASE("table_residuals: derivatives are those of differences", "[calib]") {
+  const test::LeakRig rig = small_rig();
+  calib::LeakTableOptions options;
+  options.periodic.simulation.tolerance = 1e-6;
+  options.periodic.tolerance = 1e-4;
+  const auto free = free_of(rig.settings);
+  calib::TableResiduals residuals(rig.campaign, rig.settings, free, options);
+  std::vector<double> values;
+  for (const int index : free) values.push_back(rig.settings.assumption(index)->value);
+  const auto at = residuals.evaluate(values, true);
+  REQUIRE(at.failure.empty());
+  for (std::size_t j = 0; j < free.size(); ++j) {
+    const double h = 1e-2 * values[j];
+    auto ahead = values;
+    auto behind = values;
+    ahead[j] += h;
+    behind[j] -= h;
+    const Eigen::VectorXd difference =
+        (residuals.evaluate(ahead, false).residuals - residuals.evaluate(behind, false).residuals) /
+        (2.0 * h);
+    for (Eigen::Index i = 0; i < difference.size(); ++i) {
+      CAPTURE(residuals.name(static_cast<std::size_t>(i)), j);
+      // By the logarithm of the value: 1e-4 of noise over 2e-2.
+      CHECK_THAT(values[j] * at.jacobian(i, static_cast<Eigen::Index>(j)),
+                 WithinAbs(values[j] * difference(i), 0.01));
+    }
+  }
+}
+
+TEST_CASE("fit_tables: a twin's values come back from a far start, a gain from zero", "[calib]") {
+  test::LeakRig rig = small_rig();
+  // What the rig of the campaign itself gives takes the place of what was published.
+  auto& signal = rig.settings.signals[0];
+  const auto table = calib::leak_table(rig.campaign, rig.settings, quick());
+  for (const calib::LeakEntry& entry : table.entries) {
+    signal.printed.at(entry.target_percent).value = entry.roots.at(0).coefficient;
+  }
+  for (std::size_t i = 0; i < table.features.size(); ++i) {
+    const calib::FeatureRow& row = table.features[i];
+    rig.settings.features[i].left_out.clear();
+    rig.settings.features[i].printed = {{datasets::Feature::servo_flow, row.servo_flow_m3_per_s},
+                                        {datasets::Feature::leak_flow, row.leak_flow_m3_per_s},
+                                        {datasets::Feature::mean, row.features.mean},
+                                        {datasets::Feature::rms, row.features.rms},
+                                        {datasets::Feature::std, row.features.std}};
+  }
+  const auto fit = calib::fit_tables(rig.campaign, rig.settings, quick());
+  CAPTURE(fit.message);
+  REQUIRE(fit.status == calib::FitStatus::converged);
+  CHECK(fit.rms < 3e-3);
+  for (const calib::FittedAssumption& p : fit.parameters) {
+    const auto& spec = datasets::assumption_spec(rig.campaign.rig.plant, p.index);
+    CAPTURE(spec.key, p.start, p.value);
+    CHECK(p.start != rig.settings.assumption(p.index)->value);
+    // The flows are good to 1e-3, which leaves some percent of what acts weakly.
+    CHECK_THAT(p.value, WithinRel(rig.settings.assumption(p.index)->value, 0.05));
+    REQUIRE(p.ci95);
+    CHECK(p.ci95->first < p.value);
+    CHECK(p.value < p.ci95->second);
+    CHECK(fit.settings.assumption(p.index)->value == p.value);
+  }
+  CHECK(fit.correlation.rows() == 4);
+  CHECK(fit.residuals.size() == 4 + 3 * 5);
+}
+
+TEST_CASE("fit_tables: too little to fit is said", "[calib]") {
+  test::LeakRig rig = small_rig();
+  rig.settings.signals[0].printed.clear();
+  rig.settings.features.clear();
+  CHECK_THROWS_WITH(calib::fit_tables(rig.campaign, rig.settings, {}),
+                    Contains("0 published numbers cannot tell 4 values"));
+  for (auto& assumption : rig.settings.assumptions) assumption.fit = false;
+  CHECK_THROWS_AS(calib::fit_tables(rig.campaign, rig.settings, {}), InputError);
+}
+
+TEST_CASE("fit_tables: a start that cannot be simulated is a failed fit with a reason", "[calib]") {
+  const test::LeakRig rig = small_rig();
+  calib::LeakTableOptions options;
+  options.periodic.simulation.max_steps = 5;
+  const auto fit = calib::fit_tables(rig.campaign, rig.settings, options);
+  CHECK(fit.status == calib::FitStatus::failed);
+  CHECK_THAT(fit.message, Contains("too many steps"));
+  for (const calib::FittedAssumption& p : fit.parameters) CHECK_FALSE(p.ci95);
+}

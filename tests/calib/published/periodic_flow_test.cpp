@@ -1,0 +1,164 @@
+#include "calib/published/periodic_flow.hpp"
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+#include "calib/published/period_grid.hpp"
+#include "metrics/leak_share.hpp"
+#include "tests/calib/leak_rig.hpp"
+
+using namespace rigcal;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using datasets::Waveform;
+
+namespace {
+
+constexpr std::array kFlows{model::Output::servo_flow, model::Output::leakage_flow};
+
+/// Share over the last of many periods, sampled densely, by a run of its own.
+double long_run_share(const test::LeakRig& rig, Waveform waveform, double frequency_hz,
+                      double coefficient, int periods, int samples) {
+  model::SimulationInputs in;
+  in.drive = waveform == Waveform::square ? model::Signal::square(0.0508, frequency_hz)
+                                          : model::Signal::sine(0.0508, frequency_hz);
+  std::vector<double> times{0.0};
+  for (int i = 0; i < samples; ++i)
+    times.push_back((periods - 1 + (i + 0.5) / samples) / frequency_hz);
+  model::SimulationOptions options;
+  options.tolerance = 1e-7;
+  const auto run =
+      model::simulate(rig.campaign.rig, rig.leaking(coefficient), {}, in, times, kFlows, options);
+  REQUIRE(run.ok());
+  // Midpoints: no sample falls on a jump.
+  const auto rows = static_cast<Eigen::Index>(samples);
+  return run.outputs.col(1).bottomRows(rows).cwiseAbs().sum() /
+         run.outputs.col(0).bottomRows(rows).cwiseAbs().sum();
+}
+
+}  // namespace
+
+TEST_CASE("period_grid: no interval spans a jump, and a constant has its own mean", "[calib]") {
+  for (const Waveform waveform : {Waveform::sine, Waveform::square}) {
+    const auto grid = calib::period_grid(waveform, 0.2, 8);
+    CHECK(grid.pieces == (waveform == Waveform::square ? 2 : 1));
+    CHECK(grid.offset_s.size() == 9 * grid.pieces);
+    for (std::size_t i = 1; i < grid.offset_s.size(); ++i) {
+      CHECK(grid.offset_s[i] > grid.offset_s[i - 1]);
+    }
+    CHECK(grid.offset_s.back() < 0.2);
+    CHECK_THAT(calib::mean_absolute(grid, std::vector<double>(grid.offset_s.size(), -3.0)),
+               WithinRel(3.0, 1e-12));
+  }
+  const auto square = calib::period_grid(Waveform::square, 0.2, 8);
+  CHECK(square.offset_s[8] < 0.1);
+  CHECK(square.offset_s[9] == 0.1);
+}
+
+TEST_CASE("periodic_flow: agrees with a long run of its own", "[calib]") {
+  const test::LeakRig rig;
+  struct Case {
+    Waveform waveform;
+    double frequency_hz;
+    int periods;
+    int samples;
+  };
+  for (const Case& c :
+       {Case{Waveform::sine, 10.0, 60, 4000}, Case{Waveform::square, 10.0, 60, 8000},
+        Case{Waveform::square, 1.0, 12, 40000}}) {
+    CAPTURE(to_string(c.waveform), c.frequency_hz);
+    const auto flow =
+        calib::periodic_flow(rig.drive(c.waveform, c.frequency_hz), rig.leaking(0.25), {}, {});
+    REQUIRE(flow.ok());
+    const double share =
+        long_run_share(rig, c.waveform, c.frequency_hz, 0.25, c.periods, c.samples);
+    // 2e-4 each of transient and sampling, in either flow.
+    CHECK_THAT(flow.share(), WithinRel(share, 6e-4));
+  }
+}
+
+TEST_CASE("periodic_flow: half the samples do not move the share", "[calib]") {
+  const test::LeakRig rig;
+  for (const Waveform waveform : {Waveform::sine, Waveform::square}) {
+    const auto drive = rig.drive(waveform, 1.0);
+    calib::PeriodicOptions options;
+    const auto coarse = calib::periodic_flow(drive, rig.leaking(0.3), {}, options);
+    options.intervals = 2 * coarse.intervals;
+    const auto fine = calib::periodic_flow(drive, rig.leaking(0.3), {}, options);
+    REQUIRE(coarse.ok());
+    REQUIRE(fine.ok());
+    CHECK(fine.intervals > coarse.intervals);
+    CHECK_THAT(coarse.share(), WithinRel(fine.share(), options.tolerance));
+  }
+}
+
+TEST_CASE("periodic_flow: slopes are those of differences", "[calib]") {
+  const test::LeakRig rig;
+  const auto drive = rig.drive(Waveform::square, 1.0);
+  calib::PeriodicOptions options;
+  options.simulation.tolerance = 1e-7;
+  options.tolerance = 2e-5;
+  const std::array free{model::parameter_index(rig.campaign.rig.plant, "leakage_coefficient"),
+                        model::parameter_index(rig.campaign.rig.plant, "kp")};
+  const auto flow = calib::periodic_flow(drive, rig.leaking(0.3), free, options);
+  REQUIRE(flow.ok());
+  const char* const keys[] = {"leakage_coefficient", "kp"};
+  for (Eigen::Index j = 0; j < 2; ++j) {
+    CAPTURE(keys[j]);
+    const double h = 1e-3;
+    auto ahead = rig.leaking(0.3);
+    auto behind = rig.leaking(0.3);
+    ahead.set(keys[j], ahead[keys[j]] * (1.0 + h));
+    behind.set(keys[j], behind[keys[j]] * (1.0 - h));
+    const auto f = calib::periodic_flow(drive, ahead, {}, options);
+    const auto g = calib::periodic_flow(drive, behind, {}, options);
+    const double p = rig.leaking(0.3)[keys[j]];
+    // The means are good to about 1e-5, so that a difference over 2e-3 is good to half a percent of
+    // a derivative whose logarithm is about one.
+    CHECK_THAT(p * flow.leak_slope(j) / flow.leak_flow_m3_per_s,
+               WithinAbs(std::log(f.leak_flow_m3_per_s / g.leak_flow_m3_per_s) / (2.0 * h), 0.01));
+    CHECK_THAT(
+        p * flow.servo_slope(j) / flow.servo_flow_m3_per_s,
+        WithinAbs(std::log(f.servo_flow_m3_per_s / g.servo_flow_m3_per_s) / (2.0 * h), 0.01));
+  }
+}
+
+TEST_CASE("periodic_flow: what does not become periodic is no result", "[calib]") {
+  const test::LeakRig rig;
+  // A constant load drives the position away over minutes: the loop's time constant is 1000 s.
+  auto values = rig.leaking(0.3);
+  values.set("kp", 0.04);
+  values.set("kd", 0.0);
+  values.set("external_force", 500.0);
+  calib::PeriodicOptions options;
+  options.most_periods = 64;
+  const auto flow = calib::periodic_flow(rig.drive(Waveform::sine, 10.0), values, {}, options);
+  CHECK_FALSE(flow.ok());
+  CHECK_THAT(flow.failure, Catch::Contains("not periodic after 64 periods"));
+}
+
+TEST_CASE("periodic_flow: a failed simulation says where and why", "[calib]") {
+  const test::LeakRig rig;
+  calib::PeriodicOptions options;
+  options.simulation.max_steps = 10;
+  const auto flow =
+      calib::periodic_flow(rig.drive(Waveform::sine, 1.0), rig.leaking(0.3), {}, options);
+  CHECK_FALSE(flow.ok());
+  CHECK_THAT(flow.failure, Catch::Contains("too many steps at "));
+}
+
+TEST_CASE("periodic_series: the flows of its period are those of the means", "[calib]") {
+  const test::LeakRig rig;
+  const auto drive = rig.drive(Waveform::sine, 1.0);
+  const auto flow = calib::periodic_flow(drive, rig.leaking(0.5), {}, {});
+  const auto series = calib::periodic_series(drive, rig.leaking(0.5), {}, kFlows, flow.periods,
+                                             4000, model::SimulationOptions{.tolerance = 1e-6});
+  REQUIRE(series.run.ok());
+  REQUIRE(series.time_s.size() == 4000);
+  CHECK(series.time_s.front() == 0.0);
+  CHECK_THAT(series.run.outputs.col(0).cwiseAbs().mean(),
+             WithinRel(flow.servo_flow_m3_per_s, 6e-4));
+  CHECK_THAT(series.run.outputs.col(1).cwiseAbs().mean(), WithinRel(flow.leak_flow_m3_per_s, 6e-4));
+}

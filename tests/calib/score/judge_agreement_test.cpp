@@ -1,0 +1,70 @@
+#include "calib/score/judge_agreement.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/calib/assessment_scene.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::Contains;
+using datasets::Channel;
+
+}  // namespace
+
+TEST_CASE("agreement: a broken limit fails, of the validation in both aspects", "[calib]") {
+  AssessmentScene scene;
+  scene.rejudge(0, 0.98);
+  CHECK(scene.assessed().agreement.state == AspectState::fail);
+  CHECK(scene.assessed().validation.state == AspectState::pass);
+  CHECK(scene.verdict() == Verdict::fail);
+  scene.rejudge(0, 0.999);
+  scene.rejudge(1, 0.98);
+  CHECK(scene.assessed().agreement.state == AspectState::fail);
+  CHECK(scene.assessed().validation.state == AspectState::fail);
+  CHECK(find(scene.assessed().validation, "limit_broken")->subject == "other");
+  scene.rejudge(1, 0.992);
+  CHECK(scene.assessed().validation.state == AspectState::reservation);
+  CHECK(scene.verdict() == Verdict::warn);
+}
+
+TEST_CASE("agreement: a limit that cannot be evaluated fails", "[calib]") {
+  AssessmentScene scene;
+  scene.fit.conditions[0].channels[0].agreement.reset();
+  scene.fit.conditions[0].checks.clear();
+  judge(scene.campaign.acceptance, scene.fit.conditions[0]);
+  CHECK(scene.verdict() == Verdict::fail);
+  CHECK(find(scene.assessed().agreement, "limit_not_evaluable") != nullptr);
+  AssessmentScene unrecorded;
+  unrecorded.campaign.acceptance.push_back({Channel::pressure_a, "rho2", 0.9, std::nullopt});
+  CHECK(unrecorded.verdict() == Verdict::fail);
+  CHECK_THAT(find(unrecorded.assessed().agreement, "limit_not_evaluable")->words,
+             Contains("no condition recorded pressure_a"));
+}
+
+TEST_CASE("agreement: a doubtful recording and a condition that was not scored are reservations",
+          "[calib]") {
+  AssessmentScene scene;
+  scene.fit.conditions[0].data_warnings = {"40 spikes"};
+  CHECK(find(scene.assessed().agreement, "recording_doubtful")->subject == "fitted");
+  CHECK(scene.verdict() == Verdict::warn);
+  scene.fit.conditions[0].data_warnings.clear();
+  ConditionScore& other = scene.fit.conditions[1];
+  other.checks.clear();
+  other.verdict.reset();
+  other.not_scored = "stopped on request";
+  CHECK(find(scene.assessed().validation, "not_scored")->subject == "other");
+  CHECK(scene.verdict() == Verdict::warn);
+}
+
+TEST_CASE("agreement: without limits there is no verdict, but poor agreement is named", "[calib]") {
+  AssessmentScene scene;
+  scene.campaign.acceptance.clear();
+  for (std::size_t i = 0; i < 2; ++i) scene.rejudge(i, 0.95);
+  CHECK_FALSE(scene.verdict().has_value());
+  CHECK(find(scene.assessed().agreement, "least_agreement") != nullptr);
+  scene.rejudge(1, 0.5);
+  CHECK(find(scene.assessed().agreement, "poor_agreement")->subject == "other");
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,87 @@
+#include "calib/score/judge_parameters.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/calib/assessment_scene.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+FittedParameter bounded_leak(double limit) {
+  FittedParameter leak;
+  leak.index = model::parameter_index(model::PlantKind::load_pressure, "leakage_coefficient");
+  leak.fitted = true;
+  leak.scope = datasets::Scope::leak_level;
+  leak.level = "none";
+  leak.ci95 = {0.0, limit};
+  leak.at_bound = true;
+  leak.identifiability = Identifiability::bounded;
+  leak.reason = "not significantly different from zero";
+  return leak;
+}
+
+}  // namespace
+
+TEST_CASE("parameters: each is identified, or negligible", "[calib]") {
+  AssessmentScene scene;
+  SECTION("weak, not identifiable, at an active bound") {
+    for (const auto& [grade, code] :
+         {std::pair{Identifiability::weak, "weak"},
+          std::pair{Identifiability::not_identifiable, "not_identifiable"}}) {
+      scene.fit.parameters[0].identifiability = grade;
+      CHECK(find(scene.assessed().parameters, code)->subject == "mass_kg");
+      CHECK(scene.verdict() == Verdict::warn);
+    }
+    scene.fit.parameters[0].identifiability = Identifiability::identified;
+    scene.fit.parameters[0].at_bound = true;
+    CHECK(find(scene.assessed().parameters, "active_bound") != nullptr);
+  }
+  SECTION("nuisance parameters do not count") {
+    scene.fit.parameters[0].identifiability = Identifiability::not_identifiable;
+    scene.fit.parameters[0].nuisance = true;
+    CHECK(scene.assessed().parameters.state == AspectState::pass);
+  }
+  SECTION("bounded: negligible beside other levels, or as stated") {
+    scene.fit.parameters.push_back(bounded_leak(0.01));
+    CHECK(scene.assessed().parameters.state == AspectState::reservation);
+    scene.campaign.acceptance_bounds.negligible[scene.fit.parameters[1].index] = 0.01;
+    CHECK(scene.assessed().parameters.state == AspectState::pass);
+    scene.campaign.acceptance_bounds.negligible[scene.fit.parameters[1].index] = 0.009;
+    CHECK(scene.assessed().parameters.state == AspectState::reservation);
+    scene.campaign.acceptance_bounds.negligible.clear();
+    FittedParameter leak = bounded_leak(0.6);
+    leak.level = "open";
+    leak.value = 0.05;
+    leak.at_bound = false;
+    leak.identifiability = Identifiability::identified;
+    scene.fit.parameters.push_back(leak);
+    CHECK(scene.assessed().parameters.state == AspectState::pass);
+    scene.fit.parameters[2].value = 0.04;
+    CHECK(scene.assessed().parameters.state == AspectState::reservation);
+  }
+  SECTION("bounded on both sides of zero: the farther end counts") {
+    FittedParameter leak = bounded_leak(0.001);
+    leak.ci95 = {-0.1, 0.001};
+    scene.fit.parameters.push_back(leak);
+    scene.campaign.acceptance_bounds.negligible[leak.index] = 0.05;
+    CHECK(scene.assessed().parameters.state == AspectState::reservation);
+  }
+  SECTION("a point that one of several starts found") {
+    scene.fit.starts.resize(3);
+    scene.fit.basins = {{1.0, {2}, {}}, {2.0, {1, 3}, {}}};
+    CHECK(find(scene.assessed().parameters, "found_once") != nullptr);
+    scene.fit.basins = {{1.0, {2, 1}, {}}, {2.0, {3}, {}}};
+    CHECK(find(scene.assessed().parameters, "found_once") == nullptr);
+  }
+  SECTION("a fit that did not converge never passes") {
+    scene.fit.status = FitStatus::stopped;
+    CHECK(scene.verdict() == Verdict::warn);
+  }
+  SECTION("those of the fit whose values are validated") {
+    Aspect earlier;
+    earlier.state = AspectState::reservation;
+    CHECK(verdict_of(assess(scene.campaign, scene.fit, {}, &earlier)) == Verdict::warn);
+  }
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,150 @@
+#include "calib/search/settle.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::Contains;
+using Catch::WithinRel;
+using datasets::Waveform;
+
+Twin two_signals() {
+  Twin twin;
+  twin.free("mass", 60.0, 10.0, 500.0);
+  twin.free("valve_gain", 0.03e-3, 0.01e-3, 0.2e-3);
+  twin.add("square", Waveform::square, 2.0, 0.01);
+  twin.add("sine", Waveform::sine, 5.0, 0.01);
+  return twin;
+}
+
+/// A solver that claims to have ended at z, which it never simulated.
+MultiStart claimed_at(const Problem& problem, const std::vector<double>& z) {
+  MultiStart found;
+  found.best = 1;
+  found.starts.resize(1);
+  found.optimum = predict(problem, evaluate_at(problem, z, 1), z);
+  found.result.status = FitStatus::converged;
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("predict: off by the second order of the step", "[calib]") {
+  Twin twin = two_signals();
+  twin.campaign.simulation.tolerance = 1e-10;
+  const auto records = twin.records(1000, 1000.0, 1);
+  const Problem problem = problem_of(twin, records);
+  const Evaluation begin = evaluate_at(problem, problem.start(), 1);
+  const auto error = [&](double step) {
+    std::vector<double> z = begin.z;
+    for (double& each : z) each += step;
+    const Evaluation predicted = predict(problem, begin, z);
+    CHECK_FALSE(predicted.simulated());
+    CHECK(predicted.z == z);
+    return std::abs(predicted.cost - evaluate_at(problem, z, 1).cost);
+  };
+  CHECK_THAT(error(2e-4) / error(1e-4), WithinRel(4.0, 0.1));
+  CHECK_THAT(predict(problem, begin, begin.z).cost, WithinRel(begin.cost, 1e-12));
+}
+
+TEST_CASE("settle: a claimed end that is no minimum is solved on from", "[calib]") {
+  const Twin twin = two_signals();
+  const auto records = twin.records(1000, 1000.0, 1);
+  const Problem problem = problem_of(twin, records);
+  MultiStart found = claimed_at(problem, problem.start());
+  Evaluator evaluator(problem, {});
+  const auto rows = settle(problem, evaluator, {}, found);
+  CHECK(found.result.status == FitStatus::converged);
+  CHECK(found.result.iterations > 0);
+  CHECK(found.result.check.stationary());
+  CHECK(found.optimum.simulated());
+  Evaluator other(problem, {});
+  REQUIRE(solve(problem, other, problem.start(), 100, 1, {}).status == FitStatus::converged);
+  CHECK_THAT(found.optimum.cost, WithinRel(other.best().cost, 1e-5));
+  REQUIRE(rows.size() == 2);
+  double squares = 0.0;
+  for (const ConditionRows& each : rows) squares += 0.5 * each.residual.squaredNorm();
+  CHECK_THAT(squares, WithinRel(found.optimum.cost, 1e-12));
+  CHECK(found.starts[0].final_cost == found.optimum.cost);
+  CHECK(found.starts[0].status == FitStatus::converged);
+}
+
+TEST_CASE("settle: an end that a checkpoint brings back is judged, too", "[calib]") {
+  const Twin twin = two_signals();
+  const auto records = twin.records(1000, 1000.0, 1);
+  const Problem problem = problem_of(twin, records);
+  Evaluator evaluator(problem, {});
+  MultiStart found = multi_start(problem, evaluator, {});
+  // As a predicted end is that misses: evaluated again it is a simulated one.
+  std::vector<double> off = found.optimum.z;
+  off[0] += 1e-3;
+  found.optimum = evaluate_at(problem, off, 1);
+  REQUIRE(check_optimum(problem, found.optimum).relative_offset > 0.1);
+  settle(problem, evaluator, {}, found);
+  CHECK(found.result.status == FitStatus::converged);
+  CHECK(found.result.check.nearly_stationary());
+}
+
+TEST_CASE("settle: where there is no time left to make it good, it is not called converged",
+          "[calib]") {
+  const Twin twin = two_signals();
+  const auto records = twin.records(1000, 1000.0, 1);
+  const Problem problem = problem_of(twin, records);
+  MultiStart found = claimed_at(problem, problem.start());
+  Evaluator::Options options;
+  options.max_evaluations = 1;
+  Evaluator evaluator(problem, options);
+  settle(problem, evaluator, {}, found);
+  CHECK(found.result.status == FitStatus::stopped);
+  CHECK_THAT(found.result.message, Contains("evaluations"));
+  CHECK(found.optimum.simulated());
+}
+
+TEST_CASE(
+    "fit: stopped after any number of evaluations it gives intervals that it calls unreliable",
+    "[calib]") {
+  const Twin twin = two_signals();
+  const auto records = twin.records(1000, 1000.0, 1);
+  FitOptions options;
+  long& most = options.max_evaluations.emplace(1);
+  const Problem problem = problem_of(twin, records);
+  const double at_start = evaluate_at(problem, problem.start(), 1).cost;
+  Fit found = fit(twin.campaign, records, options);
+  for (; found.status != FitStatus::converged && most < 100;
+       found = fit(twin.campaign, records, options)) {
+    CAPTURE(most);
+    CHECK(found.status == FitStatus::stopped);
+    CHECK(found.cost <= at_start);
+    CHECK_THAT(found.interval_advice, Contains("no interval is reliable"));
+    REQUIRE(found.parameters.size() >= 2);
+    for (const FittedParameter& each : {found.parameters[0], found.parameters[1]}) {
+      REQUIRE(each.ci95);
+      CHECK(std::isfinite(each.ci95->first));
+      CHECK(std::isfinite(each.ci95->second));
+    }
+    ++most;
+  }
+  CHECK(most > 5);
+  CHECK_THAT(found.interval_advice, !Contains("no interval is reliable"));
+}
+
+TEST_CASE("fit: its cost is that of simulations at the values it gives", "[calib]") {
+  const Twin twin = two_signals();
+  const auto records = twin.records(1000, 1000.0, 1);
+  const Fit found = fit(twin.campaign, records, {});
+  REQUIRE(found.status == FitStatus::converged);
+  const Problem problem = problem_of(twin, records);
+  std::vector<double> z;
+  for (const FittedParameter& each : found.parameters) {
+    if (each.fitted) z.push_back(problem.map.to_unit(static_cast<int>(z.size()), each.value));
+  }
+  const Evaluation there = evaluate_at(problem, z, 1);
+  CHECK_THAT(there.cost, WithinRel(found.cost, 1e-9));
+  CHECK(check_optimum(problem, there).nearly_stationary());
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,73 @@
+#include "calib/search/weights.hpp"
+
+#include <catch2/catch.hpp>
+#include <cstdio>
+
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::Contains;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using datasets::Waveform;
+
+/// Two conditions that ask for different valve gains, so that the estimate depends on how much each
+/// of them weighs.
+Twin of_two_minds() {
+  Twin twin;
+  twin.free("valve_gain", 3e-5, 1e-5, 2e-4);
+  twin.add("large", Waveform::square, 2.0, 0.02);
+  twin.add("small", Waveform::sine, 3.0, 0.002);
+  twin.offsets["small"] = {Twin::index("valve_gain"), 3.6e-5};  // beside 4.06e-5
+  return twin;
+}
+
+double rmse(const Fit& found, std::size_t condition) {
+  return found.conditions.at(condition).channels.at(0).agreement->rmse;
+}
+
+}  // namespace
+
+TEST_CASE("weights: each record ends with the residual for its noise", "[calib]") {
+  const Twin twin = of_two_minds();
+  auto records = twin.records(500, 500.0, 3, model::InitialState::rest, false);
+  const Fit found = fit(twin.campaign, records, {});
+  REQUIRE(found.status == FitStatus::converged);
+  // The same residuals, stated as noise, lead to the same estimate.
+  for (std::size_t i = 0; i < 2; ++i)
+    records[i].channels[datasets::Channel::position].sd_of_mean = rmse(found, i);
+  const Fit stated = fit(twin.campaign, records, {});
+  CAPTURE(rmse(found, 0), rmse(found, 1), parameter(stated, "valve_gain").value);
+  CHECK_THAT(parameter(found, "valve_gain").value,
+             WithinAbs(parameter(stated, "valve_gain").value,
+                       0.2 * *parameter(stated, "valve_gain").standard_error));
+  CHECK_THAT(found.reduced_chi_square, WithinRel(1.0, 0.1));
+}
+
+TEST_CASE("weights: iterations of all rounds count", "[calib]") {
+  const Twin twin = of_two_minds();
+  auto records = twin.records(500, 500.0, 3, model::InitialState::rest, false);
+  const Fit found = fit(twin.campaign, records, {});
+  REQUIRE(found.starts.size() == 1);
+  // The start ends before the first round, and a round takes an iteration at least.
+  int total = 0;
+  REQUIRE(std::sscanf(found.message.c_str(), "converged after %d iterations", &total) == 1);
+  CAPTURE(found.message);
+  CHECK(total > found.starts[0].iterations);
+}
+
+TEST_CASE("weights: no residual counts as less than simulations resolve", "[calib]") {
+  Twin twin;
+  twin.noise_sd_m = 0.0;
+  twin.free("valve_gain", 3e-5, 1e-5, 2e-4);
+  twin.add("square", Waveform::square, 2.0, 0.01);
+  const Fit found =
+      fit(twin.campaign, twin.records(250, 500.0, 1, model::InitialState::rest, false), {});
+  REQUIRE(found.status == FitStatus::converged);
+  CAPTURE(found.warnings);
+  CHECK(found.reduced_chi_square < 0.5);
+}
+
+}  // namespace rigcal::calib

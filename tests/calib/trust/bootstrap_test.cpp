@@ -1,0 +1,109 @@
+#include "calib/trust/bootstrap.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "calib/score/scorecard.hpp"
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+/// A rig whose one unknown, the offset of its position sensor, is the mean of measured minus
+/// simulated: what replicates estimate is what was drawn.
+struct OffsetAlone {
+  Twin twin;
+  std::vector<datasets::Record> records;
+  Uncertainty found;
+  Fit fit;
+
+  OffsetAlone() {
+    twin.noise_sd_m = 0.0;
+    twin.free("position_offset", 0.0, -5e-3, 5e-3);
+    twin.add("sine", datasets::Waveform::sine, 5.0, 0.01);
+    records = twin.records(50, 500.0, 1);
+    found.root = Eigen::MatrixXd::Identity(1, 1);
+    ScoreScatter& scatter = found.scatter.emplace_back();
+    scatter.covariance = Eigen::MatrixXd::Identity(1, 1);
+    scatter.freedom = Eigen::VectorXd::Constant(1, 40.0);
+    scatter.noise.emplace_back();
+    fit.parameters.resize(1);
+  }
+
+  datasets::Series& position() { return records[0].channels[datasets::Channel::position]; }
+
+  BootstrapSpread draw(int replicates) {
+    const Problem problem = problem_of(twin, records);
+    Evaluation optimum;
+    optimum.z = problem.start();
+    FitOptions options;
+    options.bootstrap = replicates;
+    bootstrap(problem, optimum, found, score_conditions(problem, optimum.z, 1), options, fit);
+    CHECK(fit.bootstrap_replicates == replicates);
+    return fit.parameters[0].bootstrap.value();
+  }
+};
+
+}  // namespace
+
+TEST_CASE("bootstrap: blocks of a first-order process", "[calib]") {
+  // G / gamma_0 = 2 phi / (1 - phi)^2 and sum gamma_h / gamma_0 = (1 + phi) / (1 - phi), so that
+  // the length is (6 phi^2 / (1 - phi^2)^2 n)^(1/3).
+  for (const auto& [phi, samples] : {std::pair{0.5, 1000.0}, std::pair{0.5, 64000.0},
+                                     std::pair{0.9, 2000.0}, std::pair{-0.6, 3000.0}}) {
+    CAPTURE(phi, samples);
+    const double root = phi / (1.0 - phi * phi);
+    CHECK(block_length({{phi}, 1.0}, static_cast<std::size_t>(samples)) ==
+          static_cast<std::size_t>(std::cbrt(6.0 * root * root * samples)));
+  }
+}
+
+TEST_CASE("bootstrap: three repeats that differ by their offset", "[calib]") {
+  OffsetAlone rig;
+  constexpr double kUnit = 5e-4;
+  for (const double size : {2.0, -1.0, -1.0})
+    rig.position().deviations.emplace_back(50, size * kUnit);
+  const BootstrapSpread spread = rig.draw(300);
+  // Three draws of 2, -1, -1, enlarged by sqrt(3 / 2): means of 2 (once in 27), 1, 0 and -1 (eight
+  // times), whose standard deviation is that of the mean of three repeats, sqrt(3 / 3).
+  const double enlarged = std::sqrt(1.5) * kUnit;
+  CHECK_THAT(spread.standard_error, WithinRel(kUnit, 0.1));
+  CHECK(spread.freedom == 2.0);
+  // Both ends are ends of that distribution, times t of two degrees of freedom over the normal
+  // quantile (scipy.stats: 4.302652730 / 1.959963985).
+  constexpr double kWidened = 2.195271;
+  CHECK_THAT(spread.ci95.first, WithinRel(-enlarged * kWidened, 1e-3));
+  CHECK_THAT(spread.ci95.second, WithinRel(2.0 * enlarged * kWidened, 1e-3));
+}
+
+TEST_CASE("bootstrap: the standard deviation has one degree of freedom less", "[calib]") {
+  OffsetAlone rig;
+  constexpr double kUnit = 5e-4;
+  for (const double size : {2.0, -1.0, -1.0})
+    rig.position().deviations.emplace_back(50, size * kUnit);
+  constexpr int kDrawn = 21;
+  const BootstrapSpread spread = rig.draw(kDrawn);
+  // Replicates are whole numbers of this, so that their sum and sum of squares are too.
+  const double step = std::sqrt(1.5) * kUnit;
+  const double sum = kDrawn * spread.bias / step;
+  const double squares =
+      (kDrawn - 1) * std::pow(spread.standard_error / step, 2.0) + sum * sum / kDrawn;
+  CAPTURE(sum, squares);
+  CHECK_THAT(sum, WithinAbs(std::round(sum), 0.01));
+  CHECK_THAT(squares, WithinAbs(std::round(squares), 0.01));
+}
+
+TEST_CASE("bootstrap: the bias is mean of the replicates minus estimate", "[calib]") {
+  // Without repeats residuals are drawn: here every one is 1 mm, which the estimate leaves.
+  OffsetAlone rig;
+  for (double& each : rig.position().mean) each += 1e-3;
+  const BootstrapSpread spread = rig.draw(20);
+  CHECK_THAT(spread.bias, WithinRel(1e-3, 1e-3));
+  CHECK(spread.standard_error < 1e-6);
+  CHECK_THAT(spread.freedom, WithinRel(40.0, 1e-12));
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,90 @@
+#include "calib/trust/identifiability.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "calib/search/optimum.hpp"
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::WithinRel;
+
+/// A mass of 100 kg that is known with this error.
+struct Graded {
+  Twin twin;
+  std::vector<datasets::Record> records;
+  Uncertainty found;
+  std::optional<Problem> problem;
+
+  explicit Graded(double standard_error) {
+    twin.free("mass", 100.0, 10.0, 500.0);
+    twin.add("sine", datasets::Waveform::sine, 5.0, 0.01);
+    records = twin.records(20, 500.0, 1);
+    problem = problem_of(twin, records);
+    found.standard_error = {standard_error};
+    found.robust_standard_error.resize(1);
+    found.robust_freedom = {50.0};
+    found.robust_quantile = {2.0};
+    found.from_repeats = {false};
+    found.reason.resize(1);
+    found.correlation = Eigen::MatrixXd::Identity(1, 1);
+    found.reduced_chi_square = 1.0;
+    found.freedom = 1e9;  // Student's t is the normal distribution
+  }
+
+  FittedParameter graded() const {
+    Evaluation optimum;
+    optimum.z = problem->start();
+    OptimumCheck check;
+    check.side = {BoundSide::inside};
+    check.held = {false};
+    return describe_unknowns(*problem, optimum, check, found).at(0);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("identifiability: a fifth of the value is weak, all of it nothing", "[calib]") {
+  CHECK(Graded(19.0 / 1.96).graded().identifiability == Identifiability::identified);
+  CHECK(Graded(21.0 / 1.96).graded().identifiability == Identifiability::weak);
+  CHECK(Graded(99.0 / 1.96).graded().identifiability == Identifiability::weak);
+  CHECK(Graded(101.0 / 1.96).graded().identifiability == Identifiability::not_identifiable);
+}
+
+TEST_CASE("identifiability: an interval ends where the parameter does", "[calib]") {
+  const auto inside = Graded(10.0).graded().ci95.value();
+  CHECK_THAT(inside.first, WithinRel(100.0 - 19.6, 1e-3));
+  CHECK_THAT(inside.second, WithinRel(100.0 + 19.6, 1e-3));
+  const Graded wide(1000.0);
+  CHECK(wide.graded().ci95->first == wide.problem->spec(0).lower);
+}
+
+TEST_CASE("identifiability: the robust error, unless it is small and hardly known", "[calib]") {
+  Graded rig(10.0);
+  rig.found.robust_standard_error = {5.0};
+  CHECK(rig.graded().interval == IntervalSource::robust_standard_error);
+  CHECK_THAT(rig.graded().ci95->second, WithinRel(110.0, 1e-12));
+  rig.found.robust_freedom = {2.0};
+  CHECK(rig.graded().interval == IntervalSource::standard_error);
+  rig.found.robust_standard_error = {15.0};
+  CHECK(rig.graded().interval == IntervalSource::robust_standard_error);
+  // Residuals far below the noise that is stated tell nothing of it.
+  rig.found.reduced_chi_square = 0.2;
+  CHECK(rig.graded().interval == IntervalSource::standard_error);
+}
+
+TEST_CASE("identifiability: what rests on a known value", "[calib]") {
+  Graded rig(10.0);
+  const std::vector<double> z = rig.problem->start();
+  const double slope = rig.problem->map.slope(0, z[0]);
+  const auto rests = [&](double carried) {
+    rig.found.known.names = {"supply_pressure_pa"};
+    rig.found.known.response = Eigen::MatrixXd::Constant(1, 1, carried / slope);
+    return rests_on_known(*rig.problem, rig.found, z, 0);
+  };
+  CHECK(rests(7.5));  // more than half of the variance
+  CHECK_FALSE(rests(6.5));
+}
+
+}  // namespace rigcal::calib

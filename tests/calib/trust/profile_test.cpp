@@ -1,0 +1,298 @@
+#include "calib/trust/profile.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "calib/cross_validation.hpp"
+#include "calib/search/evaluator.hpp"
+#include "calib/trust/bootstrap.hpp"
+#include "calib/trust/interval_advice.hpp"
+#include "tests/calib/twin.hpp"
+#include "tests/support/sanitized.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::Contains;
+using Catch::WithinRel;
+using datasets::Scope;
+using datasets::Waveform;
+
+Twin twin_far_off() {
+  Twin twin;
+  twin.free("mass", 80.0, 10.0, 500.0);
+  twin.free("valve_gain", 0.04e-3, 0.01e-3, 0.2e-3);
+  twin.add("square", Waveform::square, 2.0, 0.01);
+  return twin;
+}
+
+}  // namespace
+
+TEST_CASE("profile: where the cost is all but quadratic it ends where the interval does",
+          "[calib]") {
+  const Twin twin = twin_far_off();
+  FitOptions options;
+  options.profiles = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  for (const auto* key : {"mass", "valve_gain"}) {
+    const FittedParameter& p = parameter(found, key);
+    CAPTURE(key, p.reason);
+    REQUIRE(p.profile.has_value());
+    const auto interval = p.ci95.value();
+    // 10 %: curvature, the quantile of t, and a crossing that is found to 2 %.
+    CHECK_THAT(p.profile->high.value.value() - p.value, WithinRel(interval.second - p.value, 0.1));
+    CHECK_THAT(p.value - p.profile->low.value.value(), WithinRel(p.value - interval.first, 0.1));
+    CHECK_FALSE(p.profile->lower_cost_found);
+  }
+}
+
+TEST_CASE("profile: an open one makes a parameter not identifiable", "[calib]") {
+  Twin twin = twin_far_off();
+  twin.free("bulk_modulus", 700e6, 300e6, 1500e6);
+  twin.campaign.conditions[0].waveform = Waveform::sine;
+  twin.campaign.conditions[0].frequency_hz = 0.5;
+  FitOptions options;
+  options.profiles = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 100.0, 3), options);
+  const FittedParameter& bulk = parameter(found, "bulk_modulus");
+  REQUIRE(bulk.profile.has_value());
+  CHECK_FALSE(bulk.profile->high.value.has_value());
+  CHECK(bulk.identifiability == Identifiability::not_identifiable);
+  CHECK_THAT(bulk.reason, Contains("profile is open"));
+}
+
+TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of the parameter",
+          "[calib]") {
+  Twin twin = twin_far_off();
+  const auto records = twin.records(250, 500.0, 3);
+  const Problem problem = problem_of(twin, records);
+  Fit found = fit(twin.campaign, records, {});
+  std::vector<double> z;
+  for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j)
+    z.push_back(problem.map.to_unit(static_cast<int>(j), found.parameters[j].value));
+  const Evaluation optimum = evaluate_at(problem, z, 1);
+  const std::atomic<bool> cancel{true};
+  FitOptions options;
+  options.cancel = &cancel;
+  profiles(problem, records, optimum, options, found);
+  const FittedParameter& mass = parameter(found, "mass");
+  REQUIRE(mass.profile.has_value());
+  CHECK(mass.profile->low.lost);
+  CHECK(mass.identifiability == Identifiability::identified);
+  CHECK_THAT(mass.reason, Contains("not made on either side: stopped on request"));
+
+  twin.setting("mass").upper = mass.value + 0.2 * (mass.ci95->second - mass.value);
+  options.cancel = nullptr;
+  options.profiles = true;
+  const Fit bounded = fit(twin.campaign, records, options);
+  const FittedParameter& cut = parameter(bounded, "mass");
+  REQUIRE(cut.profile.has_value());
+  CHECK_FALSE(cut.profile->high.value);
+  CHECK(cut.identifiability == Identifiability::identified);
+  CHECK_THAT(cut.reason, Contains("profile is open above"));
+}
+
+TEST_CASE("profile: what a prior alone tells ends where the prior does", "[calib]") {
+  // Valve gain and discharge coefficient act as their product.
+  Twin twin = twin_far_off();
+  twin.free("discharge_coefficient", 0.6, 0.1, 1.0).prior = datasets::Prior{0.6, 0.02};
+  FitOptions options;
+  options.profiles = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  const FittedParameter& p = parameter(found, "discharge_coefficient");
+  CAPTURE(p.reason);
+  CHECK_THAT(p.standard_error.value(), WithinRel(0.02, 0.02));
+  REQUIRE(p.profile.has_value());
+  // 1.96 standard deviations of it; a crossing is found to 2 % of the rise.
+  CHECK_THAT(p.profile->high.value.value() - p.value, WithinRel(1.96 * 0.02, 0.03));
+  CHECK_THAT(p.value - p.profile->low.value.value(), WithinRel(1.96 * 0.02, 0.03));
+}
+
+TEST_CASE("profile: without an interval it ends where the cost says 95 %", "[calib]") {
+  const Twin twin = twin_far_off();
+  const auto records = twin.records(250, 500.0, 3);
+  const Problem problem = problem_of(twin, records);
+  const Fit found = fit(twin.campaign, records, {});
+  Fit bare = found;
+  std::vector<double> z;
+  for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
+    bare.parameters[j].ci95.reset();
+    bare.parameters[j].standard_error.reset();
+    bare.parameters[j].robust_standard_error.reset();
+    z.push_back(problem.map.to_unit(static_cast<int>(j), found.parameters[j].value));
+  }
+  profiles(problem, records, evaluate_at(problem, z, 1), {}, bare);
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const double error = found.parameters[j].standard_error.value();
+    const Profile& profile = bare.parameters[j].profile.value();
+    CHECK_THAT(profile.high.value.value() - found.parameters[j].value,
+               WithinRel(1.96 * error, 0.03));
+    CHECK_THAT(found.parameters[j].value - profile.low.value.value(),
+               WithinRel(1.96 * error, 0.03));
+  }
+}
+
+TEST_CASE("profile: a lower cost than that of the fit is told", "[calib]") {
+  const Twin twin = twin_far_off();
+  const auto records = twin.records(250, 500.0, 3);
+  const Problem problem = problem_of(twin, records);
+  Fit found = fit(twin.campaign, records, {});
+  std::vector<double> z;
+  for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
+    FittedParameter& each = found.parameters[j];
+    each.value += 5.0 * each.standard_error.value();
+    each.ci95->first += 5.0 * each.standard_error.value();
+    each.ci95->second += 5.0 * each.standard_error.value();
+    z.push_back(problem.map.to_unit(static_cast<int>(j), each.value));
+  }
+  profiles(problem, records, evaluate_at(problem, z, 1), {}, found);
+  for (const auto* key : {"mass", "valve_gain"}) {
+    CHECK(parameter(found, key).profile->lower_cost_found);
+    CHECK_THAT(parameter(found, key).reason, Contains("its profile finds a lower cost"));
+  }
+}
+
+TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
+  // Along what the records do not tell at all the cost is as flat as simulations can be.
+  Twin twin = twin_far_off();
+  twin.free("discharge_coefficient", 0.6, 0.1, 1.0);
+  FitOptions options;
+  options.profiles = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  const FittedParameter& p = parameter(found, "discharge_coefficient");
+  CAPTURE(p.reason);
+  REQUIRE(p.profile.has_value());
+  CHECK_FALSE(p.profile->lower_cost_found);
+  CHECK_THAT(p.reason, Contains("profile is open above"));
+  CHECK_THAT(found.interval_advice,
+             Contains("not identifiable, so that no interval is reliable: ") &&
+                 Contains("discharge_coefficient") && !Contains("mass_kg"));
+}
+
+TEST_CASE("intervals: which of them to use", "[calib]") {
+  const Twin twin = twin_far_off();
+  const auto records = twin.records(250, 500.0, 3);
+  const Problem problem =
+      make_problem(twin.campaign, records, {&twin.campaign.conditions[0]}, false, nullptr);
+  std::vector<FittedParameter> parameters(2);
+  for (FittedParameter& each : parameters) {
+    each.value = 85.0;
+    each.ci95 = {84.9999, 85.0001};
+  }
+  CHECK(compare_intervals(problem, parameters).empty());
+  BootstrapSpread drawn{3e-5, 0.0, 9.0, {84.9999, 85.0001}};
+  parameters[0].bootstrap = drawn;
+  CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95`");
+  CHECK_THAT(compare_intervals(problem, parameters, {"supply_pressure_pa"}),
+             Contains("the bootstrap leaves out the uncertainty of supply_pressure_pa"));
+  drawn.ci95 = {84.99994, 85.00006};  // 0.6 times as wide: nine degrees of freedom may
+  parameters[0].bootstrap = drawn;
+  CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95`");
+  drawn.ci95 = {84.99996, 85.00004};
+  parameters[0].bootstrap = drawn;
+  CHECK_THAT(compare_intervals(problem, parameters),
+             Contains("0.4 times as wide") && !Contains("lacks"));
+  CHECK_THAT(compare_intervals(problem, parameters, {}, true),
+             Contains("which counts what the model lacks"));
+  drawn.ci95 = {84.99995, 85.00015};
+  parameters[0].bootstrap = drawn;
+  CHECK_THAT(compare_intervals(problem, parameters),
+             Contains("84.99995 to 85.00015 kg: it is skewed"));
+  drawn.ci95 = {84.9998, 85.0002};
+  parameters[0].bootstrap = drawn;
+  CHECK_THAT(compare_intervals(problem, parameters), Contains("2 times as wide"));
+  parameters[0].profile = Profile{};
+  parameters[0].profile->low.value = 84.99999;
+  parameters[0].profile->high.value = 85.0001;
+  CHECK_THAT(compare_intervals(problem, parameters),
+             Contains("use the interval of the profile, 84.99999 to 85.0001 kg:"));
+  parameters[0].identifiability = Identifiability::not_identifiable;
+  CHECK(compare_intervals(problem, parameters) ==
+        "not identifiable, so that no interval is reliable: " + problem.name(0));
+}
+
+TEST_CASE("bootstrap: its spread is that of the noise, the same for any number of threads",
+          "[calib]") {
+  const Twin twin = twin_far_off();
+  const auto records = twin.records(250, 500.0, 3);
+  FitOptions options;
+  options.bootstrap = test::kSanitized ? 40 : 100;
+  const Fit found = fit(twin.campaign, records, options);
+  options.threads = 3;
+  const Fit again = fit(twin.campaign, records, options);
+  CHECK(found.bootstrap_replicates == options.bootstrap);
+  for (const auto* key : {"mass", "valve_gain"}) {
+    const FittedParameter& p = parameter(found, key);
+    REQUIRE(p.bootstrap.has_value());
+    // A standard deviation of 100 draws is known to 7 %; four times that.
+    CHECK_THAT(p.bootstrap->standard_error, WithinRel(p.robust_standard_error.value(), 0.3));
+    CHECK(std::abs(p.bootstrap->bias) < 0.5 * p.bootstrap->standard_error);
+    CHECK(p.bootstrap->ci95.first < p.value);
+    CHECK(p.bootstrap->ci95.second > p.value);
+    CHECK(p.bootstrap->standard_error == parameter(again, key).bootstrap->standard_error);
+  }
+}
+
+TEST_CASE("bootstrap: blocks grow with the memory of the noise", "[calib]") {
+  CHECK(block_length({{}, 1.0}, 1000) == 1);
+  const std::size_t slow = block_length({{0.95}, 1.0}, 1000);
+  CHECK(slow > block_length({{0.5}, 1.0}, 1000));
+  CHECK(slow < 200);
+  CHECK(block_length({{0.99}, 1.0}, 5) <= 5);
+}
+
+TEST_CASE("fit: records that contradict a prior are told of", "[calib]") {
+  Twin twin = twin_far_off();
+  twin.setting("mass").prior = datasets::Prior{60.0, 1.0};
+  twin.setting("damping").prior = datasets::Prior{2.0 * twin.setting("damping").value, 10.0};
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), {});
+  const auto told = [&](const char* first, const char* second) {
+    return std::any_of(found.warnings.begin(), found.warnings.end(), [&](const std::string& each) {
+      return each.find(first) == 0 && each.find(second) != std::string::npos;
+    });
+  };
+  CHECK(told("mass_kg: records and prior disagree", "of its prior from 60 kg"));
+  CHECK(told("damping: known, and taken to be", "standard deviations of its prior"));
+  twin.setting("mass").prior = datasets::Prior{85.0, 5.0};
+  twin.setting("damping").prior.reset();
+  const Fit agreed = fit(twin.campaign, twin.records(250, 500.0, 3), {});
+  for (const std::string& each : agreed.warnings) CHECK_THAT(each, !Contains("prior"));
+}
+
+TEST_CASE("cross-validation: of one condition there is none", "[calib]") {
+  Twin twin = twin_far_off();
+  REQUIRE(twin.campaign.conditions.size() == 1);
+  FitOptions options;
+  options.cross_validate = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  REQUIRE(found.cross_validation.size() == 1);
+  CHECK_THAT(found.cross_validation[0].problem, Contains("only condition"));
+}
+
+TEST_CASE("cross-validation: each condition is predicted from the others", "[calib]") {
+  Twin twin = twin_far_off();
+  twin.add("sine", Waveform::sine, 3.0, 0.01);
+  twin.add("leaking", Waveform::square, 1.0, 0.01, "leak");
+  twin.level_leakage = {{"leak", 0.5}};
+  twin.campaign.leak_levels["none"] = {{Twin::index("leakage_coefficient"), 0.35}};
+  for (std::size_t i : {0U, 1U}) twin.campaign.conditions[i].leak_level = "none";
+  twin.free("leakage_coefficient", 0.3, 0.05, 2.0, Scope::leak_level);
+  FitOptions options;
+  options.cross_validate = true;
+  const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
+  REQUIRE(found.cross_validation.size() == 3);
+  for (std::size_t i : {0U, 1U}) {
+    const HeldOut& held = found.cross_validation[i];
+    CAPTURE(held.condition, held.problem);
+    REQUIRE(held.rms.size() == 1);
+    // Two parameters against 250 samples: the noise decides, not what was left out.
+    CHECK_THAT(held.rms[0].second, WithinRel(held.fitted_rms[0].second, 0.1));
+    CHECK(std::abs(held.largest_shift) < 5.0);
+  }
+  CHECK_THAT(found.cross_validation[2].problem, Contains("leak"));
+  CHECK_THAT(found.interval_advice, Contains("2 of 3 conditions predicted from the others"));
+}
+
+}  // namespace rigcal::calib

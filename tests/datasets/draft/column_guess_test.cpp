@@ -1,0 +1,59 @@
+#include "datasets/draft/column_guess.hpp"
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+using namespace rigcal::datasets;
+
+TEST_CASE("guess_column: channels and units by name", "[datasets]") {
+  struct Case {
+    std::string name;
+    std::optional<Channel> channel;
+    std::string unit;
+  };
+  const std::vector<Case> cases{{"ref_mm", Channel::reference, "mm"},
+                                {"x [mm]", Channel::position, "mm"},
+                                {"Position (cm)", Channel::position, "cm"},
+                                {"x_mm_A", Channel::position, "mm"},
+                                {"pA_bar_", Channel::pressure_a, "bar"},
+                                {"p_b_bar", Channel::pressure_b, "bar"},
+                                {"P1_psi", Channel::pressure_a, "psi"},
+                                {"pA", Channel::pressure_a, ""},
+                                {"p_A [bar]", Channel::pressure_a, "bar"},
+                                {"p_A_bar", Channel::pressure_a, "bar"},
+                                {"pressure_B_MPa", Channel::pressure_b, "MPa"},
+                                {"Pressure A (Pa)", Channel::pressure_a, "Pa"},
+                                {"chamber_A_bar", Channel::pressure_a, "bar"},
+                                {"log.chamberB", Channel::pressure_b, ""},
+                                {"p_cap_bar", Channel::pressure_a, "bar"},
+                                {"p_rod_bar", Channel::pressure_b, "bar"},
+                                {"p2_pa", Channel::pressure_b, "Pa"},
+                                {"u_A", Channel::command, "A"},
+                                {"pl_bar", Channel::load_pressure, "bar"},
+                                {"supply_pressure", Channel::supply_pressure, ""},
+                                {"u_V", Channel::command, "V"},
+                                {"cmd_mm", Channel::reference, "mm"},
+                                {"log.position", Channel::position, ""},
+                                {"F_kN", Channel::force, "kN"},
+                                {"temp_C", Channel::temperature, "degC"},
+                                {"block", std::nullopt, ""},
+                                {"data(:,2)", std::nullopt, ""},
+                                {"", std::nullopt, ""}};
+  for (const Case& each : cases) {
+    CAPTURE(each.name);
+    const ColumnGuess guess = guess_column(each.name);
+    CHECK_FALSE(guess.is_time);
+    CHECK(guess.channel == each.channel);
+    CHECK(guess.unit == each.unit);
+  }
+}
+
+TEST_CASE("guess_column: the time", "[datasets]") {
+  for (const char* name : {"t", "t_s", "Time [s]", "log.time", "tout"}) {
+    CAPTURE(name);
+    CHECK(guess_column(name).is_time);
+    CHECK_FALSE(guess_column(name).channel);
+  }
+  CHECK(guess_column("t_ms").unit == "ms");
+}

@@ -1,0 +1,219 @@
+#include "datasets/draft/draft_campaign.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <string>
+
+#include "common/error.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "model/plant/parameter.hpp"
+#include "tests/datasets/campaign_fixture.hpp"
+#include "tests/datasets/mat_fixture.hpp"
+
+using namespace rigcal;
+using namespace rigcal::datasets;
+using namespace rigcal::test;
+using Catch::Contains;
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A loop that follows a sine of 2 Hz and 5 mm.
+std::string sine_csv(double phase) {
+  std::string text = "t_s,ref_mm,x_mm,note\n";
+  for (int i = 0; i < 400; ++i) {
+    const double t = 0.005 * i;
+    const double angle = 12.566370614359172 * t;
+    text += fmt::format("{},{},{},0\n", t, 5.0 * std::sin(angle),
+                        4.8 * std::sin(angle - phase) + 0.01 * std::sin(31.0 * i));
+  }
+  return text;
+}
+
+/// What a user would do: a value for every blank.
+std::string filled(std::string text, model::PlantKind plant = model::PlantKind::load_pressure) {
+  const auto fill = [&](const std::string& from, const std::string& to) {
+    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from))
+      text.replace(at, from.size(), to);
+  };
+  for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
+    if (spec.kind != model::ParameterKind::plant || spec.default_value) continue;
+    const double value = spec.lower > 0.0 ? std::sqrt(spec.lower * spec.upper) : spec.lower;
+    const std::string unit = spec.unit == "1" ? "" : " " + std::string(spec.unit);
+    fill(fmt::format("{} = \"FILL IN{}\"", spec.key, unit),
+         spec.unit == "1" ? fmt::format("{} = {:.1f}", spec.key, value)
+                          : fmt::format("{} = \"{:e}{}\"", spec.key, value, unit));
+  }
+  fill("kp = \"FILL IN V/m\"", "kp = \"100 V/m\"");
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("draft_campaign: repeats, waveform and columns, and loads once it is filled",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  for (const std::string n : {"1", "2", "3"})
+    folder.write("records/sine_" + n + ".csv", sine_csv(0.1));
+  const fs::path records = folder.path() / "records";
+  const std::string draft =
+      draft_campaign({records / "sine_1.csv", records / "sine_2.csv", records / "sine_3.csv"},
+                     folder.path() / "draft")
+          .text;
+  CHECK_THAT(draft, Contains("time = { column = \"t_s\", unit = \"s\" }"));
+  CHECK_THAT(draft, Contains("reference = { column = \"ref_mm\", unit = \"mm\" }"));
+  CHECK_THAT(draft, Contains("position = { column = \"x_mm\", unit = \"mm\" }"));
+  CHECK_THAT(draft, Contains("# not used: note"));
+  CHECK_THAT(draft, Contains("id = \"sine\"") && Contains("waveform = \"sine\""));
+  CHECK_THAT(draft, Contains("frequency = \"2 Hz\"") && Contains("amplitude = \"5 mm\""));
+  CHECK_THAT(draft, Contains("400 samples at 200 Hz"));
+  CHECK_THAT(draft, Contains("\"../records/sine_1.csv\"") && Contains("type = \"pid\""));
+  CHECK_THAT(draft, Contains("initial = \"fit\"  # estimated: sine moves within its first 0.1 s"));
+
+  const fs::path file = folder.write("draft/campaign.toml", draft);
+  CHECK_THROWS_WITH(load_campaign(file), Contains("FILL IN"));
+  const Campaign campaign = load_campaign(folder.write("draft/campaign.toml", filled(draft)));
+  const Record record = load_record(campaign, campaign.conditions.at(0));
+  CHECK(record.repeats == 3);
+  CHECK(record.channels.contains(Channel::position));
+}
+
+TEST_CASE("draft_campaign: one column per repeat, two sets, no loop", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text =
+      "t_s,u_V,x_mm_A01,pA_bar_01,x_mm_A02,pA_bar_02,x_mm_B01,pB_bar_01,x_mm_B02,"
+      "pB_bar_02\n";
+  for (int i = 0; i < 300; ++i) {
+    const double x = std::clamp(0.5 * (i - 50), 0.0, 60.0);
+    text += fmt::format("{},{},{},1{},{},1{},{},2{},{},2{}\n", 0.01 * i, i < 50 ? 0 : 2, x, i, x, i,
+                        x, i, x, i);
+  }
+  const fs::path file = folder.write("steps_2V.csv", text);
+  const std::string draft = draft_campaign({file}, folder.path()).text;
+  CHECK_THAT(draft, Contains("position = { unit = \"mm\" }"));
+  CHECK_THAT(draft, Contains("command = { column = \"u_V\", unit = \"V\" }"));
+  CHECK_THAT(draft, Contains("{ file = \"steps_2V.csv\", n = \"01..02\", columns = { position = "
+                             "\"x_mm_A{n}\", pressure_a = \"pA_bar_{n}\" } }"));
+  CHECK_THAT(draft, Contains("position = \"x_mm_B{n}\", pressure_b = \"pB_bar_{n}\""));
+  CHECK_THAT(draft, Contains("waveform = \"recorded\"") && Contains("type = \"none\""));
+  // Pressures of chambers: the plant with both.
+  CHECK_THAT(draft, Contains("model = \"two_chamber\"") && Contains("area_b = \"FILL IN m2\"") &&
+                        Contains("# retracted_position = \"... m\"  # x_R: "));
+  CHECK_THAT(draft, !Contains("piston_area"));
+  const Campaign campaign =
+      load_campaign(folder.write("campaign.toml", filled(draft, model::PlantKind::two_chamber)));
+  const Record record = load_record(campaign, campaign.conditions.at(0));
+  CHECK(record.repeats == 4);
+  CHECK(record.channels.at(Channel::pressure_b).repeats == 2);
+}
+
+TEST_CASE("draft_campaign: a MAT file, and a column in volts", "[datasets]") {
+  const TemporaryFolder folder;
+  std::vector<double> t;
+  std::vector<double> u;
+  for (int i = 0; i < 200; ++i) {
+    t.push_back(0.01 * i);
+    u.push_back(3.0 * std::sin(0.2 * i) + 1.0);
+  }
+  write_mat(folder.path() / "run.mat", MatFormat::v7,
+            {mat_struct(
+                "log", {{mat_array("time", t), mat_array("u_V", u), mat_array("position_V", u)}})});
+  const std::string draft = draft_campaign({folder.path() / "run.mat"}, folder.path()).text;
+  CHECK_THAT(draft, Contains("time = { column = \"log.time\""));
+  CHECK_THAT(draft, Contains("command = { column = \"log.u_V\", unit = \"V\" }"));
+  CHECK_THAT(draft, Contains("position = { column = \"log.position_V\", unit = \"FILL IN\" }") &&
+                        Contains("the column is in V"));
+  CHECK_THAT(draft, Contains("not generated: it has an offset or a phase"));
+}
+
+TEST_CASE("draft_campaign: a summary beside the recordings is left out", "[datasets]") {
+  const TemporaryFolder folder;
+  const fs::path summary = folder.write("summary.csv", "run,speed_mm_s\n1,2\n");
+  const fs::path run = folder.write("sine_1.csv", sine_csv(0.1));
+  const auto [draft, left_out] = draft_campaign({summary, run}, folder.path());
+  REQUIRE(left_out.size() == 1);
+  CHECK_THAT(left_out[0], Contains("summary.csv (no column looks like a time"));
+  CHECK_THAT(draft, Contains("# left out: summary.csv (no column looks like a time"));
+  CHECK_THAT(draft, !Contains("id = \"summary\"") && Contains("\"sine_1.csv\""));
+  CHECK_THAT(draft, Contains("model = \"load_pressure\""));
+}
+
+TEST_CASE("draft_campaign: a file whose time restarts is left out", "[datasets]") {
+  const TemporaryFolder folder;
+  const std::string restarts = "t_s,u_V,x_mm\n0,1,0\n0.1,1,1\n0,1,0\n0.1,1,1\n";
+  const fs::path cuts = folder.write("cuts.csv", restarts);
+  const fs::path run = folder.write("sine_2.csv", sine_csv(0.1));
+  const std::string draft = draft_campaign({cuts, run}, folder.path()).text;
+  CHECK_THAT(draft, Contains("# left out: cuts.csv:4:1: time 't_s' does not increase"));
+  CHECK_THAT(draft, !Contains("id = \"cuts\"") && Contains("\"sine_2.csv\""));
+  // The first of two repeats: the second stands for them.
+  const std::string rest =
+      draft_campaign({folder.write("sine_1.csv", restarts), run}, folder.path()).text;
+  CHECK_THAT(rest,
+             Contains("# left out: sine_1.csv:4:1") && Contains("repeats = [ \"sine_2.csv\" ]"));
+  CHECK_THROWS_WITH(draft_campaign({cuts}, folder.path()), Contains("cuts.csv:4:1: time 't_s'"));
+}
+
+TEST_CASE("draft_campaign: files that tell nothing", "[datasets]") {
+  const TemporaryFolder folder;
+  CHECK_THROWS_WITH(draft_campaign({folder.write("a.csv", "block,x_mm\n1,2\n")}, folder.path()),
+                    Contains("a.csv: no column looks like a time") && Contains("block, x_mm"));
+  CHECK_THROWS_WITH(draft_campaign({folder.write("b.csv", "t,q\n1,2\n")}, folder.path()),
+                    Contains("b.csv: no column looks like a channel"));
+  CHECK_THROWS_AS(draft_campaign({folder.path() / "none.csv"}, folder.path()), InputError);
+}
+
+TEST_CASE("draft_campaign: an array of Simulink's To File has its time in the first row",
+          "[datasets]") {
+  const auto format = GENERATE(MatFormat::v6, MatFormat::v7, MatFormat::v73);
+  const TemporaryFolder folder;
+  // Rows: time, reference [mm], position [mm]; column by column as MATLAB stores them.
+  std::vector<double> array;
+  for (int i = 0; i < 400; ++i) {
+    const double t = 0.005 * i;
+    const double angle = 12.566370614359172 * t;
+    array.insert(array.end(), {t, 5.0 * std::sin(angle), 4.5 * std::sin(angle - 0.3)});
+  }
+  const auto file = folder.path() / "run_1.mat";
+  write_mat(file, format, {mat_array("ans", array, {3, 400})});
+  const std::string text = draft_campaign({file}, folder.path()).text;
+  CHECK_THAT(text, Contains("time = { column = 'ans(1,:)', unit = 's' }") ||
+                       Contains("time = { column = \"ans(1,:)\", unit = \"s\" }"));
+  CHECK_THAT(text, Contains("# ans(2,:): -5 to 5") && Contains("# ans(3,:): -4.49") &&
+                       Contains("position = { column = "));
+  CHECK_THAT(text, !Contains("not used"));
+
+  std::string ready = filled(text);
+  const std::size_t from = ready.find("position = { ");
+  ready.replace(from, ready.find('\n', from) - from,
+                "position = { column = \"ans(3,:)\", unit = \"mm\" }\n"
+                "reference = { column = \"ans(2,:)\", unit = \"mm\" }");
+  const std::size_t wave = ready.find("waveform = \"FILL IN\"");
+  REQUIRE(wave != std::string::npos);
+  ready.replace(wave, ready.find('\n', wave) - wave,
+                "waveform = \"sine\"\nfrequency = \"2 Hz\"\namplitude = \"5 mm\"");
+  const Campaign campaign = load_campaign(folder.write("campaign.toml", ready));
+  const Record record = load_record(campaign, campaign.conditions.at(0));
+  REQUIRE(record.time_s.size() == 400);
+  CHECK_THAT(record.time_s[7], Catch::WithinAbs(0.035, 1e-12));
+  CHECK_THAT(record.channels.at(Channel::position).mean[7],
+             Catch::WithinAbs(1e-3 * array[7 * 3 + 2], 1e-12));
+}
+
+TEST_CASE("draft_campaign: a matrix without a time in its first row is no To File array",
+          "[datasets]") {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "run.mat";
+  write_mat(file, MatFormat::v6, {mat_array<double>("ans", {0, 1, 1, 2, 1, 3, 2, 4}, {2, 4})});
+  CHECK_THROWS_WITH(draft_campaign({file}, folder.path()),
+                    Contains("no column looks like a time") && Contains("ans(1,:), ans(2,:)"));
+  // Nothing but what MATLAB alone can read: the cure is said.
+  const auto text = folder.path() / "text.mat";
+  write_mat(text, MatFormat::v6, {mat_text("note", "run 3")});
+  CHECK_THROWS_WITH(draft_campaign({text}, folder.path()),
+                    Contains("no vector or matrix of numbers") && Contains("ts.Time"));
+}

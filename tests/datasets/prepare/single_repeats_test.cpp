@@ -1,0 +1,76 @@
+#include "datasets/prepare/single_repeats.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <vector>
+
+using namespace rigcal::datasets;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+namespace {
+
+constexpr std::size_t kSingleSamples = 400;
+
+double slope_and_ring(double t) { return 2.0 * t + std::sin(40.0 * t); }
+
+/// The same motion on a clock of 1 kHz that starts at `first_s`, `level` higher.
+Repeat starting_at(double first_s, double level) {
+  Repeat repeat;
+  repeat.source = "from " + std::to_string(first_s);
+  for (std::size_t i = 0; i < kSingleSamples; ++i) {
+    const double t = first_s + 1e-3 * static_cast<double>(i);
+    repeat.time_s.push_back(t);
+    repeat.values[Channel::position].push_back(slope_and_ring(t) + level);
+    repeat.values[Channel::command].push_back(t < 0.2 ? 0.0 : 1.0);
+  }
+  return repeat;
+}
+
+}  // namespace
+
+TEST_CASE("repeat_records: each repeat on the time base of the average, with the sd of one",
+          "[datasets]") {
+  Campaign campaign;
+  campaign.alignment = Alignment::none;
+  Condition condition;
+  condition.id = "c";
+  const double level = 0.01;
+  // The second begins 30 samples later and half a sample off the first one's clock.
+  const RepeatRecords records =
+      repeat_records(campaign, condition, {starting_at(0.0, -level), starting_at(0.0305, level)});
+  const Record& average = records.average;
+  REQUIRE(records.singles.size() == 2);
+  const double sd = level * std::sqrt(2.0);
+  CHECK_THAT(average.channels.at(Channel::position).sd_of_mean, WithinRel(level, 1e-3));
+  for (std::size_t r = 0; r < 2; ++r) {
+    const Record& single = records.singles[r];
+    CHECK(single.time_s == average.time_s);
+    const Series& position = single.channels.at(Channel::position);
+    // A single repeat is known as well as one repeat, not as well as their mean.
+    CHECK_THAT(position.pooled_sd, WithinRel(sd, 1e-3));
+    CHECK_THAT(position.sd_of_mean, WithinRel(sd, 1e-3));
+    for (std::size_t i = 60; i < 380; ++i)
+      CHECK_THAT(position.mean[i],
+                 WithinAbs(slope_and_ring(single.time_s[i]) + (r == 0 ? -level : level), 1e-4));
+    // A command is not interpolated beyond its levels.
+    for (const double value : single.channels.at(Channel::command).mean) {
+      CHECK(value >= 0.0);
+      CHECK(value <= 1.0);
+    }
+  }
+  CHECK(records.covered[0].start_s == average.time_s.front());
+  CHECK_THAT(records.covered[1].start_s, WithinAbs(0.031, 1e-9));
+  // What it does not cover holds its nearest sample.
+  const auto& late = records.singles[1].channels.at(Channel::position).mean;
+  CHECK(late[0] == late[31]);
+  CHECK(late[30] == late[31]);
+  CHECK(std::abs(late[31]) > 0.1);
+}
+
+TEST_CASE("repeat_records: one repeat, or an averaged file, has no singles", "[datasets]") {
+  Campaign campaign;
+  Condition condition;
+  condition.id = "c";
+  CHECK(repeat_records(campaign, condition, {starting_at(0.0, 0.0)}).singles.empty());
+}

@@ -1,0 +1,121 @@
+#include "model/plant/sensors.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "tests/model/two_chamber_rig.hpp"
+
+using namespace rigcal::model;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+namespace {
+
+constexpr double kLag_s = 0.01;
+
+/// Reading of a position that goes as `x`, by a sensor of kLag_s.
+template <typename F>
+Eigen::VectorXd lagged(const std::vector<double>& samples_s, F x) {
+  auto values = paper_rig();
+  values.set("position_lag", kLag_s);
+  const std::vector outputs{Output::position};
+  const SensorTimes at = *sensor_times(outputs, values, samples_s);
+  Simulation run;
+  run.outputs.resize(static_cast<Eigen::Index>(at.times_s.size()), 1);
+  for (std::size_t i = 0; i < at.times_s.size(); ++i) {
+    run.outputs(static_cast<Eigen::Index>(i), 0) = x(at.times_s[i]);
+  }
+  run.sensitivities.assign(1, Eigen::MatrixXd(run.outputs.rows(), 0));
+  read_sensors(at, outputs, values, {}, run);
+  return run.outputs.col(0);
+}
+
+}  // namespace
+
+TEST_CASE("sensors: a lag follows a ramp one time constant late", "[model]") {
+  const auto times = grid(0.0, 0.2, 21);
+  const auto y = lagged(times, [](double t) { return 3.0 * t; });
+  REQUIRE(y.size() == 21);
+  for (Eigen::Index i = 0; i < y.size(); ++i) {
+    const double t = times[static_cast<std::size_t>(i)];
+    // Straight pieces are exact here.
+    CHECK_THAT(y(i), WithinAbs(3.0 * (t - kLag_s * (1.0 - std::exp(-t / kLag_s))), 1e-12));
+  }
+}
+
+TEST_CASE("sensors: a lag weakens and delays a sine, however sparse the samples", "[model]") {
+  const double omega = 100.0;
+  for (const int samples : {201, 41}) {
+    const auto times = grid(0.0, 1.0, samples);
+    const auto y = lagged(times, [&](double t) { return std::sin(omega * t); });
+    const double gain = 1.0 / std::sqrt(1.0 + std::pow(omega * kLag_s, 2));
+    const double phase = std::atan(omega * kLag_s);
+    for (Eigen::Index i = y.size() / 2; i < y.size(); ++i) {
+      const double t = times[static_cast<std::size_t>(i)];
+      CHECK_THAT(y(i), WithinAbs(gain * std::sin(omega * t - phase), 2e-3));
+    }
+  }
+}
+
+TEST_CASE("sensors: gain and offset make the reading, and the start is read back", "[model]") {
+  Experiment e = two_chamber_rig();
+  e.rig.initial = InitialState::given;
+  e.outputs = {Output::position, Output::pressure_a, Output::velocity};
+  e.set("initial_position", 0.021).set("initial_pressure_a", 3e6);
+  const Simulation plain = e();
+  e.set("position_gain", 1.1).set("position_offset", -0.001).set("pressure_a_gain", 0.9);
+  e.set("initial_position", 0.021 * 1.1 - 0.001).set("initial_pressure_a", 2.7e6);
+  const Simulation read = e();
+  REQUIRE(plain.ok());
+  REQUIRE(read.ok());
+  // The loop sees the true position: nothing else changes but rounding.
+  CHECK(peak(read.outputs.col(0) - (1.1 * plain.outputs.col(0).array() - 0.001).matrix()) < 1e-9);
+  CHECK(peak(read.outputs.col(1) - 0.9 * plain.outputs.col(1)) < 1e-6 * peak(plain.outputs.col(1)));
+  CHECK_THAT(read.outputs(0, 0), WithinRel(0.021 * 1.1 - 0.001, 1e-12));
+}
+
+TEST_CASE("sensors: more times than the samples are needed with a lag only", "[model]") {
+  const auto times = grid(0.0, 1.0, 11);
+  const std::vector outputs{Output::position, Output::velocity};
+  CHECK_FALSE(sensor_times(outputs, paper_rig(), times));
+  auto values = paper_rig();
+  values.set("position_lag", 1e6);
+  const auto at = sensor_times(outputs, values, times);
+  REQUIRE(at);
+  CHECK(at->times_s == times);
+  CHECK(at->sample.back() == 10);
+}
+
+TEST_CASE("sensors: at its limit a reading depends on nothing", "[model]") {
+  Experiment e = two_chamber_rig();
+  e.outputs = {Output::position, Output::pressure_a};
+  e.free = {parameter_index(PlantKind::two_chamber, "mass"),
+            parameter_index(PlantKind::two_chamber, "position_gain")};
+  e.set("position_gain", 1.0);
+  const Simulation free = e();
+  REQUIRE(free.ok());
+  const double limit = 0.5 * free.outputs.col(0).maxCoeff();
+  e.set("position_maximum", limit);
+  const Simulation limited = e();
+  REQUIRE(limited.ok());
+  int reached = 0;
+  for (Eigen::Index i = 0; i < free.outputs.rows(); ++i) {
+    const bool beyond = free.outputs(i, 0) > limit;
+    reached += beyond ? 1 : 0;
+    CHECK(limited.outputs(i, 0) == (beyond ? limit : free.outputs(i, 0)));
+    CHECK(limited.sensitivities[0].row(i).isZero() == (beyond || i == 0));
+  }
+  CHECK(reached > 0);
+  CHECK(reached < free.outputs.rows());
+  CHECK(limited.outputs.col(1) == free.outputs.col(1));  // the loop sees the position itself
+}
+
+TEST_CASE("sensors: the shortest lag is followed by eight times and more", "[model]") {
+  auto values = paper_rig();
+  values.set("position_lag", 0.1);
+  values.set("load_pressure_lag", 0.0021);
+  const std::vector outputs{Output::position, Output::load_pressure};
+  const auto at = sensor_times(outputs, values, grid(0.0, 0.1, 11));
+  REQUIRE(at);
+  // 10 ms between samples: 8 * 10 / 2.1 = 38.1 pieces of each.
+  CHECK(at->times_s.size() == 10 * 39 + 1);
+}

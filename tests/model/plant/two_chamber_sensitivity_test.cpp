@@ -1,0 +1,104 @@
+#include "tests/model/sensitivity.hpp"
+#include "tests/model/two_chamber_rig.hpp"
+
+using namespace rigcal::model;
+
+namespace {
+
+/// Every combination of terms that changes the layout, every parameter of the plant once.
+std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
+  const NamedValues edges{
+      {"gain_supply_to_a", 1.1},    {"gain_a_to_tank", 0.9},      {"gain_supply_to_b", 0.8},
+      {"gain_b_to_tank", 1.2},      {"overlap_supply_to_a", 0.2}, {"overlap_a_to_tank", -0.1},
+      {"overlap_supply_to_b", 0.1}, {"overlap_b_to_tank", -0.2},  {"valve_offset", 0.15},
+      {"valve_dead_band", 0.25},    {"valve_null_opening", 0.1},  {"valve_null_leakage", 2e-13},
+      {"valve_line_opening", 3.0},  {"laminar_leakage", 3e-13},   {"external_leakage_a", 2e-13},
+      {"external_leakage_b", 3e-13}};
+  const NamedValues given{{"initial_position", 0.01},
+                          {"initial_velocity", 0.02},
+                          {"initial_pressure_a", 1.5e6},
+                          {"initial_pressure_b", 2.5e6},
+                          {"position_offset", 1e-3},
+                          {"pressure_a_offset", 2e4},
+                          {"pressure_b_offset", -3e4},
+                          {"load_pressure_offset", 1e5},
+                          {"force_offset", 20.0},
+                          {"position_gain", 1.05},
+                          {"pressure_a_gain", 1.02},
+                          {"pressure_b_gain", 0.95},
+                          {"load_pressure_gain", 0.97},
+                          {"force_gain", 1.1},
+                          {"position_lag", 4e-3},
+                          {"pressure_a_lag", 2e-3},
+                          {"pressure_b_lag", 5e-3},
+                          {"load_pressure_lag", 3e-3},
+                          {"force_lag", 6e-3},
+                          {"gravity", 3.0},
+                          {"stiffness", 5e3},
+                          {"external_force", 50.0},
+                          {"leakage_coefficient", 0.02},
+                          {"valve_time_constant", 3e-3},
+                          {"air_fraction", 0.01},
+                          {"air_exponent", 1.3}};
+  const NamedValues hoses{{"hose_capacity_a", 3e-13},
+                          {"hose_capacity_b", 2e-13},
+                          {"hose_yield", 2e5},
+                          {"hose_yield_ratio", 0.2}};
+  const NamedValues loop{{"kp", 900.0},
+                         {"ki", 3000.0},
+                         {"kd", 2.0},
+                         {"derivative_filter", 300.0},
+                         {"output_limit", 3.0},
+                         {"valve_frequency", 700.0},
+                         {"valve_damping_ratio", 0.9},
+                         {"supply_resistance", 2e10},
+                         {"supply_capacity", 5e-12},
+                         {"transport_delay", 3e-3},
+                         {"coulomb_friction", 60.0},
+                         {"stribeck_friction", 40.0},
+                         {"stribeck_velocity", 0.05},
+                         {"friction_smoothing", 0.05}};
+  NamedValues stop{{"retracted_position", -0.004},
+                   {"stop_stiffness", 2e6},
+                   {"stop_damping", 20.0},
+                   {"valve_time_constant", 5e-3},
+                   {"valve_rate_limit", 300.0}};
+  std::vector<std::pair<Scenario, Experiment>> rows;
+  const auto none = ControllerKind::none;
+  rows.push_back(
+      {{"four different edges that leak", Signal::sine(2.0, 10.0), edges, none}, single_rod_rig()});
+  rows.push_back({{"given state, sensors, aerated oil", Signal::sine(2.0, 10.0), given, none,
+                   InitialState::given},
+                  single_rod_rig()});
+  rows.push_back({{"hoses that yield", Signal::sine(2.0, 10.0), hoses, none}, single_rod_rig()});
+  rows.push_back({{"recorded loads", Signal::sine(2.0, 10.0), {}, none, InitialState::rest, true},
+                  single_rod_rig()});
+  rows.push_back(
+      {{"PID, second-order valve, soft supply, friction", Signal::sine(0.006, 9.0), loop},
+       single_rod_rig()});
+  rows.push_back({{"into the stop", Signal::square(-3.0, 4.0), stop, none}, single_rod_rig()});
+  // Into the other stop, its position half a stroke out.
+  rows.push_back({{"short stroke",
+                   Signal::square(3.0, 4.0),
+                   {{"stroke", 0.008}, {"stop_stiffness", 2e6}},
+                   none},
+                  single_rod_rig()});
+  return rows;
+}
+
+}  // namespace
+
+TEST_CASE("two_chamber: sensitivities are exact against differences, every parameter and term",
+          "[model]") {
+  std::set<int> seen;
+  for (const auto& [scenario, rig] : two_chamber_scenarios()) {
+    CAPTURE(scenario.name);
+    Experiment e = experiment(scenario, rig);
+    if (scenario.recorded_loads) {
+      e.inputs.supply_pressure_pa = Signal::ripple(4.4e6, 2e5, 20.0, 0.4);
+      e.inputs.tank_pressure_pa = Signal::linear({0.0, 0.05, 0.1}, {1e5, 2e5, 1.5e5});
+    }
+    check_sensitivities(e, seen, {{Output::load_pressure, 4.4e6}, {Output::force, 2.0e-4 * 4.4e6}});
+  }
+  check_all_seen(PlantKind::two_chamber, seen);
+}

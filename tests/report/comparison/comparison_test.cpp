@@ -1,0 +1,322 @@
+#include "report/comparison/comparison.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "common/error.hpp"
+#include "report/page/page_parts.hpp"
+#include "report/text/text_table.hpp"
+#include "tests/report/stored_fixture.hpp"
+
+using Catch::Contains;
+using Catch::WithinRel;
+using rigcal::report::Compared;
+using rigcal::report::comparison_headline;
+using rigcal::report::comparison_json;
+using rigcal::report::comparison_text;
+using rigcal::report::Json;
+using rigcal::report::Provenance;
+using rigcal::report::text_width;
+using rigcal::test::stored_result;
+
+namespace {
+
+/// A fit with this mass and leak, of records of its own.
+Compared compared_fit(const std::string& name, double mass_kg, double leak,
+                      double day_shift = 0.0) {
+  Json result = stored_result();
+  result["parameters"][0]["value"] = mass_kg;
+  result["parameters"][0]["standard_error"] = 0.3;
+  result["parameters"][0]["robust_standard_error"] = 0.4;
+  Json leakage = result["parameters"][0];
+  leakage["name"] = leakage["key"] = "leakage_coefficient";
+  leakage["unit"] = "1";
+  leakage["value"] = leak;
+  leakage["standard_error"] = 0.01;
+  leakage["robust_standard_error"] = nullptr;
+  leakage["ci95"] = {leak - 0.02, leak + 0.02};
+  result["parameters"].push_back(leakage);
+  const int day = 1 + static_cast<int>(day_shift);
+  result["conditions"][0]["date"] =
+      "2026-03-" + std::string(day < 10 ? "0" : "") + std::to_string(day);
+  result["conditions"][0]["temperature_k"] = 311.15;
+  result["provenance"]["inputs"] = {{{"path", "campaign.toml"}, {"sha256", "same"}},
+                                    {{"path", "a/sine_1.csv"}, {"sha256", name}}};
+  return {name, name + "/fit.json", result};
+}
+
+}  // namespace
+
+TEST_CASE("comparison: the difference with the larger errors of both", "[report]") {
+  const Json json =
+      comparison_json({compared_fit("before", 85.0, 0.3), compared_fit("after", 86.0, 0.3)}, {});
+  CHECK(json["status"] == "done");
+  const Json& mass = json["parameters"][0];
+  CHECK(mass["name"] == "mass_kg");
+  const Json& difference = mass["differences"][1];
+  CHECK(difference["difference"] == 1.0);
+  CHECK_THAT(difference["percent"].get<double>(), WithinRel(100.0 / 85.0, 1e-12));
+  CHECK_THAT(difference["standard_error"].get<double>(), WithinRel(std::hypot(0.4, 0.4), 1e-12));
+  // 2 Phi(-1.7678), by an independent computation (scipy.stats.norm)
+  CHECK_THAT(difference["p_value"].get<double>(), WithinRel(0.07709987174, 1e-8));
+  // The smallest of two, the other being 1.
+  CHECK_THAT(difference["p_value_of_all"].get<double>(), WithinRel(2.0 * 0.07709987174, 1e-8));
+  CHECK(difference["significant"] == false);
+}
+
+TEST_CASE("comparison: a clear change is significant, and said so", "[report]") {
+  const Json json =
+      comparison_json({compared_fit("before", 85.0, 0.3), compared_fit("after", 85.0, 0.6)}, {});
+  CHECK(json["parameters"][2]["differences"][1]["significant"] == true);
+  CHECK(json["parameters"][1]["differences"][1]["reason"] == "known in both");
+  const std::string text = comparison_text(json, {});
+  CHECK_THAT(text, Contains("+100 %") && Contains("*"));
+  CHECK_THAT(text, Contains("before") && Contains("after"));
+}
+
+TEST_CASE("comparison: several differences are judged together", "[report]") {
+  // 2.1 standard errors each, p = 0.036 (2 Phi(-2.1)): by itself significant, one of two not.
+  const double mass_kg = 85.0 + 2.1 * std::hypot(0.4, 0.4);
+  const double leak = 0.3 + 2.1 * std::hypot(0.01, 0.01);
+  const Json both = comparison_json(
+      {compared_fit("before", 85.0, 0.3), compared_fit("after", mass_kg, leak)}, {});
+  for (const std::size_t i : {0U, 2U}) {
+    const Json& difference = both["parameters"][i]["differences"][1];
+    CHECK_THAT(difference["p_value"].get<double>(), WithinRel(0.035728841, 1e-6));
+    CHECK_THAT(difference["p_value_of_all"].get<double>(), WithinRel(2.0 * 0.035728841, 1e-6));
+    CHECK(difference["significant"] == false);
+  }
+}
+
+TEST_CASE("comparison: nothing is a percentage of what may be zero", "[report]") {
+  Compared tight = compared_fit("before", 85.0, 0.0);
+  Json json = comparison_json({tight, compared_fit("after", 85.0, 0.3)}, {});
+  const Json& leak = json["parameters"][2]["differences"][1];
+  CHECK(leak["percent"].is_null());
+  CHECK(leak["significant"] == true);
+  CHECK_THAT(comparison_text(json, {}), Contains("+0.3 (p"));
+  CHECK_THAT(comparison_headline(json)["reasons"][0]["text"].get<std::string>(),
+             Contains("leakage_coefficient differs in after by +0.3 (p"));
+  // Not zero, but its interval holds zero: 0.03 would be +200 %.
+  Compared other = compared_fit("after", 87.0, 0.03);
+  other.result["provenance"]["inputs"][1]["sha256"] = "before";
+  json = comparison_json({compared_fit("before", 85.0, 0.01), other}, {});
+  CHECK(json["parameters"][2]["differences"][1]["percent"].is_null());
+  // Two standard errors against 3.5: the mass comes first, though neither can be tested.
+  CHECK_THAT(comparison_headline(json)["reasons"][0]["text"].get<std::string>(),
+             Contains("mass differs in after by +2.35 %, not tested"));
+}
+
+TEST_CASE("comparison: fits on a terminal of 80 columns", "[report]") {
+  const Json json = comparison_json({compared_fit("before the seal change", 85.0, 0.3),
+                                     compared_fit("after the seal change", 86.0, 0.4)},
+                                    {});
+  const std::string wide = comparison_text(json, {});
+  CHECK_THAT(wide, Contains("before the seal change  after the seal"));
+  const std::string text = comparison_text(json, {false, 80});
+  CAPTURE(text);
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t end = text.find('\n', begin);
+    CHECK(text_width(std::string_view(text).substr(begin, end - begin)) <= 80);
+    begin = end + 1;
+  }
+  CHECK_THAT(text, Contains("mass, kg\n  before the seal change"));
+  CHECK_THAT(text, Contains("leakage_coefficient, 1\n"));
+}
+
+TEST_CASE("comparison: fits to the same records are not independent", "[report]") {
+  Compared other = compared_fit("other", 90.0, 0.3);
+  other.result["provenance"]["inputs"][1]["sha256"] = "one";
+  const Json json = comparison_json({compared_fit("one", 85.0, 0.3), other}, {});
+  const Json& difference = json["parameters"][0]["differences"][1];
+  CHECK(difference["significant"].is_null());
+  CHECK_THAT(difference["reason"].get<std::string>(), Contains("same data"));
+  CHECK(json["records"].size() == 1);
+  CHECK(json["records"][0]["in"] == Json::array({true, true}));
+  CHECK(json["warnings"].dump().find("share records") != std::string::npos);
+}
+
+TEST_CASE("comparison: a failed fit has no values, and two usable ones are needed", "[report]") {
+  Compared failed = compared_fit("failed", 85.0, 0.3);
+  failed.result["status"] = "failed";
+  failed.result["message"] = "no start could be simulated";
+  const Json json = comparison_json({compared_fit("good", 85.0, 0.3), failed}, {});
+  CHECK(json["status"] == "failed");
+  CHECK(json["parameters"][0]["estimates"][1]["value"].is_null());
+  CHECK(json["conditions"][0]["scores"][1]["rho2"].is_null());
+  CHECK(json["parameters"][0]["differences"][1]["reason"] == "one has no value");
+  CHECK_THAT(comparison_text(json, {}), Contains("failed: no start could be simulated"));
+}
+
+TEST_CASE("comparison: the leak's trend along dates", "[report]") {
+  const Json json =
+      comparison_json({compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
+                       compared_fit("c", 85.0, 0.40, 10), compared_fit("d", 85.0, 0.44, 14)},
+                      {});
+  const Json& along = json["leak_trends"][0]["along_date"];
+  CHECK_THAT(along["slope_per_day"].get<double>(), WithinRel(0.01, 1e-9));
+  CHECK(along["significant"] == true);
+  CHECK(along["points"] == 4);
+  const Json& warm = json["leak_trends"][0]["along_temperature"];
+  CHECK(warm["slope_per_k"].is_null());
+  CHECK_THAT(warm["reason"].get<std::string>(), Contains("same place"));
+  // 2026-03-01 is day 20513 since 1970-01-01.
+  CHECK(json["leak_trends"][0]["points"][0]["day"] == 20513.0);
+}
+
+TEST_CASE("comparison: a leak is of the days on which its own conditions were fitted", "[report]") {
+  std::vector<Compared> results{compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
+                                compared_fit("c", 85.0, 0.40, 10)};
+  for (Compared& each : results) {
+    Json other = each.result["conditions"][0];
+    other["date"] = "2020-01-01";
+    other["id"] = "validated";
+    other["use"] = "validate";
+    each.result["conditions"].push_back(other);
+    Json& leakage = each.result["parameters"][2];
+    leakage["scope"] = "leak_level";
+    leakage["level"] = "none";
+    other["id"] = "leaking";
+    other["use"] = "fit";
+    other["leak_level"] = "33 %";
+    each.result["conditions"].push_back(other);
+  }
+  const Json json = comparison_json(results, {});
+  CHECK(json["leak_trends"][0]["points"][0]["day"] == 20513.0);
+  CHECK(json["leak_trends"][0]["along_date"]["points"] == 3);
+}
+
+TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
+  Compared worse = compared_fit("worse", 85.0, 0.3);
+  worse.result["conditions"][0]["metrics"]["position"]["rho2"] = 0.9;
+  Json extra = worse.result["conditions"][0];
+  extra["id"] = "only here";
+  worse.result["conditions"].push_back(extra);
+  const Json json = comparison_json({compared_fit("good", 85.0, 0.3), worse}, {});
+  const Json& rho2 = json["metrics"][0]["against_first"][1];
+  CHECK(json["metrics"][0]["metric"] == "rho2");
+  CHECK(rho2["conditions"] == 1);
+  CHECK(rho2["worse"] == 1);
+  CHECK(rho2["mean"] == 0.9);
+  CHECK(rho2["mean_of_first"] == 0.99876543);
+  // One condition tells nothing by its sign.
+  CHECK(rho2["p_value"].is_null());
+  CHECK(rho2["significant"].is_null());
+  CHECK(rho2["reason"] == "not tested: 1 condition, and a sign test needs 6");
+  CHECK_THAT(comparison_text(json, {}), Contains("not\n  tested") || Contains("not tested"));
+  CHECK(json["conditions"][1]["scores"][0].is_null());
+}
+
+TEST_CASE("comparison: a sign test needs six conditions, of records of their own", "[report]") {
+  Compared good = compared_fit("good", 85.0, 0.3);
+  for (int i = 0; i < 5; ++i) {
+    Json extra = good.result["conditions"][0];
+    extra["id"] = "c" + std::to_string(i);
+    good.result["conditions"].push_back(extra);
+  }
+  Compared worse = good;
+  worse.name = "worse";
+  worse.result["provenance"]["inputs"][1]["sha256"] = "worse";
+  for (Json& condition : worse.result["conditions"]) condition["metrics"]["position"]["rho2"] = 0.9;
+  Json json = comparison_json({good, worse}, {});
+  Json rho2 = json["metrics"][0]["against_first"][1];
+  CHECK(rho2["p_value"] == 0.03125);  // 2 / 2^6
+  CHECK(rho2["significant"] == true);
+  CHECK(rho2["reason"].is_null());
+  // A tie speaks for neither.
+  Compared tied = worse;
+  tied.result["conditions"][0]["metrics"]["position"]["rho2"] = 0.99876543;
+  const Json of_five = comparison_json({good, tied}, {})["metrics"][0]["against_first"][1];
+  CHECK(of_five["conditions"] == 6);
+  CHECK(of_five["worse"] == 5);
+  CHECK(of_five["better"] == 0);
+  CHECK(of_five["reason"] == "not tested: 5 conditions, and a sign test needs 6");
+  worse.result["provenance"]["inputs"] = good.result["provenance"]["inputs"];
+  json = comparison_json({good, worse}, {});
+  rho2 = json["metrics"][0]["against_first"][1];
+  CHECK(rho2["worse"] == 6);
+  CHECK(rho2["p_value"].is_null());
+  CHECK_THAT(rho2["reason"].get<std::string>(), Contains("share records"));
+}
+
+TEST_CASE("comparison: what was not tested is not called insignificant", "[report]") {
+  Compared other = compared_fit("other", 90.0, 0.15);
+  other.result["provenance"]["inputs"][1]["sha256"] = "one";
+  const Json json = comparison_json({compared_fit("one", 85.0, 0.3), other}, {});
+  const Json& found = json["significance"][1];
+  CHECK(json["significance"][0].is_null());
+  CHECK(found["compared"] == 2);  // the third is known in both
+  CHECK(found["tested"] == 0);
+  CHECK(found["text"] ==
+        "2 parameters compared, 0 tested; not tested: mass, leakage_coefficient, because estimated "
+        "from the same data, so not independent of each other");
+  CHECK_THAT(comparison_text(json, {}), Contains("-50 % (not tested)"));
+  const Json headline = comparison_headline(json);
+  CHECK(headline["word"] == "COMPARED");
+  CHECK(headline["sentence"] ==
+        "2 results, 2 parameter differences; none could be tested for significance.");
+  // The largest first
+  CHECK_THAT(headline["reasons"][0]["text"].get<std::string>(),
+             Contains("leakage_coefficient differs in other by -50 %, not tested: estimated from"));
+  CHECK_THAT(headline["reasons"][1]["text"].get<std::string>(), Contains("mass differs in other"));
+}
+
+TEST_CASE("comparison: what was tested is counted", "[report]") {
+  Compared after = compared_fit("after", 85.1, 0.6);
+  const Json none =
+      comparison_json({compared_fit("before", 85.0, 0.3), compared_fit("after", 85.1, 0.3)}, {});
+  CHECK(none["significance"][1]["text"] ==
+        "2 parameters compared, 2 tested, no significant difference");
+  CHECK(comparison_headline(none)["reasons"].empty());
+  after.result["parameters"][0]["standard_error"] = nullptr;
+  after.result["parameters"][0]["robust_standard_error"] = nullptr;
+  const Json json = comparison_json({compared_fit("before", 85.0, 0.3), after}, {});
+  CHECK(json["significance"][1]["text"] ==
+        "2 parameters compared, 1 tested, 1 significant difference; not tested: mass, because an "
+        "estimate has no standard error");
+  const Json headline = comparison_headline(json);
+  CHECK(headline["word"] == "DIFFERENT");
+  CHECK(headline["sentence"] ==
+        "2 results, 2 parameter differences: 1 tested, 1 significant, 1 not tested.");
+  CHECK_THAT(headline["reasons"][0]["text"].get<std::string>(),
+             Contains("leakage_coefficient differs in after by +100 % (p"));
+  CHECK_THAT(headline["reasons"][1]["text"].get<std::string>(), Contains("not tested"));
+}
+
+TEST_CASE("comparison: a trend of results that share records is not tested", "[report]") {
+  std::vector<Compared> results{compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
+                                compared_fit("c", 85.0, 0.40, 10)};
+  CHECK(comparison_json(results, {})["leak_trends"][0]["along_date"]["reason"].is_null());
+  results[2].result["provenance"]["inputs"] = results[1].result["provenance"]["inputs"];
+  const Json json = comparison_json(results, {});
+  const Json& along = json["leak_trends"][0]["along_date"];
+  CHECK(along["p_value"].is_null());
+  CHECK_THAT(along["reason"].get<std::string>(), Contains("share records"));
+}
+
+TEST_CASE("comparison: fits to published tables, which have no records", "[report]") {
+  const auto tables_fit = [](const std::string& name, double mass_kg, const std::string& number) {
+    Compared fit = compared_fit(name, mass_kg, 0.3);
+    fit.result["of"] = "published tables";
+    fit.result["conditions"] = Json::array();
+    fit.result["provenance"]["inputs"] = Json::array();
+    fit.result["residuals"] = {{{"of", number}, {"weight", 1.0}, {"log_ratio", 0.0}}};
+    fit.result.erase("synthetic");
+    return fit;
+  };
+  Json json = comparison_json({tables_fit("a", 85.0, "C"), tables_fit("b", 90.0, "C")}, {});
+  CHECK(json["results"][0]["conditions"] == 0);
+  CHECK(json["results"][0]["synthetic"] == false);
+  CHECK_THAT(json["parameters"][0]["differences"][1]["reason"].get<std::string>(),
+             Contains("same data"));
+  CHECK_THAT(json["warnings"].dump(), Contains("share published numbers"));
+  json = comparison_json({tables_fit("a", 85.0, "C"), tables_fit("b", 90.0, "other")}, {});
+  CHECK(json["parameters"][0]["differences"][1]["significant"] == true);
+}
+
+TEST_CASE("comparison: names the file that is no result of this version", "[report]") {
+  Compared broken = compared_fit("broken", 85.0, 0.3);
+  broken.result.erase("conditions");
+  CHECK_THROWS_WITH(comparison_json({compared_fit("good", 85.0, 0.3), broken}, {}),
+                    Contains("broken/fit.json") && Contains("conditions"));
+}

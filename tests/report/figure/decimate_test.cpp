@@ -1,0 +1,81 @@
+#include "report/figure/decimate.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+using rigcal::report::Buckets;
+using rigcal::report::buckets;
+using rigcal::report::Quantised;
+using rigcal::report::quantised;
+using rigcal::report::thinned;
+using rigcal::report::thinned_times;
+using rigcal::report::thinned_where;
+
+TEST_CASE("decimate: a single peak among many samples stays", "[report]") {
+  std::vector<double> values(30'000, 0.0);
+  values[17'321] = 5.0;
+  values[4'444] = -3.0;
+  const Buckets thin = buckets(values.size(), 1000);
+  const std::vector<double> drawn = thinned(values, thin);
+  CHECK(drawn.size() == thin.points());
+  CHECK(drawn.size() <= 1002);
+  CHECK(*std::max_element(drawn.begin(), drawn.end()) == 5.0);
+  CHECK(*std::min_element(drawn.begin(), drawn.end()) == -3.0);
+}
+
+TEST_CASE("thinned_where: a band stays about its mean", "[report]") {
+  const std::vector<double> mean{0, 9, 1, 2, 5, 3};
+  const std::vector<double> sd{1, 2, 3, 4, 5, 6};
+  const auto thin = buckets(mean.size(), 4);
+  REQUIRE(thin.size == 3);
+  CHECK(thinned(mean, thin) == std::vector<double>{0, 9, 2, 5});
+  CHECK(thinned_where(sd, mean, thin) == std::vector<double>{1, 2, 4, 5});
+}
+
+TEST_CASE("decimate: few samples stay as they are", "[report]") {
+  const std::vector<double> values{1.0, 5.0, 2.0};
+  const Buckets thin = buckets(values.size(), 1000);
+  CHECK(thinned(values, thin) == values);
+  CHECK(thinned_times(values, thin) == values);
+  CHECK(buckets(0, 10).points() == 0);
+}
+
+TEST_CASE("decimate: times and values have the same shape, in order", "[report]") {
+  for (const std::size_t n : {11U, 100U, 101U, 999U}) {
+    std::vector<double> time(n);
+    for (std::size_t i = 0; i < n; ++i) time[i] = 0.1 * static_cast<double>(i);
+    const Buckets thin = buckets(n, 10);
+    const std::vector<double> times = thinned_times(time, thin);
+    CHECK(times.size() == thinned(time, thin).size());
+    CHECK(times.size() == thin.points());
+    CHECK(std::is_sorted(times.begin(), times.end()));
+  }
+}
+
+TEST_CASE("decimate: what is missing stays missing", "[report]") {
+  const double nan = std::nan("");
+  std::vector<double> values(100, nan);
+  values[70] = 2.0;
+  const std::vector<double> drawn = thinned(values, buckets(values.size(), 10));
+  CHECK(std::isnan(drawn.front()));
+  CHECK(std::count(drawn.begin(), drawn.end(), 2.0) == 2);
+}
+
+TEST_CASE("decimate: quantised values keep 1/131068 of the range", "[report]") {
+  const std::vector<double> values{-1.0, 0.123456, 3.0, std::nan("")};
+  const Quantised q = quantised(values);
+  CHECK(q.low == -1.0);
+  CHECK_THAT(q.step, Catch::WithinRel(4.0 / 65534.0, 1e-12));
+  // Little endian: 0x0000, 0x47e6 (18406 steps), 0xfffe, 0xffff
+  CHECK(q.base64 == "AADmR/7///8=");
+}
+
+TEST_CASE("decimate: constant, empty and huge ranges are no special case", "[report]") {
+  CHECK(quantised(std::vector<double>{2.0, 2.0}).step == 0.0);
+  CHECK(quantised(std::vector<double>{2.0, 2.0}).base64 == "AAAAAA==");
+  CHECK(quantised({}).base64.empty());
+  const double most = std::numeric_limits<double>::max();
+  CHECK(std::isfinite(quantised(std::vector<double>{-most, most}).step));
+}

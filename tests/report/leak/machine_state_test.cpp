@@ -1,0 +1,85 @@
+#include "report/leak/machine_state.hpp"
+
+#include <catch2/catch.hpp>
+
+using namespace rigcal;
+using Catch::Contains;
+using diagnosis::MachineState;
+
+namespace {
+
+MachineState leaking() {
+  MachineState state;
+  state.key.leak_level = "66 %";
+  for (const char* signal : {"sine", "square"}) {
+    auto& member = state.members.emplace_back();
+    member.condition = member.signal = signal;
+    member.coefficient = 0.5;
+  }
+  state.members.back().coefficient = 0.52;
+  state.pooled.p = 0.4;
+  state.duty = "sine 0.1 Hz, 50.8 mm";
+  state.leak_area_m2 = 0.5 * 4e-6;
+  state.estimate.coefficient = 0.5;
+  state.estimate.ci95 = {0.45, 0.55};
+  state.estimate.share = 0.15;
+  state.estimate.share_ci95 = {0.14, 0.16};
+  state.estimate.leak_detected = true;
+  state.estimate.probability = {0.0, 0.02, 0.98, 0.0, 0.0};
+  state.estimate.most_probable = datasets::LeakClass::medium;
+  state.leak_class = datasets::LeakClass::medium;
+  state.limit = diagnosis::nearest_limit(state.estimate, {});
+  return state;
+}
+
+}  // namespace
+
+TEST_CASE("state_sentence: what leaks, how surely, how far from the next class", "[report]") {
+  MachineState state = leaking();
+  CHECK(report::state_sentence(state) ==
+        "66 %: 15.00 % of the servo flow leaks (14.00 to 16.00 %) at sine 0.1 Hz, 50.8 mm: medium "
+        "(probability 0.98), 5.0 percentage points above the limit of medium (10 %). 2 signals "
+        "agree.");
+  state.pooled.p = 1e-3;
+  state.pooled.disagree = true;
+  CHECK_THAT(report::state_sentence(state),
+             Contains("2 signals disagree (coefficients 0.5 to 0.52, p = 0.001)"));
+  state.members.pop_back();
+  CHECK_THAT(report::state_sentence(state), Contains("From 1 signal alone."));
+  state.leak_class.reset();
+  CHECK_THAT(report::state_sentence(state),
+             Contains("undecided, medium with a probability of 0.98 only"));
+  state.estimate.share = 0.11;
+  state.estimate.share_ci95 = {0.09, 0.13};
+  state.limit = diagnosis::nearest_limit(state.estimate, {});
+  CHECK_THAT(report::state_sentence(state),
+             Contains("on the limit between slight and medium (10 %)"));
+}
+
+TEST_CASE("state_sentence: no leak, no verdict, the reference", "[report]") {
+  MachineState state = leaking();
+  state.estimate.leak_detected = false;
+  state.estimate.share_ci95 = {0.0, 0.0004};
+  CHECK_THAT(report::state_sentence(state),
+             Contains("no leak is detected, less than 0.04 % of the servo flow leaks"));
+  state.failure = "it did not run";
+  CHECK(report::state_sentence(state) == "66 %: no verdict: it did not run.");
+  state.is_reference = true;
+  CHECK_THAT(report::state_sentence(state), Contains("healthy reference"));
+}
+
+TEST_CASE("state_json: numbers of a verdict, null without one", "[report]") {
+  MachineState state = leaking();
+  const auto json = report::state_json(state);
+  CHECK(json["class"] == "medium");
+  CHECK(json["leak_share_percent"] == 15.0);
+  CHECK(json["leak_area_ci95_m2"][0].get<double>() == Approx(0.45 * 4e-6));
+  CHECK(json["nearest_limit"]["distance_percentage_points"].get<double>() == Approx(5.0));
+  CHECK(json["agreement"]["agree"] == true);
+  state.failure = "it did not run";
+  const auto failed = report::state_json(state);
+  CHECK(failed["class"].is_null());
+  CHECK(failed["leak_share_percent"].is_null());
+  CHECK(failed["nearest_limit"].is_null());
+  CHECK(failed["failure"] == "it did not run");
+}

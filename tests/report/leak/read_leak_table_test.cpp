@@ -1,0 +1,112 @@
+#include "report/leak/read_leak_table.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "common/error.hpp"
+#include "tests/support/replaced.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace rigcal;
+using namespace rigcal::report;
+using Catch::Contains;
+using datasets::LeakClass;
+
+namespace {
+
+const std::string kTable = R"({"schema": "rigcal.leak_table/1",
+"assumptions": [
+  {"name": "mass_kg", "key": "mass", "value": 85.0, "unit": "kg", "source": "fit"},
+  {"name": "residual_scale_per_m", "key": "residual_scale", "value": 55, "unit": "1/m", "source": "a guess"}],
+"entries": [
+  {"waveform": "sine", "frequency_hz": 0.1, "amplitude_m": 0.05, "target_percent": 20, "coefficients": [0.35],
+   "coefficients_ci95": [[0.34, 0.36]]},
+  {"waveform": "sine", "frequency_hz": 0.1, "amplitude_m": 0.05, "target_percent": 10, "coefficients": [0.1, 0.2],
+   "coefficients_ci95": [null, [0.19, 0.21]]},
+  {"waveform": "square", "frequency_hz": 1, "amplitude_m": 0.05, "target_percent": 20, "coefficients": [],
+   "coefficients_ci95": []}]})";
+
+EarlierLeakTable read_table_text(const std::string& text) {
+  const test::TemporaryFolder folder;
+  return read_leak_table(folder.write("leak_table.json", text), model::PlantKind::load_pressure);
+}
+
+/// The message about the table in which `from` was replaced.
+std::string table_complaint(const std::string& from, const std::string& to) {
+  try {
+    read_table_text(test::replaced(kTable, from, to));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no complaint";
+}
+
+std::array<double, 4> limits_by(const std::vector<double>& targets_percent) {
+  datasets::DiagnosisSettings settings;
+  take_limits(settings, targets_percent, "leak_table.json");
+  return settings.limits;
+}
+
+}  // namespace
+
+TEST_CASE("read_leak_table: rows, coefficients and the rig", "[report]") {
+  const EarlierLeakTable table = read_table_text(kTable);
+  CHECK(table.targets_percent == std::vector{10.0, 20.0});
+  REQUIRE(table.rig.size() == 1);
+  CHECK(table.rig[0].first == model::parameter_index(model::PlantKind::load_pressure, "mass"));
+  CHECK(table.rig[0].second == 85.0);
+  REQUIRE(table.limits.size() == 3);
+  CHECK(table.limits[1].coefficients == std::vector{0.1, 0.2});
+  CHECK_FALSE(table.limits[1].ranges_95[0].has_value());
+  CHECK(table.limits[1].ranges_95[1] == std::array{0.19, 0.21});
+  CHECK(table.limits[2].waveform == datasets::Waveform::square);
+  CHECK(table.limits[2].coefficients.empty());
+}
+
+TEST_CASE("read_leak_table: what is wrong is named", "[report]") {
+  CHECK_THAT(table_complaint("leak_table/1", "fit/1"),
+             Contains("expected \"rigcal.leak_table/1\""));
+  CHECK_THAT(table_complaint("\"assumptions\"", "\"assumed\""),
+             Contains("'assumptions' is missing; is this a leak_table.json?"));
+  CHECK_THAT(table_complaint("mass_kg", "mass_g"), Contains("such as mass_kg"));
+  CHECK_THAT(table_complaint("\"square\"", "\"saw\""), Contains("entries[2].waveform"));
+  CHECK_THAT(table_complaint("[[0.34, 0.36]]", "[]"),
+             Contains("entries[0].coefficients_ci95") && Contains("for each coefficient"));
+}
+
+TEST_CASE("take_limits: rows are the upper limits of slight, medium and critical", "[report]") {
+  CHECK(limits_by({8.0, 18.0, 28.0}) == std::array{0.01, 0.08, 0.18, 0.28});
+  CHECK(limits_by({10.0, 20.0, 30.0, 50.0}) == std::array{0.01, 0.10, 0.20, 0.30});
+  CHECK(limits_by({2.0, 8.0, 18.0, 28.0, 50.0}) == std::array{0.02, 0.08, 0.18, 0.28});
+  CHECK_THROWS_WITH(limits_by({10.0, 20.0}), Contains("2 rows"));
+  CHECK_THROWS_WITH(limits_by({1.0, 2.0, 3.0, 4.0, 5.0, 6.0}), Contains("6 rows"));
+  // The limit of normal as the first of four rows would shift all classes by one.
+  CHECK_THROWS_WITH(limits_by({1.0, 10.0, 20.0, 30.0}), Contains("normal ends at 1 %"));
+  datasets::DiagnosisSettings settings;
+  take_limits(settings, {10.0, 20.0, 30.0, 50.0}, "leak_table.json");
+  CHECK(class_ending_at(settings, 10.0) == LeakClass::slight);
+  CHECK(class_ending_at(settings, 30.0) == LeakClass::critical);
+  CHECK_FALSE(class_ending_at(settings, 50.0).has_value());
+}
+
+TEST_CASE("rig_differences: names what flows depend on, with both values", "[report]") {
+  datasets::Campaign campaign = datasets::load_campaign(
+      std::string(RIGCAL_SOURCE_DIR) + "/datasets/rigs/uis_shake_table/campaign.toml");
+  const auto index = [&](const char* key) {
+    return model::parameter_index(campaign.rig.plant, key);
+  };
+  EarlierLeakTable table;
+  for (const datasets::ParameterSetting& setting : campaign.parameters) {
+    if (setting.index != index("leakage_coefficient"))
+      table.rig.emplace_back(setting.index, setting.value);
+  }
+  CHECK(rig_differences(table, campaign, {}).empty());
+  const std::vector<datasets::FittedValue> fitted{
+      {index("mass"), datasets::Scope::rig, "", 85.0},
+      {index("leakage_coefficient"), datasets::Scope::leak_level, "0 %", 0.1}};
+  const auto differences = rig_differences(table, campaign, fitted);
+  REQUIRE(differences.size() == 1);
+  CHECK(differences[0] == "mass is 60 kg in the table, 85 kg in the diagnosis");
+  // A term that the table's rig had.
+  table.rig.emplace_back(index("coulomb_friction"), 50.0);
+  CHECK_THAT(rig_differences(table, campaign, {}).at(0), Contains("coulomb_friction is 50 N"));
+}

@@ -1,0 +1,349 @@
+#include "report/page/page.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "common/error.hpp"
+#include "tests/report/stored_fixture.hpp"
+
+using Catch::Contains;
+using Json = nlohmann::ordered_json;
+using namespace rigcal::report;
+using rigcal::test::stored_result;
+
+namespace {
+
+const std::string kNasty = "</script><script>alert(1)</script> \"q\" 'a' & \n\xc3\xbc";
+
+std::string page(const Json& json, const std::string& file = "fit.json", int threads = 2) {
+  const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+    if (path == file) return json.dump();
+    if (path == "residual_tests.json") return R"({"of": "rigcal.fit/1", "conditions": {}})";
+    if (path == "residuals/sine.csv") {
+      return "time_s,measured_position_m,simulated_position_m,residual_position_m,sd_position_m,"
+             "in_window,reference_m,servo_flow_m3_per_s,leakage_flow_m3_per_s\n"
+             "0,0,0,0,,1,0,0,0\n0.1,0.001,0.0011,-0.0001,,1,0.001,1e-5,1e-6\n";
+    }
+    return std::nullopt;
+  };
+  return result_page(read, "folder", threads);
+}
+
+/// Text between the tags of the first element of this class.
+std::string word_of(const std::string& html) {
+  const std::size_t begin = html.find("<p class=\"word\">");
+  return html.substr(begin, html.find("</p>", begin) - begin);
+}
+
+}  // namespace
+
+/// Adds a reason to an aspect, and gives the aspect its state.
+void speak(Json& json, const char* aspect, const char* state, const char* code,
+           const std::string& words) {
+  Json& found = json["assessment"][aspect];
+  found["state"] = state;
+  found["reasons"].push_back({{"code", code},
+                              {"state", state},
+                              {"subject", nullptr},
+                              {"numbers", Json::object()},
+                              {"words", words}});
+}
+
+TEST_CASE("page: sections in the order of the guide", "[report]") {
+  const std::string html = page(stored_result());
+  std::size_t at = 0;
+  for (const char* id : {"verdict", "matrix", "parameters", "conditions", "identifiability",
+                         "starts", "warnings", "provenance", "formulas"}) {
+    const std::size_t found = html.find(std::string("<section id=\"") + id + "\"");
+    CAPTURE(id);
+    REQUIRE(found != std::string::npos);
+    CHECK(found > at);
+    at = found;
+  }
+  CHECK_THAT(html, Contains("href=\"#condition-sine\"") && Contains("id=\"condition-sine\""));
+  // The plot library names its home in a comment; nothing leads out of the page.
+  for (const char* outside : {"src=\"", "href=\"http", "@import", "url(http"})
+    CHECK_THAT(html, !Contains(outside));
+}
+
+TEST_CASE("page: carries the exact numbers beside the readable ones", "[report]") {
+  const std::string html = page(stored_result());
+  CHECK_THAT(html, Contains("value=\"85.01139529\">85.01<"));
+  CHECK_THAT(html, Contains("value=\"0.99876543\">0.9988<"));
+  CHECK_THAT(html, Contains("value=\"6200000\">6.2<"));
+  CHECK_THAT(html, Contains("0.1 Hz</data> to <data value=\"10\">10 Hz"));
+}
+
+TEST_CASE("page: whatever a file names is shown as text", "[report]") {
+  Json json = stored_result();
+  json["campaign"] = json["message"] = kNasty;
+  json["conditions"][0]["leak_level"] = kNasty;
+  json["conditions"][0]["reasons"] = {kNasty};
+  json["warnings"] = {kNasty};
+  json["provenance"]["command"] = kNasty;
+  json["provenance"]["inputs"] = {{{"path", kNasty}, {"sha256", "0"}}};
+  json["parameters"][0]["reason"] = kNasty;
+  const std::string html = page(json);
+  CHECK_THAT(html, !Contains("<script>alert"));
+  CHECK_THAT(html, Contains("&lt;/script&gt;&lt;script&gt;alert(1)"));
+  CHECK_THAT(html, Contains("\xc3\xbc"));
+}
+
+TEST_CASE("page: opens with what the report is of, and who signs it", "[report]") {
+  CHECK_THAT(page(stored_result()),
+             !Contains("<dl class=\"identity\">") && Contains("Decision rule: simple acceptance"));
+  Json json = stored_result();
+  json["report"] = {{"number", "2026-041"},
+                    {"laboratory", kNasty},
+                    {"operator", "O. Perator"},
+                    {"test_dates", {"2026-03-01", "2026-03-04"}},
+                    {"sensors", {{{"channel", "position"}, {"certificate", "DKD 17"}}}}};
+  const std::string html = page(json);
+  CHECK_THAT(html, Contains("<dt>Report number</dt><dd>2026-041</dd>") &&
+                       Contains("<dt>Tested</dt><dd>2026-03-01 to 2026-03-04</dd>") &&
+                       Contains("DKD 17") && Contains("Tested by O. Perator"));
+  CHECK(html.find("2026-041") < html.find("class=\"verdict"));
+  CHECK_THAT(html, !Contains("<script>alert"));
+  json["acceptance"] = Json::array();
+  CHECK_THAT(page(json), !Contains("Decision rule"));
+  json["report"].erase("operator");
+  CHECK_THAT(page(json), !Contains("class=\"signatures\""));
+  json["report"]["approver"] = "A. Head";
+  CHECK_THAT(page(json), Contains("class=\"signatures\"") && Contains("Approved by A. Head"));
+}
+
+TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
+  CHECK_THAT(word_of(page(stored_result())), Contains("PASS"));
+  Json json = stored_result();
+  SECTION("failed") {
+    json["status"] = "failed";
+    json["conditions"] = Json::array();
+    json["verdict"] = nullptr;
+    json["message"] = "no start could be simulated";
+    const std::string html = page(json);
+    CHECK_THAT(word_of(html), Contains("FAILED"));
+    CHECK_THAT(html, Contains("<title>FAILED") && Contains("<body class=\"bad\">"));
+    CHECK_THAT(html, Contains("no start could be simulated"));
+  }
+  SECTION("stopped") {
+    json["status"] = "stopped";
+    CHECK_THAT(word_of(page(json)), Contains("STOPPED"));
+  }
+  SECTION("stopped after the fit: its verdict counts") {
+    json["status"] = "stopped";
+    json["stopped_in"] = "bootstrap";
+    json["message"] = "the bootstrap was stopped by the time limit";
+    const std::string html = page(json);
+    CHECK_THAT(word_of(html), Contains("STOPPED"));
+    CHECK_THAT(html, Contains("The fit converged and was scored; not all that was asked for") &&
+                         Contains("the bootstrap was stopped by the time limit") &&
+                         !Contains("not of a calibration"));
+    json["verdict"] = "FAIL";
+    CHECK_THAT(word_of(page(json)), Contains("FAIL"));
+  }
+  SECTION("stopped: neither scores nor intervals pass for those of a calibration") {
+    json["status"] = "stopped";
+    const std::string html = page(json);
+    CHECK_THAT(html, Contains("not of a calibration") && Contains("a minimum, which this is not"));
+    CHECK_THAT(page(stored_result()), !Contains("not of a calibration"));
+  }
+  SECTION("noise that nothing tells") {
+    json["lack_of_fit"] = {{"misfit", nullptr}, {"tests", Json::array()}};
+    json["lack_of_fit"]["tests"] = {{{"condition", "sine"},
+                                     {"channel", "position"},
+                                     {"against", "repeats"},
+                                     {"ratio", 1.0},
+                                     {"freedom", 2.0},
+                                     {"pure_error_freedom", 8.0},
+                                     {"p", 0.4},
+                                     {"outcome", "not_judged"},
+                                     {"reason", "few samples"}}};
+    const std::string few = page(json);
+    CHECK_THAT(few, Contains("Lack of fit cannot be judged: the records have too few"));
+    CHECK_THAT(few, Contains("cannot be judged: few samples"));
+    CHECK_THAT(few, !Contains("No lack of fit detected"));
+    json["lack_of_fit"]["misfit"] = false;
+    CHECK_THAT(page(json), Contains("No lack of fit detected."));
+    json["lack_of_fit"]["misfit"] = true;
+    CHECK_THAT(page(json), Contains("Significant lack of fit."));
+  }
+  SECTION("a residual that follows the input") {
+    Json& tests = json["conditions"][0]["residual_tests"]["position"];
+    tests = Json::object();
+    for (const char* key : {"autocorrelation", "periodogram", "normality", "drift"})
+      tests[key] = nullptr;
+    Json& test = tests["cross_correlation"];
+    test = {{"passed", false}, {"peak", -0.8}, {"verdict", "explained by the input"}};
+    const std::string failed = page(json);
+    CHECK_THAT(failed, Contains("<span class=\"tag warn\" role=\"img\" aria-label=\"failed\">!"));
+    test["passed"] = nullptr;
+    test["verdict"] = "cannot be judged: effective sample size 3";
+    const std::string open = page(json);
+    CHECK_THAT(open, Contains("effective sample size 3"));
+    CHECK_THAT(open, Contains("aria-label=\"cannot be judged\">○") && !Contains("tag good\">✓"));
+    test["passed"] = true;
+    CHECK_THAT(page(json),
+               Contains("<span class=\"tag good\" role=\"img\" aria-label=\"passed\">✓"));
+  }
+  SECTION("outside the limits") {
+    json["verdict"] = json["conditions"][0]["verdict"] = "FAIL";
+    json["conditions"][0]["metrics"]["position"]["rho2"] = 0.5;
+    json["conditions"][0]["reasons"] = {"position: rho2 = 0.5 is below 0.9"};
+    json["conditions"][0]["channel_verdicts"]["position"] = "FAIL";
+    speak(json, "agreement", "fail", "limit_broken", "sine: position: rho2 = 0.5 is below 0.9");
+    const std::string html = page(json);
+    CHECK_THAT(word_of(html), Contains("FAIL"));
+    CHECK_THAT(html, Contains("sine: position: rho2 = 0.5 is below 0.9"));
+    CHECK_THAT(html, Contains("class=\"cell bad\""));
+  }
+  SECTION("poor, where the campaign has no limits") {
+    json["verdict"] = json["conditions"][0]["verdict"] = nullptr;
+    json["acceptance"] = Json::array();
+    CHECK_THAT(word_of(page(json)), Contains("NOT JUDGED"));
+    speak(json, "agreement", "not_assessed", "poor_agreement", "least agreement: rho2 = 0.5");
+    const std::string html = page(json);
+    CHECK_THAT(word_of(html), Contains("POOR"));
+    CHECK_THAT(html, Contains("<body class=\"bad\">"));
+  }
+  SECTION("limits of its own in place of the campaign's") {
+    json["conditions"][0]["metrics"]["position"]["rho2"] = 0.5;
+    json["conditions"][0]["acceptance"] = {
+        {{"channel", "position"}, {"metric", "rho2"}, {"limit", 0.4}, {"warn", nullptr}}};
+    const std::string html = page(json);
+    CHECK_THAT(html, !Contains("class=\"cell bad\""));
+    CHECK_THAT(html, Contains("sine: limits of its own: <span class=\"limit\">rho2 0.4"));
+  }
+  SECTION("a condition that is not judged") {
+    json["conditions"][0]["acceptance"] = Json::array();
+    CHECK_THAT(page(json), Contains("sine: not judged"));
+  }
+  SECTION("a condition that could not be simulated") {
+    json["verdict"] = json["conditions"][0]["verdict"] = "FAIL";
+    json["conditions"][0]["failure"] = "too many steps";
+    json["conditions"][0]["metrics"] = Json::object();
+    CHECK_THAT(page(json), Contains("Could not be simulated: too many steps"));
+  }
+}
+
+TEST_CASE("page: reservations stand apart from what speaks for a result", "[report]") {
+  Json json = stored_result();
+  json["verdict"] = "WARN";
+  speak(json, "validation", "not_assessed", "no_validation", "none: every condition was fitted");
+  speak(json, "adequacy", "reservation", "lack_of_fit", "lack of fit in 1 of 1 signals");
+  for (int i = 0; i < 5; ++i)
+    speak(json, "parameters", "reservation", "weak", "parameter " + std::to_string(i));
+  const std::string html = page(json);
+  CHECK_THAT(word_of(html), Contains("WARN"));
+  CHECK_THAT(html, Contains("Passed with reservations (independent validation: not assessed; "
+                            "adequacy of the model: reservation; parameters: reservation)."));
+  CHECK_THAT(html, Contains("none: every condition was fitted</a>"));
+  CHECK_THAT(html, Contains("<td class=\"for\"><p>sine keeps its limits</p></td>"));
+  CHECK_THAT(html, Contains("parameter 2") && Contains("and 2 more") && !Contains("parameter 3"));
+}
+
+TEST_CASE("page: a result of before there were assessments can still be drawn", "[report]") {
+  Json json = stored_result();
+  json.erase("assessment");
+  json["conditions"][0].erase("channel_verdicts");
+  const std::string html = page(json);
+  CHECK_THAT(word_of(html), Contains("PASS"));
+  CHECK_THAT(html, !Contains("<table class=\"aspects\">"));
+}
+
+TEST_CASE("page: says which parameter is not identified, and why", "[report]") {
+  Json json = stored_result();
+  json["parameters"][0]["identifiability"] = "not_identifiable";
+  json["parameters"][0]["reason"] = "acts only together with damping";
+  json["parameters"][0]["standard_error"] = nullptr;
+  json["parameters"][0]["ci95"] = nullptr;
+  const std::string html = page(json);
+  CHECK_THAT(html, Contains("acts only together with damping"));
+  CHECK_THAT(html, Contains("not identifiable"));
+}
+
+TEST_CASE("page: the same bytes for any number of threads", "[report]") {
+  Json json = stored_result();
+  for (int i = 0; i < 5; ++i) {
+    json["conditions"].push_back(json["conditions"][0]);
+    json["conditions"].back()["id"] = "sine" + std::to_string(i);
+  }
+  CHECK(page(json, "fit.json", 1) == page(json, "fit.json", 4));
+}
+
+TEST_CASE("page: what a fit holds beyond is drawn, what it lacks is left out", "[report]") {
+  Json json = stored_result();
+  const std::string without = page(json);
+  for (const char* title : {"<h3>Profiles", "<h3>Bootstrap", "<h3>Lack of fit", "Predictions of"})
+    CHECK_THAT(without, !Contains(title));
+  json["parameters"][0]["profile"] = {{"low", {{"value", 84.9}, {"reached", 84.0}}},
+                                      {"high", {{"value", nullptr}, {"reached", 500.0}}},
+                                      {"values", {84.9, 85.0, 500.0}},
+                                      {"rises", {1.0, 0.0, 0.4}}};
+  json["combinations"] = {"only valve_gain / <mass> is fixed"};
+  json["lack_of_fit"] = {{"misfit", true}, {"tests", Json::array()}};
+  const std::string html = page(json);
+  CHECK_THAT(html, Contains("mass: lower end 84.9 kg, open at its upper end: followed to 500 kg"));
+  CHECK_THAT(html, Contains("only valve_gain / &lt;mass&gt; is fixed"));
+  CHECK_THAT(html, Contains("Significant lack of fit."));
+  CHECK_THAT(html, !Contains("is missing or holds no rows"));
+  json["conditions"][0]["id"] = "lost";
+  CHECK_THAT(page(json), Contains("residuals/lost.csv is missing or holds no rows"));
+}
+
+TEST_CASE("page: a result that cannot be read is named beside those that can", "[report]") {
+  const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+    if (path == "fit.json") return stored_result().dump();
+    if (path == "residual_tests.json") return R"({"of": "rigcal.fit/1", "conditions": {}})";
+    if (path == "leak_table.json") return R"({"schema": "rigcal.leak_table/1"})";
+    return std::nullopt;
+  };
+  const std::string html = result_page(read, "folder", 1);
+  CHECK_THAT(word_of(html), Contains("PASS"));
+  CHECK_THAT(html, Contains("Left out: folder") && !Contains("id=\"leak-table\""));
+}
+
+TEST_CASE("page: refuses what is no result of this version", "[report]") {
+  using rigcal::InputError;
+  CHECK_THROWS_AS(page(Json::array()), InputError);
+  CHECK_THROWS_AS(page(Json::object()), InputError);
+  CHECK_THROWS_WITH(page({{"schema", "other/1"}}),
+                    Contains("fit.json") && Contains("other/1") && Contains("rigcal.fit/1"));
+  CHECK_THROWS_WITH(page(stored_result(), "other.json"),
+                    Contains("neither fit.json nor validation.json"));
+  Json json = stored_result();
+  json["conditions"][0].erase("metrics");
+  CHECK_THROWS_WITH(page(json), Contains("folder") && Contains("metrics"));
+}
+
+TEST_CASE("page: 24 conditions stay below 8 MB, however long they are", "[report]") {
+  // From about 6000 samples on all are thinned to the same number of points.
+  constexpr int kSamples = 7000;
+  Json json = stored_result();
+  const Json condition = json["conditions"][0];
+  json["conditions"] = Json::array();
+  for (int i = 0; i < 24; ++i) {
+    json["conditions"].push_back(condition);
+    json["conditions"].back()["id"] = "c" + std::to_string(i);
+  }
+  std::string csv =
+      "time_s,measured_position_m,simulated_position_m,residual_position_m,sd_position_m,in_window,"
+      "reference_m,servo_flow_m3_per_s,leakage_flow_m3_per_s\n";
+  for (int i = 0; i < kSamples; ++i) {
+    const double x = 0.05 * std::sin(1e-3 * i) + 1e-5 * (i * 7919 % 101);
+    csv += std::to_string(1e-3 * i);
+    for (int k = 0; k < 4; ++k) csv += "," + std::to_string(x);
+    csv += ",1";
+    for (int k = 0; k < 3; ++k) csv += "," + std::to_string(x);
+    csv += "\n";
+  }
+  const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+    if (path == "fit.json") return json.dump();
+    if (path == "residual_tests.json") return "{}";
+    if (path.parent_path() == "residuals") return csv;
+    return std::nullopt;
+  };
+  const std::string html = result_page(read, "folder", 2);
+  CHECK(html.size() < 8'000'000);
+  CHECK(html.size() > 1'000'000);
+}

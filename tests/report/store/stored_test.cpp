@@ -1,0 +1,73 @@
+#include "report/store/stored.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <map>
+
+#include "common/error.hpp"
+#include "report/store/result_files.hpp"
+#include "tests/report/stored_fixture.hpp"
+
+using Catch::Contains;
+using namespace rigcal::report;
+
+namespace {
+
+/// Reads these JSON files and no others, and notes what else was asked for.
+struct StoredFiles {
+  std::map<std::string, Json> json;
+  std::vector<std::string> others;
+
+  ReadFile reader() {
+    return [this](const std::filesystem::path& path) -> std::optional<std::string> {
+      const auto found = json.find(path.string());
+      if (found != json.end()) return found->second.dump();
+      others.push_back(path.string());
+      return std::nullopt;
+    };
+  }
+};
+
+}  // namespace
+
+TEST_CASE("stored: the id of a condition is no way to other folders", "[report]") {
+  StoredFiles files;
+  files.json["residual_tests.json"] = {{"of", "rigcal.fit/1"}};
+  files.json["fit.json"] = rigcal::test::stored_result();
+  load_calibration(files.reader(), "folder", 1);
+  CHECK(std::count(files.others.begin(), files.others.end(), "residuals/sine.csv") == 1);
+  for (const char* id : {"../../secret", "..", "/etc/passwd", "a/b", ""}) {
+    files.json["fit.json"]["conditions"][0]["id"] = id;
+    files.others.clear();
+    CHECK_THROWS_WITH(load_calibration(files.reader(), "folder", 1),
+                      Contains("folder/fit.json") && Contains("key 'id' of a condition") &&
+                          Contains("expected an id of letters"));
+    for (const std::string& other : files.others) CHECK_THAT(other, !Contains("residuals"));
+  }
+}
+
+TEST_CASE("stored: the files of another run are refused", "[report]") {
+  StoredFiles files;
+  Json& fit = files.json["fit.json"] = rigcal::test::stored_result();
+  Json& curves = files.json["residual_tests.json"] = {{"of", "rigcal.fit/1"}};
+  name_files({{"residual_tests.json", curves.dump()}}, fit);
+  CHECK(fit["provenance"]["files"][0]["path"] == "residual_tests.json");
+  CHECK_NOTHROW(load_calibration(files.reader(), "folder", 1));
+  curves["conditions"] = nullptr;
+  CHECK_THROWS_WITH(load_calibration(files.reader(), "folder", 1),
+                    Contains("folder/residual_tests.json") &&
+                        Contains("is not the file that fit.json was written with"));
+  fit["provenance"].erase("files");  // by an earlier version
+  CHECK_NOTHROW(load_calibration(files.reader(), "folder", 1));
+}
+
+TEST_CASE("stored: nor is the condition of a parity record", "[report]") {
+  StoredFiles files;
+  Json& parity = files.json["parity.json"];
+  parity["schema"] = "rigcal.parity/1";
+  parity["records"] = {{{"condition", "sine"}}};
+  load_parity(files.reader(), "folder");
+  CHECK(files.others == std::vector<std::string>{"parity/sine.csv"});
+  parity["records"][0]["condition"] = "../sine";
+  CHECK_THROWS_AS(load_parity(files.reader(), "folder"), rigcal::InputError);
+}

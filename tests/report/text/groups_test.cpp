@@ -1,0 +1,65 @@
+#include "report/text/groups.hpp"
+
+#include <catch2/catch.hpp>
+
+using Catch::WithinRel;
+using namespace rigcal;
+
+namespace {
+
+datasets::Condition condition(const char* id, datasets::Waveform waveform, double frequency_hz) {
+  datasets::Condition c;
+  c.id = id;
+  c.waveform = waveform;
+  c.frequency_hz = frequency_hz;
+  c.leak_level = "66 %";
+  return c;
+}
+
+calib::ConditionScore score(const char* id, double rho2) {
+  calib::ConditionScore s;
+  s.id = id;
+  calib::ChannelScore channel;
+  channel.agreement = metrics::Agreement{};
+  channel.agreement->rho2 = rho2;
+  channel.agreement->rmse = 1.0 - rho2;
+  s.channels.push_back(channel);
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("groups: means and the worst by signal, frequency, waveform and leak level", "[report]") {
+  using datasets::Waveform;
+  datasets::Campaign campaign;
+  campaign.conditions = {condition("a", Waveform::sine, 10.0), condition("b", Waveform::sine, 1.0),
+                         condition("c", Waveform::square, 1.0)};
+  campaign.conditions[2].leak_level.reset();
+  calib::Fit fit;
+  fit.conditions = {score("a", 0.9), score("b", 0.8), score("c", 0.6)};
+  fit.conditions[1].channels[0].agreement.reset();  // a constant record has no metrics
+
+  const auto all = report::groups(campaign, fit);
+  const auto find = [&](const std::string& by, const std::string& label) {
+    for (const report::Group& group : all) {
+      if (group.by == by && group.label == label) return group;
+    }
+    FAIL("no group " + by + " " + label);
+    return report::Group{};
+  };
+  const auto position = datasets::Channel::position;
+  CHECK(find("signal", "sine 10 Hz").conditions == std::vector<std::string>{"a"});
+  CHECK(find("frequency", "1 Hz").conditions == std::vector<std::string>{"b", "c"});
+  CHECK(find("frequency", "1 Hz").channels.at(position).conditions == 1);
+  CHECK(find("leak_level", "66 %").conditions == std::vector<std::string>{"a", "b"});
+  const report::GroupScore use = find("use", "fit").channels.at(position);
+  CHECK(use.conditions == 2);
+  CHECK_THAT(use.mean.rho2, WithinRel(0.75, 1e-14));
+  CHECK(use.worst.rho2 == 0.6);
+  CHECK_THAT(use.worst.rmse, WithinRel(0.4, 1e-14));
+  // Of three each counts a third: (0.9 + 0.9 + 0.6) / 3.
+  fit.conditions[1] = score("b", 0.9);
+  for (const report::Group& group : report::groups(campaign, fit)) {
+    if (group.by == "use") CHECK_THAT(group.channels.at(position).mean.rho2, WithinRel(0.8, 1e-14));
+  }
+}
