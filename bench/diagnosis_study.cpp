@@ -410,6 +410,144 @@ struct Calibration {
 };
 
 /// The leak of every condition is random in ln C between the coefficients of 0.1 and 60 %.
+/// What coverage is asked of, over all records.
+struct CoverageTally {
+  std::map<std::string, Coverage> by_signal;  ///< of shares that count, and of all smaller ones
+  Coverage all;                               ///< of shares that count
+  Coverage small;
+  std::vector<Calibration> calibration = std::vector<Calibration>(5);
+  std::map<LeakClass, Total> by_class;
+  int healthy_records = 0;
+  int alarms = 0;
+  std::vector<double> limits;  ///< of the share of healthy repeats
+};
+
+/// Conditions with leaks drawn at random, beside the healthy ones, and the values that make them.
+struct RandomLeaks {
+  Campaign campaign;
+  std::vector<datasets::FittedValue> truth;
+};
+
+bool is_random_leak(const std::string& condition) {
+  return condition.find("_leak_") != std::string::npos;
+}
+
+RandomLeaks random_leaks(const Campaign& healthy, const std::vector<LeakRange>& ranges,
+                         std::uint64_t seed) {
+  RandomLeaks made{healthy, {}};
+  std::uint64_t state = seed;
+  for (const auto& [index, value] : healthy.synthetic_settings->parameters)
+    made.truth.push_back({index, datasets::Scope::rig, "", value});
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    for (int k = 0; k < kRandomLeaks; ++k) {
+      Condition condition = healthy.conditions[i];
+      condition.id += fmt::format("_leak_{}", k);
+      condition.leak_level = condition.id;
+      condition.use = datasets::Use::diagnose;
+      const double coefficient =
+          ranges[i].low * std::pow(ranges[i].high / ranges[i].low, uniform(state));
+      set_leak(made.campaign, condition, coefficient);
+      made.truth.push_back({row_of(made.campaign, "leakage_coefficient"),
+                            datasets::Scope::condition, condition.id, coefficient});
+      made.campaign.conditions.push_back(condition);
+    }
+  }
+  return made;
+}
+
+void tally_interval(const diagnosis::RecordDiagnosis& record, double coefficient,
+                    Coverage& coverage) {
+  const auto& e = record.estimate;
+  const double share = *record.true_share;
+  ++coverage.records;
+  if (!record.fit.ok()) return;
+  coverage.coefficient += coefficient >= e.ci95.first && coefficient <= e.ci95.second ? 1 : 0;
+  if (e.share_upper_limit) {
+    ++coverage.limits;
+    coverage.limits_hold += share <= *e.share_upper_limit ? 1 : 0;
+  }
+  coverage.share += share >= e.share_ci95.first && share <= e.share_ci95.second ? 1 : 0;
+  coverage.share_below += share < e.share_ci95.first ? 1 : 0;
+  coverage.share_above += share > e.share_ci95.second ? 1 : 0;
+}
+
+void tally_class(const diagnosis::RecordDiagnosis& record, CoverageTally& tally) {
+  const bool right = record.leak_class == record.truth;
+  Total& own = tally.by_class[*record.truth];
+  ++own.records;
+  own.right += right ? 1 : 0;
+  own.undecided += record.leak_class ? 0 : 1;
+  if (!record.leak_class) return;
+  const double p = record.estimate.probability[static_cast<std::size_t>(*record.leak_class)];
+  const std::size_t bin = p < 0.7 ? 0 : p < 0.9 ? 1 : p < 0.99 ? 2 : p < 0.999 ? 3 : 4;
+  Calibration& calibration = tally.calibration[bin];
+  ++calibration.records;
+  calibration.right += right ? 1 : 0;
+  calibration.probability += p;
+}
+
+void tally_record(const diagnosis::RecordDiagnosis& record,
+                  const std::vector<datasets::FittedValue>& truth, CoverageTally& tally) {
+  if (record.is_reference || !record.repeat) return;
+  if (!is_random_leak(record.condition)) {
+    ++tally.healthy_records;
+    tally.alarms += record.estimate.leak_detected ? 1 : 0;
+    if (record.estimate.share_upper_limit)
+      tally.limits.push_back(*record.estimate.share_upper_limit);
+    return;
+  }
+  const double coefficient = std::find_if(truth.begin(), truth.end(), [&](const auto& value) {
+                               return value.level == record.condition;
+                             })->value;
+  const bool counted = *record.true_share >= kCounted;
+  tally_interval(record, coefficient, counted ? tally.all : tally.small);
+  tally_interval(record, coefficient, tally.by_signal[counted ? record.signal : kSmall]);
+  tally_class(record, tally);
+}
+
+double in_percent(int part, int of) { return 100.0 * part / std::max(1, of); }
+
+void print_intervals(CoverageTally tally) {
+  fmt::print(
+      "| signal | records | C in its interval, % | share in its interval, % | truth below | above "
+      "|\n| --- | --- | --- | --- | --- | --- |\n");
+  tally.by_signal["1 to 60 %, all"] = tally.all;
+  for (const auto& [signal, each] : tally.by_signal) {
+    fmt::print("| {} | {} | {:.1f} | {:.1f} | {} | {} |\n", signal, each.records,
+               in_percent(each.coefficient, each.records), in_percent(each.share, each.records),
+               each.share_below, each.share_above);
+  }
+  std::vector<double>& limits = tally.limits;
+  std::sort(limits.begin(), limits.end());
+  fmt::print(
+      "\nhealthy repeats: {}, of which {} alarms (1 % meant); upper limit of the share: median "
+      "{:.3f} %\n",
+      tally.healthy_records, tally.alarms,
+      limits.empty() ? 0.0 : 100.0 * limits[limits.size() / 2]);
+  fmt::print("leaks not detected: {}, of which the upper limit holds {}\n\n",
+             tally.all.limits + tally.small.limits,
+             tally.all.limits_hold + tally.small.limits_hold);
+}
+
+void print_classes(const CoverageTally& tally) {
+  fmt::print("| true class | records | right | % | undecided |\n| --- | --- | --- | --- | --- |\n");
+  for (const auto& [leak_class, each] : tally.by_class) {
+    fmt::print("| {} | {} | {} | {:.1f} | {} |\n", to_string(leak_class), each.records, each.right,
+               in_percent(each.right, each.records), each.undecided);
+  }
+  fmt::print(
+      "\n| probability of the class | records | mean probability, % | right, % |\n"
+      "| --- | --- | --- | --- |\n");
+  constexpr std::array kBins{"50 to 70 %", "70 to 90 %", "90 to 99 %", "99 to 99.9 %",
+                             "above 99.9 %"};
+  for (std::size_t i = 0; i < tally.calibration.size(); ++i) {
+    const Calibration& each = tally.calibration[i];
+    fmt::print("| {} | {} | {:.1f} | {:.1f} |\n", kBins.at(i), each.records,
+               100.0 * each.probability / std::max(1, each.records),
+               in_percent(each.right, each.records));
+  }
+}
+
 void study_coverage(const Campaign& base, int records_wanted) {
   const Campaign healthy = six_signals(base);
   std::vector<LeakRange> ranges(healthy.conditions.size());
@@ -418,118 +556,24 @@ void study_coverage(const Campaign& base, int records_wanted) {
     ranges[i] = {leak.solve(&diagnosis::SteadyLeak::share, kLeastShare),
                  leak.solve(&diagnosis::SteadyLeak::share, kLargestShare)};
   });
-  std::map<std::string, Coverage> by_signal;
-  std::vector<Calibration> calibration(5);
-  Total single;
-  Coverage all;
-  Coverage small;
-  std::map<LeakClass, Total> by_class;
-  int healthy_records = 0;
-  int alarms = 0;
-  std::vector<double> limits;
-  for (std::uint64_t seed = 1; all.records < records_wanted; ++seed) {
-    Campaign campaign = healthy;
-    std::uint64_t state = seed;
-    std::vector<datasets::FittedValue> truth;
-    for (const auto& [index, value] : campaign.synthetic_settings->parameters)
-      truth.push_back({index, datasets::Scope::rig, "", value});
-    for (std::size_t i = 0; i < ranges.size(); ++i) {
-      for (int k = 0; k < kRandomLeaks; ++k) {
-        Condition condition = healthy.conditions[i];
-        condition.id += fmt::format("_leak_{}", k);
-        condition.leak_level = condition.id;
-        condition.use = datasets::Use::diagnose;
-        const double coefficient =
-            ranges[i].low * std::pow(ranges[i].high / ranges[i].low, uniform(state));
-        set_leak(campaign, condition, coefficient);
-        truth.push_back({row_of(campaign, "leakage_coefficient"), datasets::Scope::condition,
-                         condition.id, coefficient});
-        campaign.conditions.push_back(condition);
-      }
-    }
-    auto records = make_records(campaign, seed);
-    const auto rig = healthy_fit(campaign, records);
+  CoverageTally tally;
+  for (std::uint64_t seed = 1; tally.all.records < records_wanted; ++seed) {
+    const RandomLeaks made = random_leaks(healthy, ranges, seed);
+    auto records = make_records(made.campaign, seed);
+    const auto rig = healthy_fit(made.campaign, records);
     for (RepeatRecords& each : records) {
-      if (each.average.condition.find("_leak_") == std::string::npos) continue;
+      if (!is_random_leak(each.average.condition)) continue;
       each.singles.resize(kRandomRepeats);
       each.covered.resize(kRandomRepeats);
     }
     diagnosis::DiagnosisOptions options;
     options.threads = threads;
-    options.truth = truth;
-    for (const auto& record : diagnosis::diagnose(campaign, records, rig, options).records) {
-      if (record.is_reference || !record.repeat) continue;
-      const auto& e = record.estimate;
-      if (record.condition.find("_leak_") == std::string::npos) {
-        ++healthy_records;
-        alarms += e.leak_detected ? 1 : 0;
-        if (e.share_upper_limit) limits.push_back(*e.share_upper_limit);
-        continue;
-      }
-      const bool counted = *record.true_share >= kCounted;
-      for (Coverage* each :
-           {counted ? &all : &small, &by_signal[counted ? record.signal : kSmall]}) {
-        ++each->records;
-        if (!record.fit.ok()) continue;
-        const double share = *record.true_share;
-        const double c = std::find_if(truth.begin(), truth.end(), [&](const auto& value) {
-                           return value.level == record.condition;
-                         })->value;
-        each->coefficient += c >= e.ci95.first && c <= e.ci95.second ? 1 : 0;
-        if (e.share_upper_limit) {
-          ++each->limits;
-          each->limits_hold += share <= *e.share_upper_limit ? 1 : 0;
-        }
-        each->share += share >= e.share_ci95.first && share <= e.share_ci95.second ? 1 : 0;
-        each->share_below += share < e.share_ci95.first ? 1 : 0;
-        each->share_above += share > e.share_ci95.second ? 1 : 0;
-      }
-      const bool right = record.leak_class == record.truth;
-      Total& own = by_class[*record.truth];
-      ++own.records;
-      own.right += right ? 1 : 0;
-      own.undecided += record.leak_class ? 0 : 1;
-      if (!record.leak_class) continue;
-      const double p = e.probability[static_cast<std::size_t>(*record.leak_class)];
-      const std::size_t bin = p < 0.7 ? 0 : p < 0.9 ? 1 : p < 0.99 ? 2 : p < 0.999 ? 3 : 4;
-      ++calibration[bin].records;
-      calibration[bin].right += right ? 1 : 0;
-      calibration[bin].probability += p;
-    }
+    options.truth = made.truth;
+    for (const auto& record : diagnosis::diagnose(made.campaign, records, rig, options).records)
+      tally_record(record, made.truth, tally);
   }
-  const auto percent = [](int part, int of) { return 100.0 * part / std::max(1, of); };
-  fmt::print(
-      "| signal | records | C in its interval, % | share in its interval, % | truth below | above "
-      "|\n| --- | --- | --- | --- | --- | --- |\n");
-  by_signal["1 to 60 %, all"] = all;
-  for (const auto& [signal, each] : by_signal) {
-    fmt::print("| {} | {} | {:.1f} | {:.1f} | {} | {} |\n", signal, each.records,
-               percent(each.coefficient, each.records), percent(each.share, each.records),
-               each.share_below, each.share_above);
-  }
-  std::sort(limits.begin(), limits.end());
-  fmt::print(
-      "\nhealthy repeats: {}, of which {} alarms (1 % meant); upper limit of the share: median "
-      "{:.3f} %\n",
-      healthy_records, alarms, limits.empty() ? 0.0 : 100.0 * limits[limits.size() / 2]);
-  fmt::print("leaks not detected: {}, of which the upper limit holds {}\n\n",
-             all.limits + small.limits, all.limits_hold + small.limits_hold);
-  fmt::print("| true class | records | right | % | undecided |\n| --- | --- | --- | --- | --- |\n");
-  for (const auto& [leak_class, each] : by_class) {
-    fmt::print("| {} | {} | {} | {:.1f} | {} |\n", to_string(leak_class), each.records, each.right,
-               percent(each.right, each.records), each.undecided);
-  }
-  fmt::print(
-      "\n| probability of the class | records | mean probability, % | right, % |\n"
-      "| --- | --- | --- | --- |\n");
-  constexpr std::array kBins{"50 to 70 %", "70 to 90 %", "90 to 99 %", "99 to 99.9 %",
-                             "above 99.9 %"};
-  for (std::size_t i = 0; i < calibration.size(); ++i) {
-    const Calibration& each = calibration[i];
-    fmt::print("| {} | {} | {:.1f} | {:.1f} |\n", kBins.at(i), each.records,
-               100.0 * each.probability / std::max(1, each.records),
-               percent(each.right, each.records));
-  }
+  print_intervals(tally);
+  print_classes(tally);
 }
 
 void print_coefficients(Campaign campaign) {

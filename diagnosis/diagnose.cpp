@@ -13,7 +13,9 @@
 #include "diagnosis/feature_clusters.hpp"
 #include "diagnosis/healthy_reference.hpp"
 #include "diagnosis/judgement.hpp"
+#include "diagnosis/machine_states.hpp"
 #include "diagnosis/obstacles.hpp"
+#include "diagnosis/prepared.hpp"
 #include "diagnosis/residual_rms.hpp"
 #include "diagnosis/signal_name.hpp"
 
@@ -22,23 +24,6 @@ namespace {
 
 using datasets::Campaign;
 using datasets::Condition;
-
-/// Half the width of a curve is at least this part of the largest coefficient that was simulated:
-/// where a record is its own reference there is no error, and any width will do that leaks at all.
-constexpr double kLeastReach = 1e-2;
-
-/// A condition with its records and what a leak does in it.
-struct Prepared {
-  const Condition* condition = nullptr;
-  const datasets::RepeatRecords* records = nullptr;
-  LeakScan scan;
-  Residuals residuals;  ///< of the average, then of each repeat
-  std::string failure;
-  std::optional<double> true_share;
-  bool is_healthy = false;
-
-  const std::vector<double>& time_s() const { return records->average.time_s; }
-};
 
 Prepared prepare(const LeakProblem& problem, const datasets::RepeatRecords& records,
                  const DiagnosisOptions& options) {
@@ -226,7 +211,7 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
   const CoefficientError error =
       coefficient_error(record.fit, errors, record.repeats, record.reference_repeats);
   const datasets::Record& average = prepared.records->average;
-  const double least = kLeastReach * prepared.scan.largest_coefficient;
+  const double least = prepared.least_reach();
   try {
     const LeakCurve curve =
         leak_curve_of(problem, *prepared.condition, average, record.fit.coefficient,
@@ -244,106 +229,6 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
   } catch (const NoResultError& failure) {
     record.fit.failure = failure.what();
   }
-}
-
-bool is_sine(const Condition& condition) { return condition.waveform == datasets::Waveform::sine; }
-
-/// The duty at which shares of states are stated: the campaign's own choice, else the slowest
-/// generated sine, of these the largest, else the first condition.
-const Prepared& duty_of(const Campaign& campaign, const std::vector<Prepared>& all) {
-  const std::string& wanted = campaign.diagnosis.duty;
-  const Prepared* best = &all.front();
-  for (const Prepared& each : all) {
-    const Condition& c = *each.condition;
-    if (!wanted.empty() && c.id == wanted) return each;
-    if (!is_sine(c)) continue;
-    const Condition& b = *best->condition;
-    const auto slowness = [](const Condition& x) {
-      return std::pair(-x.frequency_hz.value_or(1e9), x.amplitude.value_or(0.0));
-    };
-    if (!is_sine(b) || slowness(c) > slowness(b)) best = &each;
-  }
-  if (wanted.empty()) return *best;
-  throw InputError(
-      {campaign.file.string()},
-      fmt::format("diagnosis.duty: no condition \"{}\" that can be diagnosed: expected "
-                  "the id of one",
-                  wanted));
-}
-
-/// Members, or why a condition is none.
-void add_average(const RecordDiagnosis& record, const SignalErrors& errors, MachineState& state) {
-  const auto leave_out = [&](const std::string& why) {
-    state.left_out.push_back(record.condition + ": " + why);
-  };
-  if (!record.fit.ok()) return leave_out(record.fit.failure);
-  if (record.is_reference) return leave_out("the healthy reference of its signal");
-  if (record.unexplained) return leave_out("not explained by a leak");
-  const CoefficientError error =
-      coefficient_error(record.fit, errors, record.repeats, record.reference_repeats);
-  if (!(error.own_se > 0.0)) return leave_out("its residuals hold no noise, so its error is open");
-  state.members.push_back({record.condition, record.signal, record.fit.coefficient, error.own_se,
-                           error.freedom, record.fit.rig_moves});
-}
-
-void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& duty,
-                 MachineState& state) {
-  if (state.members.empty()) return;
-  const Campaign& campaign = problem.campaign;
-  state.pooled = pooled_leak(state.members, rig.covariance);
-  state.leak_area_m2 =
-      state.pooled.coefficient * datasets::values_in(campaign, *duty.condition)["leakage_area"];
-  state.duty = signal_name(campaign, *duty.condition);
-  LeakFit leak;
-  leak.coefficient = state.pooled.coefficient;
-  leak.rig_moves = state.pooled.rig_moves;
-  const double reach =
-      std::max(state.pooled.error.half_width(), kLeastReach * duty.scan.largest_coefficient);
-  try {
-    const datasets::Record& average = duty.records->average;
-    const LeakCurve curve =
-        leak_curve_of(problem, *duty.condition, average, leak.coefficient, reach);
-    const double share_rig_se = share_rig_error(problem, rig, *duty.condition, average, leak,
-                                                curve.share_slope(leak.coefficient));
-    state.estimate = estimate_leak(leak.coefficient, state.pooled.error, curve,
-                                   state.pooled.widened * share_rig_se, campaign.diagnosis);
-  } catch (const NoResultError& failure) {
-    state.failure = failure.what();
-    return;
-  }
-  const LeakEstimate& found = state.estimate;
-  const auto best = static_cast<std::size_t>(found.most_probable);
-  if (found.probability[best] >= campaign.diagnosis.least_probability)
-    state.leak_class = found.most_probable;
-  state.limit = nearest_limit(found, campaign.diagnosis);
-}
-
-std::vector<MachineState> machine_states(const LeakProblem& problem, const RigFit& rig,
-                                         const std::vector<Prepared>& all,
-                                         const std::vector<RecordDiagnosis>& records,
-                                         const std::map<std::string, SignalErrors>& errors) {
-  std::vector<MachineState> states;
-  if (all.empty()) return states;
-  for (const RecordDiagnosis& record : records) {
-    if (record.repeat) continue;
-    const StateKey key = state_of(*problem.campaign.find(record.condition));
-    auto state = std::find_if(states.begin(), states.end(),
-                              [&](const MachineState& each) { return each.key == key; });
-    if (state == states.end()) {
-      states.emplace_back().key = key;
-      state = std::prev(states.end());
-      state->is_reference = true;
-    }
-    state->is_reference = state->is_reference && record.is_reference;
-    const auto own = errors.find(record.signal);
-    add_average(record, own == errors.end() ? SignalErrors{} : own->second, *state);
-  }
-  const Prepared& duty = duty_of(problem.campaign, all);
-  for (MachineState& state : states) {
-    if (!duty.failure.empty()) state.failure = duty.failure;
-    if (state.failure.empty()) judge_state(problem, rig, duty, state);
-  }
-  return states;
 }
 
 SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& errors,
@@ -425,6 +310,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     result.signals.push_back(limits_of(members, errors.at(signal), signal));
   }
   result.states = machine_states(problem, rig, prepared, result.records, errors);
+  result.trends = leak_trends(result.states, rig.covariance, campaign.diagnosis);
   for (RecordDiagnosis& record : result.records) set_truth(campaign, record);
   classify_by_features(result.records);
   const auto by_leak = [](const RecordDiagnosis& record) { return record.leak_class; };

@@ -10,6 +10,7 @@
 #include "diagnosis/accuracy.hpp"
 #include "diagnosis/leak_estimate.hpp"
 #include "diagnosis/leak_fit.hpp"
+#include "diagnosis/leak_trend.hpp"
 #include "diagnosis/machine_state.hpp"
 #include "metrics/residual_features.hpp"
 
@@ -66,6 +67,7 @@ struct Diagnosis {
   std::vector<RecordDiagnosis> records;  ///< campaign order; the average, then its repeats
   std::vector<SignalDiagnosis> signals;  ///< in order of their first appearance
   std::vector<MachineState> states;      ///< in order of their first appearance
+  std::vector<LeakTrend> trends;         ///< of states that differ in their date alone
   Accuracy single;                       ///< fitted leak, single repeats
   Accuracy averaged;                     ///< fitted leak, averages
   Accuracy features;                     ///< paper's features, without the repeat in question

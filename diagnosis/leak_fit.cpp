@@ -123,16 +123,6 @@ Solved least_squares(const Linear& linear) {
   return solved;
 }
 
-model::SimulationOptions options_of(const calib::Problem& problem,
-                                    const std::atomic<bool>* cancel) {
-  model::SimulationOptions options;
-  options.method = problem.campaign->simulation.method;
-  options.tolerance = problem.tolerance;
-  options.max_seconds = problem.campaign->simulation.max_seconds;
-  options.cancel = cancel;
-  return options;
-}
-
 /// Record minus simulated position at the samples that count [m].
 std::vector<double> position_residual(const calib::ProblemCondition& condition,
                                       const Eigen::VectorXd& simulated) {
@@ -166,7 +156,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
     model::ParameterValues at = values;
     at.set(leak_row, coefficient);
     return model::simulate(condition.rig, at, free, condition.inputs, condition.record->time_s,
-                           outputs, options_of(problem, cancel));
+                           outputs, problem.simulation_options(cancel));
   };
   const auto run = simulated(values[kLeak]);
   const auto healthy = simulated(0.0);
@@ -397,7 +387,7 @@ Residuals healthy_residuals(const LeakProblem& leak_problem, const Condition& co
   model::ParameterValues values = prepared.values;
   values.set(leak_problem.leak, 0.0);
   const auto healthy = model::simulate(prepared.rig, values, {}, prepared.inputs, average.time_s,
-                                       prepared.outputs, options_of(problem, nullptr));
+                                       prepared.outputs, problem.simulation_options());
   if (!healthy.ok())
     throw NoResultError(
         fmt::format("condition \"{}\": healthy model: {}", condition.id, in_words(healthy)));

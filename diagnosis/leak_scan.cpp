@@ -2,11 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <stdexcept>
 #include <vector>
 
-#include "diagnosis/steady_leak.hpp"
-#include "metrics/leak_share.hpp"
+#include "diagnosis/record_share.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
@@ -23,34 +21,15 @@ struct Candidate {
   double cost = 0.0;  ///< half the sum of squared weighted residuals
 };
 
-std::vector<double> steady_column(const model::Simulation& run, Eigen::Index column,
-                                  const SteadyPart& part) {
-  const auto values = run.outputs.col(column).segment(static_cast<Eigen::Index>(part.first),
-                                                      static_cast<Eigen::Index>(part.count));
-  return {values.begin(), values.end()};
-}
-
 Candidate simulate_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
                         double coefficient) {
-  const SteadyPart part = steady_part(condition);
-  if (part.count < 2) {
-    throw NoResultError(
-        fmt::format("condition \"{}\": one sample counts, and a share is of flows over a time; "
-                    "expected at least 2",
-                    condition.condition->id));
-  }
   model::ParameterValues values = condition.values;
   values.set("leakage_coefficient", coefficient);
   std::vector<model::Output> outputs = condition.outputs;
   outputs.push_back(model::Output::servo_flow);
   outputs.push_back(model::Output::leakage_flow);
-  model::SimulationOptions options;
-  options.method = problem.campaign->simulation.method;
-  options.tolerance = problem.tolerance;
-  options.max_seconds = problem.campaign->simulation.max_seconds;
-  const auto& time_s = condition.record->time_s;
-  const auto run =
-      model::simulate(condition.rig, values, {}, condition.inputs, time_s, outputs, options);
+  const auto run = model::simulate(condition.rig, values, {}, condition.inputs,
+                                   condition.record->time_s, outputs, problem.simulation_options());
   if (!run.ok()) {
     throw NoResultError(fmt::format(
         "condition \"{}\" could not be simulated with a leakage coefficient of {:g}: {} at {:g} s",
@@ -67,18 +46,8 @@ Candidate simulate_leak(const calib::Problem& problem, const calib::ProblemCondi
       point.cost += 0.5 * error * error;
     }
   }
-  const auto columns = static_cast<Eigen::Index>(outputs.size());
-  const auto servo = steady_column(run, columns - 2, part);
-  const auto leak = steady_column(run, columns - 1, part);
-  const auto times = std::span(time_s).subspan(part.first, part.count);
-  try {
-    point.share = metrics::leak_share(times, servo, leak);
-  } catch (const std::domain_error&) {
-    throw NoResultError(
-        fmt::format("condition \"{}\": the simulated run moves no oil, so no share "
-                    "of it can leak",
-                    condition.condition->id));
-  }
+  const auto servo = static_cast<Eigen::Index>(condition.channels.size());
+  point.share = leak_in_record(condition, run, servo).share;
   return point;
 }
 

@@ -74,6 +74,7 @@ struct MachineState {
   double leak_area_m2 = 0.0;            ///< coefficient times leakage area: what the oil passes
   std::string duty;                     ///< signal whose share is stated
   LeakEstimate estimate;                ///< at that duty
+  double share_slope = 0.0;             ///< d share / d coefficient there
   std::optional<LeakClass> leak_class;  ///< empty: undecided
   LimitDistance limit;
   bool ok() const { return failure.empty() && !is_reference && !members.empty(); }

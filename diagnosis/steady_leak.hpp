@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cstddef>
 #include <span>
 
 #include "calib/problem/problem.hpp"
@@ -10,6 +9,14 @@ namespace rigcal::diagnosis {
 
 /// What leaks in one condition at one leakage coefficient, and its derivatives.
 struct SteadyLeak {
+  /// @param servo, leak  mean absolute flows [m3/s], with their slopes
+  SteadyLeak(double servo, double leak, const Eigen::VectorXd& servo_slope,
+             const Eigen::VectorXd& leak_slope)
+      : share(leak / servo),
+        leak_flow_m3_per_s(leak),
+        share_slope((leak_slope - share * servo_slope) / servo),
+        flow_slope(leak_slope) {}
+
   double share = 0.0;               ///< mean |leakage flow| / mean |servo flow|
   double leak_flow_m3_per_s = 0.0;  ///< mean |leakage flow|
   Eigen::VectorXd share_slope;      ///< d share / d parameter, shape (free), SI
@@ -21,7 +28,8 @@ struct SteadyLeak {
 /// is that of the periodic state, from the same simulation as a leak table's
 /// (calib::periodic_flow), however few periods a record has. Where a record brings inputs of its
 /// own there is no periodic state, nor where the rig does not come to one; the flows are then
-/// averaged over the samples of steady_part().
+/// averaged over the record
+/// (record_share.hpp).
 ///
 /// @param values  SI, the leakage coefficient included; above 0 where slopes are wanted
 /// @param free    table indices of the slopes that are wanted
@@ -29,12 +37,7 @@ struct SteadyLeak {
 SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
                        const model::ParameterValues& values, std::span<const int> free);
 
-/// Samples of a record that stand for its steady state: the last whole periods of a sine or square,
-/// the first being left out as transient where there are three or more; else all that count.
-struct SteadyPart {
-  std::size_t first = 0;
-  std::size_t count = 0;
-};
-SteadyPart steady_part(const calib::ProblemCondition& condition);
+/// Whether the condition is a sine or square of a known frequency.
+bool is_generated_wave(const datasets::Condition& condition);
 
 }  // namespace rigcal::diagnosis

@@ -67,12 +67,9 @@ Eigen::VectorXd acting_slopes(const Problem& problem, std::size_t condition,
 
 model::SimulationOptions simulation_options(const Problem& problem, std::size_t condition,
                                             double tolerance, const std::atomic<bool>* cancel) {
-  model::SimulationOptions options;
-  options.method = problem.campaign->simulation.method;
+  model::SimulationOptions options = problem.simulation_options(cancel);
   options.tolerance = tolerance;
   options.max_steps = problem.conditions[condition].max_steps;
-  options.max_seconds = problem.campaign->simulation.max_seconds;
-  options.cancel = cancel;
   return options;
 }
 

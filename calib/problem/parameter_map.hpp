@@ -30,12 +30,12 @@ bool known_in(const datasets::Campaign& campaign, const datasets::Condition& con
 std::string level_in(const datasets::Condition& condition, datasets::Scope scope,
                      std::string_view parameter);
 
-/// The unknowns of a set of conditions, in a fixed order (table index, then first appearance of the
-/// level), and which of them act in which condition. Optimiser coordinates z are in [0, 1]: linear
 /// "mass_kg", "leakage_coefficient (leak level 33 %)": a parameter with whose it is.
 std::string parameter_name(const model::ParameterSpec& spec, datasets::Scope scope,
                            const std::string& level);
 
+/// The unknowns of a set of conditions, in a fixed order (table index, then first appearance of the
+/// level), and which of them act in which condition. Optimiser coordinates z are in [0, 1]: linear
 /// in the bounds, or in their logarithms where both are positive and span more than a decade.
 class ParameterMap {
  public:

@@ -183,6 +183,15 @@ bool Problem::repeats_itself() const {
   });
 }
 
+model::SimulationOptions Problem::simulation_options(const std::atomic<bool>* cancel) const {
+  model::SimulationOptions options;
+  options.method = campaign->simulation.method;
+  options.tolerance = tolerance;
+  options.max_seconds = campaign->simulation.max_seconds;
+  options.cancel = cancel;
+  return options;
+}
+
 double Problem::coarse_tolerance() const { return std::max(kCoarseTolerance, tolerance); }
 
 double Problem::tolerance_of(std::size_t condition, const Effort& effort) const {

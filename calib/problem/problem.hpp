@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <limits>
 #include <span>
 #include <string>
@@ -77,6 +78,8 @@ struct Problem {
   double tolerance_of(std::size_t condition, const Effort& effort = Effort::full) const;
   /// Tolerance far from an optimum.
   double coarse_tolerance() const;
+  /// Of one simulation at the least tolerance, with the campaign's method and limit of time.
+  model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;
   /// Share of all residuals that an effort looks at.
   double share_at(const Effort& effort) const;
   /// Whether the first periods are less than everything.

@@ -108,16 +108,13 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
     score.in_window.assign(score.time_s.size(), false);
     for (const std::size_t row : condition.rows) score.in_window[row] = true;
   }
-  model::SimulationOptions options;
-  options.method = problem.campaign->simulation.method;
-  options.tolerance = problem.tolerance;
-  options.max_seconds = problem.campaign->simulation.max_seconds;
   for (const double t : score.time_s) score.drive.push_back(condition.inputs.drive.value(t));
   std::vector<model::Output> outputs = condition.outputs;
   outputs.push_back(model::Output::servo_flow);
   outputs.push_back(model::Output::leakage_flow);
-  const model::Simulation run = model::simulate(condition.rig, problem.values_at(i, z), {},
-                                                condition.inputs, score.time_s, outputs, options);
+  const model::Simulation run =
+      model::simulate(condition.rig, problem.values_at(i, z), {}, condition.inputs, score.time_s,
+                      outputs, problem.simulation_options());
   if (!run.ok()) {
     score.failure =
         fmt::format("{} at {:g} s ({})", run.reason, run.failed_at_s, model::to_string(run.status));

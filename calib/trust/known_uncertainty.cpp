@@ -38,12 +38,8 @@ Eigen::MatrixXd known_rows(const Problem& problem, std::size_t i, std::span<cons
 Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t condition,
                                     std::span<const double> z, const std::vector<int>& indices) {
   const ProblemCondition& each = problem.conditions[condition];
-  model::SimulationOptions options;
-  options.method = problem.campaign->simulation.method;
-  options.tolerance = problem.tolerance;
-  options.max_seconds = problem.campaign->simulation.max_seconds;
   const auto run = model::simulate(each.rig, problem.values_at(condition, z), indices, each.inputs,
-                                   each.fit_times(), each.outputs, options);
+                                   each.fit_times(), each.outputs, problem.simulation_options());
   if (!run.ok()) return {};
   const auto samples = static_cast<Eigen::Index>(each.rows.size());
   const auto channels = static_cast<Eigen::Index>(each.channels.size());

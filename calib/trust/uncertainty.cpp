@@ -19,6 +19,9 @@ namespace {
 /// of it, or in how far it moves in the box against the one that moves most.
 constexpr double kFelt = 0.1;
 constexpr double kMoves = 0.05;
+/// Significance level of a difference between repeats whose cause can be named: it is looked for in
+/// every fit.
+constexpr double kDifferenceLevel = 0.01;
 
 /// Scores of every condition in coordinates of `root`.
 std::vector<ScoreRows> score_rows(const Problem& problem, std::vector<ConditionRows> rows,
@@ -72,13 +75,6 @@ std::string null_reason(const Problem& problem, const std::vector<std::size_t>& 
   return fmt::format("these conditions determine {} only in a combination with {}, not by itself",
                      problem.name(unknown), fmt::join(partners, ", "));
 }
-
-}  // namespace
-
-namespace {
-
-/// Of a nameable difference between repeats, which is looked for in every fit.
-constexpr double kDifferenceLevel = 0.01;
 
 }  // namespace
 

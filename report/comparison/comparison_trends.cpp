@@ -1,25 +1,12 @@
 #include <algorithm>
 #include <array>
-#include <chrono>
-#include <cstdio>
 
+#include "common/calendar.hpp"
 #include "metrics/significance.hpp"
 #include "report/comparison/comparison_parts.hpp"
 
 namespace rigcal::report {
 namespace {
-
-/// Days since 1970-01-01 of "2026-03-01".
-std::optional<double> day_of(const std::string& date) {
-  int year = 0;
-  unsigned month = 0;
-  unsigned day = 0;
-  if (std::sscanf(date.c_str(), "%d-%u-%u", &year, &month, &day) != 3) return std::nullopt;
-  const std::chrono::year_month_day whole{std::chrono::year(year), std::chrono::month(month),
-                                          std::chrono::day(day)};
-  if (!whole.ok()) return std::nullopt;
-  return static_cast<double>(std::chrono::sys_days(whole).time_since_epoch().count());
-}
 
 /// Mean of a condition's quantity over those that an estimate of this scope and level rests on.
 template <typename Quantity>
@@ -130,7 +117,7 @@ Json leak_trends(const std::vector<Compared>& results) {
       point["result"] = compared.name;
       point["level"] = parameter.at("level");
       point["day"] = number(mean_over(compared.result, parameter, [](const Json& condition) {
-        return day_of(text_of(condition, "date"));
+        return std::optional<double>(day_of(text_of(condition, "date")));
       }));
       point["temperature_k"] =
           number(mean_over(compared.result, parameter, [](const Json& condition) {

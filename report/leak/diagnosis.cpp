@@ -7,6 +7,8 @@
 #include <map>
 
 #include "diagnosis/signal_name.hpp"
+#include "report/leak/leak_estimate_json.hpp"
+#include "report/leak/leak_trend.hpp"
 #include "report/leak/machine_state.hpp"
 #include "report/store/csv_fields.hpp"
 #include "report/store/identity.hpp"
@@ -23,15 +25,8 @@ using diagnosis::RecordDiagnosis;
 using diagnosis::SignalDiagnosis;
 using Align = TextTable::Align;
 
-constexpr double kLitresPerMinute = 60e3;  ///< per m3/s
-constexpr double kPercent = 100.0;
-
 Json class_or_null(const std::optional<LeakClass>& leak_class) {
   return leak_class ? Json(std::string(to_string(*leak_class))) : Json(nullptr);
-}
-
-Json interval_json(const std::pair<double, double>& range, double scale = 1.0) {
-  return Json::array({number(scale * range.first), number(scale * range.second)});
 }
 
 Json diagnosed_json(const RecordDiagnosis& record) {
@@ -46,22 +41,8 @@ Json diagnosed_json(const RecordDiagnosis& record) {
   json["reference_repeats"] = record.reference_repeats;
   json["is_reference"] = record.is_reference;
   json["failure"] = ok ? Json(nullptr) : Json(record.fit.failure);
-  json["leakage_coefficient"] = value(std::max(0.0, e.coefficient));
-  json["ci95"] = ok ? interval_json(e.ci95) : Json(nullptr);
-  json["standard_error"] = value(e.standard_error);
+  json.update(leak_estimate_json(e, record.leak_class, ok));
   json["unbounded_leakage_coefficient"] = value(e.coefficient);
-  json["leak_share_percent"] = value(kPercent * e.share);
-  json["leak_share_ci95_percent"] = ok ? interval_json(e.share_ci95, kPercent) : Json(nullptr);
-  json["leak_share_upper_limit_percent"] =
-      ok && e.share_upper_limit ? value(kPercent * *e.share_upper_limit) : Json(nullptr);
-  json["leak_flow_l_per_min"] = value(kLitresPerMinute * e.leak_flow_m3_per_s);
-  json["leak_detected"] = ok ? Json(e.leak_detected) : Json(nullptr);
-  json["class"] = class_or_null(record.leak_class);
-  json["class_probabilities"] = Json::object();
-  for (std::size_t i = 0; i < diagnosis::kClassCount; ++i) {
-    json["class_probabilities"][std::string(to_string(datasets::kLeakClasses[i]))] =
-        value(e.probability[i]);
-  }
   json["undecided"] = !record.leak_class.has_value();
   json["explained_by_leak"] = ok ? Json(!record.unexplained) : Json(nullptr);
   json["features"] = {{"mean_m", value(record.features.mean)},
@@ -76,7 +57,7 @@ Json diagnosed_json(const RecordDiagnosis& record) {
   json["class_by_features_of_other_signals"] = class_or_null(record.by_features_of_other_signals);
   json["true_class"] = class_or_null(record.truth);
   json["true_share_percent"] =
-      record.true_share ? number(kPercent * *record.true_share) : Json(nullptr);
+      record.true_share ? number(kInPercent * *record.true_share) : Json(nullptr);
   json["warnings"] = record.warnings;
   return json;
 }
@@ -117,7 +98,7 @@ Json smallest_leak_json(const SignalDiagnosis& signal) {
   json["averaged"] = limit_json(signal.smallest_leak);
   json["single"] = limit_json(signal.smallest_single_leak);
   json["averaged_share_percent"] =
-      signal.smallest_leak ? number(kPercent * signal.smallest_leak->share) : Json(nullptr);
+      signal.smallest_leak ? number(kInPercent * signal.smallest_leak->share) : Json(nullptr);
   json["repeat_sd_m"] = number(signal.errors.repeat_m);
   json["healthy_leak_m"] = number(signal.errors.healthy_m);
   json["reason"] = signal.reason.empty() ? Json(nullptr) : Json(signal.reason);
@@ -129,7 +110,7 @@ Json class_settings_json(const datasets::DiagnosisSettings& settings) {
   json["limits_percent"] = Json::object();
   for (std::size_t i = 0; i < settings.limits.size(); ++i) {
     json["limits_percent"][std::string(to_string(datasets::kLeakClasses[i]))] =
-        number(kPercent * settings.limits[i]);
+        number(kInPercent * settings.limits[i]);
   }
   json["least_probability"] = settings.least_probability;
   json["false_alarms"] = settings.false_alarms;
@@ -176,9 +157,9 @@ std::string record_row(const RecordDiagnosis& record) {
                                   number_field(ok, std::max(0.0, e.coefficient)),
                                   number_field(ok, e.ci95.first),
                                   number_field(ok, e.ci95.second),
-                                  number_field(ok, kPercent * e.share),
-                                  number_field(ok, kPercent * e.share_ci95.first),
-                                  number_field(ok, kPercent * e.share_ci95.second),
+                                  number_field(ok, kInPercent * e.share),
+                                  number_field(ok, kInPercent * e.share_ci95.first),
+                                  number_field(ok, kInPercent * e.share_ci95.second),
                                   number_field(ok, kLitresPerMinute * e.leak_flow_m3_per_s),
                                   class_name(record.leak_class, "undecided")};
   for (const double probability : e.probability) fields.push_back(number_field(ok, probability));
@@ -187,7 +168,7 @@ std::string record_row(const RecordDiagnosis& record) {
       {number_field(ok, record.features.mean), number_field(ok, record.features.rms),
        number_field(ok, record.features.std), class_name(record.by_features),
        class_name(record.truth),
-       number_field(record.true_share.has_value(), kPercent * record.true_share.value_or(0.0)),
+       number_field(record.true_share.has_value(), kInPercent * record.true_share.value_or(0.0)),
        csv_text(ok ? fmt::format("{}", fmt::join(record.warnings, "; ")) : record.fit.failure)});
   return fmt::format("{}\n", fmt::join(fields, ","));
 }
@@ -220,9 +201,9 @@ std::string record_table(const diagnosis::Diagnosis& found) {
     table.add({record.condition, fmt::format("{}", record.repeats),
                fmt::format("{:.4g}", std::max(0.0, e.coefficient)),
                fmt::format("{:.3g} .. {:.3g}", e.ci95.first, e.ci95.second),
-               fmt::format("{:.2f}", kPercent * e.share),
-               fmt::format("{:.2f} .. {:.2f}", kPercent * e.share_ci95.first,
-                           kPercent * e.share_ci95.second),
+               fmt::format("{:.2f}", kInPercent * e.share),
+               fmt::format("{:.2f} .. {:.2f}", kInPercent * e.share_ci95.first,
+                           kInPercent * e.share_ci95.second),
                fmt::format("{:.4f}", kLitresPerMinute * e.leak_flow_m3_per_s),
                record.unexplained ? "not explained" : class_name(record.leak_class, "undecided"),
                fmt::format("{:.3f}", best), class_name(record.by_features, "-"),
@@ -242,9 +223,9 @@ std::string accuracy_table(const diagnosis::Diagnosis& found) {
   const auto add = [&](const char* method, const char* records, const Accuracy& accuracy) {
     if (accuracy.records == 0) return;
     table.add({method, records, fmt::format("{} of {}", accuracy.right, accuracy.records),
-               fmt::format("{:.1f}", kPercent * accuracy.accuracy),
-               fmt::format("{:.1f} .. {:.1f}", kPercent * accuracy.ci95.first,
-                           kPercent * accuracy.ci95.second),
+               fmt::format("{:.1f}", kInPercent * accuracy.accuracy),
+               fmt::format("{:.1f} .. {:.1f}", kInPercent * accuracy.ci95.first,
+                           kInPercent * accuracy.ci95.second),
                fmt::format("{}", accuracy.undecided), fmt::format("{}", accuracy.off_by_two)});
   };
   add("fitted leak", "single repeats", found.single);
@@ -264,8 +245,9 @@ std::string limit_table(const diagnosis::Diagnosis& found) {
   };
   for (const SignalDiagnosis& signal : found.signals) {
     table.add({signal.signal, flow(signal.smallest_single_leak), flow(signal.smallest_leak),
-               signal.smallest_leak ? fmt::format("{:.2f}", kPercent * signal.smallest_leak->share)
-                                    : signal.reason});
+               signal.smallest_leak
+                   ? fmt::format("{:.2f}", kInPercent * signal.smallest_leak->share)
+                   : signal.reason});
   }
   return table.empty() ? std::string() : table.text();
 }
@@ -342,6 +324,9 @@ Json diagnosis_json(const DiagnosisResult& result) {
   json["states"] = Json::array();
   for (const diagnosis::MachineState& state : found.states)
     json["states"].push_back(state_json(state));
+  json["trends"] = Json::array();
+  for (const diagnosis::LeakTrend& trend : found.trends)
+    json["trends"].push_back(leak_trend_json(trend));
   json["records"] = Json::array();
   for (const RecordDiagnosis& record : found.records)
     json["records"].push_back(diagnosed_json(record));
@@ -390,6 +375,8 @@ std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
   std::string text = in_colour("State of the machine", "1", style) + "\n";
   for (const diagnosis::MachineState& state : found.states)
     text += wrapped("  " + state_sentence(state), 80, 4) + "\n";
+  for (const diagnosis::LeakTrend& trend : found.trends)
+    text += wrapped("  " + trend_sentence(trend), 80, 4) + "\n";
   text += "\n" + in_colour("Leak in the average of each condition", "1", style) + "\n" +
           record_table(found);
   if (const std::string table = accuracy_table(found); !table.empty()) {
@@ -402,12 +389,13 @@ std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
             "\n" + table;
   if (const std::string table = limit_table(found); !table.empty()) {
     const datasets::DiagnosisSettings& settings = result.campaign.diagnosis;
-    text += "\n" +
-            in_colour(fmt::format("Smallest leak told from none ({:g} % false alarms, found in "
-                                  "{:g} %)",
-                                  kPercent * settings.false_alarms, kPercent * settings.detection),
-                      "1", style) +
-            "\n" + table;
+    text +=
+        "\n" +
+        in_colour(fmt::format("Smallest leak told from none ({:g} % false alarms, found in "
+                              "{:g} %)",
+                              kInPercent * settings.false_alarms, kInPercent * settings.detection),
+                  "1", style) +
+        "\n" + table;
   }
   text += "\nstatus: " + in_colour(status, status == "done" ? "32" : "31", style) + "\n";
   text += warning_lines(found);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "report/leak/leak_estimate_json.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -13,8 +14,6 @@ namespace {
 
 using diagnosis::LimitDistance;
 using diagnosis::MachineState;
-
-constexpr double kInPercent = 100.0;
 
 std::string signals_of(const MachineState& state) {
   std::set<std::string> signals;
@@ -45,10 +44,6 @@ std::string limit_of(const LimitDistance& limit) {
       ", {:.1f} percentage points {} {} ({:g} %)", kInPercent * std::abs(limit.distance),
       limit.distance < 0.0 ? "below" : "above",
       limit.distance < 0.0 ? name : "the limit of " + name, kInPercent * limit.limit);
-}
-
-Json range_json(const std::pair<double, double>& range, double scale) {
-  return Json::array({number(scale * range.first), number(scale * range.second)});
 }
 
 }  // namespace
@@ -87,10 +82,6 @@ std::string state_sentence(const MachineState& state) {
 Json state_json(const MachineState& state) {
   const bool ok = state.ok();
   const diagnosis::LeakEstimate& e = state.estimate;
-  const auto value = [&](double x) { return ok ? number(x) : Json(nullptr); };
-  const auto range = [&](const std::pair<double, double>& x, double scale) {
-    return ok ? range_json(x, scale) : Json(nullptr);
-  };
   const auto text = [](const std::string& x) { return x.empty() ? Json(nullptr) : Json(x); };
   const auto name = [](datasets::LeakClass x) { return std::string(to_string(x)); };
   Json json;
@@ -104,23 +95,11 @@ Json state_json(const MachineState& state) {
   json["conditions"] = Json::array();
   for (const auto& member : state.members) json["conditions"].push_back(member.condition);
   json["left_out"] = state.left_out;
-  json["leakage_coefficient"] = value(std::max(0.0, e.coefficient));
-  json["ci95"] = range(e.ci95, 1.0);
-  json["standard_error"] = value(e.standard_error);
+  json.update(leak_estimate_json(e, state.leak_class, ok));
   const double area = e.coefficient != 0.0 ? state.leak_area_m2 / e.coefficient : 0.0;
-  json["leak_area_m2"] = value(std::max(0.0, state.leak_area_m2));
-  json["leak_area_ci95_m2"] = range(e.ci95, area);
+  json["leak_area_m2"] = ok ? number(std::max(0.0, state.leak_area_m2)) : Json(nullptr);
+  json["leak_area_ci95_m2"] = ok ? interval_json(e.ci95, area) : Json(nullptr);
   json["duty"] = text(state.duty);
-  json["leak_share_percent"] = value(kInPercent * e.share);
-  json["leak_share_ci95_percent"] = range(e.share_ci95, kInPercent);
-  json["leak_share_upper_limit_percent"] =
-      ok && e.share_upper_limit ? value(kInPercent * *e.share_upper_limit) : Json(nullptr);
-  json["leak_flow_l_per_min"] = value(60e3 * e.leak_flow_m3_per_s);
-  json["leak_detected"] = ok ? Json(e.leak_detected) : Json(nullptr);
-  json["class"] = ok && state.leak_class ? Json(name(*state.leak_class)) : Json(nullptr);
-  json["class_probabilities"] = Json::object();
-  for (std::size_t i = 0; i < diagnosis::kClassCount; ++i)
-    json["class_probabilities"][name(datasets::kLeakClasses[i])] = value(e.probability[i]);
   json["nearest_limit"] = nullptr;
   if (ok) {
     json["nearest_limit"] = {

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 
+#include "common/calendar.hpp"
 #include "report/comparison/comparison_parts.hpp"
 #include "report/text/readable.hpp"
 
@@ -95,13 +95,6 @@ std::vector<Figure> parameter_figures(const Json& parameters) {
     figures.push_back({"comparison_" + plain_name(parameter_label(parameter)), std::move(plot)});
   }
   return figures;
-}
-
-std::string date_of(double day) {
-  const std::chrono::sys_days date{std::chrono::days(static_cast<int>(std::floor(day)))};
-  const std::chrono::year_month_day whole{date};
-  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(whole.year()),
-                     static_cast<unsigned>(whole.month()), static_cast<unsigned>(whole.day()));
 }
 
 struct TrendAxis {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 
 #include "report/page/page_parts.hpp"
 #include "report/text/gathered_warnings.hpp"
@@ -203,37 +202,10 @@ Json class_limits_view(const Json& diagnosis) {
   return list;
 }
 
-struct FoundLeak {
-  double share_percent = 0.0;
-  std::string text;
-};
-
-/// Conditions that are not normal, the largest leak first.
-std::vector<FoundLeak> leaks_of(const Json& diagnosis) {
-  std::vector<FoundLeak> leaks;
-  for (const Json& record : diagnosis.at("records")) {
-    if (!is_average(record) || record.at("is_reference").get<bool>()) continue;
-    const std::string name = text_of(record, "class");
-    const std::size_t index = severity(name);
-    if (index == 0 || index == kLeakMarks.size()) continue;
-    const Json row = record_row(record, 0);
-    const auto text = [](const Json& value) { return value.at("text").get<std::string>(); };
-    leaks.push_back({number_of(record, "leak_share_percent").value_or(0.0),
-                     fmt::format("{}: {}, {} % of the servo flow leaks ({} to {} %), {} L/min",
-                                 text_of(record, "condition"), name, text(row.at("share")),
-                                 text(row.at("share_ci").at("low")),
-                                 text(row.at("share_ci").at("high")), text(row.at("flow")))});
-  }
-  std::stable_sort(leaks.begin(), leaks.end(), [](const FoundLeak& a, const FoundLeak& b) {
-    return a.share_percent > b.share_percent;
-  });
-  return leaks;
-}
-
 /// Verdicts on the states of the machine, but for healthy references; the largest leak first.
 std::vector<Json> judged_states(const Json& diagnosis) {
   std::vector<Json> states;
-  for (const Json& state : diagnosis.value("states", Json::array()))
+  for (const Json& state : diagnosis.at("states"))
     if (!state.at("is_reference").get<bool>()) states.push_back(state);
   std::stable_sort(states.begin(), states.end(), [](const Json& a, const Json& b) {
     return number_of(a, "leak_share_percent").value_or(-1.0) >
@@ -283,28 +255,15 @@ Json state_row(const Json& state) {
   row["area"] = shown_in(state.at("leak_area_m2"), 1e-6, 4);
   row["area_ci"] = shown_interval(state.at("leak_area_ci95_m2"), 1e-6);
   row["limit"] = distance_text(state.at("nearest_limit"));
-  row["agreement"] = agreement_text_of(state.at("agreement"));
+  const bool is_reference = state.at("is_reference").get<bool>();
+  row["agreement"] = is_reference ? std::string() : agreement_text_of(state.at("agreement"));
   row["left_out"] = state.at("left_out");
-  row["has_left_out"] = !state.at("left_out").empty() && !state.at("is_reference").get<bool>();
+  row["has_left_out"] = !state.at("left_out").empty() && !is_reference;
   return row;
 }
 
-/// Conditions of which nobody can say whether they leak.
-std::vector<std::string> open_questions(const Json& diagnosis) {
-  std::vector<std::string> open;
-  for (const Json& record : diagnosis.at("records")) {
-    if (!is_average(record) || record.at("is_reference").get<bool>()) continue;
-    const Json mark = leak_badge(record);
-    const std::string word = mark.at("word").get<std::string>();
-    if (severity(word) < kLeakMarks.size()) continue;
-    const std::string failure = text_of(record, "failure");
-    open.push_back(fmt::format("{}: {}{}", text_of(record, "condition"), word,
-                               failure.empty() ? std::string() : ": " + failure));
-  }
-  return open;
-}
-
-Json headline_of_states(const std::vector<Json>& states, const std::string& sentence) {
+Json headline_of_states(const Json& diagnosis, const std::string& sentence) {
+  const std::vector<Json> states = judged_states(diagnosis);
   const auto is_leak = [](const Json& state) {
     const std::size_t index = severity(text_of(state, "class"));
     return index > 0 && index < kLeakMarks.size();
@@ -312,11 +271,16 @@ Json headline_of_states(const std::vector<Json>& states, const std::string& sent
   const auto is_open = [](const Json& state) { return state.at("class").is_null(); };
   const bool leak = std::any_of(states.begin(), states.end(), is_leak);
   const auto open = std::count_if(states.begin(), states.end(), is_open);
-  Json view = leak        ? make_headline("LEAK", "!", "warn", sentence)
-              : open == 0 ? make_headline("NO LEAK", "✓", "good", sentence)
+  Json view = leak             ? make_headline("LEAK", "!", "warn", sentence)
+              : states.empty() ? make_headline("NOT JUDGED", "○", "none", sentence)
+              : open == 0      ? make_headline("NO LEAK", "✓", "good", sentence)
               : open == static_cast<std::ptrdiff_t>(states.size())
                   ? make_headline("NOT JUDGED", "○", "none", sentence)
                   : make_headline("UNCLEAR", "?", "warn", sentence);
+  for (const Json& trend : diagnosis.at("trends")) {
+    if (trend.at("significant").get<bool>())
+      add_reason(view, text_of(trend, "sentence"), "diagnosis");
+  }
   for (std::size_t i = 1; i < states.size(); ++i)
     add_reason(view, text_of(states[i], "sentence"), "diagnosis");
   return view;
@@ -332,21 +296,7 @@ std::string diagnosis_sentence(const Json& diagnosis) {
     return fmt::format("Of {} states of the machine the worst: {}", states.size(),
                        text_of(states.front(), "sentence"));
   }
-  std::map<std::string, int> count;
-  int averages = 0;
-  for (const Json& record : diagnosis.at("records")) {
-    if (!is_average(record) || record.at("is_reference").get<bool>()) continue;
-    ++averages;
-    ++count[leak_badge(record).at("word").get<std::string>()];
-  }
-  std::string text;
-  const auto add = [&](const std::string& name) {
-    if (count[name] > 0)
-      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count[name], name);
-  };
-  for (std::size_t i = kLeakMarks.size(); i-- > 0;) add(kLeakMarks[i].name);
-  for (const char* name : {"undecided", "not explained by a leak", "not fitted"}) add(name);
-  return fmt::format("Of {} conditions: {}.", averages, text.empty() ? "none judged" : text);
+  return "Every condition is the healthy reference of its signal: there is nothing to judge.";
 }
 
 }  // namespace
@@ -360,22 +310,7 @@ Json diagnosis_headline(const Json& diagnosis) {
       add_reason(view, reason.get<std::string>(), "diagnosis");
     return view;
   }
-  if (const std::vector<Json> states = judged_states(diagnosis); !states.empty())
-    return headline_of_states(states, sentence);
-  const std::vector<FoundLeak> leaks = leaks_of(diagnosis);
-  bool judged = false;
-  for (const Json& record : diagnosis.at("records")) {
-    judged = judged || (is_average(record) && !record.at("is_reference").get<bool>() &&
-                        severity(text_of(record, "class")) < kLeakMarks.size());
-  }
-  const std::vector<std::string> open = open_questions(diagnosis);
-  Json view = !judged          ? make_headline("NOT JUDGED", "○", "none", sentence)
-              : !leaks.empty() ? make_headline("LEAK", "!", "warn", sentence)
-              : open.empty()   ? make_headline("NO LEAK", "✓", "good", sentence)
-                               : make_headline("UNCLEAR", "?", "warn", sentence);
-  for (const FoundLeak& leak : leaks) add_reason(view, leak.text, "diagnosis");
-  for (const std::string& text : open) add_reason(view, text, "diagnosis");
-  return view;
+  return headline_of_states(diagnosis, sentence);
 }
 
 std::vector<Figure> diagnosis_figures(const Json& diagnosis) {
@@ -403,9 +338,12 @@ Json diagnosis_view(const Json& diagnosis) {
     rows.push_back(std::move(row));
   }
   view["states"] = Json::array();
-  for (const Json& state : diagnosis.value("states", Json::array()))
-    view["states"].push_back(state_row(state));
+  for (const Json& state : diagnosis.at("states")) view["states"].push_back(state_row(state));
   view["has_states"] = !view["states"].empty();
+  view["trends"] = Json::array();
+  for (const Json& trend : diagnosis.at("trends"))
+    view["trends"].push_back(text_of(trend, "sentence"));
+  view["has_trends"] = !view["trends"].empty();
   view["has_records"] = !view["averages"].empty();
   view["has_repeats"] = !view["repeats"].empty();
   if (!view["averages"].empty()) view["plot_html"] = svg(share_plot(diagnosis));

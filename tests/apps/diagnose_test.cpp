@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <array>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -181,6 +184,46 @@ TEST_CASE("diagnose: --healthy names the level that the campaign does not know",
   const Outcome contradicted = diagnosed({"--healthy", "none"});
   CHECK(contradicted.exit_code == 2);
   CHECK_THAT(contradicted.err, Contains("says that \"none\" is slight"));
+}
+
+TEST_CASE("diagnose: a leak that grows from date to date", "[apps]") {
+  const CommandFolder folder;
+  std::string campaign =
+      edited(kDiagnosed, {{"id = \"leaking\"", "id = \"march\"\ndate = 2026-03-01"},
+                          {"amplitude = \"5 mm\"\nleak_level = \"open\"\nuse = \"diagnose\"",
+                           "amplitude = \"5 mm\"\nuse = \"diagnose\"\n"
+                           "parameters = { leakage_coefficient = 0.15 }\n"}});
+  campaign += edited(kSynthetic, {{"position = \"0.01 mm\"", "position = \"0.05 mm\""},
+                                  {"\"0.05 bar\"", "\"1 bar\""}});
+  for (const auto& [id, date, leak] :
+       {std::array{"april", "2026-04-01", "0.2"}, std::array{"may", "2026-05-01", "0.25"}}) {
+    campaign += fmt::format(
+        "[[condition]]\nid = \"{}\"\ndate = {}\nwaveform = \"sine\"\nfrequency = \"2 Hz\"\n"
+        "amplitude = \"5 mm\"\nuse = \"diagnose\"\n"
+        "parameters = {{ leakage_coefficient = {} }}\n",
+        id, date, leak);
+  }
+  folder.write("campaign.toml", campaign);
+  const Outcome made =
+      folder.run({"synthesize", "campaign.toml", "--seed", "1", "--out", "made", "--quiet"});
+  CAPTURE(made.err);
+  REQUIRE(made.exit_code == 0);
+  REQUIRE(folder.run({"fit", "made/campaign.toml", "--out", "fit", "--quiet"}).exit_code == 0);
+  const Outcome outcome =
+      folder.run({"diagnose", "made/campaign.toml", "--fit", "fit/fit.json", "--out", "diagnosis"});
+  CAPTURE(outcome.out, outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("The machine: the leak rises by"));
+  const json result = json::parse(folder.read("diagnosis/diagnosis.json"));
+  CHECK(violations(result, "diagnosis") == "");
+  REQUIRE(result["trends"].size() == 1);
+  const json& trend = result["trends"][0];
+  CHECK(trend["dates"] == 3);
+  CHECK(trend["first_date"] == "2026-03-01");
+  CHECK(trend["significant"] == true);
+  // 0.1 of the coefficient in 61 days.
+  CHECK(std::abs(trend["coefficient_per_day"].get<double>() * 61.0 - 0.1) < 0.01);
+  CHECK_THAT(folder.read("diagnosis/report.html"), Contains("The machine: the leak rises by"));
 }
 
 TEST_CASE("diagnose: without a fit it is a wrong use", "[apps]") {

@@ -34,6 +34,8 @@ TEST_CASE("LeakCurve: a cubic of exact slopes is followed exactly", "[diagnosis]
   CHECK(curve.share(0.0) == 0.0);
   CHECK(curve.share(-1.0) == 0.0);
   CHECK(curve.leak_flow_m3_per_s(-1.0) == 0.0);
+  // Nor where a straight line from the first point would say so.
+  CHECK(LeakCurve({saturating(0.5), saturating(1.0)}).share(0.0) == 0.0);
 }
 
 TEST_CASE("LeakCurve: points that do not increase are refused", "[diagnosis]") {

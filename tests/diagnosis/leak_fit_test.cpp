@@ -7,44 +7,15 @@
 #include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
+#include "tests/diagnosis/healthy_sine.hpp"
 
 using namespace rigcal;
 using Catch::WithinRel;
+using test::healthy_sine;
+using test::HealthySine;
+using test::rig_of;
 
 namespace {
-
-/// One healthy record of a short 1 Hz sine.
-struct HealthySine {
-  datasets::Campaign campaign;
-  datasets::Record record;
-};
-
-HealthySine healthy_sine() {
-  HealthySine made;
-  made.campaign =
-      datasets::load_campaign(RIGCAL_SOURCE_DIR "/datasets/rigs/uis_shake_table/diagnosis.toml");
-  std::erase_if(made.campaign.conditions,
-                [](const auto& each) { return each.id != "sine_1Hz_open_0"; });
-  made.campaign.conditions.front().duration_s = 2.0;
-  made.campaign.conditions.front().sample_rate_hz = 250.0;
-  const datasets::Campaign truth = datasets::true_campaign(made.campaign);
-  std::vector<datasets::Repeat> repeats;
-  for (auto& each : datasets::synthetic_repeats(truth, truth.conditions.front(), nullptr, 1))
-    repeats.push_back(std::move(each.record));
-  made.record =
-      datasets::repeat_records(made.campaign, made.campaign.conditions.front(), repeats).average;
-  return made;
-}
-
-/// The true rig, its valve gain known within 1 %.
-diagnosis::RigFit rig_of(const datasets::Campaign& campaign) {
-  diagnosis::RigFit rig;
-  for (const auto& [index, value] : campaign.synthetic_settings->parameters)
-    rig.values.push_back({index, datasets::Scope::rig, "", value});
-  rig.indices = {model::parameter_index(campaign.rig.plant, "valve_gain")};
-  rig.covariance = Eigen::MatrixXd::Constant(1, 1, 4.06e-7 * 4.06e-7);
-  return rig;
-}
 
 calib::FittedParameter fitted(int index, double error, std::optional<double> robust) {
   calib::FittedParameter p;
@@ -137,4 +108,58 @@ TEST_CASE("rig_fit_of: the larger error of each value, and their correlation", "
   CHECK_THAT(rig.covariance(1, 1), WithinRel(25.0, 1e-12));
   CHECK_THAT(rig.covariance(2, 2), WithinRel(49.0, 1e-12));
   CHECK_THAT(rig.covariance(0, 1), WithinRel(0.5 * 3.0 * 5.0, 1e-12));
+}
+
+TEST_CASE("fit_leak: the noise of the reference is not the record's own", "[diagnosis]") {
+  const HealthySine made = healthy_sine();
+  const diagnosis::RigFit rig = rig_of(made.campaign);
+  const diagnosis::LeakProblem problem = diagnosis::LeakProblem(made.campaign, rig).up_to(1.0);
+  const auto noise_se = [&](int reference) {
+    return diagnosis::fit_leak(problem, rig, problem.campaign.conditions.front(), made.record,
+                               std::nullopt, reference, nullptr, nullptr)
+        .noise_se;
+  };
+  // Less the mean of four, the noise of a record is the root of 5/4 as large.
+  CHECK_THAT(noise_se(0) / noise_se(4), WithinRel(std::sqrt(1.25), 1e-9));
+}
+
+TEST_CASE("share_rig_error: what the rig moves, with the coefficient and by itself",
+          "[diagnosis]") {
+  const HealthySine made = healthy_sine();
+  const diagnosis::RigFit rig = rig_of(made.campaign);
+  const diagnosis::LeakProblem problem(made.campaign, rig);
+  const datasets::Condition& condition = problem.campaign.conditions.front();
+  diagnosis::LeakFit fit;
+  fit.coefficient = 0.3;
+  const auto share = [&](double valve_gain) {
+    auto values = rig.values;
+    values.push_back({rig.indices.front(), datasets::Scope::rig, "", valve_gain});
+    values.push_back({problem.leak, datasets::Scope::condition, condition.id, fit.coefficient});
+    return diagnosis::share_at(problem.campaign, condition, made.record, values);
+  };
+  const double gain = 4.06e-5;
+  const double step = 1e-3 * gain;
+  const double itself = (share(gain + step) - share(gain - step)) / (2.0 * step);
+  const double sd = 4.06e-7;
+  const double share_slope = 0.5;
+  fit.rig_moves = Eigen::VectorXd::Zero(1);
+  const auto error = [&] {
+    return diagnosis::share_rig_error(problem, rig, condition, made.record, fit, share_slope);
+  };
+  CHECK_THAT(error(), WithinRel(std::abs(itself) * sd, 1e-3));
+  fit.rig_moves(0) = 3.0 * itself / share_slope;
+  CHECK_THAT(error(), WithinRel(4.0 * std::abs(itself) * sd, 1e-3));
+  // Where nothing leaks a share moves by the coefficient alone.
+  fit.coefficient = -0.1;
+  CHECK_THAT(error(), WithinRel(3.0 * std::abs(itself) * sd, 1e-9));
+}
+
+TEST_CASE("leak_scan_of: the best leak is found beyond the share of the last class",
+          "[diagnosis]") {
+  HealthySine made = healthy_sine(1.5);
+  const diagnosis::LeakProblem problem(made.campaign, rig_of(made.campaign));
+  const auto& condition = problem.campaign.conditions.front();
+  const auto scan = diagnosis::leak_scan_of(problem, condition, made.record);
+  CHECK_THAT(scan.best_coefficient, WithinRel(1.5, 0.2));
+  CHECK(scan.largest_coefficient > scan.best_coefficient);
 }

@@ -133,6 +133,58 @@ TEST_CASE("parity: false alarms on another day are as many as stated", "[diagnos
   CHECK(alarms < 45);
 }
 
+TEST_CASE("parity: a record less the others' mean, sample by sample", "[diagnosis]") {
+  const Campaign campaign = three_conditions(0.1);
+  const Parity found = diagnosis::parity(campaign, made(campaign, 3), true_rig(campaign), {});
+  const auto& references = found.conditions[0].records;
+  const auto& record = found.conditions[1].records.front();
+  for (std::size_t i = 0; i < record.residual_m.size(); ++i) {
+    double sum = 0.0;
+    for (const auto& each : references) sum += each.parity_m[i];
+    CHECK(std::abs(record.residual_m[i] - (record.parity_m[i] - sum / 5.0)) < 1e-15);
+  }
+}
+
+TEST_CASE("parity: samples outside of the windows do not count", "[diagnosis]") {
+  const Campaign campaign = three_conditions(0.1);
+  auto records = made(campaign, 1);
+  records[2].average.windows = {{1.0, 2.0}};
+  const Parity found = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  const auto& leaking = found.conditions[2];
+  for (std::size_t i = 0; i < leaking.time_s.size(); ++i) {
+    const bool within = leaking.time_s[i] >= 1.0 && leaking.time_s[i] <= 2.0;
+    CHECK(std::isnan(leaking.records.front().residual_m[i]) != within);
+  }
+}
+
+TEST_CASE("parity: the time to an alarm begins with the recording", "[diagnosis]") {
+  const Campaign campaign = three_conditions(0.1);
+  auto records = made(campaign, 1);
+  const double first = diagnosis::parity(campaign, records, true_rig(campaign), {})
+                           .conditions[2]
+                           .records[0]
+                           .alarm_time_s;
+  for (auto& each : records) {  // ten whole periods later
+    for (double& t : each.average.time_s) t += 10.0;
+    for (auto& single : each.singles)
+      for (double& t : single.time_s) t += 10.0;
+    for (auto& window : each.covered) window = {window.start_s + 10.0, window.end_s + 10.0};
+  }
+  const auto late = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  REQUIRE(late.conditions[2].records[0].alarm);
+  CHECK(std::abs(late.conditions[2].records[0].alarm_time_s - first) < 0.01);
+}
+
+TEST_CASE("parity: how probable as many false alarms are", "[diagnosis]") {
+  const Campaign campaign = three_conditions(0.1);
+  Campaign leaks_later = campaign;
+  leaks_later.conditions[1].overrides = {{leak_row(campaign), 0.1}};
+  const auto found = diagnosis::parity(campaign, made(leaks_later, 1), true_rig(campaign), {});
+  CHECK(found.check.alarms == 5);
+  // Five of five at 1 % each.
+  CHECK(std::abs(found.check.p - 1e-10) < 1e-12);
+}
+
 TEST_CASE("parity: without enough healthy records nothing is judged, and why", "[diagnosis]") {
   Campaign campaign = three_conditions(0.1);
   campaign.conditions.erase(campaign.conditions.begin(), campaign.conditions.begin() + 2);

@@ -234,6 +234,9 @@ def statement_around(text, begin, end):
     while depth or text[right - 1] not in ";}":
         depth += (text[right] in OPEN) - (text[right] in CLOSE)
         right += 1
+    of_initialiser = re.compile(r"\s*;").match(text, right)  # what ends in its brace, ends after it
+    if text[right - 1] == "}" and of_initialiser:
+        right = of_initialiser.end()
     left += len(text[left:right]) - len(text[left:right].lstrip())
     return left, right
 

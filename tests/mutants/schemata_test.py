@@ -32,6 +32,10 @@ class Schemata(unittest.TestCase):
         self.assertEqual(inserted("{ if (c) a += b; }", ("a += b", "a -= b")),
                          "{ if (M0) { if (c) a -= b; } else { if (c) a += b; } }")
 
+    def test_a_statement_that_ends_in_an_initialiser(self):
+        self.assertEqual(inserted("{ if (c) { a = {0, b}; } d(); }", ("a = {0, b};", ";")),
+                         "{ if (c) { if (M0) { ; } else { a = {0, b}; } } d(); }")
+
     def test_mutants_of_one_expression_and_within_another(self):
         self.assertEqual(inserted("x = a + f(b + c);", ("a + f(", "a - f("), ("b + c", "b - c"), ("a + f(", "2 + f(")),
                          "x = (M2 ? (2 + f(b + c)) : ((M0 ? (a - f(b + c)) : (a + f((M1 ? (b - c) : (b + c)))))));")

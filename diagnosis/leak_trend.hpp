@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "diagnosis/machine_state.hpp"
+
+namespace rigcal::diagnosis {
+
+/// How the leak of one machine changes from date to date.
+struct LeakTrend {
+  std::string leak_level, specimen;  ///< what its states have in common; empty where not stated
+  std::string duty;                  ///< signal whose share is stated
+  int first_day = 0, last_day = 0;   ///< since 1970-01-01
+  int dates = 0;
+  double coefficient_per_day = 0.0;
+  double share_per_day = 0.0;  ///< at the duty, about the last date
+  std::pair<double, double> share_per_day_ci95{};
+  double p = 1.0;            ///< of so steep a line where nothing changes, two-sided
+  bool significant = false;  ///< at 5 %
+  double chi_squared = 0.0;  ///< of the states about the line
+  double freedom = 0.0;      ///< dates - 2
+  double widened = 1.0;      ///< factor of the error: more than 1 where they lie off the line
+  /// Where the leak rises significantly: the next limit above its share on the last date, and on
+  /// which day the line reaches it, with the days of the interval's ends. An open end: never.
+  std::optional<LeakClass> next_class;
+  double next_limit = 0.0;
+  double reached_day = 0.0;
+  double earliest_day = 0.0;
+  std::optional<double> latest_day;
+};
+
+/// The trend of every machine that was diagnosed on two dates or more, in order of appearance:
+/// states of one leak level and specimen.
+///
+/// A straight line through the coefficients by generalised least squares: errors of their own, and
+/// that of the rig's parameters in common. States that lie farther off the line than their errors
+/// allow widen the error of the slope by Birge's ratio, as members of a state do.
+///
+/// @param rig_covariance  of the rig's parameters, shape (rig_moves)^2
+std::vector<LeakTrend> leak_trends(const std::vector<MachineState>& states,
+                                   const Eigen::MatrixXd& rig_covariance,
+                                   const datasets::DiagnosisSettings& settings);
+
+}  // namespace rigcal::diagnosis

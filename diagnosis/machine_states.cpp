@@ -1,0 +1,121 @@
+#include "diagnosis/machine_states.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/error.hpp"
+#include "datasets/campaign/campaign_sections.hpp"
+#include "diagnosis/judgement.hpp"
+#include "diagnosis/signal_name.hpp"
+
+namespace rigcal::diagnosis {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+
+bool is_sine(const Condition& condition) { return condition.waveform == datasets::Waveform::sine; }
+
+/// The duty at which shares of states are stated: the campaign's own choice, else the slowest
+/// generated sine, of these the largest, else the first condition.
+const Prepared& duty_of(const Campaign& campaign, const std::vector<Prepared>& all) {
+  const std::string& wanted = campaign.diagnosis.duty;
+  const Prepared* best = &all.front();
+  for (const Prepared& each : all) {
+    const Condition& c = *each.condition;
+    if (!wanted.empty() && c.id == wanted) return each;
+    if (!is_sine(c)) continue;
+    const Condition& b = *best->condition;
+    const auto slowness = [](const Condition& x) {
+      return std::pair(-x.frequency_hz.value_or(1e9), x.amplitude.value_or(0.0));
+    };
+    if (!is_sine(b) || slowness(c) > slowness(b)) best = &each;
+  }
+  if (wanted.empty()) return *best;
+  throw InputError(
+      {campaign.file.string()},
+      fmt::format("diagnosis.duty: no condition \"{}\" that can be diagnosed: expected "
+                  "the id of one",
+                  wanted));
+}
+
+/// Members, or why a condition is none.
+void add_average(const RecordDiagnosis& record, const SignalErrors& errors, MachineState& state) {
+  const auto leave_out = [&](const std::string& why) {
+    state.left_out.push_back(record.condition + ": " + why);
+  };
+  if (!record.fit.ok()) return leave_out(record.fit.failure);
+  if (record.is_reference) return leave_out("the healthy reference of its signal");
+  if (record.unexplained) return leave_out("not explained by a leak");
+  const CoefficientError error =
+      coefficient_error(record.fit, errors, record.repeats, record.reference_repeats);
+  if (!(error.own_se > 0.0)) return leave_out("its residuals hold no noise, so its error is open");
+  state.members.push_back({record.condition, record.signal, record.fit.coefficient, error.own_se,
+                           error.freedom, record.fit.rig_moves});
+}
+
+void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& duty,
+                 MachineState& state) {
+  if (state.members.empty()) return;
+  const Campaign& campaign = problem.campaign;
+  state.pooled = pooled_leak(state.members, rig.covariance);
+  state.leak_area_m2 =
+      state.pooled.coefficient * datasets::values_in(campaign, *duty.condition)["leakage_area"];
+  state.duty = signal_name(campaign, *duty.condition);
+  LeakFit leak;
+  leak.coefficient = state.pooled.coefficient;
+  leak.rig_moves = state.pooled.rig_moves;
+  const double reach = std::max(state.pooled.error.half_width(), duty.least_reach());
+  try {
+    const datasets::Record& average = duty.records->average;
+    const LeakCurve curve =
+        leak_curve_of(problem, *duty.condition, average, leak.coefficient, reach);
+    state.share_slope = curve.share_slope(leak.coefficient);
+    const double share_rig_se =
+        share_rig_error(problem, rig, *duty.condition, average, leak, state.share_slope);
+    state.estimate = estimate_leak(leak.coefficient, state.pooled.error, curve,
+                                   state.pooled.widened * share_rig_se, campaign.diagnosis);
+  } catch (const NoResultError& failure) {
+    state.failure = failure.what();
+    return;
+  }
+  const LeakEstimate& found = state.estimate;
+  const auto best = static_cast<std::size_t>(found.most_probable);
+  if (found.probability[best] >= campaign.diagnosis.least_probability)
+    state.leak_class = found.most_probable;
+  state.limit = nearest_limit(found, campaign.diagnosis);
+}
+
+}  // namespace
+
+std::vector<MachineState> machine_states(const LeakProblem& problem, const RigFit& rig,
+                                         const std::vector<Prepared>& all,
+                                         const std::vector<RecordDiagnosis>& records,
+                                         const std::map<std::string, SignalErrors>& errors) {
+  std::vector<MachineState> states;
+  if (all.empty()) return states;
+  for (const RecordDiagnosis& record : records) {
+    if (record.repeat) continue;
+    const StateKey key = state_of(*problem.campaign.find(record.condition));
+    auto state = std::find_if(states.begin(), states.end(),
+                              [&](const MachineState& each) { return each.key == key; });
+    if (state == states.end()) {
+      states.emplace_back().key = key;
+      state = std::prev(states.end());
+      state->is_reference = true;
+    }
+    state->is_reference = state->is_reference && record.is_reference;
+    const auto own = errors.find(record.signal);
+    add_average(record, own == errors.end() ? SignalErrors{} : own->second, *state);
+  }
+  const Prepared& duty = duty_of(problem.campaign, all);
+  for (MachineState& state : states) {
+    if (!duty.failure.empty()) state.failure = duty.failure;
+    if (state.failure.empty()) judge_state(problem, rig, duty, state);
+  }
+  return states;
+}
+
+}  // namespace rigcal::diagnosis

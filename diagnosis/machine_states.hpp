@@ -1,0 +1,24 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/machine_state.hpp"
+#include "diagnosis/prepared.hpp"
+
+namespace rigcal::diagnosis {
+
+/// Verdicts on the machine in each of its states, from the averages of all conditions of a state
+/// together; its share is stated at one duty, the same for all.
+///
+/// @param records  fitted and judged
+/// @param errors   by signal
+/// @throws InputError  the campaign names a duty that cannot be diagnosed
+std::vector<MachineState> machine_states(const LeakProblem& problem, const RigFit& rig,
+                                         const std::vector<Prepared>& all,
+                                         const std::vector<RecordDiagnosis>& records,
+                                         const std::map<std::string, SignalErrors>& errors);
+
+}  // namespace rigcal::diagnosis

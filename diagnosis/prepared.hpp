@@ -1,0 +1,30 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/prepare/single_repeats.hpp"
+#include "diagnosis/leak_fit.hpp"
+#include "diagnosis/leak_scan.hpp"
+
+namespace rigcal::diagnosis {
+
+/// A condition with its records and what a leak does in it.
+struct Prepared {
+  const datasets::Condition* condition = nullptr;
+  const datasets::RepeatRecords* records = nullptr;
+  LeakScan scan;
+  Residuals residuals;  ///< of the average, then of each repeat
+  std::string failure;
+  std::optional<double> true_share;
+  bool is_healthy = false;
+
+  const std::vector<double>& time_s() const { return records->average.time_s; }
+  /// Least half width of a curve of shares: where a record is its own reference there is no error,
+  /// and any width will do that leaks at all.
+  double least_reach() const { return 1e-2 * scan.largest_coefficient; }
+};
+
+}  // namespace rigcal::diagnosis

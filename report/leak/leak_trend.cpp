@@ -1,0 +1,105 @@
+#include "report/leak/leak_trend.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/calendar.hpp"
+#include "report/leak/leak_estimate_json.hpp"
+#include "report/text/readable.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using diagnosis::LeakTrend;
+
+/// A rate is told as what happens in so many days.
+constexpr double kDays = 30.0;
+/// Nothing is foretold farther ahead than this many times the days that were observed.
+constexpr double kAhead = 3.0;
+
+std::string machine_of(const LeakTrend& trend) {
+  diagnosis::StateKey key;
+  key.leak_level = trend.leak_level;
+  key.specimen = trend.specimen;
+  const std::string name = key.name();
+  return name.empty() ? "The machine" : name;
+}
+
+/// Farther ahead than the records tell.
+bool is_far(const LeakTrend& trend, double day) {
+  return day - trend.last_day > kAhead * (trend.last_day - trend.first_day);
+}
+
+std::string next_limit_of(const LeakTrend& trend) {
+  if (!trend.next_class || is_far(trend, trend.reached_day)) return {};
+  const bool open = !trend.latest_day || is_far(trend, *trend.latest_day);
+  return fmt::format(" At this rate it reaches {} ({:g} %) about {} ({} to {}).",
+                     to_string(*trend.next_class), kInPercent * trend.next_limit,
+                     date_of(trend.reached_day), date_of(trend.earliest_day),
+                     open ? "never, as far as is known" : date_of(*trend.latest_day));
+}
+
+}  // namespace
+
+std::string trend_sentence(const LeakTrend& trend) {
+  const auto [low, high] = trend.share_per_day_ci95;
+  const double points = kInPercent * kDays;  // of the servo flow, in these days
+  const double error = std::max(0.005, points * (high - low) / 4.0);
+  const auto text = [&](double per_day) { return matched(points * per_day, error); };
+  const std::string over =
+      fmt::format("over {} dates from {} to {}, {}", trend.dates, date_of(trend.first_day),
+                  date_of(trend.last_day), p_value_text(trend.p));
+  std::string sentence;
+  if (!trend.significant) {
+    sentence = fmt::format(
+        "{}: no significant trend ({}): {} to {} percentage points of the servo flow in {:g} days "
+        "at {}.",
+        machine_of(trend), over, text(low), text(high), kDays, trend.duty);
+  } else {
+    const bool rises = trend.share_per_day > 0.0;
+    sentence = fmt::format(
+        "{}: the leak {} by {} percentage points of the servo flow in {:g} days ({} to {}) at {} "
+        "({}).",
+        machine_of(trend), rises ? "rises" : "falls", text(std::abs(trend.share_per_day)), kDays,
+        text(rises ? low : -high), text(rises ? high : -low), trend.duty, over);
+  }
+  if (trend.widened > 1.0)
+    sentence +=
+        " The dates lie farther off a line than their errors allow; the interval is widened "
+        "for it.";
+  return sentence + next_limit_of(trend);
+}
+
+Json leak_trend_json(const LeakTrend& trend) {
+  const auto text = [](const std::string& x) { return x.empty() ? Json(nullptr) : Json(x); };
+  Json json;
+  json["leak_level"] = text(trend.leak_level);
+  json["specimen"] = text(trend.specimen);
+  json["sentence"] = trend_sentence(trend);
+  json["dates"] = trend.dates;
+  json["first_date"] = date_of(trend.first_day);
+  json["last_date"] = date_of(trend.last_day);
+  json["duty"] = trend.duty;
+  json["coefficient_per_day"] = number(trend.coefficient_per_day);
+  json["share_percent_per_day"] = number(kInPercent * trend.share_per_day);
+  json["share_percent_per_day_ci95"] = interval_json(trend.share_per_day_ci95, kInPercent);
+  json["p_value"] = number(trend.p);
+  json["significant"] = trend.significant;
+  json["chi_squared"] = number(trend.chi_squared);
+  json["freedom"] = number(trend.freedom);
+  json["widened"] = number(trend.widened);
+  json["next_limit"] = nullptr;
+  if (trend.next_class) {
+    json["next_limit"] = {
+        {"class", std::string(to_string(*trend.next_class))},
+        {"percent", number(kInPercent * trend.next_limit)},
+        {"reached", date_of(trend.reached_day)},
+        {"earliest", date_of(trend.earliest_day)},
+        {"latest", trend.latest_day ? Json(date_of(*trend.latest_day)) : Json(nullptr)}};
+  }
+  return json;
+}
+
+}  // namespace rigcal::report

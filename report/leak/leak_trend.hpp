@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "diagnosis/leak_trend.hpp"
+#include "report/store/json.hpp"
+
+namespace rigcal::report {
+
+/// The trend in a sentence for an operator: "66.66 %: the leak rises by 1.2 percentage points of
+/// the servo flow in 30 days ...".
+std::string trend_sentence(const diagnosis::LeakTrend& trend);
+
+/// Entry of `trends` in diagnosis.json.
+Json leak_trend_json(const diagnosis::LeakTrend& trend);
+
+}  // namespace rigcal::report
