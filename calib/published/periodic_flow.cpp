@@ -24,6 +24,10 @@ constexpr double kAtLimit = 0.999;
 /// Largest y (see the header) that the two changes are trusted to tell: close to 1 the noise of the
 /// simulation makes any quotient.
 constexpr double kSlowest = 0.8;
+/// From so many periods on, a transient that is to decay within the most that are simulated leaves
+/// at most this part of what it left of half as many: else the loop cycles by itself.
+constexpr int kTellingPeriods = 256;
+constexpr double kDecays = 0.7;
 
 model::SimulationInputs inputs(const datasets::LeakSignal& signal) {
   model::SimulationInputs in;
@@ -158,6 +162,7 @@ PeriodicFlow periodic_flow(const PeriodicDrive& drive, const model::ParameterVal
   flow.periods = options.periods;
   flow.intervals = options.intervals;
   const double noise = 0.2 * options.tolerance;
+  double left_before = HUGE_VAL;
   while (true) {
     const Run run = make_run(drive, values, free, flow.periods, flow.intervals, options.simulation);
     if (!run.simulation.ok()) {
@@ -177,7 +182,9 @@ PeriodicFlow periodic_flow(const PeriodicDrive& drive, const model::ParameterVal
     }
     const double left =
         std::max(transient_left(run, kServo, noise), transient_left(run, kLeak, noise));
-    if (left > options.tolerance && 2 * flow.periods <= options.most_periods) {
+    const bool decays = flow.periods < kTellingPeriods || left < kDecays * left_before;
+    if (left > options.tolerance && decays && 2 * flow.periods <= options.most_periods) {
+      left_before = left;
       flow.periods *= 2;
       continue;
     }

@@ -45,8 +45,8 @@ struct PeriodicFlow {
 /// Whether a run of n periods is periodic shows in the means f of its periods n/4, n/2 and n: with
 /// a transient a y^k per quarter of the run, f(n/2) - f(n/4) = a y (y - 1) and f(n) - f(n/2) = a
 /// y^2 (y^2 - 1), so that their quotient gives y, and y gives what is left at n. Beyond the
-/// tolerance the run is made twice as long. The sampling is judged by leaving out every other
-/// sample.
+/// tolerance the run is made twice as long, until that no longer helps: a loop that cycles by
+/// itself never comes to rest. The sampling is judged by leaving out every other sample.
 ///
 /// @param values  SI; includes the leakage coefficient
 /// @param free    table indices of the slopes that are wanted

@@ -1,5 +1,7 @@
 #include "calib/result/fitted_parameter.hpp"
 
+#include <cmath>
+
 namespace rigcal::calib {
 
 std::string_view to_string(Identifiability identifiability) {
@@ -26,6 +28,12 @@ std::string_view to_string(IntervalSource source) {
       return "robust_standard_error";
   }
   return "";
+}
+
+double undetermined_sd(const std::optional<std::pair<double, double>>& ci95, double lower,
+                       double upper) {
+  const auto [low, high] = ci95.value_or(std::pair(lower, upper));
+  return (high - low) / std::sqrt(12.0);
 }
 
 }  // namespace rigcal::calib

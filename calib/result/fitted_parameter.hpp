@@ -70,4 +70,9 @@ struct FittedParameter {
   std::string reason;  ///< in words: why no error, why weak, at which bound
 };
 
+/// Standard deviation of a parameter that a fit gave no error, for who must go on with it: anywhere
+/// in its interval alike, or within its bounds where there is none.
+double undetermined_sd(const std::optional<std::pair<double, double>>& ci95, double lower,
+                       double upper);
+
 }  // namespace rigcal::calib

@@ -39,10 +39,18 @@ std::optional<double> standard_error(const JsonNode& entry) {
   return largest;
 }
 
+double undetermined_error(const JsonNode& entry) {
+  std::optional<std::pair<double, double>> ci95;
+  if (const auto range = entry["ci95"].range()) ci95.emplace(range->low, range->high);
+  return calib::undetermined_sd(ci95, entry["lower"].real(), entry["upper"].real());
+}
+
+/// Parameters of the rig with their covariance. One that the fit could not determine has no error:
+/// it counts with its whole interval, or its bounds, else what it is unsure of would be left out.
 void read_covariance(const JsonNode& root, model::PlantKind plant, EarlierFit& fit) {
   const auto names = root["correlation"]["names"].items();
   const auto rows = root["correlation"]["matrix"].items();
-  std::vector<std::size_t> places;
+  std::vector<std::optional<std::size_t>> places;  // in the matrix
   std::vector<double> errors;
   for (const JsonNode& entry : root["parameters"].items()) {
     if (!entry["fitted"].boolean() || entry["nuisance"].boolean()) continue;
@@ -53,20 +61,28 @@ void read_covariance(const JsonNode& root, model::PlantKind plant, EarlierFit& f
     const auto place = std::find_if(names.begin(), names.end(),
                                     [&](const JsonNode& each) { return each.string() == name; });
     const auto error = standard_error(entry);
-    if (!error || place == names.end()) continue;
     fit.indices.push_back(parameter_row(entry["name"], plant));
-    places.push_back(static_cast<std::size_t>(place - names.begin()));
-    errors.push_back(*error);
+    if (error && place != names.end()) {
+      places.emplace_back(static_cast<std::size_t>(place - names.begin()));
+      errors.push_back(*error);
+    } else {
+      places.emplace_back(std::nullopt);
+      errors.push_back(undetermined_error(entry));
+    }
   }
   const auto n = static_cast<Eigen::Index>(places.size());
-  fit.covariance.resize(n, n);
+  fit.covariance = Eigen::MatrixXd::Zero(n, n);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (places[i] >= rows.size()) root["correlation"]["matrix"].fail("one row per name");
-    const auto row = rows[places[i]].items();
+    const auto at = static_cast<Eigen::Index>(i);
+    fit.covariance(at, at) = errors[i] * errors[i];
+    if (!places[i]) continue;
+    if (*places[i] >= rows.size()) root["correlation"]["matrix"].fail("one row per name");
+    const auto row = rows[*places[i]].items();
     for (std::size_t j = 0; j < places.size(); ++j) {
-      if (places[j] >= row.size()) rows[places[i]].fail("one number per name");
-      fit.covariance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) =
-          row[places[j]].real() * errors[i] * errors[j];
+      if (!places[j]) continue;
+      if (*places[j] >= row.size()) rows[*places[i]].fail("one number per name");
+      fit.covariance(at, static_cast<Eigen::Index>(j)) =
+          row[*places[j]].real() * errors[i] * errors[j];
     }
   }
 }

@@ -110,6 +110,23 @@ TEST_CASE("rig_fit_of: the larger error of each value, and their correlation", "
   CHECK_THAT(rig.covariance(0, 1), WithinRel(0.5 * 3.0 * 5.0, 1e-12));
 }
 
+TEST_CASE("rig_fit_of: what has no error counts with its whole range", "[diagnosis]") {
+  calib::Fit fit;
+  fit.parameters = {fitted(4, 1.0, {}), fitted(1, 1.0, {}), fitted(2, 1.0, {})};
+  for (std::size_t i : {0, 2}) {
+    fit.parameters[i].standard_error.reset();
+    fit.parameters[i].lower = 10.0;
+    fit.parameters[i].upper = 16.0;
+  }
+  fit.parameters[2].ci95 = {0.0, 3.0};
+  fit.correlation = Eigen::MatrixXd::Identity(1, 1);
+  const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
+  CHECK(rig.indices == std::vector<int>{1, 4, 2});
+  // A uniform distribution of width w has the variance w^2 / 12.
+  const Eigen::Vector3d variances(1.0, 3.0, 0.75);
+  CHECK((rig.covariance - Eigen::MatrixXd(variances.asDiagonal())).norm() < 1e-12);
+}
+
 TEST_CASE("fit_leak: the noise of the reference is not the record's own", "[diagnosis]") {
   const HealthySine made = healthy_sine();
   const diagnosis::RigFit rig = rig_of(made.campaign);

@@ -45,7 +45,8 @@ TEST_CASE("leak_trends: two dates are a difference over its days", "[diagnosis]"
   CHECK_THAT(trend.coefficient_per_day, WithinRel(0.02, 1e-9));
   CHECK_THAT(trend.share_per_day, WithinRel(0.004, 1e-9));
   // Error 0.05 / 10 per day; Welch's freedom 0.05^4 / (0.03^4 / 9 + 0.04^4 / 4) = 8.56, of which
-  // the quantile of Student's t is 2.27994 and the tail beyond 4 is 0.00172045 on each side (SciPy).
+  // the quantile of Student's t is 2.27994 and the tail beyond 4 is 0.00172045 on each side
+  // (SciPy).
   CHECK_THAT(trend.share_per_day_ci95.second - trend.share_per_day,
              WithinRel(0.2 * 0.005 * 2.27994, 1e-5));
   CHECK_THAT(trend.p, WithinRel(2.0 * 0.00172045, 1e-5));

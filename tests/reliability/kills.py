@@ -1,5 +1,6 @@
 """A fit that is killed again and again, in its starts, bootstrap, profiles and cross-validation, and resumed each time
 ends with the bits of one that was not; and report refuses the files of different runs."""
+import json
 import random
 import signal
 import shutil
@@ -48,6 +49,8 @@ def foreign_checkpoints(rigcal, folder):
     text = checkpoint.read_text()
     digits = [i for i, c in enumerate(text) if c.isdigit()]
     tried = [text[:i] + str((int(text[i]) + 1) % 10) + text[i + 1:] for i in digits[:: max(1, len(digits) // 40)]]
+    # The seventeenth digit of a number may be another without the number being another.
+    tried = [forged for forged in tried if json.loads(forged) != json.loads(text)]
     for forged in [*tried, "", "{}", text[: len(text) // 2]]:
         checkpoint.write_text(forged)
         code, _, err = run(rigcal, [*fit, "--resume"])

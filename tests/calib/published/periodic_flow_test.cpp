@@ -125,6 +125,23 @@ TEST_CASE("periodic_flow: slopes are those of differences", "[calib]") {
   }
 }
 
+TEST_CASE("periodic_flow: a loop that cycles by itself is given up early", "[calib]") {
+  const test::LeakRig rig;
+  auto values = rig.leaking(0.0);
+  values.set("mass", 60.0);
+  values.set("damping", 1000.0);
+  values.set("kp", 3000.0);
+  values.set("ki", 0.0);
+  values.set("kd", 0.0);
+  auto drive = rig.drive(Waveform::sine, 2.0);
+  drive.signal.amplitude = 0.0005;
+  const auto flow = calib::periodic_flow(drive, values, {}, {});
+  CAPTURE(flow.periods, flow.failure);
+  CHECK_FALSE(flow.ok());
+  CHECK(flow.periods >= 256);
+  CHECK(flow.periods < 1024);
+}
+
 TEST_CASE("periodic_flow: what does not become periodic is no result", "[calib]") {
   const test::LeakRig rig;
   // A constant load drives the position away over minutes: the loop's time constant is 1000 s.
