@@ -558,7 +558,7 @@ void study_coverage(const Campaign& base, int records_wanted) {
   });
   CoverageTally tally;
   for (std::uint64_t seed = 1; tally.all.records < records_wanted; ++seed) {
-    const RandomLeaks made = random_leaks(healthy, ranges, seed);
+    RandomLeaks made = random_leaks(healthy, ranges, seed);
     auto records = make_records(made.campaign, seed);
     const auto rig = healthy_fit(made.campaign, records);
     for (RepeatRecords& each : records) {

@@ -1,19 +1,23 @@
 // Preloaded into rigcal by tests/reliability/faults.py: one call of a kind fails, as if memory or
 // disk had run out.
 //
-// RIGCAL_FAIL=memory:N or files:N  the N-th allocation, or the N-th call that writes files, fails;
-// 0: none RIGCAL_COUNT=FILE                where both are counted at the end
+// RIGCAL_FAIL=memory:N or files:N  the N-th allocation, or the N-th call that opens to write,
+// writes,
+//                                  syncs, closes, renames or makes a folder, fails; 0: none
+// RIGCAL_COUNT=FILE                where both are counted at the end
 //
 // Counting begins with main(), whose first call is mallopt(): what fails before it is not the
 // program's. It pauses within UDUNITS-2, which does not look whether it was given memory: it
 // crashes, or forgets units.
 
 #include <dlfcn.h>
+#include <fcntl.h>
 #include <sys/types.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <cerrno>
+#include <cstdarg>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -94,6 +98,32 @@ int fsync(int descriptor) {
 int mkdir(const char* path, unsigned mode) {
   static const auto real = next<int(const char*, unsigned)>("mkdir");
   return file_call_fails(ENOSPC) ? -1 : real(path, mode);
+}
+
+int rename(const char* from, const char* to) {
+  static const auto real = next<int(const char*, const char*)>("rename");
+  return file_call_fails(EIO) ? -1 : real(from, to);
+}
+
+// Opened to be written; mode is there where a file may be made.
+int open(const char* path, int flags, ...) {
+  static const auto real = next<int(const char*, int, ...)>("open");
+  mode_t mode = 0;
+  if ((flags & O_CREAT) != 0) {
+    std::va_list arguments;
+    va_start(arguments, flags);
+    mode = va_arg(arguments, mode_t);
+    va_end(arguments);
+  }
+  const bool writes = (flags & O_ACCMODE) != O_RDONLY;
+  return writes && file_call_fails(ENOSPC) ? -1 : real(path, flags, mode);
+}
+
+// It is closed all the same.
+int close(int descriptor) {
+  static const auto real = next<int(int)>("close");
+  const int result = real(descriptor);
+  return file_call_fails(EIO) ? -1 : result;
 }
 
 }  // extern "C"

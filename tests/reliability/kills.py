@@ -39,7 +39,7 @@ def killed_fits(rigcal, folder, kills):
 
 
 def foreign_checkpoints(rigcal, folder):
-    row = Count("forged or foreign checkpoints")
+    row = Count("checkpoints: forged, or of another fit")
     fit = ["fit", folder / "twin" / "campaign.toml", "--starts", "5", "--quiet", "--out", folder / "forged"]
     code, _, _ = run(rigcal, [*fit, "--max-evaluations", "20"])
     checkpoint = folder / "forged" / "checkpoint.json"
@@ -69,7 +69,7 @@ def foreign_checkpoints(rigcal, folder):
 
 
 def mixed_results(rigcal, folder):
-    row = Count("results of different runs, mixed")
+    row = Count("results: files of different runs, mixed")
     one, other = folder / "one", folder / "other"
     for out, mass in ((one, "60 kg"), (other, "61 kg")):
         must(rigcal, ["fit", folder / "twin" / "campaign.toml", "--set", f"mass={mass}", "--out", out, "--quiet"])

@@ -1,5 +1,5 @@
 """What the parts of scripts/reliability share: running the program, and counting how it ends."""
-import collections
+import hashlib
 import json
 import os
 import pathlib
@@ -75,6 +75,12 @@ def comparable(file):
     for key in ("wall_seconds", "provenance"):
         result.pop(key, None)
     return result
+
+
+def content(folder):
+    """The hashes of all files of a folder by their names."""
+    return {str(path.relative_to(folder)): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
 def left_behind(folder):

@@ -22,6 +22,7 @@ ELSEWHERE = {
     "docs-numbers": "tests/docs/numbers_test.py",
     "mutation-study": "tests/CMakeLists.txt",
     "reliability": "tests/CMakeLists.txt",
+    "threads": "scripts/test",
 }
 ECHO = '#!/bin/sh\necho "$(basename "$0") $*"\n'
 
@@ -133,7 +134,10 @@ class Scripts(unittest.TestCase):
 
     def test_test(self):
         make_program(self.programs / "ctest")
+        for name in ("threads", "fuzz"):
+            make_program(self.tree / "scripts" / name)
         printed = self.run_script("test")
+        self.assertTrue(printed.endswith("\nthreads \n== fuzz: build, test\nfuzz --seconds 10\n"), printed)
         for preset in ("release", "dev"):
             self.assertIn(f"build {preset}\n== {preset}: test\nctest --preset {preset} -j", printed)
 
