@@ -74,6 +74,10 @@ TEST_CASE("leak_trends: no trend within the errors", "[diagnosis]") {
   CHECK_FALSE(trend.significant);
   CHECK_THAT(trend.p, WithinAbs(1.0, 1e-9));
   CHECK_FALSE(trend.next_class);
+  const LeakTrend rise = only_trend({on("2026-01-01", 0.30, 0.02), on("2026-01-02", 0.31, 0.02)});
+  CHECK(rise.coefficient_per_day > 0.0);
+  CHECK_FALSE(rise.significant);
+  CHECK_FALSE(rise.next_class);
 }
 
 TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]") {
