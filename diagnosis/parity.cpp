@@ -26,23 +26,6 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// Of a record without a period: how much of it the moving root mean square is taken over.
 constexpr double kWindowShare = 0.1;
 
-void require_levels(const Campaign& campaign, const std::vector<std::string>& levels) {
-  for (const std::string& level : levels) {
-    const auto has = [&](const Condition& condition) { return condition.leak_level == level; };
-    if (std::any_of(campaign.conditions.begin(), campaign.conditions.end(), has)) continue;
-    throw InputError(
-        {campaign.file.string()},
-        fmt::format("no condition has the leak level \"{}\", which is said to be healthy", level));
-  }
-}
-
-bool is_said_healthy(const Campaign& campaign, const Condition& condition,
-                     const std::vector<std::string>& levels) {
-  return is_healthy(campaign, condition) ||
-         (condition.leak_level &&
-          std::find(levels.begin(), levels.end(), *condition.leak_level) != levels.end());
-}
-
 /// Parity residuals of a condition's repeats, or of its average where there are none.
 ParityCondition residuals_of(const LeakProblem& problem, const Condition& condition,
                              const RepeatRecords& records) {
@@ -279,7 +262,6 @@ bool Parity::usable() const {
 
 Parity parity(const Campaign& campaign, const std::vector<RepeatRecords>& records,
               const RigFit& rig, const ParityOptions& options) {
-  require_levels(campaign, options.healthy_levels);
   Parity result;
   const LeakProblem problem(campaign, rig);
   result.conditions.resize(records.size());
@@ -301,7 +283,7 @@ Parity parity(const Campaign& campaign, const std::vector<RepeatRecords>& record
                                    : signal_name(campaign, condition);
     for (ParityRecord& record : result.conditions[i].records) {
       record.signal = signal;
-      record.is_healthy = is_said_healthy(campaign, condition, options.healthy_levels);
+      record.is_healthy = is_healthy(campaign, condition);
     }
     auto group = std::find_if(groups.begin(), groups.end(),
                               [&](const Group& each) { return each.signal == signal; });

@@ -14,9 +14,8 @@
 namespace rigcal::diagnosis {
 
 struct ParityOptions {
-  double false_alarm = 0.01;                ///< probability that a healthy record raises an alarm
-  std::vector<std::string> healthy_levels;  ///< besides those that the campaign knows as healthy
-  int threads = 1;                          ///< results are the same bits for any number
+  double false_alarm = 0.01;  ///< probability that a healthy record raises an alarm
+  int threads = 1;            ///< results are the same bits for any number
   const std::atomic<bool>* cancel = nullptr;
   std::function<void(int, int)> progress;  ///< conditions done, of how many; from any thread
 };

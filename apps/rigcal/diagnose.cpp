@@ -7,14 +7,12 @@
 #include <functional>
 #include <memory>
 
+#include "apps/rigcal/leak_records.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "common/parallel.hpp"
-#include "common/suggest.hpp"
 #include "datasets/checks/record_warnings.hpp"
-#include "datasets/checks/short_records.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/obstacles.hpp"
 #include "report/leak/diagnosis.hpp"
@@ -57,11 +55,9 @@ void warn_of_validity(const Campaign& campaign, const report::Validity& covered,
 }
 
 /// What is doubtful about the recordings: with the average that rests on one, or once for many.
-void warn_of_recordings(const std::vector<datasets::RepeatRecords>& records,
+void warn_of_recordings(const std::vector<datasets::Record>& averages,
                         diagnosis::Diagnosis& found) {
-  std::vector<const datasets::Record*> averages;
-  for (const datasets::RepeatRecords& each : records) averages.push_back(&each.average);
-  for (const auto& warning : datasets::gathered_warnings(averages)) {
+  for (const auto& warning : gathered_doubts(averages)) {
     if (warning.conditions.size() > 1) {
       found.warnings.push_back(warning.with_conditions());
       continue;
@@ -69,25 +65,6 @@ void warn_of_recordings(const std::vector<datasets::RepeatRecords>& records,
     for (diagnosis::RecordDiagnosis& record : found.records)
       if (!record.repeat && record.condition == warning.conditions.front())
         record.warnings.push_back("recording: " + warning.text);
-  }
-}
-
-/// Leak levels that --healthy names are normal, as if `level_class` said so.
-void take_healthy(const std::vector<std::string>& levels, Campaign& campaign) {
-  std::vector<std::string> known;
-  for (const Condition& condition : campaign.conditions) {
-    if (condition.leak_level &&
-        std::find(known.begin(), known.end(), *condition.leak_level) == known.end())
-      known.push_back(*condition.leak_level);
-  }
-  for (const std::string& level : levels) {
-    if (std::find(known.begin(), known.end(), level) == known.end())
-      throw UsageError("--healthy: " + unknown_name_message("leak level", level, known));
-    const auto [entry, is_new] =
-        campaign.diagnosis.level_class.emplace(level, datasets::LeakClass::normal);
-    if (!is_new && entry->second != datasets::LeakClass::normal)
-      throw UsageError(fmt::format("--healthy: level_class in [diagnosis] says that \"{}\" is {}",
-                                   level, to_string(entry->second)));
   }
 }
 
@@ -186,27 +163,17 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
   settings.threads = options.common.threads;
   settings.truth = truth_beside(campaign);
   const report::HeldFolder held(options.common.out);
-  const diagnosis::Diagnosable diagnosable = diagnosis::diagnosable(campaign);
-  std::vector<datasets::RepeatRecords> records(diagnosable.conditions.size());
-  parallel_for(records.size(), settings.threads, [&](std::size_t i) {
-    records[i] = datasets::load_repeats(campaign, *diagnosable.conditions[i]);
-  });
-  std::vector<datasets::Record*> loaded;
-  for (datasets::RepeatRecords& each : records) loaded.push_back(&each.average);
-  datasets::warn_of_short_records(campaign, loaded);
-  std::vector<datasets::Record> averages;
-  for (const datasets::RepeatRecords& each : records) averages.push_back(each.average);
-  provenance.inputs = report::hash_inputs(campaign, averages, more_inputs);
+  const LeakRecords records = load_leak_records(campaign, settings.threads);
+  provenance.inputs = report::hash_inputs(campaign, records.averages(), more_inputs);
   {
     CountProgress progress(options.common.print.quiet, "records");
     settings.progress = std::ref(progress);
-    found = diagnosis::diagnose(campaign, records,
+    found = diagnosis::diagnose(campaign, records.conditions,
                                 {earlier.values, earlier.indices, earlier.covariance}, settings);
   }
-  found.warnings.insert(found.warnings.end(), diagnosable.left_out.begin(),
-                        diagnosable.left_out.end());
+  found.warnings.insert(found.warnings.end(), records.left_out.begin(), records.left_out.end());
   warn_of_validity(campaign, earlier.validity, found);
-  warn_of_recordings(records, found);
+  warn_of_recordings(records.averages(), found);
   if (!limits.empty()) warn_of_absent(limits, campaign, found);
   warn_of_fit(earlier, found);
   return write_diagnosis(options, {campaign, found, reasons, provenance, limits});

@@ -5,15 +5,11 @@
 #include <functional>
 #include <memory>
 
+#include "apps/rigcal/leak_records.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "common/parallel.hpp"
-#include "datasets/checks/record_warnings.hpp"
-#include "datasets/checks/short_records.hpp"
-#include "datasets/prepare/single_repeats.hpp"
-#include "diagnosis/diagnose.hpp"
 #include "diagnosis/obstacles.hpp"
 #include "report/leak/parity.hpp"
 #include "report/store/folder.hpp"
@@ -49,7 +45,8 @@ ExitCode write_parity(const ParityRequest& options, const report::ParityResult& 
 }
 
 ExitCode run_parity(const ParityRequest& options, const Invocation& invocation) {
-  const datasets::Campaign campaign = load(options.common);
+  datasets::Campaign campaign = load(options.common);
+  take_healthy(options.healthy, campaign);
   if (options.fit.empty())
     throw UsageError("parity: --fit is missing: expected the fit.json of a fit to healthy records");
   const double false_alarm = options.false_alarm_percent / 100.0;
@@ -70,31 +67,19 @@ ExitCode run_parity(const ParityRequest& options, const Invocation& invocation) 
   }
   const report::EarlierFit earlier = report::read_fit(options.fit, campaign.rig.plant);
   const report::HeldFolder held(options.common.out);
-  const diagnosis::Diagnosable diagnosable = diagnosis::diagnosable(campaign);
-  std::vector<datasets::RepeatRecords> records(diagnosable.conditions.size());
-  parallel_for(records.size(), options.common.threads, [&](std::size_t i) {
-    records[i] = datasets::load_repeats(campaign, *diagnosable.conditions[i]);
-  });
-  std::vector<datasets::Record*> loaded;
-  for (datasets::RepeatRecords& each : records) loaded.push_back(&each.average);
-  datasets::warn_of_short_records(campaign, loaded);
-  std::vector<datasets::Record> averages;
-  std::vector<const datasets::Record*> doubted;
-  for (const datasets::RepeatRecords& each : records) averages.push_back(each.average);
-  for (const datasets::Record& each : averages) doubted.push_back(&each);
-  provenance.inputs = report::hash_inputs(campaign, averages, {options.fit});
+  const LeakRecords records = load_leak_records(campaign, options.common.threads);
+  provenance.inputs = report::hash_inputs(campaign, records.averages(), {options.fit});
   {
     CountProgress progress(options.common.print.quiet, "conditions");
     diagnosis::ParityOptions settings;
     settings.false_alarm = false_alarm;
-    settings.healthy_levels = options.healthy;
     settings.threads = options.common.threads;
     settings.progress = std::ref(progress);
-    found = diagnosis::parity(campaign, records,
+    found = diagnosis::parity(campaign, records.conditions,
                               {earlier.values, earlier.indices, earlier.covariance}, settings);
   }
-  found.warnings = diagnosable.left_out;
-  for (const auto& warning : datasets::gathered_warnings(doubted))
+  found.warnings = records.left_out;
+  for (const auto& warning : gathered_doubts(records.averages()))
     found.warnings.push_back(warning.with_conditions());
   if (earlier.status == calib::FitStatus::stopped)
     found.warnings.push_back("the fit was stopped before it converged: " + earlier.message);

@@ -86,6 +86,6 @@ TEST_CASE("parity: what is asked must make sense", "[apps]") {
   outcome =
       folder.run({"parity", "made/campaign.toml", "--fit", "fit/fit.json", "--healthy", "closed"});
   CHECK(outcome.exit_code == 2);
-  CHECK_THAT(outcome.err, Contains("no condition has the leak level \"closed\""));
+  CHECK_THAT(outcome.err, Contains("unknown leak level 'closed'"));
   CHECK_FALSE(folder.has("rigcal-out"));
 }

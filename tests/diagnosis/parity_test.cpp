@@ -195,12 +195,10 @@ TEST_CASE("parity: without enough healthy records nothing is judged, and why", "
   CHECK_THAT(found.signals.front().reason, Catch::Contains("0 healthy records of this signal"));
   CHECK_FALSE(found.conditions.front().records.front().alarm);
   CHECK(found.conditions.front().records.front().peak_m > 0.0);
-  diagnosis::ParityOptions options;
-  options.healthy_levels = {"no such level"};
-  CHECK_THROWS_AS(diagnosis::parity(campaign, records, true_rig(campaign), options), InputError);
   // Said to be healthy, it is its own reference.
-  options.healthy_levels = {*campaign.conditions.front().leak_level};
-  CHECK(diagnosis::parity(campaign, records, true_rig(campaign), options)
+  campaign.diagnosis.level_class[*campaign.conditions.front().leak_level] =
+      datasets::LeakClass::normal;
+  CHECK(diagnosis::parity(campaign, records, true_rig(campaign), {})
             .signals.front()
             .threshold_m.has_value());
 }
