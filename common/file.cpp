@@ -209,6 +209,25 @@ void require_regular_file(const fs::path& path, const std::string& expected) {
   const RegularFile checked(path, expected);
 }
 
+FileState state_of_file(const fs::path& path) {
+  FileState state{path.string()};
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) return state;
+  constexpr std::int64_t kNanoseconds = 1'000'000'000;
+  state.inode = status.st_ino;
+  state.bytes = static_cast<std::uint64_t>(status.st_size);
+  state.changed_ns = status.st_ctim.tv_sec * kNanoseconds + status.st_ctim.tv_nsec;
+  return state;
+}
+
+std::string sha256_of_unchanged(const FileState& before) {
+  std::string hash = sha256_of_file(before.path);
+  if (state_of_file(before.path) == before) return hash;
+  throw InputError({before.path},
+                   "was changed while it was read, so that no result can say what it rests on; "
+                   "expected a file that stays as it is");
+}
+
 std::string sha256_of_file(const fs::path& path) {
   const RegularFile file(path, "a file");
   Sha256 digest;

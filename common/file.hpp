@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -32,6 +33,23 @@ std::string read_file(const std::filesystem::path& path, std::size_t most_bytes,
 ///
 /// @throws InputError  as read_file()
 void require_regular_file(const std::filesystem::path& path, const std::string& expected);
+
+/// A file as it stood at one moment: whatever changes it, or takes its place, makes another state.
+struct FileState {
+  std::string path;
+  std::uint64_t inode = 0;
+  std::uint64_t bytes = 0;
+  std::int64_t changed_ns = 0;  ///< since 1970: when its content or its inode changed last
+  bool operator==(const FileState&) const = default;
+};
+
+/// Of a file that is there; of one that is not, its path alone.
+FileState state_of_file(const std::filesystem::path& path);
+
+/// SHA-256 of a file that was read since `before`, so that the hash is of the bytes that were read.
+///
+/// @throws InputError  it cannot be read, or has changed since
+std::string sha256_of_unchanged(const FileState& before);
 
 /// SHA-256 of a file, 64 lower-case hex digits. Reads in blocks.
 ///

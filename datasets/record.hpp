@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "common/file.hpp"
+
 namespace rigcal::datasets {
 
 /// What a column of a record holds.
@@ -88,7 +90,7 @@ struct Record {
   std::vector<TimeWindow> windows;
   std::vector<std::string> notes;     ///< in words: what was done to it, such as decimation
   std::vector<std::string> warnings;  ///< in words: outliers, gaps, spikes, sensors
-  std::vector<std::string> files;     ///< every file read for it
+  std::vector<FileState> files;       ///< every file read for it, as it stood before
 };
 
 }  // namespace rigcal::datasets

@@ -62,9 +62,9 @@ std::vector<std::string> warnings_of(const Campaign& campaign,
 calib::Origin origin_of(const report::EarlierFit& earlier,
                         const std::vector<datasets::Record>& records,
                         const report::Provenance& provenance) {
-  const auto seen = [&](const std::string& file) {
+  const auto seen = [&](const FileState& file) {
     const auto input = std::find_if(provenance.inputs.begin(), provenance.inputs.end(),
-                                    [&](const auto& each) { return each.path == file; });
+                                    [&](const auto& each) { return each.path == file.path; });
     return input != provenance.inputs.end() &&
            std::find(earlier.input_hashes.begin(), earlier.input_hashes.end(), input->sha256) !=
                earlier.input_hashes.end();

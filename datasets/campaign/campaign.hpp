@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/file.hpp"
 #include "common/quantity.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "datasets/campaign/report_settings.hpp"
@@ -166,6 +167,7 @@ struct SimulationSettings {
 /// A campaign file, checked and in SI.
 struct Campaign {
   std::filesystem::path file;
+  FileState file_state;            ///< of it, before it was read
   std::filesystem::path data_dir;  ///< where relative record paths start
   std::string name;
   bool synthetic = false;  ///< its records were made by `rigcal synthesize`

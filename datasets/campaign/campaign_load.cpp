@@ -120,6 +120,7 @@ Alignment read_alignment(const TomlNode& node) {
 }  // namespace
 
 Campaign load_campaign(const std::filesystem::path& file, const std::filesystem::path& data_dir) {
+  const FileState file_state = state_of_file(file);
   const toml::table parsed = parse_toml_file(file);
   const TomlNode root(parsed, file.string(), "");
   check_schema(root);
@@ -128,6 +129,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
                    "condition"});
   Campaign campaign;
   campaign.file = file;
+  campaign.file_state = file_state;
   campaign.data_dir = data_dir.empty() ? file.parent_path() : data_dir;
   campaign.name = file.stem().string();
   if (const auto name = root.find("name")) campaign.name = name->name();

@@ -87,10 +87,10 @@ void find_moving_windows(const Campaign& campaign, const Condition& condition, R
 
 }  // namespace
 
-std::vector<std::string> files_of(const Campaign& campaign, const Condition& condition) {
-  std::vector<std::string> files;
+std::vector<FileState> files_of(const Campaign& campaign, const Condition& condition) {
+  std::vector<FileState> files;
   for (const RepeatSource& source : repeat_sources(campaign, condition)) {
-    const std::string file = source.path.string();
+    const FileState file = state_of_file(source.path);
     if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
   }
   return files;
@@ -172,9 +172,10 @@ Record average_of(const Campaign& campaign, const Condition& condition,
 }
 
 Record load_record(const Campaign& campaign, const Condition& condition, bool keep_deviations) {
+  std::vector<FileState> files = files_of(campaign, condition);
   std::vector<Repeat> repeats = load_all_repeats(campaign, condition);
   Record record = average_of(campaign, condition, repeats, keep_deviations);
-  record.files = files_of(campaign, condition);
+  record.files = std::move(files);
   return record;
 }
 

@@ -5,9 +5,9 @@
 
 namespace rigcal::datasets {
 
-/// Every file of a condition, once.
+/// Every file of a condition, once, as it stands now.
 /// @throws InputError  a pattern that matches no file
-std::vector<std::string> files_of(const Campaign& campaign, const Condition& condition);
+std::vector<FileState> files_of(const Campaign& campaign, const Condition& condition);
 
 /// Reads the files of one repeat and converts them to SI.
 /// @throws InputError

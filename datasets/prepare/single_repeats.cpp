@@ -44,7 +44,6 @@ Record single_record(const Record& average, const Repeat& repeat, double shift, 
     series.sd_of_mean = series.pooled_sd;
     record.channels.emplace(channel, std::move(series));
   }
-  record.files = {repeat.source};
   covered = {record.time_s[first], record.time_s[last]};
   return record;
 }
@@ -68,8 +67,9 @@ RepeatRecords repeat_records(const Campaign& campaign, const Condition& conditio
 }
 
 RepeatRecords load_repeats(const Campaign& campaign, const Condition& condition) {
+  std::vector<FileState> files = files_of(campaign, condition);
   RepeatRecords result = repeat_records(campaign, condition, load_all_repeats(campaign, condition));
-  result.average.files = files_of(campaign, condition);
+  result.average.files = std::move(files);
   return result;
 }
 

@@ -400,7 +400,8 @@ Json record_json(const datasets::Condition& condition, const datasets::Record& r
                                : Json(nullptr);
   json["duration_s"] = number(duration_s);
   json["repeats"] = record.repeats;
-  json["files"] = record.files;
+  json["files"] = Json::array();
+  for (const FileState& file : record.files) json["files"].push_back(file.path);
   json["channels"] = Json::object();
   for (const datasets::Repeatability& r : datasets::repeatability(record)) {
     Json& channel = json["channels"][std::string(info(r.channel).key)];

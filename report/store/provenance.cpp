@@ -25,14 +25,14 @@ std::vector<InputFile> hash_inputs(const datasets::Campaign& campaign,
                                    const std::vector<std::filesystem::path>& more) {
   std::vector<InputFile> inputs;
   std::set<std::string> known;
-  const auto add = [&](const std::string& path) {
-    if (known.insert(path).second) inputs.push_back({path, sha256_of_file(path)});
+  const auto add = [&](const FileState& file) {
+    if (known.insert(file.path).second) inputs.push_back({file.path, sha256_of_unchanged(file)});
   };
-  add(campaign.file.string());
+  add(campaign.file_state);
   for (const datasets::Record& record : records) {
-    for (const std::string& file : record.files) add(file);
+    for (const FileState& file : record.files) add(file);
   }
-  for (const std::filesystem::path& path : more) add(path.string());
+  for (const std::filesystem::path& path : more) add(state_of_file(path));
   return inputs;
 }
 

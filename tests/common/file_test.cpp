@@ -155,3 +155,24 @@ TEST_CASE("sha256_of_file: what cannot be read is an error", "[common]") {
                     Contains("missing: cannot be opened: No such file"));
   CHECK_THROWS_AS(sha256_of_file(folder / ""), InputError);
 }
+
+TEST_CASE("sha256_of_unchanged: the hash is of the bytes that were read", "[common]") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("data.csv", "1\n");
+  rigcal::FileState before = rigcal::state_of_file(file);
+  CHECK(before.bytes == 2);
+  CHECK(rigcal::sha256_of_unchanged(before) == sha256_of_file(file));
+  const auto refused = [&] {
+    CHECK_THROWS_WITH(rigcal::sha256_of_unchanged(before),
+                      Contains("data.csv: was changed while it was read"));
+    before = rigcal::state_of_file(file);
+  };
+  std::ofstream(file, std::ios::app) << "2\n";  // it grows
+  refused();
+  fs::rename(folder.write("other.csv", "1\n2\n"), file);  // another of the same content
+  refused();
+  fs::resize_file(file, 2);
+  refused();
+  fs::remove(file);
+  CHECK_THROWS_AS(rigcal::sha256_of_unchanged(before), InputError);
+}
