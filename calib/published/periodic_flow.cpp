@@ -25,9 +25,11 @@ constexpr double kAtLimit = 0.999;
 /// simulation makes any quotient.
 constexpr double kSlowest = 0.8;
 /// From so many periods on, a transient that is to decay within the most that are simulated leaves
-/// at most this part of what it left of half as many: else the loop cycles by itself.
+/// at most this part of what it left of half as many: else the loop cycles by itself, if what is
+/// left is more than the noise of the simulation can be, so many tolerances.
 constexpr int kTellingPeriods = 256;
 constexpr double kDecays = 0.7;
+constexpr double kNotNoise = 10.0;
 
 model::SimulationInputs inputs(const datasets::LeakSignal& signal) {
   model::SimulationInputs in;
@@ -182,7 +184,8 @@ PeriodicFlow periodic_flow(const PeriodicDrive& drive, const model::ParameterVal
     }
     const double left =
         std::max(transient_left(run, kServo, noise), transient_left(run, kLeak, noise));
-    const bool decays = flow.periods < kTellingPeriods || left < kDecays * left_before;
+    const bool decays = flow.periods < kTellingPeriods || left < kDecays * left_before ||
+                        left < kNotNoise * options.tolerance;
     if (left > options.tolerance && decays && 2 * flow.periods <= options.most_periods) {
       left_before = left;
       flow.periods *= 2;
