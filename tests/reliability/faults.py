@@ -8,19 +8,20 @@ from runs import SMALL_RIG, Count, comparable, content, left_behind, must, run
 
 def places(count, most):
     """Which of `count` calls fail: all, or the first of them one by one and others evenly over the rest."""
-    if count <= most:
+    if most is None or count <= most:
         return list(range(1, count + 1))
     first = most // 3
     return [*range(1, first + 1), *(first + 1 + k * (count - first - 1) // (most - first - 1) for k in range(most - first))]
 
 
-def study(rigcal, folder, small):
+def study(rigcal, folder, size):
     library = rigcal.parent / "tests" / "libfail_nth.so"
     must(rigcal, ["synthesize", SMALL_RIG, "--seed", "1", "--out", folder / "twin", "--quiet"])
     campaign = folder / "twin" / "campaign.toml"
     must(rigcal, ["fit", campaign, "--out", folder / "earlier", "--seed", "2", "--quiet"])
     rows = []
-    for verb, most in (("fit", 30 if small else 3000), ("report", 15 if small else 1500)):
+    for verb, most in (("fit", {"small": 30, "usual": 3000, "every": None}[size]),
+                       ("report", {"small": 15, "usual": 1500, "every": None}[size])):
         out = folder / "out"
 
         def attempt(fault):

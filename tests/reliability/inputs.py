@@ -16,8 +16,8 @@ def damaged(data, rounds):
                                                               b"nan", b'"']) + data[at:]
 
 
-def study(rigcal, folder, small):
-    rounds = 3 if small else 150
+def study(rigcal, folder, size):
+    rounds = 3 if size == "small" else 150
     twin = folder / "twin"
     must(rigcal, ["synthesize", SMALL_RIG, "--seed", "1", "--out", twin, "--quiet"])
     campaign = twin / "campaign.toml"

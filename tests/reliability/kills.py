@@ -99,8 +99,8 @@ def mixed_results(rigcal, folder):
     return row
 
 
-def study(rigcal, folder, small):
+def study(rigcal, folder, size):
     random.seed(1)
     must(rigcal, ["synthesize", SMALL_RIG, "--seed", "1", "--out", folder / "twin", "--quiet"])
-    return [killed_fits(rigcal, folder, 3 if small else 20), foreign_checkpoints(rigcal, folder),
+    return [killed_fits(rigcal, folder, 3 if size == "small" else 20), foreign_checkpoints(rigcal, folder),
             mixed_results(rigcal, folder)]

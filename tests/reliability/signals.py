@@ -28,11 +28,11 @@ def verbs(source, twin, fit):
     ]
 
 
-def study(rigcal, folder, small):
+def study(rigcal, folder, size):
     """A row for each verb. The small study waits longer, as what else runs beside it may slow it down."""
-    limit_s = 20.0 if small else WITHIN_S
+    limit_s = 20.0 if size == "small" else WITHIN_S
     twin, fit = folder / "twin", folder / "fit"
-    source = SMALL_RIG if small else DEMO
+    source = SMALL_RIG if size == "small" else DEMO
     must(rigcal, ["synthesize", source, "--seed", "1", "--out", twin, "--quiet"])
     must(rigcal, ["fit", twin / "campaign.toml", "--out", fit, "--quiet"])
     must(rigcal, ["validate", twin / "campaign.toml", "--fit", fit / "fit.json", "--out", folder / "validation",
@@ -48,7 +48,7 @@ def study(rigcal, folder, small):
         whole_s = time.monotonic() - began
         if code is None or code < 0 or code > 4:
             row.is_wrong(f"without a signal exit {code}: {err.decode()[-200:]}")
-        moments = 3 if small else 20
+        moments = 3 if size == "small" else 20
         slowest_s = 0.0
         for k in range(moments):
             shutil.rmtree(out, ignore_errors=True)
