@@ -1,15 +1,14 @@
-# Code for AVX2 lies beside that for every x86-64, and is chosen at run time. Not under sanitizers,
-# which keep tables of what the object files held before they were merged.
+# A second solver, for processors with AVX2, lies beside that for every x86-64 and is chosen at run time: of a release,
+# as it doubles what the solvers take to compile. Not under sanitizers, which keep tables of what the object files held
+# before they were merged.
 include(CheckCXXSourceCompiles)
+include(CMakeDependentOption)
 set(CMAKE_REQUIRED_FLAGS "-mavx2 -mfma")
 check_cxx_source_compiles("int main() { return __builtin_cpu_supports(\"avx2\") ? 0 : 1; }"
   RIGCAL_COMPILER_KNOWS_AVX2)
 unset(CMAKE_REQUIRED_FLAGS)
-if(RIGCAL_COMPILER_KNOWS_AVX2 AND CMAKE_OBJCOPY AND CMAKE_LINKER AND NOT RIGCAL_SANITIZE)
-  set(RIGCAL_AVX2 ON)
-else()
-  set(RIGCAL_AVX2 OFF)
-endif()
+cmake_dependent_option(RIGCAL_AVX2 "A second solver for processors with AVX2" ON
+  "CMAKE_BUILD_TYPE STREQUAL Release;RIGCAL_COMPILER_KNOWS_AVX2;CMAKE_OBJCOPY;CMAKE_LINKER;NOT RIGCAL_SANITIZE" OFF)
 
 # The object file of an object library of one source with all symbols local but those that match
 # `keep`. Inline functions of an object compiled for AVX2 would else stand in for those of the

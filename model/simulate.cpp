@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "model/arithmetic/subnormals.hpp"
 #include "model/plant/layout.hpp"
@@ -59,50 +60,78 @@ void require(bool condition, const char* message) {
   if (!condition) throw std::invalid_argument(std::string("simulate: ") + message);
 }
 
+/// Calls a function object with the type of a plant: the only place that maps one to the other, in
+/// which the compiler misses a new one.
+template <typename Function>
+decltype(auto) with_plant(PlantKind plant, const Function& function) {
+  switch (plant) {
+    case PlantKind::load_pressure:
+      return function.template operator()<LoadPressurePlant>();
+    case PlantKind::two_chamber:
+      return function.template operator()<TwoChamberPlant>();
+  }
+  throw std::logic_error("simulate: no such plant");
+}
+
 int plant_states(PlantKind plant) {
-  return plant == PlantKind::two_chamber ? TwoChamberPlant::kStates : LoadPressurePlant::kStates;
+  return with_plant(plant, []<typename Plant>() { return Plant::kStates; });
 }
 
-/// Whether reversed inputs reverse all that is asked for. The chambers of the other plant differ.
+/// Whether reversed inputs reverse all that is asked for.
 bool reversible(PlantKind plant, const PresentTerms& terms, std::span<const Output> outputs) {
-  return plant == PlantKind::load_pressure &&
-         std::all_of(outputs.begin(), outputs.end(), [&terms](Output output) {
-           return LoadPressurePlant::reversible(output, terms);
-         });
+  return with_plant(plant, [&]<typename Plant>() {
+    return std::all_of(outputs.begin(), outputs.end(),
+                       [&terms](Output output) { return Plant::reversible(output, terms); });
+  });
 }
 
-/// By the solver of the first of the sizes, which increase, that has room for all states.
+/// The numbers of states for which a solver was compiled, in ascending order; those of
+/// CMakeLists.txt.
+template <typename Plant, InstructionSet Set>
+constexpr auto kSizes = std::integer_sequence<int>{};
+template <>
+constexpr auto kSizes<LoadPressurePlant, InstructionSet::base> =
+    std::integer_sequence<int, RIGCAL_base_SIZES_OF_LoadPressurePlant>{};
+template <>
+constexpr auto kSizes<TwoChamberPlant, InstructionSet::base> =
+    std::integer_sequence<int, RIGCAL_base_SIZES_OF_TwoChamberPlant>{};
+#ifdef RIGCAL_WITH_AVX2
+template <>
+constexpr auto kSizes<LoadPressurePlant, InstructionSet::avx2> =
+    std::integer_sequence<int, RIGCAL_avx2_SIZES_OF_LoadPressurePlant>{};
+template <>
+constexpr auto kSizes<TwoChamberPlant, InstructionSet::avx2> =
+    std::integer_sequence<int, RIGCAL_avx2_SIZES_OF_TwoChamberPlant>{};
+#endif
+
+/// By the first solver that has room for all states.
 template <typename Plant, InstructionSet Set, int N, int... Larger>
-void run(const SizedRequest& request, Simulation& result) {
+void run(std::integer_sequence<int, N, Larger...>, const SizedRequest& request,
+         Simulation& result) {
   if (request.layout.states <= N) return simulate_sized<Plant, N, Set>(request, result);
   if constexpr (sizeof...(Larger) > 0) {
-    run<Plant, Set, Larger...>(request, result);
+    run<Plant, Set>(std::integer_sequence<int, Larger...>{}, request, result);
   } else {
     throw std::logic_error("simulate: a layout with an unexpected number of states");
   }
 }
 
-/// The sizes that were compiled are those of CMakeLists.txt.
 void dispatch(const SizedRequest& request, Simulation& result) {
   using enum InstructionSet;
   const SubnormalsAreZero while_it_runs;
-  const bool two_chamber = request.parameters.plant == PlantKind::two_chamber;
-#ifdef RIGCAL_AVX2_TWO_CHAMBER_SIZES
-  if (best_instruction_set() == avx2) {
-    if (two_chamber)
-      return run<TwoChamberPlant, avx2, RIGCAL_AVX2_TWO_CHAMBER_SIZES>(request, result);
-    return run<LoadPressurePlant, avx2, RIGCAL_AVX2_LOAD_PRESSURE_SIZES>(request, result);
-  }
+  with_plant(request.parameters.plant, [&]<typename Plant>() {
+#ifdef RIGCAL_WITH_AVX2
+    if (best_instruction_set() == avx2)
+      return run<Plant, avx2>(kSizes<Plant, avx2>, request, result);
 #endif
-  if (two_chamber)
-    return run<TwoChamberPlant, base, RIGCAL_BASE_TWO_CHAMBER_SIZES>(request, result);
-  run<LoadPressurePlant, base, RIGCAL_BASE_LOAD_PRESSURE_SIZES>(request, result);
+    run<Plant, base>(kSizes<Plant, base>, request, result);
+  });
 }
 
 }  // namespace
 
 InstructionSet best_instruction_set() {
-#ifdef RIGCAL_AVX2_TWO_CHAMBER_SIZES
+#ifdef RIGCAL_WITH_AVX2
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) return InstructionSet::avx2;
 #endif
   return InstructionSet::base;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "model/plant/parameter_values.hpp"
@@ -18,6 +20,23 @@ constexpr auto table_of(const Fields& fields) {
 }
 constexpr auto kLoadPressureTable = table_of(kLoadPressureFields<double>);
 constexpr auto kTwoChamberTable = table_of(kTwoChamberFields<double>);
+
+/// One row per plant, in the order of PlantKind.
+struct PlantRow {
+  PlantKind plant;
+  std::string_view name;
+  std::span<const ParameterSpec> parameters;
+};
+constexpr std::array kPlants{
+    PlantRow{PlantKind::load_pressure, "load_pressure", kLoadPressureTable},
+    PlantRow{PlantKind::two_chamber, "two_chamber", kTwoChamberTable},
+};
+static_assert(kPlants.size() == kPlantCount, "every plant has a row");
+static_assert(std::all_of(kPlants.begin(), kPlants.end(), [](const PlantRow& row) {
+  return &row - kPlants.data() == static_cast<std::ptrdiff_t>(row.plant);
+}));
+
+const PlantRow& row_of(PlantKind plant) { return kPlants[static_cast<std::size_t>(plant)]; }
 
 int checked_index(PlantKind plant, std::string_view key) {
   const int index = parameter_index(plant, key);
@@ -44,32 +63,21 @@ std::string_view to_string(ParameterKind kind) {
 }
 
 std::optional<PlantKind> plant_from_name(std::string_view name) {
-  if (name == "load_pressure") return PlantKind::load_pressure;
-  if (name == "two_chamber") return PlantKind::two_chamber;
+  for (const PlantRow& row : kPlants) {
+    if (row.name == name) return row.plant;
+  }
   return std::nullopt;
 }
 
-std::string_view to_string(PlantKind plant) {
-  switch (plant) {
-    case PlantKind::load_pressure:
-      return "load_pressure";
-    case PlantKind::two_chamber:
-      return "two_chamber";
-  }
-  return "";
+std::string_view to_string(PlantKind plant) { return row_of(plant).name; }
+
+std::vector<std::string> plant_names() {
+  std::vector<std::string> names;
+  for (const PlantRow& row : kPlants) names.emplace_back(row.name);
+  return names;
 }
 
-std::vector<std::string> plant_names() { return {"load_pressure", "two_chamber"}; }
-
-std::span<const ParameterSpec> parameter_table(PlantKind plant) {
-  switch (plant) {
-    case PlantKind::load_pressure:
-      return kLoadPressureTable;
-    case PlantKind::two_chamber:
-      return kTwoChamberTable;
-  }
-  return {};
-}
+std::span<const ParameterSpec> parameter_table(PlantKind plant) { return row_of(plant).parameters; }
 
 int parameter_index(PlantKind plant, std::string_view key) {
   const auto table = parameter_table(plant);

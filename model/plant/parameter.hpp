@@ -35,6 +35,7 @@ struct ParameterSpec {
 };
 
 enum class PlantKind { load_pressure, two_chamber };
+inline constexpr std::size_t kPlantCount = 2;
 
 /// "load_pressure" -> PlantKind; empty if unknown.
 std::optional<PlantKind> plant_from_name(std::string_view name);

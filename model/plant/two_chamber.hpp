@@ -64,6 +64,9 @@ struct TwoChamberPlant {
     }
   }
 
+  /// No output: the chambers differ.
+  static bool reversible(Output, const PresentTerms&) { return false; }
+
   /// Spool travel [m], eq. 6, after null shift; the overlap is that of the edges.
   template <typename X, typename C>
   static X spool(const PlantInput<X>& in, const Coefficients<C>& p) {

@@ -138,7 +138,7 @@ class Scripts(unittest.TestCase):
             make_program(self.tree / "scripts" / name)
         printed = self.run_script("test")
         self.assertTrue(printed.endswith("\nthreads \n== fuzz: build, test\nfuzz --seconds 10\n"), printed)
-        for preset in ("release", "dev"):
+        for preset in ("release", "ci"):
             self.assertIn(f"build {preset}\n== {preset}: test\nctest --preset {preset} -j", printed)
 
     def test_every_script_has_a_test(self):
