@@ -12,17 +12,27 @@
 namespace rigcal::report {
 namespace {
 
+/// A member of a foreign result; null where it has none.
+///
+/// @throws nlohmann::json::exception  it is of another kind than Value
+template <typename Value>
+Json member(const Json& result, const char* key) {
+  const auto found = result.find(key);
+  if (found == result.end() || found->is_null()) return nullptr;
+  static_cast<void>(found->get<Value>());
+  return *found;
+}
+
 Json compared_result_json(const Compared& compared) {
   const Json& result = compared.result;
   Json json;
   json["name"] = compared.name;
   json["file"] = compared.file.string();
-  for (const char* key :
-       {"schema", "status", "verdict", "message", "campaign", "synthetic", "model", "cost",
-        "residual_count", "reduced_chi_square", "independent_residuals"}) {
-    const auto found = result.find(key);
-    json[key] = found == result.end() ? Json(nullptr) : *found;
-  }
+  for (const char* key : {"schema", "status", "verdict", "message", "campaign", "model"})
+    json[key] = member<std::string>(result, key);
+  json["synthetic"] = member<bool>(result, "synthetic");
+  for (const char* key : {"cost", "residual_count", "reduced_chi_square", "independent_residuals"})
+    json[key] = member<double>(result, key);
   // Published numbers are no synthetic records.
   if (is_of_tables(result)) json["synthetic"] = false;
   std::set<std::string> dates;
