@@ -88,7 +88,7 @@ Solved solve(const Problem& data, const calib::FitOptions& options) {
   settings.threads = options.threads;
   calib::Evaluator evaluator(solved.problem, settings);
   solved.found = calib::multi_start(solved.problem, evaluator, options);
-  solved.evaluations = evaluator.ledger().evaluations;
+  solved.evaluations = evaluator.counters().evaluations;
   return solved;
 }
 
@@ -249,7 +249,7 @@ void stiff(int rounds) {
         calib::make_problem(data.campaign, data.records, conditions, false, nullptr);
     calib::Evaluator evaluator(problem, {});
     const double begin = cpu_ms();
-    require_converged(calib::refine(problem, evaluator, optimum, 100, 1, {}));
+    require_converged(calib::polish(problem, evaluator, optimum, 100, 1, {}));
     refits.push_back(cpu_ms() - begin);
   }
   fmt::print("### Stiff campaign: 24 records, 344 024 samples, seven parameters, one thread\n\n");

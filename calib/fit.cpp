@@ -18,8 +18,8 @@
 #include "calib/search/checkpoint.hpp"
 #include "calib/search/evaluator.hpp"
 #include "calib/search/multi_start.hpp"
-#include "calib/search/settle.hpp"
-#include "calib/search/sharpen.hpp"
+#include "calib/search/tighten.hpp"
+#include "calib/search/verify.hpp"
 #include "calib/search/weights.hpp"
 #include "calib/trust/bootstrap.hpp"
 #include "calib/trust/combinations.hpp"
@@ -41,8 +41,8 @@ using datasets::Record;
 using datasets::Use;
 using Clock = Evaluator::Clock;
 
-/// A later point may take this many times the steps of the start, at a coarse tolerance, before it
-/// is given up: it may have to be simulated to its end where the start soon repeats itself.
+/// Step budget of a later point, relative to what the start takes at a coarse tolerance: it may
+/// have to be simulated to its end where the start soon becomes periodic.
 constexpr long kStepsOverStart = 1000;
 constexpr long kLeastSteps = 20'000;
 
@@ -240,15 +240,15 @@ struct Solved {
 
 /// Solves a problem and describes what was found, all but the scores.
 Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options, Fit& fit) {
-  evaluator.set_effort(problem.of_starts());
+  evaluator.set_fidelity(problem.of_starts());
   budget_steps(problem, evaluator.evaluate(problem.start()));
   MultiStart found = multi_start(problem, evaluator, options);
-  std::vector<ConditionRows> rows = settle(problem, evaluator, options, found);
-  if (sharpen(problem, evaluator, options, found))
-    rows = settle(problem, evaluator, options, found);
+  std::vector<ConditionRows> rows = verify_optimum(problem, evaluator, options, found);
+  if (tighten_tolerance(problem, evaluator, options, found))
+    rows = verify_optimum(problem, evaluator, options, found);
   if (found.optimum.ok && problem.has_estimated_sd()) {
     estimate_weights(problem, evaluator, options, found, fit.warnings);
-    rows = settle(problem, evaluator, options, found);
+    rows = verify_optimum(problem, evaluator, options, found);
   }
   fit.status = found.result.status;
   fit.message = found.result.message;
@@ -261,9 +261,9 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
                               options.starts, fit.message);
   }
   fit.best_start = found.best;
-  fit.evaluations = evaluator.ledger().evaluations;
-  fit.failures = evaluator.ledger().failures;
-  fit.failure_count = evaluator.ledger().failure_count;
+  fit.evaluations = evaluator.counters().evaluations;
+  fit.failures = evaluator.counters().failures;
+  fit.failure_count = evaluator.counters().failure_count;
   fit.residual_count = problem.residual_count();
   fit.tolerance = problem.tolerance;
   if (!found.optimum.ok) {
@@ -300,7 +300,7 @@ Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOption
   Solved first = solve_problem(problem, evaluator, options, fit);
   const bool lost = fit.status == FitStatus::failed && first.optimum.ok && !evaluator.aborted();
   if (!lost) return first;
-  const Checkpoint checkpoint{fit.starts, fit.best_start, first.optimum.z, evaluator.ledger()};
+  const Checkpoint checkpoint{fit.starts, fit.best_start, first.optimum.z, evaluator.counters()};
   FitOptions more = options;
   more.starts += options.further_starts;
   more.resume = &checkpoint;
@@ -446,7 +446,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
     const Evaluation optimum = solve_problem(problem, evaluator, once, fit).optimum;
     if (optimum.ok) z = optimum.z;
     fit.message = "nuisance parameters: " + fit.message;
-    budget.count(evaluator.ledger().evaluations);
+    budget.count(evaluator.counters().evaluations);
   }
   const auto known = describe_known(problem, values);
   fit.parameters.insert(fit.parameters.end(), known.begin(), known.end());
@@ -530,7 +530,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
   const Solved solved = solve_from_starts(problem, evaluator, options, result);
   if (solved.optimum.ok) {
     result.conditions = score_conditions(problem, solved.optimum.z, options.threads);
-    budget.count(evaluator.ledger().evaluations);
+    budget.count(evaluator.counters().evaluations);
     // Before what may take hours, so that a stop there changes no score.
     std::optional<Fit> validation;
     if (!validated.empty()) {

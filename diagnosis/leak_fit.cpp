@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "calib/problem/problem.hpp"
-#include "calib/problem/triangle.hpp"
+#include "calib/problem/r_factor.hpp"
 #include "calib/search/solve.hpp"
 #include "diagnosis/phase_clusters.hpp"
 #include "diagnosis/residual_rms.hpp"
@@ -99,7 +99,7 @@ Linear linearise(const calib::ProblemCondition& condition, const model::Simulati
   return linear;
 }
 
-/// What the triangle R of [J r] (calib/problem/triangle.hpp) tells of the unknowns of J.
+/// What the R factor of [J r] (calib/problem/r_factor.hpp) tells of the unknowns of J.
 struct Solved {
   Eigen::MatrixXd root;  ///< inverse of J's part of R: root root^T is the inverse of J^T J
   Eigen::VectorXd step;  ///< to the least squares; not finite where a column of J is nothing
@@ -113,9 +113,9 @@ Solved least_squares(const Linear& linear) {
   rows.col(p).head(samples) = linear.residual;
   rows.bottomLeftCorner(p, p) = linear.prior_weight.asDiagonal();
   rows.col(p).tail(p) = linear.prior_residual;
-  calib::Triangle triangle(p + 1);
-  triangle.add(std::move(rows));
-  const Eigen::MatrixXd& r = triangle.get();
+  calib::RFactor r_factor(p + 1);
+  r_factor.add(std::move(rows));
+  const Eigen::MatrixXd& r = r_factor.get();
   Solved solved{Eigen::MatrixXd::Identity(p, p), {}};
   const auto upper = r.topLeftCorner(p, p).triangularView<Eigen::Upper>();
   for (auto column : solved.root.colwise()) upper.solveInPlace(column);

@@ -112,10 +112,9 @@ void describe(const std::vector<double>& time_s, double window_s, ParityRecord& 
 }
 
 double window_of(const Condition& condition, const std::vector<double>& time_s) {
-  const bool periodic = condition.waveform == datasets::Waveform::sine ||
-                        condition.waveform == datasets::Waveform::square;
   const double length_s = time_s.back() - time_s.front();
-  if (periodic && condition.frequency_hz) return std::min(1.0 / *condition.frequency_hz, length_s);
+  if (is_periodic(condition.waveform) && condition.frequency_hz)
+    return std::min(1.0 / *condition.frequency_hz, length_s);
   return kWindowShare * length_s;
 }
 

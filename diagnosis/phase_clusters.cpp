@@ -7,8 +7,7 @@ namespace rigcal::diagnosis {
 
 std::vector<int> clusters_of(const calib::ProblemCondition& condition) {
   const datasets::Condition& c = *condition.condition;
-  const bool periodic =
-      c.waveform == datasets::Waveform::sine || c.waveform == datasets::Waveform::square;
+  const bool periodic = is_periodic(c.waveform);
   std::vector<int> clusters;
   for (std::size_t i = 0; i < condition.rows.size(); ++i) {
     double place = static_cast<double>(i) / static_cast<double>(condition.rows.size());

@@ -56,9 +56,7 @@ SteadyLeak over_record(const calib::Problem& problem, const calib::ProblemCondit
 }  // namespace
 
 bool is_generated_wave(const datasets::Condition& condition) {
-  return (condition.waveform == datasets::Waveform::sine ||
-          condition.waveform == datasets::Waveform::square) &&
-         condition.frequency_hz.has_value();
+  return is_periodic(condition.waveform) && condition.frequency_hz.has_value();
 }
 
 SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,

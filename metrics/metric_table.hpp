@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <span>
 #include <string_view>
 
@@ -8,8 +9,10 @@
 
 namespace rigcal::metrics {
 
-/// All that the program knows about one metric; scorecards, reports and documentation are made from
-/// this row.
+inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+
+/// All that the program knows about one metric; scorecards, limits of campaign files, reports and
+/// documentation are made from this row.
 struct MetricSpec {
   std::string_view name;     ///< as in the results
   std::string_view formula;  ///< one line; y measured, s simulated, e = y - s
@@ -17,18 +20,21 @@ struct MetricSpec {
   double Agreement::*value = nullptr;
   double (*compute)(std::span<const double> measured, std::span<const double> simulated) = nullptr;
   bool higher_is_better = true;
+  double lowest = 0.0;  ///< that it can be
+  double highest = kUnbounded;
 };
 
 inline constexpr std::array kMetrics{
-    MetricSpec{"rho2", "1 - var(e) / var(y)", "1", &Agreement::rho2, &rho2, true},
-    MetricSpec{"r", "cov(y, s) / (std(y) std(s))", "1", &Agreement::r, &correlation, true},
+    MetricSpec{"rho2", "1 - var(e) / var(y)", "1", &Agreement::rho2, &rho2, true, -kUnbounded, 1.0},
+    MetricSpec{"r", "cov(y, s) / (std(y) std(s))", "1", &Agreement::r, &correlation, true, -1.0,
+               1.0},
     MetricSpec{"ccc", "2 cov(y, s) / (var(y) + var(s) + (mean y - mean s)^2)", "1", &Agreement::ccc,
-               &concordance, true},
+               &concordance, true, -1.0, 1.0},
     MetricSpec{"absolute_error_percent", "100 mean |e| / (max y - min y)", "%",
                &Agreement::absolute_error_percent, &absolute_error_percent, false},
     MetricSpec{"rmse", "sqrt(mean(e^2))", "channel", &Agreement::rmse, &rmse, false},
     MetricSpec{"nrmse_fit_percent", "100 (1 - ||e|| / ||y - mean y||)", "%",
-               &Agreement::nrmse_fit_percent, &nrmse_fit_percent, true},
+               &Agreement::nrmse_fit_percent, &nrmse_fit_percent, true, -kUnbounded, 100.0},
     MetricSpec{"maximum_error", "max |e|", "channel", &Agreement::maximum_error, &maximum_error,
                false},
 };

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "calib/problem/loss.hpp"
-#include "calib/problem/triangle.hpp"
+#include "calib/problem/r_factor.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -75,16 +75,16 @@ model::SimulationOptions simulation_options(const Problem& problem, std::size_t 
 
 ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
                                        std::span<const double> z, const std::atomic<bool>* cancel,
-                                       ConditionRows* rows, const Effort& effort) {
+                                       ConditionRows* rows, const Fidelity& fidelity) {
   const ProblemCondition& data = problem.conditions[condition];
   const datasets::Campaign& campaign = *problem.campaign;
   auto options =
-      simulation_options(problem, condition, problem.tolerance_of(condition, effort), cancel);
-  if (effort.exact) options.sensitivity_looseness = kLoosenessNearOptimum;
-  const bool slopes_too = effort.derivatives;
+      simulation_options(problem, condition, problem.tolerance_of(condition, fidelity), cancel);
+  if (fidelity.exact) options.sensitivity_looseness = kLoosenessNearOptimum;
+  const bool slopes_too = fidelity.derivatives;
   const model::Simulation run = model::simulate(
       data.rig, problem.values_at(condition, z), slopes_too ? data.free : std::vector<int>(),
-      data.inputs, data.fit_times(effort), data.outputs, options);
+      data.inputs, data.fit_times(fidelity), data.outputs, options);
 
   ConditionEvaluation result;
   result.status = run.status;
@@ -96,18 +96,18 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
   const Eigen::VectorXd slopes =
       slopes_too ? acting_slopes(problem, condition, z) : Eigen::VectorXd();
   const Eigen::Index unknowns = slopes.size();
-  const std::size_t count = data.rows_at(effort);
+  const std::size_t count = data.rows_at(fidelity);
   const auto samples = static_cast<Eigen::Index>(count);
   if (rows != nullptr) {
     const Eigen::Index total = samples * static_cast<Eigen::Index>(data.channels.size());
     rows->jacobian.resize(total, unknowns);
     rows->residual.resize(total);
   }
-  Triangle triangle(unknowns + 1);
+  RFactor r_factor(unknowns + 1);
   for (std::size_t k = 0; k < data.channels.size(); ++k) {
     double square_sum = 0.0;
-    for (std::size_t begin = 0; begin < count; begin += Triangle::kBlock) {
-      const std::size_t end = std::min(begin + Triangle::kBlock, count);
+    for (std::size_t begin = 0; begin < count; begin += RFactor::kBlock) {
+      const std::size_t end = std::min(begin + RFactor::kBlock, count);
       Eigen::MatrixXd weighted =
           weighted_rows(data, k, {begin, end, 0}, run, slopes, campaign.fit, square_sum);
       if (rows != nullptr) {
@@ -116,25 +116,25 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
         rows->jacobian.middleRows(first, weighted.rows()) = weighted.leftCols(unknowns);
         rows->residual.segment(first, weighted.rows()) = weighted.col(unknowns);
       }
-      triangle.add(std::move(weighted));
+      r_factor.add(std::move(weighted));
     }
     result.rms.push_back(std::sqrt(square_sum / static_cast<double>(samples)));
   }
-  result.triangle = triangle.get();
-  if (!result.triangle.allFinite()) {
+  result.r_factor = r_factor.get();
+  if (!result.r_factor.allFinite()) {
     result.status = model::SimulationStatus::not_finite;
-    result.failed_at_s = data.fit_times(effort).back();
+    result.failed_at_s = data.fit_times(fidelity).back();
     result.reason = "a residual or its derivative is not finite";
-    result.triangle.resize(0, 0);
+    result.r_factor.resize(0, 0);
   }
   return result;
 }
 
 Linearisation linearise(const Problem& problem, const Evaluation& evaluation) {
   const auto unknowns = static_cast<Eigen::Index>(problem.map.unknowns().size());
-  Triangle total(unknowns + 1);
+  RFactor total(unknowns + 1);
   for (std::size_t i = 0; i < evaluation.conditions.size(); ++i) {
-    const Eigen::MatrixXd& part = evaluation.conditions[i].triangle;
+    const Eigen::MatrixXd& part = evaluation.conditions[i].r_factor;
     const std::vector<int>& acting = problem.map.acting(i);
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(part.rows(), unknowns + 1);
     for (std::size_t j = 0; j < acting.size(); ++j)

@@ -15,14 +15,14 @@ struct ConditionEvaluation {
   model::SimulationStatus status = model::SimulationStatus::ok;
   double failed_at_s = 0.0;
   std::string reason;  ///< in words, if it failed
-  /// Triangle of [J r], shape (acting unknowns + 1)^2: J in unit-box coordinates, r weighted.
-  Eigen::MatrixXd triangle;
+  /// R factor of [J r], shape (acting unknowns + 1)^2: J in unit-box coordinates, r weighted.
+  Eigen::MatrixXd r_factor;
   std::vector<double> rms;  ///< root mean square of simulated minus measured per channel, SI
   long steps = 0;
 
   bool ok() const { return status == model::SimulationStatus::ok; }
   /// Half the sum of squares.
-  double cost() const { return 0.5 * triangle.col(triangle.cols() - 1).squaredNorm(); }
+  double cost() const { return 0.5 * r_factor.col(r_factor.cols() - 1).squaredNorm(); }
 };
 
 /// Weighted residuals and their Jacobian of one condition, every row of it.
@@ -57,7 +57,7 @@ model::SimulationOptions simulation_options(const Problem& problem, std::size_t 
                                             double tolerance, const std::atomic<bool>* cancel);
 
 /// Simulates one condition. Residual: (simulated - measured) / sd, then the loss. Never throws for
-/// a point that cannot be simulated. Without derivatives the triangle has the column of residuals
+/// a point that cannot be simulated. Without derivatives the R factor has the column of residuals
 /// alone.
 ///
 /// @param z     shape (unknowns), in the unit box
@@ -65,7 +65,7 @@ model::SimulationOptions simulation_options(const Problem& problem, std::size_t 
 ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
                                        std::span<const double> z, const std::atomic<bool>* cancel,
                                        ConditionRows* rows = nullptr,
-                                       const Effort& effort = Effort::full);
+                                       const Fidelity& fidelity = Fidelity::full);
 
 /// All conditions at one point.
 struct Evaluation {
@@ -80,7 +80,7 @@ struct Evaluation {
   bool simulated() const { return predicted_from.empty(); }
 };
 
-/// Least-squares system of all conditions and priors at one point, as a triangle.
+/// Least-squares system of all conditions and priors at one point, as a R factor.
 struct Linearisation {
   Eigen::MatrixXd jacobian;  ///< shape (unknowns + 1, unknowns), unit-box coordinates
   Eigen::VectorXd residual;  ///< shape (unknowns + 1); half its squared norm is the cost

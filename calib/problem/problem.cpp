@@ -110,12 +110,10 @@ void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   }
 }
 
-/// Rows up to a period after the first, where the reference is a sine or a square.
+/// Rows up to a period after the first, where the drive is periodic.
 std::size_t count_first_period(const ProblemCondition& condition) {
   const Condition& settings = *condition.condition;
-  const bool periodic = settings.waveform == datasets::Waveform::sine ||
-                        settings.waveform == datasets::Waveform::square;
-  if (!periodic || !settings.frequency_hz || !(*settings.frequency_hz > 0.0))
+  if (!is_periodic(settings.waveform) || !settings.frequency_hz || !(*settings.frequency_hz > 0.0))
     return condition.rows.size();
   const auto& time_s = condition.record->time_s;
   const double end_s = time_s[condition.rows.front()] + 1.0 / *settings.frequency_hz;
@@ -167,10 +165,10 @@ double relative_noise(const ProblemCondition& condition) {
 
 }  // namespace
 
-std::size_t ProblemCondition::rows_at(const Effort& effort) const {
-  if (effort.whole()) return rows.size();
+std::size_t ProblemCondition::rows_at(const Fidelity& fidelity) const {
+  if (fidelity.whole()) return rows.size();
   const auto& time_s = record->time_s;
-  const double end_s = time_s[rows.front()] + effort.opening_s;
+  const double end_s = time_s[rows.front()] + fidelity.horizon_s;
   const auto end = rows.begin() + static_cast<std::ptrdiff_t>(first_period_rows);
   const auto last = std::partition_point(rows.begin(), end,
                                          [&](std::size_t row) { return time_s[row] <= end_s; });
@@ -194,8 +192,8 @@ model::SimulationOptions Problem::simulation_options(const std::atomic<bool>* ca
 
 double Problem::coarse_tolerance() const { return std::max(kCoarseTolerance, tolerance); }
 
-double Problem::tolerance_of(std::size_t condition, const Effort& effort) const {
-  if (!effort.exact) return coarse_tolerance();
+double Problem::tolerance_of(std::size_t condition, const Fidelity& fidelity) const {
+  if (!fidelity.exact) return coarse_tolerance();
   if (tolerance_fixed) return tolerance;
   double least = std::numeric_limits<double>::infinity();
   for (const ProblemCondition& each : conditions) least = std::min(least, relative_noise(each));
@@ -204,11 +202,11 @@ double Problem::tolerance_of(std::size_t condition, const Effort& effort) const 
   return std::max(tolerance, std::min(tolerance * (own / least), kLargestTolerance));
 }
 
-double Problem::share_at(const Effort& effort) const {
+double Problem::share_at(const Fidelity& fidelity) const {
   std::size_t seen = 0;
   std::size_t all = 0;
   for (const ProblemCondition& each : conditions) {
-    seen += each.rows_at(effort) * each.channels.size();
+    seen += each.rows_at(fidelity) * each.channels.size();
     all += each.rows.size() * each.channels.size();
   }
   return static_cast<double>(seen) / static_cast<double>(all);

@@ -13,26 +13,26 @@
 
 namespace rigcal::calib {
 
-/// What a simulation has to be good for.
-struct Effort {
+/// Fidelity of one simulation: tolerance, horizon, with or without sensitivities.
+struct Fidelity {
   bool derivatives = true;
   bool exact = false;  ///< as the noise asks for, else to within a standard error or so
   /// Of each record the samples until so long after the first that counts, of a sine or square
   /// those of its first period at most. Infinite: all samples.
-  double opening_s = std::numeric_limits<double>::infinity();
+  double horizon_s = std::numeric_limits<double>::infinity();
 
-  static const Effort cost;  ///< the cost of a start
-  static const Effort coarse;
-  static const Effort full;
-  static constexpr Effort opening(double length_s) { return {true, false, length_s}; }
+  static const Fidelity cost;  ///< the cost of a start
+  static const Fidelity coarse;
+  static const Fidelity full;
+  static constexpr Fidelity first(double length_s) { return {true, false, length_s}; }
 
-  bool whole() const { return opening_s == std::numeric_limits<double>::infinity(); }
-  friend bool operator==(const Effort&, const Effort&) = default;
+  bool whole() const { return horizon_s == std::numeric_limits<double>::infinity(); }
+  friend bool operator==(const Fidelity&, const Fidelity&) = default;
 };
 
-inline constexpr Effort Effort::cost{false, false};
-inline constexpr Effort Effort::coarse{true, false};
-inline constexpr Effort Effort::full{true, true};
+inline constexpr Fidelity Fidelity::cost{false, false};
+inline constexpr Fidelity Fidelity::coarse{true, false};
+inline constexpr Fidelity Fidelity::full{true, true};
 
 /// One recorded channel that the model is compared with.
 struct ProblemChannel {
@@ -57,11 +57,11 @@ struct ProblemCondition {
   std::size_t first_period_rows = 0;   ///< how many of `rows` tell what periods repeat
   long max_steps = 0;                  ///< budget of one simulation
 
-  /// How many of `rows` an effort looks at.
-  std::size_t rows_at(const Effort& effort) const;
+  /// How many of `rows` lie within the horizon of a fidelity.
+  std::size_t rows_at(const Fidelity& fidelity) const;
   /// Sample times up to the last that counts.
-  std::span<const double> fit_times(const Effort& effort = Effort::full) const {
-    return std::span(record->time_s).first(rows[rows_at(effort) - 1] + 1);
+  std::span<const double> fit_times(const Fidelity& fidelity = Fidelity::full) const {
+    return std::span(record->time_s).first(rows[rows_at(fidelity) - 1] + 1);
   }
 };
 
@@ -75,25 +75,25 @@ struct Problem {
 
   /// Tolerance of the simulations of a condition: as much above the least as its noise is, in
   /// shares of the motion, where that is known of all.
-  double tolerance_of(std::size_t condition, const Effort& effort = Effort::full) const;
+  double tolerance_of(std::size_t condition, const Fidelity& fidelity = Fidelity::full) const;
   /// Tolerance far from an optimum.
   double coarse_tolerance() const;
   /// Of one simulation at the least tolerance, with the campaign's method and limit of time.
   model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;
-  /// Share of all residuals that an effort looks at.
-  double share_at(const Effort& effort) const;
-  /// Whether the first periods are less than everything.
+  /// Fraction of all residuals that lie within the horizon of a fidelity.
+  double share_at(const Fidelity& fidelity) const;
+  /// Whether some record is longer than one period of its drive.
   bool repeats_itself() const;
-  /// Effort that a start deserves: its derivatives help where the optimiser begins with all
-  /// samples.
-  Effort of_starts() const { return repeats_itself() ? Effort::cost : Effort::coarse; }
+  /// Fidelity at which start values are evaluated: their derivatives are of use only where the
+  /// optimiser begins with whole records.
+  Fidelity of_starts() const { return repeats_itself() ? Fidelity::cost : Fidelity::coarse; }
   /// Number of weighted residuals, priors included.
   long residual_count() const;
   bool has_estimated_sd() const;
   /// The least standard deviation that may be estimated for a channel, SI.
   double least_sd(const ProblemChannel& channel) const;
-  /// Least rms of weighted residuals that is to be believed: 1 where the noise of a channel is
-  /// known, else what least_sd() allows.
+  /// Floor of the RMS of the weighted residuals, below which errors of the simulation dominate: 1
+  /// where the noise of a channel is known, else what least_sd() allows.
   double least_noise() const;
   /// Values of all parameters in a condition at unit-box coordinates z.
   model::ParameterValues values_at(std::size_t condition, std::span<const double> z) const;

@@ -118,8 +118,8 @@ struct Descent {
 /// Least squares by Ceres from z, which ends at the optimum. An unknown at a bound that the cost
 /// pushes outwards is held there for one call, because a step that is projected onto the bound is
 /// none for the others; it is let go as soon as the cost pushes inwards.
-Descent descend(TableResiduals& residuals, const std::vector<Axis>& axes, TablesCost& cost,
-                std::vector<double>& z) {
+Descent minimise(TableResiduals& residuals, const std::vector<Axis>& axes, TablesCost& cost,
+                 std::vector<double>& z) {
   Descent descent;
   std::vector<bool> held;
   for (int call = 0; call < kMostCalls; ++call) {
@@ -253,7 +253,7 @@ TablesFit fit_tables(const datasets::Campaign& campaign,
   }
 
   TablesCost cost(residuals, axes);
-  const Descent descent = descend(residuals, axes, cost, z);
+  const Descent descent = minimise(residuals, axes, cost, z);
 
   fit.iterations = descent.iterations;
   fit.evaluations = cost.evaluations();

@@ -74,7 +74,7 @@ void FlowCurve::scan(double lowest, double highest, int per_decade) {
   }
 }
 
-void FlowCurve::refine(const Quantity& quantity, double target) {
+void FlowCurve::polish(const Quantity& quantity, double target) {
   for (auto left = known_.begin(); left != known_.end();) {
     const auto right = std::next(left);
     if (right == known_.end()) return;
@@ -92,7 +92,7 @@ void FlowCurve::refine(const Quantity& quantity, double target) {
 }
 
 std::vector<double> FlowCurve::roots(const Quantity& quantity, double target) {
-  refine(quantity, target);
+  polish(quantity, target);
   const auto distance = [&](double log_coefficient) {
     return std::log(quantity(at(std::exp(log_coefficient))) / target);
   };

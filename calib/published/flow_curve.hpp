@@ -49,7 +49,7 @@ class FlowCurve {
  private:
   PeriodicFlow simulate(double coefficient, std::span<const int> free) const;
   const PeriodicFlow* nearest(double coefficient) const;
-  void refine(const Quantity& quantity, double target);
+  void polish(const Quantity& quantity, double target);
 
   PeriodicDrive drive_;
   model::ParameterValues values_;

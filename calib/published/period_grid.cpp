@@ -22,15 +22,15 @@ std::vector<double> every(std::span<const double> all, std::size_t first, std::s
 }  // namespace
 
 PeriodGrid period_grid(datasets::Waveform waveform, double period_s, int intervals) {
-  const bool square = waveform == datasets::Waveform::square;
   PeriodGrid grid;
-  grid.pieces = square ? 2 : 1;
+  grid.pieces = static_cast<std::size_t>(datasets::info(waveform).pieces);
+  const bool jumps = grid.pieces > 1;
   const double piece_s = period_s / static_cast<double>(grid.pieces);
   for (std::size_t p = 0; p < grid.pieces; ++p) {
     for (int i = 0; i <= intervals; ++i) {
-      // A square's samples crowd behind the jump, but not so much that times become equal.
+      // Samples crowd behind a jump, but not so much that times become equal.
       const double s = static_cast<double>(i) / intervals;
-      const double place = square ? (s * s * s + kUniform * s) / (1.0 + kUniform) : s;
+      const double place = jumps ? (s * s * s + kUniform * s) / (1.0 + kUniform) : s;
       grid.offset_s.push_back(piece_s * (static_cast<double>(p) + place * (1.0 - kBeforeJump)));
     }
   }

@@ -33,9 +33,7 @@ constexpr double kNotNoise = 10.0;
 
 model::SimulationInputs inputs(const datasets::LeakSignal& signal) {
   model::SimulationInputs in;
-  in.drive = signal.waveform == datasets::Waveform::square
-                 ? model::Signal::square(signal.amplitude, signal.frequency_hz)
-                 : model::Signal::sine(signal.amplitude, signal.frequency_hz);
+  in.drive = datasets::periodic_signal(signal.waveform, signal.amplitude, signal.frequency_hz);
   return in;
 }
 

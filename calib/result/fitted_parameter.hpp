@@ -28,7 +28,7 @@ std::string_view to_string(IntervalSource source);
 struct ProfileEnd {
   std::optional<double> value;  ///< absent: the cost stays below up to `reached`
   double reached = 0.0;         ///< value up to which the profile was followed
-  bool lost = false;  ///< followed no further: no fit there, or the job was stopped; else open
+  bool lost = false;  ///< abandoned: the inner fit failed or was cancelled; otherwise unbounded
 };
 
 /// Profile likelihood of one unknown: least cost of all others at fixed values of this one.

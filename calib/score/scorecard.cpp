@@ -35,9 +35,7 @@ void add_problem(ChannelScore& score, const std::string& text) {
 void compare_at_fundamental(const ProblemCondition& condition, std::span<const double> measured,
                             std::span<const double> simulated, ChannelScore& score) {
   const Condition& c = *condition.condition;
-  const bool periodic =
-      c.waveform == datasets::Waveform::sine || c.waveform == datasets::Waveform::square;
-  if (!periodic || !c.frequency_hz) return;
+  if (!is_periodic(c.waveform) || !c.frequency_hz) return;
   const auto [first, count] = longest_stretch(condition.rows);
   const auto time_s = std::span(condition.record->time_s).subspan(condition.rows[first], count);
   try {

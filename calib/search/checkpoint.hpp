@@ -12,7 +12,7 @@ struct Checkpoint {
   std::vector<StartReport> starts;  ///< finished ones
   int best = 0;                     ///< number of the best of them; 0: none could be simulated
   std::vector<double> best_z;       ///< its end, in the unit box
-  EvaluationLedger ledger;          ///< up to there
+  EvaluationCounters counters;      ///< up to there
 };
 
 }  // namespace rigcal::calib

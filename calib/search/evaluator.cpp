@@ -39,12 +39,12 @@ Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int th
   parallel_for(problem.conditions.size(), threads, [&](std::size_t i) {
     ConditionRows* const rows = options.rows != nullptr ? &(*options.rows)[i] : nullptr;
     evaluation.conditions[i] =
-        evaluate_condition(problem, i, z, options.cancel, rows, options.effort);
+        evaluate_condition(problem, i, z, options.cancel, rows, options.fidelity);
   });
   evaluation.ok = std::all_of(evaluation.conditions.begin(), evaluation.conditions.end(),
                               [](const ConditionEvaluation& each) { return each.ok(); });
   if (!evaluation.ok) return evaluation;
-  evaluation.share = problem.share_at(options.effort);
+  evaluation.share = problem.share_at(options.fidelity);
   evaluation.cost = prior_cost(problem, z);
   for (const ConditionEvaluation& each : evaluation.conditions) evaluation.cost += each.cost();
   return evaluation;
@@ -62,8 +62,8 @@ Evaluation predict(const Problem& problem, const Evaluation& from, std::span<con
       const auto u = static_cast<std::size_t>(acting[j]);
       step(static_cast<Eigen::Index>(j)) = z[u] - from.z[u];
     }
-    Eigen::MatrixXd& triangle = there.conditions[i].triangle;
-    triangle.col(step.size()) += triangle.leftCols(step.size()) * step;
+    Eigen::MatrixXd& r_factor = there.conditions[i].r_factor;
+    r_factor.col(step.size()) += r_factor.leftCols(step.size()) * step;
     there.cost += there.conditions[i].cost();
   }
   return there;
@@ -101,7 +101,7 @@ const Evaluation& Evaluator::conclude(std::span<const double> z) {
 
 Evaluation Evaluator::evaluate_now(std::span<const double> z,
                                    const std::atomic<bool>* cancel) const {
-  return evaluate_at(problem_, z, options_.threads, {effort_, cancel, nullptr});
+  return evaluate_at(problem_, z, options_.threads, {fidelity_, cancel, nullptr});
 }
 
 void Evaluator::keep_best() {
@@ -113,9 +113,9 @@ void Evaluator::begin_start(int number) {
   best_ = {};
 }
 
-void Evaluator::set_effort(const Effort& effort) {
-  if (effort != effort_) forget();
-  effort_ = effort;
+void Evaluator::set_fidelity(const Fidelity& fidelity) {
+  if (fidelity != fidelity_) forget();
+  fidelity_ = fidelity;
 }
 
 void Evaluator::forget() {
@@ -145,12 +145,12 @@ void Evaluator::rethrow() const {
 }
 
 void Evaluator::record(const Evaluation& evaluation) {
-  ++ledger_.evaluations;
+  ++counters_.evaluations;
   for (std::size_t i = 0; i < evaluation.conditions.size(); ++i) {
     const ConditionEvaluation& each = evaluation.conditions[i];
     if (each.ok() || each.status == model::SimulationStatus::cancelled) continue;
-    ++ledger_.failure_count;
-    if (++ledger_.kept[{i, each.status}] > kFailuresKept) continue;
+    ++counters_.failure_count;
+    if (++counters_.kept[{i, each.status}] > kFailuresKept) continue;
     SimulationFailure failure;
     failure.condition = problem_.conditions[i].condition->id;
     for (const int j : problem_.map.acting(i)) {
@@ -161,7 +161,7 @@ void Evaluator::record(const Evaluation& evaluation) {
     failure.time_s = each.failed_at_s;
     failure.reason = each.reason;
     failure.start = start_;
-    ledger_.failures.push_back(std::move(failure));
+    counters_.failures.push_back(std::move(failure));
   }
 }
 

@@ -16,7 +16,7 @@
 namespace rigcal::calib {
 
 /// What an evaluator has counted.
-struct EvaluationLedger {
+struct EvaluationCounters {
   long evaluations = 0;
   long failure_count = 0;
   std::vector<SimulationFailure> failures;  ///< the first few of each condition and kind
@@ -25,7 +25,7 @@ struct EvaluationLedger {
 
 /// How a point is evaluated.
 struct EvaluationOptions {
-  Effort effort = Effort::full;
+  Fidelity fidelity = Fidelity::full;
   const std::atomic<bool>* cancel = nullptr;
   std::vector<ConditionRows>* rows = nullptr;  ///< if not null, receives those of each condition
 };
@@ -62,18 +62,17 @@ class Evaluator final : public ceres::EvaluationCallback {
 
   /// The evaluation at z; not ok where a condition could not be simulated, which is recorded.
   const Evaluation& evaluate(std::span<const double> z);
-  /// The same whatever signals and limits say, not counted beyond them: what a fit has come to when
-  /// it is stopped is judged by all of its records.
+  /// Evaluates even after cancellation or an exhausted budget, so that a stopped fit is still
+  /// scored by whole records.
   const Evaluation& conclude(std::span<const double> z);
 
-  /// Simulates no more and no finer than need be. Far from an optimum errors of the simulation are
-  /// nothing against those of the parameters. A change drops what is kept of earlier points.
-  void set_effort(const Effort& effort);
-  const Effort& effort() const { return effort_; }
+  /// Sets the fidelity of the simulations to come, and clears the cache if it is another one.
+  void set_fidelity(const Fidelity& fidelity);
+  const Fidelity& fidelity() const { return fidelity_; }
 
   /// Begins a start of a multi-start: best() is then the best of this start.
   void begin_start(int number);
-  /// Drops what is kept of earlier points.
+  /// Clears the cache.
   void forget();
   /// The point of lowest cost so far; not ok if there is none.
   const Evaluation& best() const { return best_; }
@@ -92,7 +91,7 @@ class Evaluator final : public ceres::EvaluationCallback {
   /// A signal, the time limit or that of evaluations ends the fit.
   bool out_of_time() const { return options_.deadline && Clock::now() >= *options_.deadline; }
   bool out_of_evaluations() const {
-    return options_.max_evaluations && ledger_.evaluations >= *options_.max_evaluations;
+    return options_.max_evaluations && counters_.evaluations >= *options_.max_evaluations;
   }
   bool cancelled() const;
   bool aborted() const { return cancelled() || out_of_time() || out_of_evaluations(); }
@@ -102,9 +101,9 @@ class Evaluator final : public ceres::EvaluationCallback {
   void rethrow() const;
 
   const Options& options() const { return options_; }
-  const EvaluationLedger& ledger() const { return ledger_; }
+  const EvaluationCounters& counters() const { return counters_; }
   /// Goes on counting from there, as after a resumed fit.
-  void set_ledger(EvaluationLedger ledger) { ledger_ = std::move(ledger); }
+  void set_counters(EvaluationCounters counters) { counters_ = std::move(counters); }
 
  private:
   Evaluation evaluate_now(std::span<const double> z, const std::atomic<bool>* cancel) const;
@@ -116,9 +115,9 @@ class Evaluator final : public ceres::EvaluationCallback {
   Evaluation best_;
   std::span<const double> watched_;
   std::exception_ptr error_;
-  Effort effort_ = Effort::full;
+  Fidelity fidelity_ = Fidelity::full;
   int start_ = 1;
-  EvaluationLedger ledger_;
+  EvaluationCounters counters_;
 };
 
 }  // namespace rigcal::calib

@@ -12,7 +12,7 @@ struct Checkpoint;  // checkpoint.hpp
 /// What a fit needs beside the campaign and its records.
 struct FitOptions {
   int starts = 1;            ///< 1: the campaign's start values; more: latin hypercube around them
-  int further_starts = 0;    ///< of the latin hypercube, where the only start finds no minimum
+  int further_starts = 0;    ///< Latin-hypercube starts, if the single start fails
   std::uint64_t seed = 1;    ///< of the latin hypercube
   int threads = 1;           ///< results are the same bits for any number
   int max_iterations = 200;  ///< per start

@@ -41,7 +41,7 @@ MultiStart resumed(const Problem& problem, Evaluator& evaluator, const FitOption
   MultiStart result;
   result.starts = from.starts;
   result.best = from.best;
-  evaluator.set_ledger(from.ledger);
+  evaluator.set_counters(from.counters);
   if (from.starts.empty()) return result;
   const bool any = from.best > 0;
   const StartReport& report = from.starts[any ? static_cast<std::size_t>(from.best) - 1 : 0];
@@ -88,7 +88,7 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
     if (i > 0 && evaluator.aborted()) break;
     const int number = static_cast<int>(i) + 1;
     evaluator.begin_start(number);
-    evaluator.set_effort(problem.of_starts());
+    evaluator.set_fidelity(problem.of_starts());
     StartReport report;
     report.number = number;
     report.start_values = problem.to_physical(points[i]);
@@ -116,9 +116,9 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
     result.starts.push_back(std::move(report));
     // A start that was cut short is made again.
     if (options.checkpoint && !evaluator.aborted())
-      options.checkpoint({result.starts, result.best, result.optimum.z, evaluator.ledger()});
+      options.checkpoint({result.starts, result.best, result.optimum.z, evaluator.counters()});
   }
-  evaluator.set_effort(Effort::full);  // a last start that failed, or none that was left
+  evaluator.set_fidelity(Fidelity::full);  // a last start that failed, or none that was left
   return result;
 }
 

@@ -13,7 +13,7 @@
 #include <memory>
 
 #include "calib/problem/initial_state.hpp"
-#include "calib/problem/triangle.hpp"
+#include "calib/problem/r_factor.hpp"
 #include "calib/search/residual.hpp"
 #include "common/parallel.hpp"
 
@@ -61,10 +61,10 @@ struct PieceEvaluation {
   model::SimulationStatus status = model::SimulationStatus::ok;
   double failed_at_s = 0.0;
   std::string reason;
-  /// Triangle of [J r], columns: acting unknowns, coordinates of the node if it has one, r.
-  Eigen::MatrixXd triangle;
+  /// R factor of [J r], columns: acting unknowns, coordinates of the node if it has one, r.
+  Eigen::MatrixXd r_factor;
   Eigen::VectorXd end;           ///< state, in floors
-  Eigen::MatrixXd end_jacobian;  ///< by the columns of the triangle but the last
+  Eigen::MatrixXd end_jacobian;  ///< by the columns of the R factor but the last
 };
 
 /// First sample of each piece of a condition.
@@ -214,7 +214,7 @@ class Pieces final : public ceres::EvaluationCallback {
   void evaluate() {
     parallel_for(pieces_.size(), evaluator_.options().threads,
                  [this](std::size_t i) { evaluations_[i] = evaluate_piece(pieces_[i]); });
-    Evaluation told;  // for the ledger
+    Evaluation told;  // for the counters
     told.z.assign(z().begin(), z().end());
     told.conditions.resize(problem_.conditions.size());
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
@@ -250,17 +250,17 @@ class Pieces final : public ceres::EvaluationCallback {
     Eigen::VectorXd slopes(by_z.size() + states);
     slopes.head(by_z.size()) = by_z;
     if (from != nullptr) slopes.tail(states) = kCoordinate * from->floor;
-    Triangle triangle(slopes.size() + 1);
+    RFactor r_factor(slopes.size() + 1);
     double square_sum = 0.0;
     for (std::size_t k = 0; k < condition.channels.size(); ++k) {
-      triangle.add(weighted_rows(condition, k, {piece.begin_row, piece.end_row, piece.first}, run,
+      r_factor.add(weighted_rows(condition, k, {piece.begin_row, piece.end_row, piece.first}, run,
                                  slopes, problem_.campaign->fit, square_sum));
     }
-    result.triangle = triangle.get();
+    result.r_factor = r_factor.get();
     const Eigen::VectorXd per_floor = run.state_floor.cwiseInverse();
     result.end = run.end_state.cwiseProduct(per_floor);
     result.end_jacobian = per_floor.asDiagonal() * run.end_sensitivities * slopes.asDiagonal();
-    if (!result.triangle.allFinite() || !result.end_jacobian.allFinite()) {
+    if (!result.r_factor.allFinite() || !result.end_jacobian.allFinite()) {
       result.status = model::SimulationStatus::not_finite;
       result.failed_at_s = times.back();
       result.reason = "a residual or its derivative is not finite";
@@ -308,10 +308,10 @@ class PieceCost final : public ceres::CostFunction {
                 double** jacobians) const override {
     const PieceEvaluation& found = pieces_.evaluation(piece_);
     if (found.status != model::SimulationStatus::ok) return false;
-    const Eigen::Index columns = found.triangle.cols() - 1;
-    Eigen::Map<Eigen::VectorXd>(residuals, columns + 1) = found.triangle.col(columns);
+    const Eigen::Index columns = found.r_factor.cols() - 1;
+    Eigen::Map<Eigen::VectorXd>(residuals, columns + 1) = found.r_factor.col(columns);
     if (jacobians != nullptr)
-      give_jacobians(found.triangle.leftCols(columns), parameter_block_sizes(), jacobians);
+      give_jacobians(found.r_factor.leftCols(columns), parameter_block_sizes(), jacobians);
     return true;
   }
 

@@ -36,7 +36,7 @@ OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation)
     const bool outward = (side == BoundSide::lower && gradient(column) > 0.0) ||
                          (side == BoundSide::upper && gradient(column) < 0.0);
     check.side.push_back(side);
-    check.held.push_back(outward);
+    check.active_bound.push_back(outward);
     if (!outward && system.jacobian.col(column).norm() > 0.0) free.push_back(column);
   }
   if (free.empty()) return check;

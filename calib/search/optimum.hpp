@@ -19,8 +19,8 @@ double rank_threshold(double simulation_tolerance);
 
 /// Whether a point is a minimum in the box, judged by our own measure and not by the optimiser's.
 struct OptimumCheck {
-  std::vector<BoundSide> side;  ///< per unknown
-  std::vector<bool> held;       ///< at a bound, and the cost falls only towards the outside
+  std::vector<BoundSide> side;     ///< per unknown
+  std::vector<bool> active_bound;  ///< at a bound, and the cost falls only towards the outside
   /// Length of the Gauss-Newton step in standard errors, root mean square over the free directions
   /// (relative offset of Bates and Watts, Technometrics 23, 1981). 0.01: the step that is left is a
   /// hundredth of what the noise leaves uncertain.

@@ -7,7 +7,7 @@
 
 namespace rigcal::calib {
 
-/// Residuals of one condition for Ceres: the triangle that the evaluator prepared. One parameter
+/// Residuals of one condition for Ceres: the R factor that the evaluator prepared. One parameter
 /// block of size 1 per acting unknown, in that order. Borrows the evaluator.
 class ConditionCost final : public ceres::CostFunction {
  public:
@@ -22,12 +22,12 @@ class ConditionCost final : public ceres::CostFunction {
                 double** jacobians) const override {
     const ConditionEvaluation& prepared = evaluator_.prepared().conditions[condition_];
     if (!prepared.ok()) return false;
-    const Eigen::Index rows = prepared.triangle.rows();
-    Eigen::Map<Eigen::VectorXd>(residuals, rows) = prepared.triangle.col(rows - 1);
+    const Eigen::Index rows = prepared.r_factor.rows();
+    Eigen::Map<Eigen::VectorXd>(residuals, rows) = prepared.r_factor.col(rows - 1);
     if (jacobians == nullptr) return true;
     for (Eigen::Index j = 0; j + 1 < rows; ++j) {
       if (jacobians[j] != nullptr)
-        Eigen::Map<Eigen::VectorXd>(jacobians[j], rows) = prepared.triangle.col(j);
+        Eigen::Map<Eigen::VectorXd>(jacobians[j], rows) = prepared.r_factor.col(j);
     }
     return true;
   }

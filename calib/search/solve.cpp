@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "calib/problem/svd.hpp"
+#include "calib/search/growing_horizon.hpp"
 #include "calib/search/multiple_shooting.hpp"
-#include "calib/search/openings.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -24,14 +24,14 @@ constexpr double kLastStepOfNoise = 1.0;
 /// Mean square of the weighted residuals up to which they count as noise.
 constexpr double kNoise = 1.5;
 
-/// Where a full Gauss-Newton step leads, parameters that are held left where they are.
+/// Where a full Gauss-Newton step leads, parameters at an active bound left where they are.
 std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evaluation,
-                                 const std::vector<bool>& held) {
+                                 const std::vector<bool>& active_bound) {
   const Linearisation system = linearise(problem, evaluation);
   std::vector<Eigen::Index> free;
-  for (std::size_t j = 0; j < held.size(); ++j) {
+  for (std::size_t j = 0; j < active_bound.size(); ++j) {
     const auto column = static_cast<Eigen::Index>(j);
-    if (!held[j] && system.jacobian.col(column).norm() > 0.0) free.push_back(column);
+    if (!active_bound[j] && system.jacobian.col(column).norm() > 0.0) free.push_back(column);
   }
   std::vector<double> z = evaluation.z;
   if (free.empty()) return z;
@@ -70,7 +70,7 @@ std::pair<int, OptimumCheck> full_steps(const Problem& problem, Evaluator& evalu
   int steps = 0;
   while (steps < most && check.relative_offset <= kFullStepOffset &&
          check.relative_offset > kFullStepEnd) {
-    const std::vector<double> next = gauss_newton(problem, evaluator.best(), check.held);
+    const std::vector<double> next = gauss_newton(problem, evaluator.best(), check.active_bound);
     if (check.relative_offset <= longest_prediction(problem, evaluator.best(), last)) {
       Evaluation predicted = predict(problem, evaluator.best(), next);
       const OptimumCheck left = check_optimum(problem, predicted);
@@ -92,16 +92,16 @@ std::pair<int, OptimumCheck> full_steps(const Problem& problem, Evaluator& evalu
 
 }  // namespace
 
-SolveResult refine(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
+SolveResult polish(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
                    int iterations, int start, const FitOptions& options, LastStep last) {
   if (!evaluator.evaluate(z).ok || iterations == 0)
-    return descend(problem, evaluator, std::move(z), kNearTrustRadius, iterations, start, options);
+    return minimise(problem, evaluator, std::move(z), kNearTrustRadius, iterations, start, options);
   const auto [steps, check] =
       full_steps(problem, evaluator, std::min(kFullSteps, iterations), last);
   if (check.nearly_stationary())
     return {FitStatus::converged, converged_after(steps), steps, check};
-  SolveResult result = descend(problem, evaluator, evaluator.best().z, kNearTrustRadius,
-                               iterations - steps, start, options);
+  SolveResult result = minimise(problem, evaluator, evaluator.best().z, kNearTrustRadius,
+                                iterations - steps, start, options);
   result.iterations += steps;
   return result;
 }
@@ -128,9 +128,9 @@ ShootingResult shoot(const Problem& problem, Evaluator& evaluator, std::vector<d
 std::vector<double> end_coarse(const Problem& problem, Evaluator& evaluator) {
   const Evaluation coarse = evaluator.best();
   const OptimumCheck check = check_optimum(problem, coarse);
-  evaluator.set_effort(Effort::full);
+  evaluator.set_fidelity(Fidelity::full);
   if (check.relative_offset > kFullStepOffset) return coarse.z;
-  const std::vector<double> next = gauss_newton(problem, coarse, check.held);
+  const std::vector<double> next = gauss_newton(problem, coarse, check.active_bound);
   return evaluator.evaluate(next).ok ? next : coarse.z;
 }
 
@@ -144,12 +144,12 @@ SolveResult stopped_at(const Problem& problem, Evaluator& evaluator,
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& each : ends) {
     const Evaluation there =
-        evaluate_at(problem, each, evaluator.options().threads, {Effort::cost, nullptr, nullptr});
+        evaluate_at(problem, each, evaluator.options().threads, {Fidelity::cost, nullptr, nullptr});
     if (!there.ok || there.cost >= least) continue;
     best = &each;
     least = there.cost;
   }
-  evaluator.set_effort(Effort::full);
+  evaluator.set_fidelity(Fidelity::full);
   if (best != nullptr) evaluator.conclude(*best);
   SolveResult stopped{FitStatus::stopped, stop_reason(evaluator, iterations), used, {}};
   if (evaluator.best().ok) stopped.check = check_optimum(problem, evaluator.best());
@@ -160,7 +160,7 @@ SolveResult stopped_at(const Problem& problem, Evaluator& evaluator,
 
 SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
                   int iterations, int start, const FitOptions& options) {
-  evaluator.set_effort(problem.of_starts());
+  evaluator.set_fidelity(problem.of_starts());
   int used = 0;
   FitOptions counting = options;  // one count of iterations through all
   if (options.progress) {
@@ -180,16 +180,16 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
   if (!first.ok) return no_start(problem, evaluator, first);
   bool near = false;
   if (problem.repeats_itself()) {
-    const Openings openings =
-        by_openings(problem, evaluator, z, iterations - used, start, counting);
-    used += openings.iterations;
-    ends.insert(ends.end(), openings.ends.begin(), openings.ends.end());
+    const GrowingHorizon grown =
+        by_growing_horizon(problem, evaluator, z, iterations - used, start, counting);
+    used += grown.iterations;
+    ends.insert(ends.end(), grown.ends.begin(), grown.ends.end());
     near = evaluator.best().ok && !evaluator.aborted() &&
            check_optimum(problem, evaluator.best()).relative_offset <= kFullStepOffset;
   }
   if (!near && !evaluator.aborted()) {
-    evaluator.set_effort(Effort::coarse);
-    used += descend(problem, evaluator, z, kFirstTrustRadius, iterations - used, start, counting)
+    evaluator.set_fidelity(Fidelity::coarse);
+    used += minimise(problem, evaluator, z, kFirstTrustRadius, iterations - used, start, counting)
                 .iterations;
   }
   if (evaluator.aborted()) return stopped_at(problem, evaluator, ends, used, iterations);
@@ -197,7 +197,7 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
 
   const std::vector<double> next = end_coarse(problem, evaluator);
   SolveResult result =
-      refine(problem, evaluator, next, iterations - used, start, counting, LastStep::judged);
+      polish(problem, evaluator, next, iterations - used, start, counting, LastStep::judged);
   result.iterations += used;
   if (evaluator.aborted() && !evaluator.best().ok) {
     ends.push_back(next);

@@ -1,16 +1,16 @@
 #pragma once
 
-#include "calib/search/descend.hpp"
+#include "calib/search/minimise.hpp"
 
 namespace rigcal::calib {
 
 /// Least squares from z in the unit box. `converged` is what check_optimum() finds stationary, or
 /// nearly so where Ceres says that it converged too.
 ///
-/// First with coarse simulations, of longer and longer openings where records repeat themselves,
-/// then on from there with those of the problem's tolerance; the result is of the latter. A last
-/// short step is predicted, not simulated: settle() judges where it ends. Where the start is
-/// stopped, the best point is the best of those that its stages ended at, by whole records.
+/// The stages of a start: growing horizons at coarse fidelity where records are periodic, whole
+/// records at coarse fidelity, then a polish at full fidelity, whose result this is. A last short
+/// step is predicted, not simulated: verify_optimum() checks its end. Where the start is stopped,
+/// the best point is that of the stages' ends with the least cost over whole records.
 ///
 /// @param iterations  budget of all calls together
 /// @param start       number of the start, for `options.progress`
@@ -21,11 +21,11 @@ SolveResult solve(const Problem& problem, Evaluator& evaluator, std::vector<doub
 enum class LastStep {
   simulated,
   predicted,  ///< where the derivatives predict, not simulated again
-  judged,     ///< the same for longer steps: the caller simulates where they end
+  judged,     ///< as predicted, for longer steps too; the caller must verify the end by simulation
 };
 
 /// The same without coarse simulations, from a point near the optimum.
-SolveResult refine(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
+SolveResult polish(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
                    int iterations, int start, const FitOptions& options,
                    LastStep last = LastStep::predicted);
 }  // namespace rigcal::calib

@@ -11,7 +11,7 @@ namespace rigcal::calib {
 namespace {
 
 constexpr int kMaxRounds = 10;
-/// Standard deviations that move by less leave weights, and with them the estimate, all but alone.
+/// Reweighting stops when no standard deviation changes by more.
 constexpr double kSettled = 0.1;
 
 /// Calls action(channel, rms residual) for every channel of estimated noise.
@@ -94,7 +94,7 @@ void estimate_weights(Problem& problem, Evaluator& evaluator, const FitOptions& 
     evaluator.forget();
     const int iterations_before = found.result.iterations;
     found.result =
-        refine(problem, evaluator, found.optimum.z, options.max_iterations, found.best, counting);
+        polish(problem, evaluator, found.optimum.z, options.max_iterations, found.best, counting);
     found.result.iterations += iterations_before;
     if (!evaluator.best().ok) break;
     found.optimum = evaluator.best();

@@ -258,10 +258,10 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
     }
     Evaluator evaluator(drawn, {1, left.cancel(), left.deadline(), {}});
     const auto solved =
-        refine(drawn, evaluator, optimum.z, options.max_iterations, static_cast<int>(b) + 1, quiet);
-    left.count(evaluator.ledger().evaluations);
+        polish(drawn, evaluator, optimum.z, options.max_iterations, static_cast<int>(b) + 1, quiet);
+    left.count(evaluator.counters().evaluations);
     if (solved.status == FitStatus::stopped && evaluator.aborted()) return;
-    taken[b] = evaluator.ledger().evaluations;
+    taken[b] = evaluator.counters().evaluations;
     if (solved.status == FitStatus::converged) values[b] = drawn.to_physical(evaluator.best().z);
     if (options.beside)
       options.beside("replicates of the bootstrap", ++done, static_cast<int>(replicates));

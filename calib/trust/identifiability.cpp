@@ -130,8 +130,8 @@ void describe_bound(const Problem& problem, const OptimumCheck& check, std::size
                   number(spec_of(problem, u.index), lower ? u.lower : u.upper),
                   parameter.identifiability == Identifiability::not_identifiable
                       ? "the records do not determine it"
-                  : check.held[unknown] ? "active: the fit would improve beyond it"
-                                        : "the fit would not improve beyond it");
+                  : check.active_bound[unknown] ? "active: the fit would improve beyond it"
+                                                : "the fit would not improve beyond it");
   parameter.reason = parameter.reason.empty() ? text : text + "; " + parameter.reason;
 }
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/problem/r_factor.hpp"
 #include "calib/problem/svd.hpp"
-#include "calib/problem/triangle.hpp"
 #include "calib/search/optimum.hpp"
 
 namespace rigcal::calib {
@@ -59,9 +59,9 @@ Eigen::MatrixXd tried_rows(const Problem& problem, std::size_t i, std::span<cons
 }
 
 Eigen::MatrixXd as_triangle(const Eigen::MatrixXd& rows) {
-  Triangle triangle(rows.cols());
-  triangle.add(rows);
-  return triangle.get();
+  RFactor r_factor(rows.cols());
+  r_factor.add(rows);
+  return r_factor.get();
 }
 
 void try_priors(const Problem& problem, std::span<const double> z, const Eigen::MatrixXd& jacobian,

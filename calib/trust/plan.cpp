@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/problem/triangle.hpp"
+#include "calib/problem/r_factor.hpp"
 #include "calib/search/evaluator.hpp"
 #include "calib/trust/information.hpp"
 #include "calib/trust/symmetry.hpp"
@@ -100,10 +100,10 @@ std::vector<double> point_of(const Problem& problem,
 Eigen::MatrixXd jacobian_of(const Problem& problem, const Evaluation& at,
                             const std::vector<bool>& counts) {
   const auto n = static_cast<Eigen::Index>(at.z.size());
-  Triangle total(n);
+  RFactor total(n);
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (!counts[i] || !at.conditions[i].ok()) continue;
-    const Eigen::MatrixXd& part = at.conditions[i].triangle;
+    const Eigen::MatrixXd& part = at.conditions[i].r_factor;
     const std::vector<int>& acting = problem.map.acting(i);
     Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(part.rows(), n);
     for (std::size_t j = 0; j < acting.size(); ++j)

@@ -75,8 +75,8 @@ class Follower {
     if (fixed.map.unknowns().empty()) {
       evaluator.evaluate(from);
     } else {
-      const auto solved = refine(fixed, evaluator, from, options_.max_iterations, 1, options_);
-      evaluations_ += evaluator.ledger().evaluations;
+      const auto solved = polish(fixed, evaluator, from, options_.max_iterations, 1, options_);
+      evaluations_ += evaluator.counters().evaluations;
       if (solved.status != FitStatus::converged) return std::nullopt;
     }
     if (!evaluator.best().ok) return std::nullopt;

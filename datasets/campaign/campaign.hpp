@@ -15,6 +15,7 @@
 #include "common/quantity.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "datasets/campaign/report_settings.hpp"
+#include "datasets/campaign/waveform.hpp"
 #include "datasets/record.hpp"
 #include "model/plant/parameter.hpp"
 #include "model/simulate.hpp"
@@ -65,9 +66,6 @@ struct ChannelSetting {
   Interpolation interpolation = Interpolation::hold;
   bool in_counts = false;  ///< raw numbers of a converter: nothing says what they measure
 };
-
-enum class Waveform { sine, square, chirp, recorded };
-std::string_view to_string(Waveform waveform);
 
 enum class Use { fit, validate, diagnose, ignore };
 std::string_view to_string(Use use);

@@ -180,10 +180,7 @@ void check_waveform_keys(const TomlNode& node, Waveform waveform) {
 
 void read_waveform(const TomlNode& node, const Campaign& campaign, Condition& condition) {
   condition.waveform = node.require("waveform", "one of \"sine\" \"square\" \"chirp\" \"recorded\"")
-                           .choice<Waveform>({{"sine", Waveform::sine},
-                                              {"square", Waveform::square},
-                                              {"chirp", Waveform::chirp},
-                                              {"recorded", Waveform::recorded}});
+                           .choice<Waveform>(waveforms());
   check_waveform_keys(node, condition.waveform);
   if (const auto sweep = node.find("sweep")) {
     condition.logarithmic_sweep = sweep->choice<bool>({{"linear", false}, {"logarithmic", true}});

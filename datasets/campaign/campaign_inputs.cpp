@@ -29,16 +29,11 @@ double sweep_time(const Condition& condition, const Record* record) {
 model::Signal drive(const Campaign& campaign, const Condition& condition, const Record* record) {
   const double amplitude = condition.amplitude.value_or(0.0);
   const double frequency_hz = condition.frequency_hz.value_or(0.0);
-  switch (condition.waveform) {
-    case Waveform::sine:
-      return model::Signal::sine(amplitude, frequency_hz);
-    case Waveform::square:
-      return model::Signal::square(amplitude, frequency_hz);
-    case Waveform::chirp:
-      return model::Signal::chirp(amplitude, frequency_hz, condition.end_frequency_hz.value(),
-                                  sweep_time(condition, record), condition.logarithmic_sweep);
-    case Waveform::recorded:
-      break;
+  if (is_periodic(condition.waveform))
+    return periodic_signal(condition.waveform, amplitude, frequency_hz);
+  if (condition.waveform == Waveform::chirp) {
+    return model::Signal::chirp(amplitude, frequency_hz, condition.end_frequency_hz.value(),
+                                sweep_time(condition, record), condition.logarithmic_sweep);
   }
   const Channel channel = drive_channel(campaign);
   if (record == nullptr) {

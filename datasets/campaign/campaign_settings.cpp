@@ -6,6 +6,7 @@
 
 #include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
+#include "metrics/metric_table.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -14,41 +15,27 @@ constexpr std::string_view kWarnPrefix = "warn_";
 constexpr const char* kModelError = "model_error_to_noise";
 constexpr const char* kNegligible = "negligible";
 
-/// A metric that may be limited. The unit is the channel's where `in_channel_unit`.
-struct MetricRow {
-  std::string_view name;
-  bool higher_is_better;
-  bool in_channel_unit;
-  double lowest;
-  double highest;
-};
-constexpr std::array kMetrics{
-    MetricRow{"rho2", true, false, -1e300, 1.0},
-    MetricRow{"r", true, false, -1.0, 1.0},
-    MetricRow{"ccc", true, false, -1.0, 1.0},
-    MetricRow{"absolute_error_percent", false, false, 0.0, 1e300},
-    MetricRow{"rmse", false, true, 0.0, 1e300},
-    MetricRow{"nrmse_fit_percent", true, false, -1e300, 100.0},
-    MetricRow{"maximum_error", false, true, 0.0, 1e300},
-};
+using metrics::kMetrics;
+using metrics::MetricSpec;
 
-const MetricRow* metric_named(std::string_view name) {
+const MetricSpec* metric_named(std::string_view name) {
   const auto* row = std::find_if(kMetrics.begin(), kMetrics.end(),
-                                 [&](const MetricRow& metric) { return metric.name == name; });
+                                 [&](const MetricSpec& metric) { return metric.name == name; });
   return row == kMetrics.end() ? nullptr : row;
 }
 
 std::vector<std::string> known_limits() {
   std::vector<std::string> names;
-  for (const MetricRow& row : kMetrics) names.emplace_back(row.name);
-  for (const MetricRow& row : kMetrics) {
+  for (const MetricSpec& row : kMetrics) names.emplace_back(row.name);
+  for (const MetricSpec& row : kMetrics) {
     names.push_back(std::string(kWarnPrefix) + std::string(row.name));
   }
   return names;
 }
 
-double read_limit(const TomlNode& node, const MetricRow& metric, Channel channel) {
-  const double value = metric.in_channel_unit ? node.difference(info(channel).unit) : node.number();
+double read_limit(const TomlNode& node, const MetricSpec& metric, Channel channel) {
+  const double value =
+      metric.unit == "channel" ? node.difference(info(channel).unit) : node.number();
   if (value < metric.lowest || value > metric.highest) {
     node.fail(fmt::format("{} is out of the range of {}", value, metric.name));
   }
@@ -68,7 +55,7 @@ AcceptanceLimit& limit_of(Limits& limits, Channel channel, std::string_view metr
 /// One limit, as it holds for a channel.
 void read_limit_into(Limits& limits, const TomlNode& node, std::string_view key, Channel channel) {
   const bool warns = key.starts_with(kWarnPrefix);
-  const MetricRow& metric = *metric_named(warns ? key.substr(kWarnPrefix.size()) : key);
+  const MetricSpec& metric = *metric_named(warns ? key.substr(kWarnPrefix.size()) : key);
   AcceptanceLimit& entry = limit_of(limits, channel, metric.name);
   (warns ? entry.warn : entry.limit) = read_limit(node, metric, channel);
   if (!entry.limit || !entry.warn || *entry.limit == *entry.warn) return;

@@ -72,20 +72,6 @@ std::string_view to_string(Scope scope) {
   return "";
 }
 
-std::string_view to_string(Waveform waveform) {
-  switch (waveform) {
-    case Waveform::sine:
-      return "sine";
-    case Waveform::square:
-      return "square";
-    case Waveform::chirp:
-      return "chirp";
-    case Waveform::recorded:
-      return "recorded";
-  }
-  return "";
-}
-
 std::string_view to_string(Use use) {
   switch (use) {
     case Use::fit:

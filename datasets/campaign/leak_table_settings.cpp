@@ -26,10 +26,6 @@ constexpr std::array kFeatures{FeatureName{Feature::servo_flow, "servo_flow"},
                                FeatureName{Feature::mean, "mean"}, FeatureName{Feature::rms, "rms"},
                                FeatureName{Feature::std, "std"}};
 
-std::vector<std::pair<std::string, Waveform>> waveforms() {
-  return {{"sine", Waveform::sine}, {"square", Waveform::square}};
-}
-
 std::string_view amplitude_unit(const Campaign& campaign) {
   return campaign.rig.controller == model::ControllerKind::pid ? "m" : "V";
 }
@@ -76,7 +72,7 @@ std::vector<double> read_targets(const TomlNode& node) {
 
 void read_drive(const TomlNode& node, const Campaign& campaign, LeakSignal& signal) {
   signal.waveform =
-      node.require("waveform", "\"sine\" or \"square\"").choice<Waveform>(waveforms());
+      node.require("waveform", "\"sine\" or \"square\"").choice<Waveform>(periodic_waveforms());
   signal.frequency_hz = node.require("frequency", "such as \"0.1 Hz\"").positive_quantity("Hz");
   signal.amplitude =
       node.require("amplitude", "half of peak to peak").positive_quantity(amplitude_unit(campaign));
@@ -218,9 +214,7 @@ void read_range(const TomlNode& node, LeakTableSettings& settings) {
 std::vector<LeakSignal> signals_of(const Campaign& campaign) {
   std::vector<LeakSignal> signals;
   for (const Condition& condition : campaign.conditions) {
-    const bool periodic =
-        condition.waveform == Waveform::sine || condition.waveform == Waveform::square;
-    if (!periodic || condition.use == Use::ignore) continue;
+    if (!is_periodic(condition.waveform) || condition.use == Use::ignore) continue;
     LeakSignal signal;
     signal.waveform = condition.waveform;
     signal.frequency_hz = *condition.frequency_hz;

@@ -20,7 +20,7 @@ std::vector<double> drive_of(const Campaign& campaign, const Condition& conditio
                              const Repeat& repeat) {
   const auto recorded = repeat.values.find(drive_channel(campaign));
   if (recorded != repeat.values.end()) return recorded->second;
-  if (condition.waveform != Waveform::sine && condition.waveform != Waveform::square) return {};
+  if (!is_periodic(condition.waveform)) return {};
   const model::Signal drive =
       inputs_of(campaign, condition, values_in(campaign, condition), nullptr).drive;
   std::vector<double> result(repeat.time_s.size());

@@ -409,7 +409,7 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
       time_s.size() < 2 ? 0.0
                         : static_cast<double>(time_s.size() - 1) / (time_s.back() - time_s.front());
   const WaveformGuess guess = guess_waveform(time_s, values);
-  const bool periodic = guess.waveform == Waveform::sine || guess.waveform == Waveform::square;
+  const bool periodic = is_periodic(guess.waveform);
   std::string text =
       fmt::format("# {}: {}; {} samples at {:.6g} Hz, {:.6g} s\n", info(drive->channel).key,
                   guess.description, time_s.size(), rate_hz, time_s.back() - time_s.front());

@@ -79,9 +79,8 @@ std::string features_csv(const LeakTableResult& result) {
 
 std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,
                       const calib::PeriodicSeries* healthy) {
-  const model::Signal drive = signal.waveform == datasets::Waveform::square
-                                  ? model::Signal::square(signal.amplitude, signal.frequency_hz)
-                                  : model::Signal::sine(signal.amplitude, signal.frequency_hz);
+  const model::Signal drive =
+      datasets::periodic_signal(signal.waveform, signal.amplitude, signal.frequency_hz);
   std::vector<std::string> names{"time_s", "drive"};
   for (const model::Output output : calib::kFeatureOutputs) names.emplace_back(output_name(output));
   if (healthy != nullptr) names.emplace_back("residual_m");

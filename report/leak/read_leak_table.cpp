@@ -13,11 +13,9 @@
 namespace rigcal::report {
 namespace {
 
-using datasets::Waveform;
-
 TableLimit read_entry(const JsonNode& entry, bool closed_loop) {
   TableLimit limit;
-  limit.waveform = one_of(entry["waveform"], std::array{Waveform::sine, Waveform::square});
+  limit.waveform = one_of(entry["waveform"], datasets::periodic_waveforms());
   limit.frequency_hz = entry["frequency_hz"].real();
   limit.amplitude = entry[closed_loop ? "amplitude_m" : "amplitude_v"].real();
   limit.target_percent = entry["target_percent"].real();

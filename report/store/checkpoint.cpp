@@ -71,9 +71,9 @@ calib::StartReport start_from(const Json& json) {
   return start;
 }
 
-Json ledger_json(const calib::EvaluationLedger& ledger) {
+Json counters_json(const calib::EvaluationCounters& counters) {
   Json failures = Json::array();
-  for (const calib::SimulationFailure& each : ledger.failures) {
+  for (const calib::SimulationFailure& each : counters.failures) {
     failures.push_back({{"condition", each.condition},
                         {"parameters", each.parameters},
                         {"time_s", each.time_s},
@@ -81,21 +81,21 @@ Json ledger_json(const calib::EvaluationLedger& ledger) {
                         {"start", each.start}});
   }
   Json kept = Json::array();
-  for (const auto& [key, count] : ledger.kept)
+  for (const auto& [key, count] : counters.kept)
     kept.push_back({key.first, static_cast<int>(key.second), count});
-  return {{"evaluations", ledger.evaluations},
-          {"failure_count", ledger.failure_count},
+  return {{"evaluations", counters.evaluations},
+          {"failure_count", counters.failure_count},
           {"failures", failures},
           {"kept", kept}};
 }
 
-calib::EvaluationLedger ledger_from(const Json& json) {
-  calib::EvaluationLedger ledger;
+calib::EvaluationCounters counters_from(const Json& json) {
+  calib::EvaluationCounters counters;
   constexpr long kMostEvaluations = long{1} << 53;
-  ledger.evaluations = whole(json, "evaluations", 0L, kMostEvaluations);
-  ledger.failure_count = whole(json, "failure_count", 0L, kMostEvaluations);
+  counters.evaluations = whole(json, "evaluations", 0L, kMostEvaluations);
+  counters.failure_count = whole(json, "failure_count", 0L, kMostEvaluations);
   for (const Json& each : json.at("failures")) {
-    calib::SimulationFailure& failure = ledger.failures.emplace_back();
+    calib::SimulationFailure& failure = counters.failures.emplace_back();
     failure.condition = each.at("condition").get<std::string>();
     failure.parameters = each.at("parameters").get<std::vector<std::pair<std::string, double>>>();
     failure.time_s = each.at("time_s").get<double>();
@@ -108,9 +108,9 @@ calib::EvaluationLedger ledger_from(const Json& json) {
     const auto status = static_cast<model::SimulationStatus>(
         whole(entry, "status", 0, static_cast<int>(model::SimulationStatus::cancelled)));
     const auto condition = static_cast<std::size_t>(whole(entry, "condition", 0, kMostCounted));
-    ledger.kept[{condition, status}] = whole(entry, "count", 0, kMostCounted);
+    counters.kept[{condition, status}] = whole(entry, "count", 0, kMostCounted);
   }
-  return ledger;
+  return counters;
 }
 
 void require_same_fit(const std::string& file, const Json& found, const Json& expected) {
@@ -143,7 +143,7 @@ std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenanc
     json["starts"].push_back(start_json(start));
   json["best"] = checkpoint.best;
   json["best_z"] = checkpoint.best_z;
-  json["ledger"] = ledger_json(checkpoint.ledger);
+  json["ledger"] = counters_json(checkpoint.counters);
   json["sha256"] = sha256_of_text(json_text(json));
   return json_text(json);
 }
@@ -164,7 +164,7 @@ calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Prove
     }
     checkpoint.best = whole(json, "best", 0, static_cast<int>(checkpoint.starts.size()));
     checkpoint.best_z = json.at("best_z").get<std::vector<double>>();
-    checkpoint.ledger = ledger_from(json.at("ledger"));
+    checkpoint.counters = counters_from(json.at("ledger"));
     require_own_hash(json);
     return checkpoint;
   } catch (const NoCheckpoint& error) {

@@ -107,6 +107,18 @@ Enum one_of(const JsonNode& node, const std::array<Enum, N>& values) {
   node.fail("one of " + names);
 }
 
+/// The value of a table {name, value} whose name a text is.
+template <typename Value>
+Value one_of(const JsonNode& node, const std::vector<std::pair<std::string, Value>>& choices) {
+  const std::string text = node.string();
+  std::string names;
+  for (const auto& [name, value] : choices) {
+    if (name == text) return value;
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  node.fail("one of " + names);
+}
+
 /// The row of the parameter table whose result name a text is.
 int parameter_row(const JsonNode& name, model::PlantKind plant);
 

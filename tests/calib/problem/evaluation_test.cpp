@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "calib/problem/loss.hpp"
-#include "calib/problem/triangle.hpp"
+#include "calib/problem/r_factor.hpp"
 #include "tests/calib/twin.hpp"
 
 namespace rigcal::calib {
@@ -60,7 +60,7 @@ TEST_CASE("evaluation: Jacobian equals finite differences for every scope", "[ca
   }
 }
 
-TEST_CASE("evaluation: the triangle keeps cost and normal equations", "[calib]") {
+TEST_CASE("evaluation: the R factor keeps cost and normal equations", "[calib]") {
   const Twin twin = twin_of_every_scope();
   const auto records = twin.records(1300, 1000.0, 3);  // more than two blocks of rows
   const Problem problem = problem_of(twin, records);
@@ -71,26 +71,26 @@ TEST_CASE("evaluation: the triangle keeps cost and normal equations", "[calib]")
   Eigen::MatrixXd full(rows.jacobian.rows(), rows.jacobian.cols() + 1);
   full << rows.jacobian, rows.residual;
   const Eigen::MatrixXd expected = full.transpose() * full;
-  const Eigen::MatrixXd actual = found.triangle.transpose() * found.triangle;
+  const Eigen::MatrixXd actual = found.r_factor.transpose() * found.r_factor;
   // 1e-12: rounding of 2600 products, against the largest element.
   CHECK((actual - expected).cwiseAbs().maxCoeff() < 1e-12 * expected.cwiseAbs().maxCoeff());
   CHECK_THAT(found.cost(), WithinRel(0.5 * rows.residual.squaredNorm(), 1e-12));
 }
 
-TEST_CASE("triangle: a column of almost nothing leaves the others alone", "[calib]") {
+TEST_CASE("R factor: a column of almost nothing leaves the others alone", "[calib]") {
   // The sensitivity to an initial state that decays: its squares are no normal numbers.
   const double size = GENERATE(0.0, 1e-162, 1e-157, 1e-155);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Random(700, 3);
   rows.col(1) *= size;
-  Triangle triangle(3);
-  triangle.add(rows);
-  REQUIRE(triangle.get().allFinite());
+  RFactor r_factor(3);
+  r_factor.add(rows);
+  REQUIRE(r_factor.get().allFinite());
   Eigen::MatrixXd others(700, 2);
   others << rows.col(0), rows.col(2);
-  Triangle alone(2);
+  RFactor alone(2);
   alone.add(others);
-  CHECK_THAT(triangle.get().col(2).norm(), WithinRel(alone.get().col(1).norm(), 1e-12));
-  CHECK_THAT(std::abs(triangle.get()(0, 0)), WithinRel(others.col(0).norm(), 1e-12));
+  CHECK_THAT(r_factor.get().col(2).norm(), WithinRel(alone.get().col(1).norm(), 1e-12));
+  CHECK_THAT(std::abs(r_factor.get()(0, 0)), WithinRel(others.col(0).norm(), 1e-12));
 }
 
 TEST_CASE("evaluation: residuals only inside the windows", "[calib]") {

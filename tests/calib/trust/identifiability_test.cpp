@@ -38,7 +38,7 @@ struct Graded {
     optimum.z = problem->start();
     OptimumCheck check;
     check.side = {BoundSide::inside};
-    check.held = {false};
+    check.active_bound = {false};
     return describe_unknowns(*problem, optimum, check, found).at(0);
   }
 };

@@ -31,8 +31,8 @@ Checkpoint two_starts() {
   }
   checkpoint.best = 1;
   checkpoint.best_z = {0.25, 0.5};
-  checkpoint.ledger.evaluations = 20;
-  checkpoint.ledger.kept[{0, rigcal::model::SimulationStatus::not_finite}] = 3;
+  checkpoint.counters.evaluations = 20;
+  checkpoint.counters.kept[{0, rigcal::model::SimulationStatus::not_finite}] = 3;
   return checkpoint;
 }
 

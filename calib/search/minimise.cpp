@@ -1,4 +1,4 @@
-#include "calib/search/descend.hpp"
+#include "calib/search/minimise.hpp"
 
 #include <ceres/iteration_callback.h>
 #include <ceres/problem.h>
@@ -16,50 +16,50 @@ namespace {
 constexpr int kMaxCalls = 4;
 /// Standard errors that may be left of a step with coarse simulations: their own errors leave more.
 constexpr double kCoarseOffset = 1.0;
-/// Share of the cost that may be left to gain in an opening: the model then errs by a fraction of
+/// Share of the cost that may be left to gain in a horizon: the model then errs by a fraction of
 /// what it leaves anyway.
-constexpr double kOpeningLeaves = 0.05;
+constexpr double kHorizonLeaves = 0.05;
 /// Standard errors that may be left with it: in many samples a parameter that is far off, but acts
 /// on few of them, is a small share of the cost.
-constexpr double kOpeningOffset = 10.0;
+constexpr double kHorizonOffset = 10.0;
 /// Relative change of the cost below which coarse simulations tell no more.
 constexpr double kCoarseChange = 1e-4;
 
-/// Whether a parameter that was held at a bound is drawn inwards now.
-bool lets_go(const std::vector<bool>& held, const std::vector<bool>& now) {
-  for (std::size_t j = 0; j < held.size(); ++j) {
-    if (held[j] && !now[j]) return true;
+/// Whether a parameter that was at an active bound is drawn inwards now.
+bool lets_go(const std::vector<bool>& active_bound, const std::vector<bool>& now) {
+  for (std::size_t j = 0; j < active_bound.size(); ++j) {
+    if (active_bound[j] && !now[j]) return true;
   }
   return false;
 }
 
-/// Whether an opening tells no more: the next one, a few times as long, tells much better.
-bool opening_is_told(const Problem& problem, const Evaluator& evaluator,
-                     const OptimumCheck& check) {
+/// Whether a horizon carries no more information: the next one, a few times as long, has far more.
+bool horizon_exhausted(const Problem& problem, const Evaluator& evaluator,
+                       const OptimumCheck& check) {
   const Evaluation& best = evaluator.best();
   const double residuals = best.share * static_cast<double>(problem.residual_count());
   const bool noise = !problem.has_estimated_sd() && 2.0 * best.cost <= residuals;
-  return noise || (check.reducible <= kOpeningLeaves && check.relative_offset <= kOpeningOffset);
+  return noise || (check.reducible <= kHorizonLeaves && check.relative_offset <= kHorizonOffset);
 }
 
 bool near_enough(const Problem& problem, const Evaluator& evaluator, const OptimumCheck& check) {
-  if (evaluator.effort().exact) return check.stationary();
+  if (evaluator.fidelity().exact) return check.stationary();
   return check.relative_offset <= kCoarseOffset ||
-         (!evaluator.effort().whole() && opening_is_told(problem, evaluator, check));
+         (!evaluator.fidelity().whole() && horizon_exhausted(problem, evaluator, check));
 }
 
 /// Tells of each iteration, and ends the call at a stationary point, when the set of parameters to
-/// be held at a bound has changed for good, on a signal, or at the time limit.
+/// be fixed at a bound has changed for good, on a signal, or at the time limit.
 class Watcher final : public ceres::IterationCallback {
  public:
   Watcher(const Problem& problem, const Evaluator& evaluator, const FitOptions& options, int start,
-          int first_iteration, const std::vector<bool>& held)
+          int first_iteration, const std::vector<bool>& active_bound)
       : problem_(problem),
         evaluator_(evaluator),
         options_(options),
         start_(start),
         first_iteration_(first_iteration),
-        held_(held) {}
+        active_bound_(active_bound) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
     try {
@@ -67,13 +67,13 @@ class Watcher final : public ceres::IterationCallback {
       if (options_.progress) {
         const double change = summary.cost > 0.0 ? summary.cost_change / summary.cost : 0.0;
         options_.progress(start_, first_iteration_ + summary.iteration,
-                          summary.cost / problem_.share_at(evaluator_.effort()), change,
+                          summary.cost / problem_.share_at(evaluator_.fidelity()), change,
                           summary.cumulative_time_in_seconds);
       }
       const OptimumCheck check = check_optimum(problem_, evaluator_.best());
       stationary_ = near_enough(problem_, evaluator_, check);
-      other_bounds_ = check.held == held_ ? 0 : other_bounds_ + 1;
-      if (lets_go(held_, check.held)) other_bounds_ = kPatience;
+      other_bounds_ = check.active_bound == active_bound_ ? 0 : other_bounds_ + 1;
+      if (lets_go(active_bound_, check.active_bound)) other_bounds_ = kPatience;
     } catch (...) {
       error_ = std::current_exception();
     }
@@ -96,7 +96,7 @@ class Watcher final : public ceres::IterationCallback {
   const FitOptions& options_;
   int start_;
   int first_iteration_;
-  const std::vector<bool>& held_;
+  const std::vector<bool>& active_bound_;
   int iterations_ = 0;
   int other_bounds_ = 0;
   bool stationary_ = false;
@@ -105,7 +105,7 @@ class Watcher final : public ceres::IterationCallback {
 
 /// One call of Ceres; z is where it starts and its working space.
 ceres::Solver::Summary call_ceres(const Problem& problem, Evaluator& evaluator,
-                                  std::vector<double>& z, const std::vector<bool>& held,
+                                  std::vector<double>& z, const std::vector<bool>& active_bound,
                                   double trust_radius, int iterations, Watcher& watcher,
                                   const FitOptions& options) {
   evaluator.watch(z);
@@ -117,7 +117,7 @@ ceres::Solver::Summary call_ceres(const Problem& problem, Evaluator& evaluator,
     system.AddParameterBlock(&z[j], 1);
     system.SetParameterLowerBound(&z[j], 0, 0.0);
     system.SetParameterUpperBound(&z[j], 0, 1.0);
-    if (held[j]) system.SetParameterBlockConstant(&z[j]);
+    if (active_bound[j]) system.SetParameterBlockConstant(&z[j]);
     if (unknowns[j].prior) {
       system.AddResidualBlock(new PriorCost(problem.map, static_cast<int>(j), *unknowns[j].prior),
                               nullptr, &z[j]);
@@ -131,14 +131,14 @@ ceres::Solver::Summary call_ceres(const Problem& problem, Evaluator& evaluator,
   }
 
   ceres::Solver::Options settings;
-  settings.linear_solver_type = ceres::DENSE_QR;  // the triangles are small
+  settings.linear_solver_type = ceres::DENSE_QR;  // the R factors are small
   settings.num_threads = 1;  // more would add up in another order; conditions run in parallel
   settings.logging_type = ceres::SILENT;
   settings.minimizer_progress_to_stdout = false;
   settings.max_num_iterations = iterations;
   settings.initial_trust_region_radius = trust_radius;
   settings.function_tolerance =
-      evaluator.effort().exact ? options.function_tolerance : kCoarseChange;
+      evaluator.fidelity().exact ? options.function_tolerance : kCoarseChange;
   settings.gradient_tolerance = options.gradient_tolerance;
   settings.parameter_tolerance = options.parameter_tolerance;
   settings.callbacks.push_back(&watcher);
@@ -172,7 +172,7 @@ std::string stop_reason(const Evaluator& evaluator, int iterations) {
   if (evaluator.out_of_time()) return "stopped at the time limit";
   if (evaluator.out_of_evaluations()) {
     return fmt::format("stopped after {} evaluations, the most allowed",
-                       evaluator.ledger().evaluations);
+                       evaluator.counters().evaluations);
   }
   return fmt::format("stopped after {} iterations, the most allowed, before it converged",
                      iterations);
@@ -190,16 +190,16 @@ SolveResult no_start(const Problem& problem, const Evaluator& evaluator, const E
   return result;
 }
 
-SolveResult descend(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
-                    double trust_radius, int iterations, int start, const FitOptions& options) {
+SolveResult minimise(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
+                     double trust_radius, int iterations, int start, const FitOptions& options) {
   SolveResult result;
   const Evaluation first = evaluator.evaluate(z);
   if (!first.ok) return no_start(problem, evaluator, first);
-  std::vector<bool> held(z.size(), false);
+  std::vector<bool> active_bound(z.size(), false);
   int retries = 0;
   while (retries < kMaxCalls) {
-    Watcher watcher(problem, evaluator, options, start, result.iterations, held);
-    const auto summary = call_ceres(problem, evaluator, z, held, trust_radius,
+    Watcher watcher(problem, evaluator, options, start, result.iterations, active_bound);
+    const auto summary = call_ceres(problem, evaluator, z, active_bound, trust_radius,
                                     std::max(iterations - result.iterations, 0), watcher, options);
     evaluator.rethrow();
     watcher.rethrow();
@@ -207,8 +207,9 @@ SolveResult descend(const Problem& problem, Evaluator& evaluator, std::vector<do
     z = evaluator.best().z;
     result.check = check_optimum(problem, evaluator.best());
     const bool agreed = summary.termination_type == ceres::CONVERGENCE;
-    const bool nearly = evaluator.effort().exact ? result.check.nearly_stationary()
-                                                 : !lets_go(held, result.check.held);
+    const bool nearly = evaluator.fidelity().exact
+                            ? result.check.nearly_stationary()
+                            : !lets_go(active_bound, result.check.active_bound);
     if (near_enough(problem, evaluator, result.check) || (agreed && nearly)) {
       result.status = FitStatus::converged;
       result.message = converged_after(result.iterations);
@@ -229,9 +230,9 @@ SolveResult descend(const Problem& problem, Evaluator& evaluator, std::vector<do
                   result.check.relative_offset);
     if (!watcher.bounds_changed() || watcher.iterations() == 0) ++retries;
     trust_radius = kFirstTrustRadius;
-    held = result.check.held;
+    active_bound = result.check.active_bound;
     for (std::size_t j = 0; j < z.size(); ++j) {
-      if (held[j]) z[j] = result.check.side[j] == BoundSide::lower ? 0.0 : 1.0;
+      if (active_bound[j]) z[j] = result.check.side[j] == BoundSide::lower ? 0.0 : 1.0;
     }
     if (!evaluator.evaluate(z).ok) break;  // not even the bound itself
   }

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "calib/search/evaluator.hpp"
-#include "calib/search/openings.hpp"
+#include "calib/search/growing_horizon.hpp"
 #include "calib/search/solve.hpp"
 #include "tests/calib/twin.hpp"
 
@@ -28,29 +28,29 @@ Twin three_signals() {
 
 }  // namespace
 
-TEST_CASE("effort: the first period of a sine or square, all of another signal", "[calib]") {
+TEST_CASE("fidelity: the first period of a sine or square, all of another signal", "[calib]") {
   Twin twin = three_signals();
   twin.campaign.conditions[1].windows = {{0.25, 0.275}, {0.3, 2.0}};
   const auto records = twin.records(2000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
   CHECK(problem.repeats_itself());
-  const Effort longest = Effort::opening(opening_lengths_s(problem).back());
+  const Fidelity longest = Fidelity::first(horizons_s(problem).back());
   CHECK(problem.conditions[0].rows_at(longest) == 501);
   // From 0.25 s to 0.35 s, but for what lies between the windows.
   CHECK(problem.conditions[1].rows_at(longest) == 26 + 51);
   CHECK_THAT(problem.conditions[1].fit_times(longest).back(), WithinRel(0.35, 1e-12));
   CHECK(problem.conditions[2].rows_at(longest) == 2000);
-  CHECK(problem.conditions[1].rows_at(Effort::opening(0.02)) == 21);
-  CHECK(problem.conditions[2].rows_at(Effort::opening(0.02)) == 21);
-  CHECK(problem.conditions[0].rows_at(Effort::coarse) == 2000);
+  CHECK(problem.conditions[1].rows_at(Fidelity::first(0.02)) == 21);
+  CHECK(problem.conditions[2].rows_at(Fidelity::first(0.02)) == 21);
+  CHECK(problem.conditions[0].rows_at(Fidelity::coarse) == 2000);
   CHECK(problem.conditions[0].fit_times().size() == 2000);
 }
 
-TEST_CASE("effort: openings grow from four samples to the longest first period", "[calib]") {
+TEST_CASE("fidelity: horizons grow from four samples to the longest first period", "[calib]") {
   Twin twin = three_signals();
   twin.campaign.conditions.pop_back();  // the sweep, which does not repeat itself
   const auto records = twin.records(2000, 1000.0, 1);
-  const std::vector<double> lengths_s = opening_lengths_s(problem_of(twin, records));
+  const std::vector<double> lengths_s = horizons_s(problem_of(twin, records));
   REQUIRE(lengths_s.size() == 5);  // four steps of at most 4 from 4 ms to 0.5 s
   CHECK_THAT(lengths_s.front(), WithinRel(4e-3, 1e-12));
   CHECK_THAT(lengths_s.back(), WithinRel(0.5, 1e-12));
@@ -58,19 +58,19 @@ TEST_CASE("effort: openings grow from four samples to the longest first period",
     CHECK_THAT(lengths_s[k] / lengths_s[k - 1], WithinRel(std::pow(125.0, 0.25), 1e-9));
   // What a record alone has to tell takes four samples more.
   twin.free("position_offset", 0.0, -5e-3, 5e-3, datasets::Scope::condition);
-  CHECK_THAT(opening_lengths_s(problem_of(twin, records)).front(), WithinRel(8e-3, 1e-12));
+  CHECK_THAT(horizons_s(problem_of(twin, records)).front(), WithinRel(8e-3, 1e-12));
 }
 
-TEST_CASE("effort: less than a period is everything", "[calib]") {
+TEST_CASE("fidelity: less than a period is everything", "[calib]") {
   Twin twin = three_signals();
   twin.campaign.conditions.resize(1);
   const auto records = twin.records(400, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
   CHECK_FALSE(problem.repeats_itself());
-  CHECK(problem.of_starts() == Effort::coarse);
+  CHECK(problem.of_starts() == Fidelity::coarse);
 }
 
-TEST_CASE("effort: each record is simulated as exactly as its own noise asks", "[calib]") {
+TEST_CASE("fidelity: each record is simulated as exactly as its own noise asks", "[calib]") {
   Twin twin = three_signals();
   twin.noise_sd_m = 2e-6;
   SECTION("known noise") {
@@ -84,7 +84,7 @@ TEST_CASE("effort: each record is simulated as exactly as its own noise asks", "
     REQUIRE(share(1) > 3.0 * share(0));
     CHECK_THAT(problem.tolerance_of(1) / problem.tolerance_of(0),
                WithinRel(share(1) / share(0), 1e-9));
-    CHECK(problem.tolerance_of(1, Effort::opening(0.1)) == problem.coarse_tolerance());
+    CHECK(problem.tolerance_of(1, Fidelity::first(0.1)) == problem.coarse_tolerance());
   }
   SECTION("noise that is not known tells nothing") {
     const auto records = twin.records(2000, 1000.0, 1, model::InitialState::rest, false);
@@ -98,16 +98,16 @@ TEST_CASE("effort: each record is simulated as exactly as its own noise asks", "
   }
 }
 
-TEST_CASE("effort: the cost of a start needs no derivatives", "[calib]") {
+TEST_CASE("fidelity: the cost of a start needs no derivatives", "[calib]") {
   const Twin twin = three_signals();
   const auto records = twin.records(2000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
   EvaluationOptions cost_alone;
-  cost_alone.effort = Effort::cost;
+  cost_alone.fidelity = Fidelity::cost;
   const Evaluation alone = evaluate_at(problem, problem.start(), 1, cost_alone);
   const Evaluation whole = evaluate_at(problem, problem.start(), 1);
   REQUIRE(alone.ok);
-  CHECK(alone.conditions.front().triangle.cols() == 1);
+  CHECK(alone.conditions.front().r_factor.cols() == 1);
   CHECK_THAT(alone.cost, WithinRel(whole.cost, 1e-2));
 }
 
@@ -122,7 +122,7 @@ TEST_CASE("solve: first periods that mislead are not believed", "[calib]") {
   const Problem problem = problem_of(twin, records);
   const auto end_from = [&](std::vector<double> z, bool all_at_once) {
     Evaluator evaluator(problem, {});
-    const SolveResult found = all_at_once ? refine(problem, evaluator, std::move(z), 100, 1, {})
+    const SolveResult found = all_at_once ? polish(problem, evaluator, std::move(z), 100, 1, {})
                                           : solve(problem, evaluator, std::move(z), 100, 1, {});
     CHECK(found.status == FitStatus::converged);
     return evaluator.best();
@@ -135,7 +135,7 @@ TEST_CASE("solve: first periods that mislead are not believed", "[calib]") {
   CHECK_THAT(reference.cost, WithinRel(from_truth.cost, 1e-5));
 }
 
-TEST_CASE("solve: openings that mislead are not believed", "[calib]") {
+TEST_CASE("solve: horizons that mislead are not believed", "[calib]") {
   const Twin twin = three_signals();
   auto records = twin.records(2000, 1000.0, 1);
   for (std::size_t i = 0; i < 12; ++i)  // a plug that was not in yet
@@ -168,7 +168,7 @@ TEST_CASE("solve: a step of half a standard error is predicted where residuals a
       records[0].channels.at(datasets::Channel::position).mean[i] += lean_m;
     const Problem problem = problem_of(twin, records);
     Evaluator evaluator(problem, {});
-    REQUIRE(refine(problem, evaluator, problem.start(), 100, 1, {}, LastStep::simulated).status ==
+    REQUIRE(polish(problem, evaluator, problem.start(), 100, 1, {}, LastStep::simulated).status ==
             FitStatus::converged);
     // Along the first unknown until half a standard error is left.
     std::vector<double> z = evaluator.best().z;
@@ -179,9 +179,9 @@ TEST_CASE("solve: a step of half a standard error is predicted where residuals a
     for (; offset() < 0.5; step *= 1.2) z[0] += step;
     REQUIRE(offset() < 1.0);
     Evaluator again(problem, {});
-    const auto found = refine(problem, again, z, 100, 1, {}, last);
+    const auto found = polish(problem, again, z, 100, 1, {}, last);
     CHECK(found.status == FitStatus::converged);
-    return again.ledger().evaluations;
+    return again.counters().evaluations;
   };
   CHECK(evaluations(true, 0.0, LastStep::judged) == 1);
   CHECK(evaluations(true, 0.0, LastStep::predicted) > 1);
@@ -208,7 +208,7 @@ TEST_CASE("solve: more records of the same take no more evaluations", "[calib]")
     const Problem problem = problem_of(twin, records);
     Evaluator evaluator(problem, {});
     CHECK(solve(problem, evaluator, problem.start(), 100, 1, {}).status == FitStatus::converged);
-    return evaluator.ledger().evaluations;
+    return evaluator.counters().evaluations;
   };
   CHECK(evaluations(8) <= evaluations(1) + 3);
 }
@@ -226,23 +226,23 @@ TEST_CASE("solve: what rings is found from a start that is out of step", "[calib
   const Problem problem = problem_of(twin, records);
   const auto fitted_from = [&](const auto& method) {
     Evaluator evaluator(problem, {});
-    evaluator.set_effort(Effort::coarse);
+    evaluator.set_fidelity(Fidelity::coarse);
     method(evaluator);
     return problem.to_physical(evaluator.best().z);
   };
-  const auto by_openings = fitted_from(
+  const auto by_growing_horizon = fitted_from(
       [&](Evaluator& evaluator) { solve(problem, evaluator, problem.start(), 100, 1, {}); });
   const auto all_at_once = fitted_from([&](Evaluator& evaluator) {
-    descend(problem, evaluator, problem.start(), kFirstTrustRadius, 100, 1, {});
+    minimise(problem, evaluator, problem.start(), kFirstTrustRadius, 100, 1, {});
   });
   const std::vector<double> truth{85.0, 689e6, 0.0406e-3};
   for (std::size_t j = 0; j < truth.size(); ++j)
-    CHECK_THAT(by_openings[j], WithinRel(truth[j], 0.05));
-  // What openings are for: else the start ends in a valley of another frequency.
+    CHECK_THAT(by_growing_horizon[j], WithinRel(truth[j], 0.05));
+  // What horizons are for: else the start ends in a valley of another frequency.
   CHECK(std::abs(all_at_once[1] / truth[1] - 1.0) > 0.5);
 }
 
-TEST_CASE("solve: a fit stopped among openings is judged by whole records", "[calib]") {
+TEST_CASE("solve: a fit stopped among horizons is judged by whole records", "[calib]") {
   const Twin twin = three_signals();
   const auto records = twin.records(2000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);

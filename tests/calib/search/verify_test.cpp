@@ -1,4 +1,4 @@
-#include "calib/search/settle.hpp"
+#include "calib/search/verify.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -51,13 +51,13 @@ TEST_CASE("predict: off by the second order of the step", "[calib]") {
   CHECK_THAT(predict(problem, begin, begin.z).cost, WithinRel(begin.cost, 1e-12));
 }
 
-TEST_CASE("settle: a claimed end that is no minimum is solved on from", "[calib]") {
+TEST_CASE("verify: a claimed end that is no minimum is solved on from", "[calib]") {
   const Twin twin = two_signals();
   const auto records = twin.records(1000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
   MultiStart found = claimed_at(problem, problem.start());
   Evaluator evaluator(problem, {});
-  const auto rows = settle(problem, evaluator, {}, found);
+  const auto rows = verify_optimum(problem, evaluator, {}, found);
   CHECK(found.result.status == FitStatus::converged);
   CHECK(found.result.iterations > 0);
   CHECK(found.result.check.stationary());
@@ -73,7 +73,7 @@ TEST_CASE("settle: a claimed end that is no minimum is solved on from", "[calib]
   CHECK(found.starts[0].status == FitStatus::converged);
 }
 
-TEST_CASE("settle: an end that a checkpoint brings back is judged, too", "[calib]") {
+TEST_CASE("verify: an end that a checkpoint brings back is judged, too", "[calib]") {
   const Twin twin = two_signals();
   const auto records = twin.records(1000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
@@ -84,12 +84,12 @@ TEST_CASE("settle: an end that a checkpoint brings back is judged, too", "[calib
   off[0] += 1e-3;
   found.optimum = evaluate_at(problem, off, 1);
   REQUIRE(check_optimum(problem, found.optimum).relative_offset > 0.1);
-  settle(problem, evaluator, {}, found);
+  verify_optimum(problem, evaluator, {}, found);
   CHECK(found.result.status == FitStatus::converged);
   CHECK(found.result.check.nearly_stationary());
 }
 
-TEST_CASE("settle: where there is no time left to make it good, it is not called converged",
+TEST_CASE("verify: where there is no time left to make it good, it is not called converged",
           "[calib]") {
   const Twin twin = two_signals();
   const auto records = twin.records(1000, 1000.0, 1);
@@ -98,7 +98,7 @@ TEST_CASE("settle: where there is no time left to make it good, it is not called
   Evaluator::Options options;
   options.max_evaluations = 1;
   Evaluator evaluator(problem, options);
-  settle(problem, evaluator, {}, found);
+  verify_optimum(problem, evaluator, {}, found);
   CHECK(found.result.status == FitStatus::stopped);
   CHECK_THAT(found.result.message, Contains("evaluations"));
   CHECK(found.optimum.simulated());

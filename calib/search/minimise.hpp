@@ -16,25 +16,25 @@ struct SolveResult {
   OptimumCheck check;  ///< of the best point, if there is one
 };
 
-/// Ceres' own 1e4 is all but a full Gauss-Newton step: far from the optimum it ends in a corner of
-/// the box, where it may stay.
+/// Ceres' default of 1e4 is effectively unlimited: from a poor start the first step may end in a
+/// corner of the bounds and stay there.
 inline constexpr double kFirstTrustRadius = 10.0;
 /// Near it the full step is the right one.
 inline constexpr double kNearTrustRadius = 1e8;
 
-/// Calls Ceres until the point is near enough to a minimum, with simulations of the evaluator's
-/// effort: stationary where they are exact, else to about a standard error, or as far as an opening
-/// tells. Where Ceres stops
-/// elsewhere it is called again from the best point with a fresh trust region, up to three times.
+/// Trust-region minimisation by Ceres at the evaluator's fidelity: to a stationary point where the
+/// simulations are exact, else to within about a standard error, or until a short horizon carries
+/// no more information. Where Ceres stops elsewhere it is called again from the best point with a
+/// fresh trust region, up to three times.
 ///
-/// Parameters at a bound that the cost pushes outwards are held there in the next call, because a
-/// projected Gauss-Newton step is none for the others; those that it pushes inwards are let go.
+/// Parameters at an active bound are fixed there in the next call, because a projected Gauss-Newton
+/// step is not the right step for the others; those that the cost pushes inwards are released.
 ///
 /// @param z           where it starts, in the unit box
 /// @param iterations  budget of all calls together
 /// @param start       number of the start, for `options.progress`
-SolveResult descend(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
-                    double trust_radius, int iterations, int start, const FitOptions& options);
+SolveResult minimise(const Problem& problem, Evaluator& evaluator, std::vector<double> z,
+                     double trust_radius, int iterations, int start, const FitOptions& options);
 
 /// The result where not even the start could be simulated.
 SolveResult no_start(const Problem& problem, const Evaluator& evaluator, const Evaluation& first);

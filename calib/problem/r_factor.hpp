@@ -4,22 +4,22 @@
 
 namespace rigcal::calib {
 
-/// Replaces the many rows of [J r] by a square upper triangle R with R^T R = [J r]^T [J r]: cost,
+/// Replaces the many rows of [J r] by a upper triangle R with R^T R = [J r]^T [J r]: cost,
 /// gradient and Gauss-Newton matrix of least squares stay what they were, to rounding and without
 /// squaring the condition number. Rows are taken in blocks, in the order given.
-class Triangle {
+class RFactor {
  public:
-  explicit Triangle(Eigen::Index columns) : triangle_(Eigen::MatrixXd::Zero(columns, columns)) {}
+  explicit RFactor(Eigen::Index columns) : factor_(Eigen::MatrixXd::Zero(columns, columns)) {}
 
   /// @param rows  shape (any, columns)
   void add(Eigen::MatrixXd rows);
 
-  const Eigen::MatrixXd& get() const { return triangle_; }
+  const Eigen::MatrixXd& get() const { return factor_; }
 
   static constexpr Eigen::Index kBlock = 512;  ///< rows taken together: they stay in the cache
 
  private:
-  Eigen::MatrixXd triangle_;
+  Eigen::MatrixXd factor_;
 };
 
 }  // namespace rigcal::calib

@@ -1,4 +1,4 @@
-#include "calib/search/settle.hpp"
+#include "calib/search/verify.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@ void solve_on(const Problem& problem, Evaluator& evaluator, const FitOptions& op
               MultiStart& found) {
   const int before = found.result.iterations;
   evaluator.forget();
-  found.result = refine(problem, evaluator, found.optimum.z, options.max_iterations, found.best,
+  found.result = polish(problem, evaluator, found.optimum.z, options.max_iterations, found.best,
                         options, LastStep::simulated);
   found.result.iterations += before;
   if (found.result.status == FitStatus::converged)
@@ -39,8 +39,8 @@ std::vector<ConditionRows> simulate(const Problem& problem, Evaluator& evaluator
 
 }  // namespace
 
-std::vector<ConditionRows> settle(const Problem& problem, Evaluator& evaluator,
-                                  const FitOptions& options, MultiStart& found) {
+std::vector<ConditionRows> verify_optimum(const Problem& problem, Evaluator& evaluator,
+                                          const FitOptions& options, MultiStart& found) {
   if (!found.optimum.ok) return {};
   const bool claimed = found.result.status == FitStatus::converged;
   auto rows = simulate(problem, evaluator, options.threads, found.optimum);

@@ -1,4 +1,4 @@
-#include "calib/search/sharpen.hpp"
+#include "calib/search/tighten.hpp"
 
 #include <fmt/format.h>
 
@@ -15,7 +15,8 @@ constexpr double kNearby = 1.0;
 
 }  // namespace
 
-bool sharpen(Problem& problem, Evaluator& evaluator, const FitOptions& options, MultiStart& found) {
+bool tighten_tolerance(Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                       MultiStart& found) {
   for (int round = 0; round < kFinerRounds; ++round) {
     const bool stalled = found.optimum.ok && found.result.status == FitStatus::failed &&
                          found.result.check.relative_offset <= kNearby;
@@ -24,7 +25,7 @@ bool sharpen(Problem& problem, Evaluator& evaluator, const FitOptions& options, 
     evaluator.forget();
     const int before = found.result.iterations;
     SolveResult result =
-        refine(problem, evaluator, found.optimum.z, options.max_iterations, found.best, options);
+        polish(problem, evaluator, found.optimum.z, options.max_iterations, found.best, options);
     if (!evaluator.best().ok) return true;
     result.iterations += before;
     if (result.status == FitStatus::converged)

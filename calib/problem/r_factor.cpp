@@ -1,4 +1,4 @@
-#include "calib/problem/triangle.hpp"
+#include "calib/problem/r_factor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,23 +11,23 @@ constexpr double kNothing = 1e-300;
 
 }  // namespace
 
-/// Householder's reflections of one row of the triangle and the new rows at a time: what else
+/// Householder's reflections of one row of the R factor and the new rows at a time: what else
 /// stands below the diagonal is zero already.
-void Triangle::add(Eigen::MatrixXd rows) {
+void RFactor::add(Eigen::MatrixXd rows) {
   for (Eigen::Index first = 0; first < rows.rows(); first += kBlock) {
     auto block = rows.middleRows(first, std::min(kBlock, rows.rows() - first));
-    for (Eigen::Index k = 0; k < triangle_.cols(); ++k) {
+    for (Eigen::Index k = 0; k < factor_.cols(); ++k) {
       const auto below = block.col(k);
       const double square = below.squaredNorm();
       if (square < kNothing) continue;
-      double& diagonal = triangle_(k, k);
+      double& diagonal = factor_(k, k);
       const double reflected = -std::copysign(std::sqrt(diagonal * diagonal + square), diagonal);
       const double above = diagonal - reflected;
       const double scale = 2.0 / (above * above + square);
       diagonal = reflected;
-      for (Eigen::Index j = k + 1; j < triangle_.cols(); ++j) {
-        const double share = scale * (above * triangle_(k, j) + below.dot(block.col(j)));
-        triangle_(k, j) -= share * above;
+      for (Eigen::Index j = k + 1; j < factor_.cols(); ++j) {
+        const double share = scale * (above * factor_(k, j) + below.dot(block.col(j)));
+        factor_(k, j) -= share * above;
         block.col(j) -= share * below;
       }
     }

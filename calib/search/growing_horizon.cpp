@@ -1,10 +1,10 @@
-#include "calib/search/openings.hpp"
+#include "calib/search/growing_horizon.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "calib/search/descend.hpp"
+#include "calib/search/minimise.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -12,14 +12,14 @@ namespace {
 /// Where samples resolve what rings, so few are less than a cycle of it. As many more for each
 /// unknown that one record alone has to tell: its initial state, the offset of a sensor.
 constexpr std::size_t kShortestSamples = 4;
-/// How much longer each opening is than the one before it, at most.
+/// How much longer each horizon is than the one before it, at most.
 constexpr double kGrowth = 4.0;
-/// A mean square residual so many times that of the opening before it was not foreseen.
+/// Growth of the mean square residual beyond which the shorter horizon's estimate is discarded.
 constexpr double kForeseen = 4.0;
-/// Iterations of one opening: the next one tells more.
+/// Iterations at one horizon: the next one carries more information.
 constexpr int kIterations = 10;
 
-/// But for a factor that is the same for all openings.
+/// Up to a factor that is the same for all horizons.
 double mean_square(const Evaluation& evaluation) { return evaluation.cost / evaluation.share; }
 
 /// How many unknowns no other record tells.
@@ -32,7 +32,7 @@ std::size_t own_unknowns(const Problem& problem, std::size_t condition) {
 
 }  // namespace
 
-std::vector<double> opening_lengths_s(const Problem& problem) {
+std::vector<double> horizons_s(const Problem& problem) {
   double longest_s = 0.0;
   double interval_s = std::numeric_limits<double>::infinity();
   std::size_t samples = 0;
@@ -55,14 +55,15 @@ std::vector<double> opening_lengths_s(const Problem& problem) {
   return result;
 }
 
-Openings by_openings(const Problem& problem, Evaluator& evaluator, std::vector<double>& z,
-                     int iterations, int start, const FitOptions& options) {
+GrowingHorizon by_growing_horizon(const Problem& problem, Evaluator& evaluator,
+                                  std::vector<double>& z, int iterations, int start,
+                                  const FitOptions& options) {
   const std::vector<double> begin = z;
   const double begin_cost = evaluator.evaluate(z).cost;
   std::vector<double> before = z;
   double foreseen = std::numeric_limits<double>::infinity();
   const int budget = iterations / 2;  // whole records decide: the other half is theirs
-  Openings result;
+  GrowingHorizon result;
   int& used = result.iterations;
   FitOptions counting = options;  // one count of iterations through all
   if (options.progress) {
@@ -70,23 +71,23 @@ Openings by_openings(const Problem& problem, Evaluator& evaluator, std::vector<d
       options.progress(number, used + iteration, cost, change, seconds);
     };
   }
-  for (const double length_s : opening_lengths_s(problem)) {
-    evaluator.set_effort(Effort::opening(length_s));
+  for (const double length_s : horizons_s(problem)) {
+    evaluator.set_fidelity(Fidelity::first(length_s));
     evaluator.evaluate(z);
-    // What fits an opening and fails in the next one, worse than where it came from, is forgotten.
+    // An estimate that fails at the next horizon, by more than its start does, is discarded.
     if (!evaluator.best().ok || mean_square(evaluator.best()) > kForeseen * foreseen)
       evaluator.evaluate(before);
     if (!evaluator.best().ok) break;
     z = before = evaluator.best().z;
     const int most = std::min(kIterations, budget - used);
-    used += descend(problem, evaluator, z, kFirstTrustRadius, most, start, counting).iterations;
+    used += minimise(problem, evaluator, z, kFirstTrustRadius, most, start, counting).iterations;
     z = evaluator.best().z;
     result.ends.push_back(z);
     foreseen = mean_square(evaluator.best());
     if (evaluator.aborted()) return result;
     if (used >= budget) break;
   }
-  evaluator.set_effort(Effort::coarse);
+  evaluator.set_fidelity(Fidelity::coarse);
   const Evaluation& all = evaluator.evaluate(z);
   if (all.ok && all.cost <= begin_cost) return result;
   z = begin;

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "model/signal/signal.hpp"
+
+namespace rigcal::datasets {
+
+enum class Waveform { sine, square, chirp, recorded };
+
+/// All that the program knows about one waveform. What is periodic is drawn, averaged over periods,
+/// solved for its periodic state and given a leak table by this row alone.
+struct WaveformSpec {
+  Waveform waveform;
+  std::string_view name;  ///< as in campaign files and results
+  /// A signal of this amplitude and frequency [Hz]; null unless that is all that describes it, in
+  /// which case it is periodic.
+  model::Signal (*periodic)(double amplitude, double frequency_hz) = nullptr;
+  int pieces = 1;  ///< of a period, equally long, at whose starts it jumps; 1: it does not jump
+};
+const WaveformSpec& info(Waveform waveform);
+
+std::string_view to_string(Waveform waveform);
+bool is_periodic(Waveform waveform);
+
+/// @throws std::invalid_argument  the waveform is not periodic
+model::Signal periodic_signal(Waveform waveform, double amplitude, double frequency_hz);
+
+/// Names and values, in the order of the table.
+std::vector<std::pair<std::string, Waveform>> waveforms();
+std::vector<std::pair<std::string, Waveform>> periodic_waveforms();
+
+}  // namespace rigcal::datasets
