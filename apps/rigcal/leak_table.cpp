@@ -76,7 +76,7 @@ ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invoc
             fmt::format("files: {} {} {}\n", (options.common.out / "leak_table.csv").string(),
                         (options.common.out / "leak_table.json").string(),
                         (options.common.out / "report.html").string()),
-        report::leak_table_json(result));
+        json_of(report::stored(result)));
   return ExitCode::done;
 }
 

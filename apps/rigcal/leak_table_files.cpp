@@ -54,9 +54,9 @@ std::vector<report::ResultFile> leak_table_files(const report::LeakTableResult& 
                        report::level_csv(signal, row.series, &*table.healthy)});
     }
   }
-  report::Json json = report::leak_table_json(result);
-  report::name_files(files, json);
-  files.push_back({"leak_table.json", report::json_text(json)});
+  report::StoredLeakTable stored = report::stored(result);
+  report::name_files(files, stored.provenance);
+  files.push_back({"leak_table.json", report::json_text(json_of(stored))});
   return files;
 }
 

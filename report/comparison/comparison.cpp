@@ -94,7 +94,7 @@ Json made_comparison(const std::vector<Compared>& results, const Provenance& pro
   json["records"] = compared_records(results);
   json["leak_trends"] = leak_trends(results);
   json["warnings"] = comparison_warnings(results);
-  json["provenance"] = provenance_json(provenance);
+  json["provenance"] = json_of(stored(provenance));
   return json;
 }
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "report/store/json.hpp"
-#include "report/store/provenance.hpp"
+#include "report/store/stored_provenance.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {

@@ -135,7 +135,7 @@ Json class_limit_json(const datasets::Campaign& campaign, const TableLimit& limi
   json["coefficients_ci95"] = Json::array();
   for (const auto& range : limit.ranges_95) {
     json["coefficients_ci95"].push_back(
-        range ? Json::array({number(range->front()), number(range->back())}) : Json(nullptr));
+        range ? Json::array({number(range->low), number(range->high)}) : Json(nullptr));
   }
   return json;
 }
@@ -268,7 +268,7 @@ std::string class_limit_table(const DiagnosisResult& result) {
     for (std::size_t i = 0; i < limit.coefficients.size(); ++i) {
       cell += fmt::format("{}{:.3g}", cell.empty() ? "" : ", ", limit.coefficients[i]);
       if (const auto& range = limit.ranges_95[i])
-        cell += fmt::format(" ({:.4g} .. {:.4g})", range->front(), range->back());
+        cell += fmt::format(" ({:.4g} .. {:.4g})", range->low, range->high);
     }
     cells[signal][limit.target_percent] = cell;
   }
@@ -343,7 +343,7 @@ Json diagnosis_json(const DiagnosisResult& result) {
   for (const SignalDiagnosis& signal : found.signals)
     json["smallest_leak_l_per_min"].push_back(smallest_leak_json(signal));
   json["warnings"] = found.warnings;
-  json["provenance"] = provenance_json(result.provenance);
+  json["provenance"] = json_of(stored(result.provenance));
   return json;
 }
 

@@ -6,7 +6,7 @@
 #include "diagnosis/diagnose.hpp"
 #include "report/leak/read_leak_table.hpp"
 #include "report/store/json.hpp"
-#include "report/store/provenance.hpp"
+#include "report/store/stored_provenance.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {

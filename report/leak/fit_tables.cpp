@@ -95,7 +95,7 @@ Json tables_fit_json(const TablesFitResult& result) {
     json["residuals"].push_back(std::move(entry));
   }
   json["left_out"] = fit.left_out;
-  json["provenance"] = provenance_json(result.provenance);
+  json["provenance"] = json_of(stored(result.provenance));
   return json;
 }
 

@@ -4,7 +4,7 @@
 
 #include "calib/published/fit_tables.hpp"
 #include "report/store/json.hpp"
-#include "report/store/provenance.hpp"
+#include "report/store/stored_provenance.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {

@@ -5,14 +5,13 @@
 
 #include "calib/published/leak_table.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
-#include "report/store/json.hpp"
+#include "report/leak/stored_leak_table.hpp"
 #include "report/store/provenance.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {
 
 inline constexpr double kLitrePerMinute = 1e-3 / 60.0;  ///< [m3/s]
-inline constexpr const char* kLeakTableSchema = "rigcal.leak_table/1";
 
 /// A leak table with all that its files are made from. Borrows everything.
 struct LeakTableResult {
@@ -24,8 +23,8 @@ struct LeakTableResult {
   std::vector<std::string> warnings = {};  ///< what is doubtful about the values
 };
 
-/// leak_table.json as docs/command-line.md describes it.
-Json leak_table_json(const LeakTableResult& result);
+/// leak_table.json.
+StoredLeakTable stored(const LeakTableResult& result);
 
 /// leak_table.csv: one row per signal and target.
 std::string leak_table_csv(const LeakTableResult& result);

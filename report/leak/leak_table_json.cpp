@@ -5,19 +5,18 @@ namespace {
 
 using datasets::Feature;
 
+std::optional<Range> range_of(const std::optional<std::array<double, 2>>& ends) {
+  return ends ? std::optional(Range{ends->front(), ends->back()}) : std::nullopt;
+}
+
 /// Every value that the computation used; those that no section states are the campaign's.
-Json assumptions_json(const LeakTableResult& result) {
+std::vector<StoredAssumption> assumptions_of(const LeakTableResult& result) {
   const auto values = datasets::leak_table_values(result.campaign, result.settings);
   const auto table = model::parameter_table(result.campaign.rig.plant);
-  Json list = Json::array();
+  std::vector<StoredAssumption> list;
   const auto add = [&](const model::ParameterSpec& spec, double value, const std::string& source) {
-    Json json;
-    json["name"] = std::string(spec.name);
-    json["key"] = std::string(spec.key);
-    json["value"] = number(value);
-    json["unit"] = std::string(spec.unit);
-    json["source"] = source;
-    list.push_back(std::move(json));
+    list.push_back(
+        {std::string(spec.name), std::string(spec.key), value, std::string(spec.unit), source});
   };
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (table[i].key == "leakage_coefficient") continue;  // what the table varies
@@ -32,122 +31,88 @@ Json assumptions_json(const LeakTableResult& result) {
   return list;
 }
 
-void put_signal(Json& json, const LeakTableResult& result, const datasets::LeakSignal& signal) {
+/// Drive of an entry or of the rig without a fault.
+template <typename Entry>
+Entry with_drive(const LeakTableResult& result, const datasets::LeakSignal& signal) {
+  Entry entry;
+  entry.waveform = signal.waveform;
+  entry.frequency_hz = signal.frequency_hz;
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
-  json["waveform"] = std::string(to_string(signal.waveform));
-  json["frequency_hz"] = number(signal.frequency_hz);
-  json[closed_loop ? "amplitude_m" : "amplitude_v"] = number(signal.amplitude);
+  (closed_loop ? entry.amplitude_m : entry.amplitude_v) = signal.amplitude;
+  return entry;
 }
 
-Json entry_json(const LeakTableResult& result, const calib::LeakEntry& entry) {
-  Json json;
-  put_signal(json, result, entry.signal);
-  json["target_percent"] = number(entry.target_percent);
-  json["coefficients"] = Json::array();
-  json["coefficients_ci95"] = Json::array();
-  json["log_slopes"] = Json::array();
-  bool determined = !entry.roots.empty();
-  for (const calib::LeakRoot& root : entry.roots) {
-    json["coefficients"].push_back(number(root.coefficient));
-    const auto range = root.ci95();
-    json["coefficients_ci95"].push_back(
-        range ? Json::array({number(range->front()), number(range->back())}) : Json(nullptr));
-    json["log_slopes"].push_back(number(root.log_slope));
-    determined = determined && root.determined();
+StoredLeakEntry stored(const LeakTableResult& result, const calib::LeakEntry& found) {
+  auto entry = with_drive<StoredLeakEntry>(result, found.signal);
+  entry.target_percent = found.target_percent;
+  entry.determined = !found.roots.empty();
+  auto& ranges = entry.coefficients_ci95.emplace();
+  auto& slopes = entry.log_slopes.emplace();
+  for (const calib::LeakRoot& root : found.roots) {
+    entry.coefficients.push_back(root.coefficient);
+    ranges.push_back(range_of(root.ci95()));
+    slopes.push_back(root.log_slope);
+    entry.determined = entry.determined && root.determined();
   }
-  json["log_slope"] = entry.roots.empty() ? Json(nullptr) : number(entry.roots.front().log_slope);
-  json["determined"] = determined;
-  const auto& c = entry.comparison;
-  json["published_coefficient"] = c ? number(c->published) : Json(nullptr);
-  json["relative_error_percent"] = c ? number(c->relative_error_percent) : Json(nullptr);
-  json["share_at_published_percent"] = c ? number(c->share_percent) : Json(nullptr);
-  json["share_by_rounding_percent"] =
-      c ? Json::array({number(c->share_low_percent), number(c->share_high_percent)})
-        : Json(nullptr);
-  json["grade"] = std::string(to_string(entry.grade));
-  json["note"] = entry.note;
-  return json;
+  if (!found.roots.empty()) entry.log_slope = found.roots.front().log_slope;
+  if (const auto& c = found.comparison) {
+    entry.published_coefficient = c->published;
+    entry.relative_error_percent = c->relative_error_percent;
+    entry.share_at_published_percent = c->share_percent;
+    entry.share_by_rounding_percent = Range{c->share_low_percent, c->share_high_percent};
+  }
+  entry.grade = found.grade;
+  entry.note = found.note;
+  return entry;
 }
 
-Json feature_json(const calib::FeatureRow& row) {
+StoredFeatures stored(const calib::FeatureRow& row) {
   const auto printed = [&](Feature feature, double unit) {
     const auto found = row.printed.printed.find(feature);
-    return found == row.printed.printed.end() ? Json(nullptr) : number(found->second / unit);
+    return found == row.printed.printed.end() ? std::nullopt : std::optional(found->second / unit);
   };
-  Json json;
-  json["level"] = row.printed.level;
-  json["coefficient"] = number(row.printed.coefficient);
-  json["servo_flow_l_per_min"] = number(row.servo_flow_m3_per_s / kLitrePerMinute);
-  json["published_servo_flow_l_per_min"] = printed(Feature::servo_flow, kLitrePerMinute);
-  json["leak_flow_l_per_min"] = number(row.leak_flow_m3_per_s / kLitrePerMinute);
-  json["published_leak_flow_l_per_min"] = printed(Feature::leak_flow, kLitrePerMinute);
-  json["mean"] = number(row.features.mean);
-  json["published_mean"] = printed(Feature::mean, 1.0);
-  json["rms"] = number(row.features.rms);
-  json["published_rms"] = printed(Feature::rms, 1.0);
-  json["std"] = number(row.features.std);
-  json["published_std"] = printed(Feature::std, 1.0);
-  json["coefficients_for_published_leak_flow"] = row.coefficients_for_leak_flow;
-  json["left_out_of_fit"] = Json::array();
-  for (const Feature feature : row.printed.left_out) {
-    json["left_out_of_fit"].push_back(std::string(to_string(feature)));
-  }
-  json["reason"] = row.printed.reason.empty() ? Json(nullptr) : Json(row.printed.reason);
-  return json;
-}
-
-Json summary_json(const calib::LeakSummary& summary) {
-  Json json;
-  json["published"] = summary.published;
-  json["within_10_percent"] = summary.within_10;
-  json["within_16_percent"] = summary.within_16;
-  json["share_rms_percent"] = number(summary.share_rms_percent);
-  return json;
+  return {.level = row.printed.level,
+          .coefficient = row.printed.coefficient,
+          .servo_flow_l_per_min = row.servo_flow_m3_per_s / kLitrePerMinute,
+          .published_servo_flow_l_per_min = printed(Feature::servo_flow, kLitrePerMinute),
+          .leak_flow_l_per_min = row.leak_flow_m3_per_s / kLitrePerMinute,
+          .published_leak_flow_l_per_min = printed(Feature::leak_flow, kLitrePerMinute),
+          .mean = row.features.mean,
+          .published_mean = printed(Feature::mean, 1.0),
+          .rms = row.features.rms,
+          .published_rms = printed(Feature::rms, 1.0),
+          .std = row.features.std,
+          .published_std = printed(Feature::std, 1.0),
+          .coefficients_for_published_leak_flow = row.coefficients_for_leak_flow,
+          .left_out_of_fit = row.printed.left_out,
+          .reason = row.printed.reason.empty() ? std::nullopt : std::optional(row.printed.reason)};
 }
 
 }  // namespace
 
-Json leak_table_json(const LeakTableResult& result) {
-  Json json;
-  json["status"] = "done";
-  json["schema"] = kLeakTableSchema;
-  json["campaign"] = result.campaign.name;
-  json["share"] = "mean |Q_leak| / mean |Q_servo| over one period, periodic";
-  json["residual"] = "|position without leak - position with leak| times residual_scale";
-  json["interval"] =
-      "95 % of each coefficient by the covariance of the fit, to first order in the fit's values: "
-      "ln C moves by -(d ln s / dp) / (d ln s / d ln C); null without a fit";
-  json["notes"] = result.notes;
-  json["warnings"] = result.warnings;
-  json["assumptions"] = assumptions_json(result);
-  json["fixed_combinations"] = Json::array();
-  for (const calib::FixedCombination& combination : result.table.fixed_combinations) {
-    Json entry;
-    entry["name"] = std::string(combination.name);
-    entry["formula"] = std::string(combination.formula);
-    entry["value"] = number(combination.value);
-    entry["unit"] = std::string(combination.unit);
-    json["fixed_combinations"].push_back(std::move(entry));
+StoredLeakTable stored(const LeakTableResult& result) {
+  StoredLeakTable file;
+  file.campaign = result.campaign.name;
+  file.notes = result.notes;
+  file.warnings = result.warnings;
+  file.assumptions = assumptions_of(result);
+  for (const calib::FixedCombination& each : result.table.fixed_combinations) {
+    file.fixed_combinations.push_back(
+        {std::string(each.name), std::string(each.formula), each.value, std::string(each.unit)});
   }
-  json["entries"] = Json::array();
-  for (const calib::LeakEntry& entry : result.table.entries) {
-    json["entries"].push_back(entry_json(result, entry));
+  for (const calib::LeakEntry& entry : result.table.entries)
+    file.entries.push_back(stored(result, entry));
+  const calib::LeakSummary& summary = result.table.summary;
+  file.summary = {summary.published, summary.within_10, summary.within_16,
+                  summary.share_rms_percent};
+  for (const calib::NormalEntry& each : result.table.normals) {
+    auto& normal = file.normal.emplace_back(with_drive<StoredNormal>(result, each.signal));
+    normal.published_coefficient = each.coefficient;
+    normal.share_at_published_percent = each.share_percent;
   }
-  json["summary"] = summary_json(result.table.summary);
-  json["normal"] = Json::array();
-  for (const calib::NormalEntry& normal : result.table.normals) {
-    Json entry;
-    put_signal(entry, result, normal.signal);
-    entry["published_coefficient"] = number(normal.coefficient);
-    entry["share_at_published_percent"] = number(normal.share_percent);
-    json["normal"].push_back(std::move(entry));
-  }
-  json["features"] = Json::array();
-  for (const calib::FeatureRow& row : result.table.features) {
-    json["features"].push_back(feature_json(row));
-  }
-  json["provenance"] = provenance_json(result.provenance);
-  return json;
+  for (const calib::FeatureRow& row : result.table.features) file.features.push_back(stored(row));
+  file.provenance = stored(result.provenance);
+  return file;
 }
 
 }  // namespace rigcal::report

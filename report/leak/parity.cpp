@@ -182,7 +182,7 @@ Json parity_json(const ParityResult& result) {
                                {"expected", number(result.false_alarm * check.records)},
                                {"p_value", check.records > 0 ? number(check.p) : Json(nullptr)}};
   json["warnings"] = result.parity.warnings;
-  json["provenance"] = provenance_json(result.provenance);
+  json["provenance"] = json_of(stored(result.provenance));
   return json;
 }
 

@@ -6,7 +6,7 @@
 #include "diagnosis/parity.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
-#include "report/store/provenance.hpp"
+#include "report/store/stored_provenance.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {

@@ -13,22 +13,18 @@
 namespace rigcal::report {
 namespace {
 
-TableLimit read_entry(const JsonNode& entry, bool closed_loop) {
+TableLimit limit_of(const StoredLeakEntry& entry, const JsonNode& node) {
   TableLimit limit;
-  limit.waveform = one_of(entry["waveform"], datasets::periodic_waveforms());
-  limit.frequency_hz = entry["frequency_hz"].real();
-  limit.amplitude = entry[closed_loop ? "amplitude_m" : "amplitude_v"].real();
-  limit.target_percent = entry["target_percent"].real();
-  for (const JsonNode& root : entry["coefficients"].items())
-    limit.coefficients.push_back(root.real());
-  const JsonNode ranges = entry["coefficients_ci95"];
-  for (const JsonNode& range : ranges.items()) {
-    const auto ends = range.range();
-    limit.ranges_95.push_back(ends ? std::optional(std::array{ends->low, ends->high})
-                                   : std::nullopt);
-  }
+  limit.waveform = entry.waveform;
+  limit.frequency_hz = entry.frequency_hz;
+  const auto amplitude = entry.amplitude_m ? entry.amplitude_m : entry.amplitude_v;
+  if (!amplitude) node.fail("an entry with 'amplitude_m' or 'amplitude_v'");
+  limit.amplitude = *amplitude;
+  limit.target_percent = entry.target_percent;
+  limit.coefficients = entry.coefficients;
+  if (entry.coefficients_ci95) limit.ranges_95 = *entry.coefficients_ci95;
   if (limit.ranges_95.size() != limit.coefficients.size())
-    ranges.fail("an interval, or null, for each coefficient");
+    node["coefficients_ci95"].fail("an interval, or null, for each coefficient");
   return limit;
 }
 
@@ -45,16 +41,19 @@ EarlierLeakTable read_leak_table(const std::filesystem::path& file, model::Plant
   const JsonNode root(json, file.string(), "", "leak_table.json");
   if (root["schema"].string() != kLeakTableSchema)
     root["schema"].fail(fmt::format("\"{}\"", kLeakTableSchema));
+  StoredLeakTable stored;
+  read_into(root, stored);
   EarlierLeakTable table;
-  for (const JsonNode& value : root["assumptions"].items()) {
-    if (value["key"].string() == "residual_scale") continue;  // no parameter of the rig
-    table.rig.emplace_back(parameter_row(value["name"], plant), value["value"].real());
+  const std::vector<JsonNode> assumptions = root["assumptions"].items();
+  for (std::size_t i = 0; i < assumptions.size(); ++i) {
+    if (stored.assumptions[i].key == "residual_scale") continue;  // no parameter of the rig
+    table.rig.emplace_back(parameter_row(assumptions[i]["name"], plant),
+                           stored.assumptions[i].value);
   }
-  const auto entries = root["entries"].items();
+  const std::vector<JsonNode> entries = root["entries"].items();
   for (std::size_t i = 0; i < entries.size(); ++i) {
-    const bool closed_loop = json["entries"][i].contains("amplitude_m");
-    table.limits.push_back(read_entry(entries[i], closed_loop));
-    table.targets_percent.push_back(table.limits.back().target_percent);
+    table.limits.push_back(limit_of(stored.entries[i], entries[i]));
+    table.targets_percent.push_back(stored.entries[i].target_percent);
   }
   std::sort(table.targets_percent.begin(), table.targets_percent.end());
   table.targets_percent.erase(

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,6 +7,7 @@
 
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
+#include "report/store/validity.hpp"
 
 namespace rigcal::report {
 
@@ -17,8 +17,8 @@ struct TableLimit {
   double frequency_hz = 0.0;
   double amplitude = 0.0;  ///< [m], or [V] where no controller is in the loop
   double target_percent = 0.0;
-  std::vector<double> coefficients;                             ///< all roots, increasing
-  std::vector<std::optional<std::array<double, 2>>> ranges_95;  ///< of each
+  std::vector<double> coefficients;             ///< all roots, increasing
+  std::vector<std::optional<Range>> ranges_95;  ///< of each
 };
 
 /// What a diagnosis needs of leak_table.json.

@@ -61,6 +61,12 @@ struct Part {
   std::string campaign;
 };
 
+StoredProvenance provenance_of(const Json& result, const std::string& file) {
+  StoredProvenance provenance;
+  read_into(JsonNode(result, file, "", file)["provenance"], provenance);
+  return provenance;
+}
+
 Part calibration_part(const ReadFile& read, const std::string& where, int threads) {
   const Calibration stored = load_calibration(read, where, threads);
   const Json& result = stored.result;
@@ -71,7 +77,8 @@ Part calibration_part(const ReadFile& read, const std::string& where, int thread
   part.name = is_fit ? "Calibration" : "Validation";
   part.campaign = text_of(result, "campaign");
   part.identity = identity_view(result);
-  part.provenance = provenance_view(result, part.name, stored.file);
+  part.provenance = provenance_view(provenance_of(result, stored.file), part.name, stored.file);
+  add_making(result, part.provenance);
   part.view["parameters"] = parameters_view(result);
   part.view["has_records"] = !stored.of_tables;
   if (stored.of_tables) {
@@ -105,10 +112,10 @@ Part leak_table_part(const ReadFile& read, const std::string& where) {
   Part part;
   part.section = part.link = "leak-table";
   part.name = "Leak table";
-  part.campaign = text_of(stored.table, "campaign");
+  part.campaign = stored.table.campaign;
   part.headline = leak_table_headline(stored.table);
   part.view["leak_table"] = leak_table_view(stored);
-  part.provenance = provenance_view(stored.table, part.name, "leak_table.json");
+  part.provenance = provenance_view(stored.table.provenance, part.name, "leak_table.json");
   part.nav = {{"leak-table", "Leak table"}};
   return part;
 }
@@ -123,7 +130,8 @@ Part diagnosis_part(const ReadFile& read, const std::string& where) {
   part.identity = identity_view(diagnosis);
   part.headline = diagnosis_headline(diagnosis);
   part.view["diagnosis"] = diagnosis_view(diagnosis);
-  part.provenance = provenance_view(diagnosis, part.name, "diagnosis.json");
+  part.provenance =
+      provenance_view(provenance_of(diagnosis, "diagnosis.json"), part.name, "diagnosis.json");
   part.nav = {{"diagnosis", "Diagnosis"}};
   return part;
 }
@@ -138,7 +146,8 @@ Part parity_part(const ReadFile& read, const std::string& where) {
   part.identity = identity_view(stored.parity);
   part.headline = parity_headline(stored.parity);
   part.view["parity"] = parity_view(stored);
-  part.provenance = provenance_view(stored.parity, part.name, "parity.json");
+  part.provenance =
+      provenance_view(provenance_of(stored.parity, "parity.json"), part.name, "parity.json");
   part.nav = {{"parity", "Parity residual"}};
   return part;
 }
@@ -155,7 +164,8 @@ Part comparison_part(const ReadFile& read, const std::string& where) {
   }
   part.headline = comparison_headline(comparison);
   part.view["comparison"] = comparison_view(comparison);
-  part.provenance = provenance_view(comparison, part.name, "comparison.json");
+  part.provenance =
+      provenance_view(provenance_of(comparison, "comparison.json"), part.name, "comparison.json");
   part.nav = {{"results", "Results"}, {"estimates", "Parameters"}, {"models", "Models"}};
   if (part.view["comparison"].at("has_trends").get<bool>()) part.nav.push_back({"trends", "Trend"});
   if (part.view["comparison"].at("has_conditions").get<bool>())

@@ -17,80 +17,87 @@ constexpr double kWideInterval = 0.1;
 /// Classes of the style sheet for levels side by side, told apart without colour by their order.
 constexpr std::array kLevelStyles{"model", "residual", "servo", "leak", "reference"};
 
-std::string drive_name(const Json& entry) {
-  std::string text = fmt::format("{:.6g} Hz {}", number_of(entry, "frequency_hz").value_or(0.0),
-                                 text_of(entry, "waveform"));
-  if (const auto amplitude = number_of(entry, "amplitude_m"))
-    text += ", " + readable(*amplitude, "m", 4);
-  if (const auto amplitude = number_of(entry, "amplitude_v"))
-    text += ", " + readable(*amplitude, "V", 4);
+/// "0.1 Hz sine, 50.8 mm" of an entry or of the rig without a fault.
+template <typename Entry>
+std::string drive_name(const Entry& entry) {
+  std::string text = fmt::format("{:.6g} Hz {}", entry.frequency_hz, to_string(entry.waveform));
+  if (entry.amplitude_m) text += ", " + readable(*entry.amplitude_m, "m", 4);
+  if (entry.amplitude_v) text += ", " + readable(*entry.amplitude_v, "V", 4);
   return text;
 }
 
-Json grade_badge(const std::string& grade) {
-  if (grade == "within 10 %") return {{"word", grade}, {"mark", "✓"}, {"class", "good"}};
-  if (grade == "within 16 %") return {{"word", grade}, {"mark", "!"}, {"class", "warn"}};
-  if (grade == "outlier") return {{"word", grade}, {"mark", "✕"}, {"class", "bad"}};
-  return {{"word", grade}, {"mark", ""}, {"class", "none"}};
+Json grade_badge(calib::LeakGrade grade) {
+  using calib::LeakGrade;
+  const std::string word(to_string(grade));
+  switch (grade) {
+    case LeakGrade::within_10:
+      return {{"word", word}, {"mark", "✓"}, {"class", "good"}};
+    case LeakGrade::within_16:
+      return {{"word", word}, {"mark", "!"}, {"class", "warn"}};
+    case LeakGrade::outlier:
+      return {{"word", word}, {"mark", "✕"}, {"class", "bad"}};
+    case LeakGrade::not_published:
+      break;
+  }
+  return {{"word", word}, {"mark", ""}, {"class", "none"}};
 }
 
 /// All roots of an entry; "~" before those that the share hardly determines.
-std::string coefficients_text(const Json& entry) {
+std::string coefficients_text(const StoredLeakEntry& entry) {
   std::string text;
-  for (const Json& root : entry.at("coefficients")) {
-    if (!root.is_number()) continue;
-    text += fmt::format("{}{}{:.3g}", text.empty() ? "" : ", ",
-                        entry.at("determined").get<bool>() ? "" : "~", root.get<double>());
+  for (const double root : entry.coefficients) {
+    if (!std::isfinite(root)) continue;
+    text += fmt::format("{}{}{:.3g}", text.empty() ? "" : ", ", entry.determined ? "" : "~", root);
   }
   return text.empty() ? "no coefficient" : text;
 }
 
 /// Their intervals; results without a fit, or of before there were any, have none.
-std::string intervals_text(const Json& entry) {
+std::string intervals_text(const StoredLeakEntry& entry) {
   std::string text;
-  if (!entry.contains("coefficients_ci95")) return text;
-  for (const Json& range : entry.at("coefficients_ci95")) {
-    if (!range.is_array() || range.size() != 2 || !range[0].is_number() || !range[1].is_number())
-      continue;
-    const double low = range[0].get<double>();
-    const double high = range[1].get<double>();
-    const double half = (high - low) / (high + low);
+  if (!entry.coefficients_ci95) return text;
+  for (const auto& range : *entry.coefficients_ci95) {
+    if (!range || !std::isfinite(range->low) || !std::isfinite(range->high)) continue;
+    const double half = (range->high - range->low) / (range->high + range->low);
     text += text.empty() ? "" : ", ";
     text += half < kWideInterval ? fmt::format("±{:.2g} %", 100.0 * half)
-                                 : fmt::format("{:.3g} … {:.3g}", low, high);
+                                 : fmt::format("{:.3g} … {:.3g}", range->low, range->high);
   }
   return text;
 }
 
-Json leak_cell(const Json& entry) {
-  const bool published = entry.at("published_coefficient").is_number();
+/// "+4.2 %"; a dash where there is no error.
+std::string error_text(const std::optional<double>& percent) {
+  return percent ? fmt::format("{:+.1f} %", *percent) : std::string("–");
+}
+
+Json leak_cell(const StoredLeakEntry& entry) {
   Json cell;
   cell["coefficients"] = coefficients_text(entry);
   cell["roots"] = Json::array();
-  for (const Json& root : entry.at("coefficients"))
+  for (const double root : entry.coefficients)
     cell["roots"].push_back({{"exact", shown_in(root, 1.0).at("exact")}});
   cell["interval"] = intervals_text(entry);
   cell["has_interval"] = !cell["interval"].get_ref<const std::string&>().empty();
-  cell["published"] = published;
-  cell["badge"] = grade_badge(text_of(entry, "grade"));
-  if (!published) return cell;
-  cell["published_coefficient"] = shown_in(entry.at("published_coefficient"), 1.0, 6);
-  const auto error = number_of(entry, "relative_error_percent");
-  cell["error"] = error ? fmt::format("{:+.1f} %", *error) : std::string("–");
-  cell["share"] = shown_in(entry.at("share_at_published_percent"), 1.0, 3);
-  const Json& range = entry.at("share_by_rounding_percent");
-  cell["has_range"] = range.is_array();
-  if (range.is_array()) {
-    cell["range_low"] = shown_in(range.at(0), 1.0, 3);
-    cell["range_high"] = shown_in(range.at(1), 1.0, 3);
+  cell["published"] = entry.published_coefficient.has_value();
+  cell["badge"] = grade_badge(entry.grade);
+  if (!entry.published_coefficient) return cell;
+  cell["published_coefficient"] = shown_in(*entry.published_coefficient, 1.0, 6);
+  cell["error"] = error_text(entry.relative_error_percent);
+  cell["share"] = shown_in(json_of(entry.share_at_published_percent), 1.0, 3);
+  const auto& range = entry.share_by_rounding_percent;
+  cell["has_range"] = range.has_value();
+  if (range) {
+    cell["range_low"] = shown_in(range->low, 1.0, 3);
+    cell["range_high"] = shown_in(range->high, 1.0, 3);
   }
   return cell;
 }
 
 /// Signals by target shares, in the order of the file.
-Json leak_rows(const Json& entries, const std::vector<double>& targets) {
+Json leak_rows(const std::vector<StoredLeakEntry>& entries, const std::vector<double>& targets) {
   std::vector<std::string> names;
-  for (const Json& entry : entries) {
+  for (const StoredLeakEntry& entry : entries) {
     const std::string name = drive_name(entry);
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
@@ -99,8 +106,8 @@ Json leak_rows(const Json& entries, const std::vector<double>& targets) {
     Json cells = Json::array();
     for (const double target : targets) {
       Json cell{{"there", false}};
-      for (const Json& entry : entries) {
-        if (drive_name(entry) != name || number_of(entry, "target_percent") != target) continue;
+      for (const StoredLeakEntry& entry : entries) {
+        if (drive_name(entry) != name || entry.target_percent != target) continue;
         cell = leak_cell(entry);
         cell["there"] = true;
       }
@@ -111,18 +118,17 @@ Json leak_rows(const Json& entries, const std::vector<double>& targets) {
   return rows;
 }
 
-std::vector<double> targets_of(const Json& entries) {
+std::vector<double> targets_of(const std::vector<StoredLeakEntry>& entries) {
   std::vector<double> targets;
-  for (const Json& entry : entries) {
-    const double target = entry.at("target_percent").get<double>();
-    if (std::find(targets.begin(), targets.end(), target) == targets.end())
-      targets.push_back(target);
+  for (const StoredLeakEntry& entry : entries) {
+    if (std::find(targets.begin(), targets.end(), entry.target_percent) == targets.end())
+      targets.push_back(entry.target_percent);
   }
   return targets;
 }
 
 /// Computed over published coefficients; what is met lies on the line.
-Plot agreement_plot(const Json& entries) {
+Plot agreement_plot(const std::vector<StoredLeakEntry>& entries) {
   Plot plot;
   plot.title = "Computed over published leakage coefficients";
   plot.x_label = "published coefficient";
@@ -134,14 +140,13 @@ Plot agreement_plot(const Json& entries) {
   double high = 0.0;
   Trace met = empty_trace(Trace::Kind::points, "model", "within 16 %");
   Trace outliers = empty_trace(Trace::Kind::points, "residual", "outlier");
-  for (const Json& entry : entries) {
-    const auto published = number_of(entry, "published_coefficient");
+  for (const StoredLeakEntry& entry : entries) {
+    const auto& published = entry.published_coefficient;
     if (!published || *published <= 0.0) continue;
-    Trace& into = text_of(entry, "grade") == "outlier" ? outliers : met;
+    Trace& into = entry.grade == calib::LeakGrade::outlier ? outliers : met;
     double nearest = std::nan("");
-    for (const Json& root : entry.at("coefficients")) {
-      if (!root.is_number()) continue;
-      const double value = root.get<double>();
+    for (const double value : entry.coefficients) {
+      if (!std::isfinite(value)) continue;
       if (std::isnan(nearest) ||
           std::abs(std::log(value / *published)) < std::abs(std::log(nearest / *published)))
         nearest = value;
@@ -162,29 +167,29 @@ Plot agreement_plot(const Json& entries) {
   return plot;
 }
 
-Json against_published(const Json& row, const std::string& name) {
-  const auto computed = number_of(row, name);
-  const auto published = number_of(row, "published_" + name);
-  Json cell{{"computed", shown_in(row.at(name), 1.0, 4)}, {"published", published.has_value()}};
+Json against_published(double computed, const std::optional<double>& published) {
+  Json cell{{"computed", shown_in(computed, 1.0, 4)}, {"published", published.has_value()}};
   if (!published) return cell;
-  cell["published_value"] = shown_in(row.at("published_" + name), 1.0, 4);
-  cell["error"] = computed && *published != 0.0
-                      ? fmt::format("{:+.1f} %", 100.0 * (*computed / *published - 1.0))
-                      : std::string("–");
+  cell["published_value"] = shown_in(*published, 1.0, 4);
+  const bool has_error = std::isfinite(computed) && *published != 0.0;
+  cell["error"] =
+      error_text(has_error ? std::optional(100.0 * (computed / *published - 1.0)) : std::nullopt);
   return cell;
 }
 
-Json feature_rows(const Json& features) {
+Json feature_rows(const std::vector<StoredFeatures>& features) {
   Json rows = Json::array();
-  for (const Json& feature : features) {
-    Json cells = Json::array();
-    for (const char* name : {"servo_flow_l_per_min", "leak_flow_l_per_min", "mean", "rms", "std"})
-      cells.push_back(against_published(feature, name));
-    rows.push_back({{"level", text_of(feature, "level")},
-                    {"coefficient", shown_in(feature.at("coefficient"), 1.0, 4)},
-                    {"cells", std::move(cells)},
-                    {"reason", text_of(feature, "reason")},
-                    {"has_reason", !text_of(feature, "reason").empty()}});
+  for (const StoredFeatures& f : features) {
+    rows.push_back(
+        {{"level", f.level},
+         {"coefficient", shown_in(f.coefficient, 1.0, 4)},
+         {"cells",
+          {against_published(f.servo_flow_l_per_min, f.published_servo_flow_l_per_min),
+           against_published(f.leak_flow_l_per_min, f.published_leak_flow_l_per_min),
+           against_published(f.mean, f.published_mean), against_published(f.rms, f.published_rms),
+           against_published(f.std, f.published_std)}},
+         {"reason", f.reason.value_or("")},
+         {"has_reason", !f.reason.value_or("").empty()}});
   }
   return rows;
 }
@@ -276,49 +281,50 @@ Plot flows_plot(const std::string& level, const Table& table) {
 }
 
 /// "Critical: 30.6 % of the servo flow leak, at the coefficient 0.6"
-std::string level_caption(const Json& features, const std::string& level) {
-  for (const Json& feature : features) {
-    if (text_of(feature, "level") != level) continue;
-    const auto servo = number_of(feature, "servo_flow_l_per_min");
-    const auto leak = number_of(feature, "leak_flow_l_per_min");
-    if (!servo || !leak || !(*servo > 0.0)) break;
+std::string level_caption(const std::vector<StoredFeatures>& features, const std::string& level) {
+  for (const StoredFeatures& f : features) {
+    if (f.level != level) continue;
+    if (!(f.servo_flow_l_per_min > 0.0) || std::isnan(f.leak_flow_l_per_min)) break;
     return fmt::format("{}: {:.3g} % of the servo flow leak, at the coefficient {:g}", level,
-                       100.0 * *leak / *servo, number_of(feature, "coefficient").value_or(0.0));
+                       100.0 * f.leak_flow_l_per_min / f.servo_flow_l_per_min, f.coefficient);
   }
   return level;
 }
 
-std::string leak_sentence(const Json& table) {
-  const Json& summary = table.at("summary");
-  const int published = summary.at("published").get<int>();
-  if (published == 0) {
+std::string leak_sentence(const StoredLeakTable& table) {
+  const StoredLeakSummary& summary = table.summary;
+  if (summary.published == 0) {
     return fmt::format("{} leakage coefficients; nothing was published to compare them with.",
-                       table.at("entries").size());
+                       table.entries.size());
   }
   return fmt::format("{} of {} published coefficients are met within 10 %, {} within 16 %.",
-                     summary.at("within_10_percent").get<int>(), published,
-                     summary.at("within_16_percent").get<int>());
+                     summary.within_10_percent, summary.published, summary.within_16_percent);
+}
+
+std::string noted(const StoredLeakEntry& entry) {
+  return fmt::format("{} at {:g} %: {}", drive_name(entry), entry.target_percent, entry.note);
+}
+
+/// Texts of a list, and whether there are any, as `has_<key>`.
+void put_texts(Json& view, const std::string& key, const std::vector<std::string>& texts) {
+  view[key] = texts;
+  view["has_" + key] = !texts.empty();
 }
 
 }  // namespace
 
-Json leak_table_headline(const Json& table) {
+Json leak_table_headline(const StoredLeakTable& table) {
   Json view = make_headline("LEAK TABLE", "○", "none", leak_sentence(table));
-  for (const Json& entry : table.at("entries")) {
-    if (text_of(entry, "grade") != "outlier") continue;
-    add_reason(
-        view,
-        fmt::format("{} at {:g} %: {}", drive_name(entry),
-                    number_of(entry, "target_percent").value_or(0.0), text_of(entry, "note")),
-        "leak-table");
+  for (const StoredLeakEntry& entry : table.entries) {
+    if (entry.grade == calib::LeakGrade::outlier) add_reason(view, noted(entry), "leak-table");
   }
   return view;
 }
 
 std::vector<Figure> leak_table_figures(const LeakTableFiles& stored) {
   std::vector<Figure> figures;
-  if (stored.table.at("summary").at("published").get<int>() > 0)
-    figures.push_back({"leak_table", agreement_plot(stored.table.at("entries"))});
+  if (stored.table.summary.published > 0)
+    figures.push_back({"leak_table", agreement_plot(stored.table.entries)});
   if (stored.levels.empty()) return figures;
   figures.push_back({"leak_levels", levels_plot(stored.levels)});
   figures.push_back({"leak_positions", positions_plot(stored.levels)});
@@ -328,47 +334,37 @@ std::vector<Figure> leak_table_figures(const LeakTableFiles& stored) {
 }
 
 Json leak_table_view(const LeakTableFiles& stored) {
-  const Json& table = stored.table;
-  const Json& entries = table.at("entries");
-  const std::vector<double> targets = targets_of(entries);
-  const bool published = table.at("summary").at("published").get<int>() > 0;
+  const StoredLeakTable& table = stored.table;
+  const std::vector<double> targets = targets_of(table.entries);
+  const bool published = table.summary.published > 0;
   Json view;
   view["sentence"] = leak_sentence(table);
-  view["share"] = text_of(table, "share");
+  view["share"] = table.share;
   view["targets"] = Json::array();
   for (const double target : targets) view["targets"].push_back(fmt::format("{:g} %", target));
-  view["rows"] = leak_rows(entries, targets);
+  view["rows"] = leak_rows(table.entries, targets);
   view["has_published"] = published;
   if (published) {
-    view["share_rms"] = shown_in(table.at("summary").at("share_rms_percent"), 1.0, 3);
-    view["plot_html"] = svg(agreement_plot(entries));
+    view["share_rms"] = shown_in(json_of(table.summary.share_rms_percent), 1.0, 3);
+    view["plot_html"] = svg(agreement_plot(table.entries));
   }
-  view["notes"] = Json::array();
-  for (const Json& entry : entries) {
-    if (text_of(entry, "note").empty()) continue;
-    view["notes"].push_back(fmt::format("{} at {:g} %: {}", drive_name(entry),
-                                        number_of(entry, "target_percent").value_or(0.0),
-                                        text_of(entry, "note")));
+  std::vector<std::string> notes;
+  for (const StoredLeakEntry& entry : table.entries) {
+    if (!entry.note.empty()) notes.push_back(noted(entry));
   }
-  view["has_notes"] = !view["notes"].empty();
-  const auto texts = [&](const char* key) {
-    return table.contains(key) && table.at(key).is_array() ? table.at(key) : Json::array();
-  };
-  view["of_fit"] = texts("notes");
-  view["has_of_fit"] = !view["of_fit"].empty();
-  view["warnings"] = texts("warnings");
-  view["has_warnings"] = !view["warnings"].empty();
+  put_texts(view, "notes", notes);
+  put_texts(view, "of_fit", table.notes.value_or(std::vector<std::string>()));
+  put_texts(view, "warnings", table.warnings.value_or(std::vector<std::string>()));
   view["normals"] = Json::array();
-  for (const Json& normal : table.at("normal")) {
-    view["normals"].push_back(
-        {{"signal", drive_name(normal)},
-         {"coefficient", shown_in(normal.at("published_coefficient"), 1.0, 4)},
-         {"share", shown_in(normal.at("share_at_published_percent"), 1.0, 3)}});
+  for (const StoredNormal& normal : table.normal) {
+    view["normals"].push_back({{"signal", drive_name(normal)},
+                               {"coefficient", shown_in(normal.published_coefficient, 1.0, 4)},
+                               {"share", shown_in(normal.share_at_published_percent, 1.0, 3)}});
   }
-  view["has_normals"] = !view["normals"].empty();
-  view["features"] = feature_rows(table.at("features"));
-  view["has_features"] = !view["features"].empty();
-  view["residual"] = text_of(table, "residual");
+  view["has_normals"] = !table.normal.empty();
+  view["features"] = feature_rows(table.features);
+  view["has_features"] = !table.features.empty();
+  view["residual"] = table.residual;
   view["has_levels"] = !stored.levels.empty();
   if (!stored.levels.empty()) {
     view["levels_html"] = svg(levels_plot(stored.levels));
@@ -376,22 +372,22 @@ Json leak_table_view(const LeakTableFiles& stored) {
   }
   view["flows"] = Json::array();
   for (const auto& [level, series] : stored.levels) {
-    view["flows"].push_back({{"caption", level_caption(table.at("features"), level)},
+    view["flows"].push_back({{"caption", level_caption(table.features, level)},
                              {"plot_html", svg(flows_plot(level, series))}});
   }
   view["assumptions"] = Json::array();
-  for (const Json& each : table.at("assumptions")) {
-    view["assumptions"].push_back({{"name", text_of(each, "key")},
-                                   {"value", shown(each.at("value"), text_of(each, "unit"), 5)},
-                                   {"source", text_of(each, "source")}});
+  for (const StoredAssumption& each : table.assumptions) {
+    view["assumptions"].push_back({{"name", each.key},
+                                   {"value", shown(json_of(each.value), each.unit, 5)},
+                                   {"source", each.source}});
   }
   view["combinations"] = Json::array();
-  for (const Json& each : table.at("fixed_combinations")) {
-    view["combinations"].push_back({{"formula", text_of(each, "formula")},
-                                    {"value", shown_in(each.at("value"), 1.0, 5)},
-                                    {"unit", text_of(each, "unit")}});
+  for (const StoredCombination& each : table.fixed_combinations) {
+    view["combinations"].push_back({{"formula", each.formula},
+                                    {"value", shown_in(json_of(each.value), 1.0, 5)},
+                                    {"unit", each.unit}});
   }
-  view["has_combinations"] = !view["combinations"].empty();
+  view["has_combinations"] = !table.fixed_combinations.empty();
   return view;
 }
 

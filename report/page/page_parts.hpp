@@ -90,7 +90,10 @@ Json trust_view(const Json& result);
 Json starts_view(const Json& result);
 Json ledger_view(const Json& result);
 /// What made a result, under its name, and from which file it is drawn.
-Json provenance_view(const Json& result, const std::string& name, const std::string& file);
+Json provenance_view(const StoredProvenance& provenance, const std::string& name,
+                     const std::string& file);
+/// Adds what a fit or validation says of its own making.
+void add_making(const Json& result, Json& view);
 Json formulas_view();
 
 /// One condition: what it is, its scores, its plots and residual tests.
@@ -117,7 +120,7 @@ std::vector<Figure> parity_figures(const ParityFiles& stored);
 std::vector<Figure> comparison_figures(const Json& comparison);
 
 /// leak_table.json against what was published.
-Json leak_table_headline(const Json& table);
+Json leak_table_headline(const StoredLeakTable& table);
 Json leak_table_view(const LeakTableFiles& stored);
 
 /// diagnosis.json: classes, their probabilities, and how often they are right.

@@ -79,39 +79,40 @@ Json ledger_view(const Json& result) {
   return view;
 }
 
-Json provenance_view(const Json& result, const std::string& name, const std::string& file) {
-  const Json& provenance = result.at("provenance");
+Json provenance_view(const StoredProvenance& provenance, const std::string& name,
+                     const std::string& file) {
   Json view;
   view["name"] = name;
   view["file"] = file;
-  view["command"] = text_of(provenance, "command");
+  view["command"] = provenance.command;
   view["facts"] = Json::array();
   const auto add = [&](const std::string& fact, const std::string& value) {
     if (!value.empty()) view["facts"].push_back({{"name", fact}, {"value", value}});
   };
-  const auto add_number = [&](const char* fact, const char* key, int digits, const char* unit) {
-    if (const auto value = number_of(result, key))
-      add(fact, fmt::format("{:.{}g}{}", *value, digits, unit));
-  };
-  add("Program", fmt::format("rigcal {}", text_of(provenance, "version")));
-  add("Git revision", text_of(provenance, "revision"));
-  add("Machine", text_of(provenance, "machine"));
-  add("Seed", fmt::format("{}", provenance.at("seed").get<std::uint64_t>()));
-  for (const auto& [option, value] : provenance.at("options").items())
-    add("Option " + option, value.is_string() ? value.get<std::string>() : value.dump());
-  add_number("Tolerance of the simulations", "simulation_tolerance", 3, "");
-  add_number("Residuals", "residual_count", 12, "");
-  add_number("Evaluations", "evaluations", 12, "");
-  add_number("Time", "wall_seconds", 3, " s");
-  add_number("Cost", "cost", 8, "");
-  add_number("Reduced chi-square", "reduced_chi_square", 5, "");
-  view["inputs"] = Json::array();
-  for (const Json& input : provenance.at("inputs"))
-    view["inputs"].push_back(
-        {{"path", text_of(input, "path")}, {"sha256", text_of(input, "sha256")}});
-  const std::size_t count = view["inputs"].size();
+  add("Program", fmt::format("rigcal {}", provenance.version));
+  add("Git revision", provenance.revision);
+  add("Machine", provenance.machine);
+  add("Seed", fmt::format("{}", provenance.seed));
+  for (const auto& [option, value] : provenance.options) add("Option " + option, value);
+  view["inputs"] = json_of(provenance.inputs);
+  const std::size_t count = provenance.inputs.size();
   view["input_count"] = fmt::format("{} input file{}", count, count == 1 ? "" : "s");
   return view;
+}
+
+void add_making(const Json& result, Json& view) {
+  const auto add = [&](const char* fact, const char* key, int digits, const char* unit) {
+    if (const auto value = number_of(result, key)) {
+      view["facts"].push_back(
+          {{"name", fact}, {"value", fmt::format("{:.{}g}{}", *value, digits, unit)}});
+    }
+  };
+  add("Tolerance of the simulations", "simulation_tolerance", 3, "");
+  add("Residuals", "residual_count", 12, "");
+  add("Evaluations", "evaluations", 12, "");
+  add("Time", "wall_seconds", 3, " s");
+  add("Cost", "cost", 8, "");
+  add("Reduced chi-square", "reduced_chi_square", 5, "");
 }
 
 }  // namespace rigcal::report

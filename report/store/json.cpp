@@ -10,6 +10,7 @@
 #include "metrics/metric_table.hpp"
 #include "report/store/identity.hpp"
 #include "report/store/residual_tests_json.hpp"
+#include "report/store/stored_provenance.hpp"
 #include "report/store/trust_json.hpp"
 #include "report/store/weights_json.hpp"
 #include "report/text/groups.hpp"
@@ -320,25 +321,6 @@ Json correlation_json(const std::vector<std::string>& names, const Eigen::Matrix
   return json;
 }
 
-Json provenance_json(const Provenance& provenance) {
-  Json json;
-  json["version"] = std::string(version());
-  json["revision"] = std::string(revision());
-  json["machine"] = machine();
-  json["command"] = provenance.command;
-  json["seed"] = provenance.seed;
-  json["options"] = Json::object();
-  for (const auto& [name, value] : provenance.options) json["options"][name] = value;
-  json["inputs"] = Json::array();
-  for (const InputFile& input : provenance.inputs) {
-    Json entry;
-    entry["path"] = input.path;
-    entry["sha256"] = input.sha256;
-    json["inputs"].push_back(std::move(entry));
-  }
-  return json;
-}
-
 Json result_json(const Result& result) {
   const calib::Fit& fit = result.fit;
   Json json;
@@ -380,7 +362,7 @@ Json result_json(const Result& result) {
   json["failure_count"] = fit.failure_count;
   json["failures"] = failures_json(fit);
   json["warnings"] = fit.warnings;
-  json["provenance"] = provenance_json(result.provenance);
+  json["provenance"] = json_of(stored(result.provenance));
   return json;
 }
 

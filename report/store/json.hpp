@@ -29,9 +29,6 @@ Json numbers(const std::vector<double>& values);
 /// `correlation` of a result: names of the estimates and the matrix, shape (names)^2.
 Json correlation_json(const std::vector<std::string>& names, const Eigen::MatrixXd& correlation);
 
-/// What a result was made from, as every result file holds it.
-Json provenance_json(const Provenance& provenance);
-
 /// fit.json or validation.json as docs/command-line.md describes them; `status` comes first.
 Json result_json(const Result& result);
 

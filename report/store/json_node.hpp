@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <concepts>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -62,6 +64,17 @@ class JsonNode {
     return result;
   }
 
+  /// Keys and what they hold, in their order.
+  std::vector<std::pair<std::string, JsonNode>> members() const {
+    if (!json_.is_object()) fail("an object");
+    std::vector<std::pair<std::string, JsonNode>> result;
+    for (const auto& [key, value] : json_.items())
+      result.emplace_back(key, JsonNode(value, file_, path_ + "." + key, kind_));
+    return result;
+  }
+
+  bool has(const std::string& key) const { return json_.is_object() && json_.contains(key); }
+  const Json& json() const { return json_; }
   bool is_null() const { return json_.is_null(); }
   std::string string() const {
     if (!json_.is_string()) fail("a text");
@@ -74,6 +87,15 @@ class JsonNode {
   double real() const {
     if (!json_.is_number()) fail("a number");
     return json_.get<double>();
+  }
+  template <std::integral Integer>
+  Integer integer() const {
+    if (json_.is_number_unsigned() && std::in_range<Integer>(json_.get<std::uint64_t>()))
+      return static_cast<Integer>(json_.get<std::uint64_t>());
+    if (json_.is_number_integer() && !json_.is_number_unsigned() &&
+        std::in_range<Integer>(json_.get<std::int64_t>()))
+      return static_cast<Integer>(json_.get<std::int64_t>());
+    fail("a whole number");
   }
   std::optional<Range> range() const {
     if (is_null()) return std::nullopt;
@@ -96,11 +118,12 @@ class JsonNode {
 };
 
 /// The member of an enumeration whose name a text is.
-template <typename Enum, std::size_t N>
-Enum one_of(const JsonNode& node, const std::array<Enum, N>& values) {
+template <typename Values>
+requires std::is_enum_v<typename Values::value_type>
+typename Values::value_type one_of(const JsonNode& node, const Values& values) {
   const std::string text = node.string();
   std::string names;
-  for (const Enum value : values) {
+  for (const auto value : values) {
     if (to_string(value) == text) return value;
     names += std::string(names.empty() ? "" : ", ") + std::string(to_string(value));
   }

@@ -70,7 +70,7 @@ Json plan_json(const datasets::Campaign& campaign, const calib::Plan& plan,
     json["records"].push_back(std::move(entry));
   }
   json["messages"] = plan.messages;
-  json["provenance"] = provenance_json(provenance);
+  json["provenance"] = json_of(stored(provenance));
   return json;
 }
 

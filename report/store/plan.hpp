@@ -4,7 +4,7 @@
 
 #include "calib/trust/plan.hpp"
 #include "report/store/json.hpp"
-#include "report/store/provenance.hpp"
+#include "report/store/stored_provenance.hpp"
 
 namespace rigcal::report {
 

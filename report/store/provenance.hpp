@@ -9,6 +9,7 @@
 
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
+#include "report/store/described.hpp"
 
 namespace rigcal::report {
 
@@ -24,6 +25,7 @@ std::string machine();
 struct InputFile {
   std::string path;  ///< as it was opened
   std::string sha256;
+  RIGCAL_DESCRIBE(path, sha256)
 };
 
 /// What a result was made from, and how: enough to make it again.

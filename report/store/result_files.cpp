@@ -2,39 +2,29 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "common/error.hpp"
 #include "common/file.hpp"
 
 namespace rigcal::report {
 namespace {
 
-/// The SHA-256 that a result names for a file; empty where it names none.
-std::string named_hash(const Json& result, const std::string& path) {
-  const auto provenance = result.find("provenance");
-  if (provenance == result.end()) return {};
-  const auto files = provenance->find("files");
-  if (files == provenance->end()) return {};
-  for (const Json& each : *files) {
-    if (each.at("path").get<std::string>() == path) return each.at("sha256").get<std::string>();
-  }
-  return {};
-}
-
-}  // namespace
-
-void name_files(const std::vector<ResultFile>& files, Json& result) {
-  Json& named = result["provenance"]["files"] = Json::array();
+std::vector<InputFile> hashed(const std::vector<ResultFile>& files) {
+  std::vector<InputFile> named;
   for (const ResultFile& file : files)
-    named.push_back(
-        {{"path", file.path.generic_string()}, {"sha256", sha256_of_text(file.content)}});
+    named.push_back({file.path.generic_string(), sha256_of_text(file.content)});
+  return named;
 }
 
-ReadFile files_of_run(const ReadFile& read, const Json& result, const std::string& where,
-                      const std::string& file) {
-  return [&read, &result, where, file](const std::filesystem::path& path) {
+ReadFile only(const ReadFile& read, const std::vector<InputFile>& named, const std::string& where,
+              const std::string& file) {
+  return [&read, named, where, file](const std::filesystem::path& path) {
     auto text = read(path);
-    const std::string hash = named_hash(result, path.generic_string());
-    if (text && !hash.empty() && sha256_of_text(*text) != hash)
+    const auto found = std::find_if(named.begin(), named.end(), [&](const InputFile& each) {
+      return each.path == path.generic_string();
+    });
+    if (text && found != named.end() && sha256_of_text(*text) != found->sha256)
       throw InputError(
           {(std::filesystem::path(where) / path).string()},
           fmt::format("is not the file that {} was written with: it is of another run, "
@@ -42,6 +32,30 @@ ReadFile files_of_run(const ReadFile& read, const Json& result, const std::strin
                       file));
     return text;
   };
+}
+
+}  // namespace
+
+void name_files(const std::vector<ResultFile>& files, StoredProvenance& provenance) {
+  provenance.files = hashed(files);
+}
+
+void name_files(const std::vector<ResultFile>& files, Json& result) {
+  result["provenance"]["files"] = json_of(hashed(files));
+}
+
+ReadFile files_of_run(const ReadFile& read, const StoredProvenance& provenance,
+                      const std::string& where, const std::string& file) {
+  return only(read, provenance.files.value_or(std::vector<InputFile>()), where, file);
+}
+
+ReadFile files_of_run(const ReadFile& read, const Json& result, const std::string& where,
+                      const std::string& file) {
+  std::vector<InputFile> named;
+  const auto provenance = result.find("provenance");
+  if (provenance != result.end() && provenance->contains("files"))
+    read_into(JsonNode(provenance->at("files"), file, "provenance.files", file), named);
+  return only(read, named, where, file);
 }
 
 }  // namespace rigcal::report

@@ -12,16 +12,19 @@
 
 namespace rigcal::report {
 
-/// Adds `provenance.files`: path and SHA-256 of each of `files`, in their order.
+/// `provenance.files`: path and SHA-256 of each of `files`, in their order.
+void name_files(const std::vector<ResultFile>& files, StoredProvenance& provenance);
 void name_files(const std::vector<ResultFile>& files, Json& result);
 
 /// Reads the files of a result's own run.
 ///
 /// @param read    the folder, borrowed
-/// @param result  borrowed; one that names no files, of an earlier version, takes any
+/// @param provenance  of the result; one that names no files, of an earlier version, takes any
 /// @param where   the folder, for messages
 /// @param file    of the result, for messages
 /// @return        throws InputError where a file is not the one that the result names
+ReadFile files_of_run(const ReadFile& read, const StoredProvenance& provenance,
+                      const std::string& where, const std::string& file);
 ReadFile files_of_run(const ReadFile& read, const Json& result, const std::string& where,
                       const std::string& file);
 

@@ -85,14 +85,12 @@ Calibration load_calibration(const ReadFile& read, const std::string& where, int
 }
 
 LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
-  LeakTableFiles stored;
-  stored.table = load_json(read, where, "leak_table.json");
-  const ReadFile own = files_of_run(read, stored.table, where, "leak_table.json");
-  for (const Json& feature : stored.table.at("features")) {
-    const std::string level = text_of(feature, "level");
-    const std::string name = "levels/" + level_file(level);
+  LeakTableFiles stored{load<StoredLeakTable>(read, where, "leak_table.json"), {}};
+  const ReadFile own = files_of_run(read, stored.table.provenance, where, "leak_table.json");
+  for (const StoredFeatures& feature : stored.table.features) {
+    const std::string name = "levels/" + level_file(feature.level);
     if (const auto series = own(name))
-      stored.levels.emplace_back(level, parse_table(*series, path_in(where, name)));
+      stored.levels.emplace_back(feature.level, parse_table(*series, path_in(where, name)));
   }
   return stored;
 }

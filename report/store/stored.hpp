@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "report/leak/stored_leak_table.hpp"
 #include "report/store/table.hpp"
 
 // The files of a result folder, read back. All throw InputError where a file is missing, or is no
@@ -40,7 +41,7 @@ Calibration load_calibration(const ReadFile& read, const std::string& where, int
 
 /// A leak table, and the series of its features by level.
 struct LeakTableFiles {
-  Json table;
+  StoredLeakTable table;
   std::vector<std::pair<std::string, Table>> levels;
 };
 LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where);
@@ -54,6 +55,15 @@ ParityFiles load_parity(const ReadFile& read, const std::string& where);
 
 /// A result in JSON, whose schema is that of the name of its file.
 Json load_json(const ReadFile& read, const std::string& where, const std::string& name);
+
+/// The same as its type.
+template <typename Stored>
+Stored load(const ReadFile& read, const std::string& where, const std::string& name) {
+  const Json json = load_json(read, where, name);
+  Stored value;
+  read_into(JsonNode(json, (std::filesystem::path(where) / name).string(), "", name), value);
+  return value;
+}
 
 /// A text as part of the name of a file: letters, digits, ".", "-", and "_" for all else.
 std::string plain_name(const std::string& text);

@@ -14,6 +14,7 @@ namespace rigcal::report {
 struct Range {
   double low = 0.0;
   double high = 0.0;
+  bool operator==(const Range&) const = default;
 };
 
 /// What the conditions of a fit cover; a range is empty where no condition tells it.

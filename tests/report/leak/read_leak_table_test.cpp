@@ -13,17 +13,28 @@ using datasets::LeakClass;
 
 namespace {
 
-const std::string kTable = R"({"schema": "rigcal.leak_table/1",
-"assumptions": [
-  {"name": "mass_kg", "key": "mass", "value": 85.0, "unit": "kg", "source": "fit"},
-  {"name": "residual_scale_per_m", "key": "residual_scale", "value": 55, "unit": "1/m", "source": "a guess"}],
-"entries": [
-  {"waveform": "sine", "frequency_hz": 0.1, "amplitude_m": 0.05, "target_percent": 20, "coefficients": [0.35],
-   "coefficients_ci95": [[0.34, 0.36]]},
-  {"waveform": "sine", "frequency_hz": 0.1, "amplitude_m": 0.05, "target_percent": 10, "coefficients": [0.1, 0.2],
-   "coefficients_ci95": [null, [0.19, 0.21]]},
-  {"waveform": "square", "frequency_hz": 1, "amplitude_m": 0.05, "target_percent": 20, "coefficients": [],
-   "coefficients_ci95": []}]})";
+StoredLeakEntry entry(datasets::Waveform waveform, double frequency_hz, double target_percent,
+                      std::vector<double> coefficients, std::vector<std::optional<Range>> ci95) {
+  StoredLeakEntry entry;
+  entry.waveform = waveform;
+  entry.frequency_hz = frequency_hz;
+  entry.amplitude_m = 0.05;
+  entry.target_percent = target_percent;
+  entry.coefficients = std::move(coefficients);
+  entry.coefficients_ci95 = std::move(ci95);
+  return entry;
+}
+
+const std::string kTable = [] {
+  using datasets::Waveform;
+  StoredLeakTable table;
+  table.assumptions = {{"mass_kg", "mass", 85.0, "kg", "fit"},
+                       {"residual_scale_per_m", "residual_scale", 55.0, "1/m", "a guess"}};
+  table.entries = {entry(Waveform::sine, 0.1, 20.0, {0.35}, {Range{0.34, 0.36}}),
+                   entry(Waveform::sine, 0.1, 10.0, {0.1, 0.2}, {std::nullopt, Range{0.19, 0.21}}),
+                   entry(Waveform::square, 1.0, 20.0, {}, {})};
+  return json_of(table).dump();
+}();
 
 EarlierLeakTable read_table_text(const std::string& text) {
   const test::TemporaryFolder folder;
@@ -57,7 +68,7 @@ TEST_CASE("read_leak_table: rows, coefficients and the rig", "[report]") {
   REQUIRE(table.limits.size() == 3);
   CHECK(table.limits[1].coefficients == std::vector{0.1, 0.2});
   CHECK_FALSE(table.limits[1].ranges_95[0].has_value());
-  CHECK(table.limits[1].ranges_95[1] == std::array{0.19, 0.21});
+  CHECK(table.limits[1].ranges_95[1] == rigcal::report::Range{0.19, 0.21});
   CHECK(table.limits[2].waveform == datasets::Waveform::square);
   CHECK(table.limits[2].coefficients.empty());
 }
@@ -69,7 +80,7 @@ TEST_CASE("read_leak_table: what is wrong is named", "[report]") {
              Contains("'assumptions' is missing; is this a leak_table.json?"));
   CHECK_THAT(table_complaint("mass_kg", "mass_g"), Contains("such as mass_kg"));
   CHECK_THAT(table_complaint("\"square\"", "\"saw\""), Contains("entries[2].waveform"));
-  CHECK_THAT(table_complaint("[[0.34, 0.36]]", "[]"),
+  CHECK_THAT(table_complaint("[[0.34,0.36]]", "[]"),
              Contains("entries[0].coefficients_ci95") && Contains("for each coefficient"));
 }
 
