@@ -134,20 +134,43 @@ class RegularFile {
   std::size_t bytes_ = 0;
 };
 
+/// SHA-256 as OpenSSL knows it. From a context of its own: in the default one, OpenSSL 3.0 does not
+/// look whether there was memory to make it.
+class Sha256Algorithm {
+ public:
+  Sha256Algorithm() : context_(OSSL_LIB_CTX_new()) {
+    if (!context_) throw std::bad_alloc();
+    algorithm_.reset(EVP_MD_fetch(context_.get(), "SHA256", nullptr));
+    if (!algorithm_) throw std::bad_alloc();
+  }
+  const EVP_MD* get() const { return algorithm_.get(); }
+
+ private:
+  struct Free {
+    void operator()(OSSL_LIB_CTX* context) const { OSSL_LIB_CTX_free(context); }
+    void operator()(EVP_MD* algorithm) const { EVP_MD_free(algorithm); }
+  };
+  std::unique_ptr<OSSL_LIB_CTX, Free> context_;
+  std::unique_ptr<EVP_MD, Free> algorithm_;
+};
+
 class Sha256 {
  public:
   Sha256() : digest_(EVP_MD_CTX_new()) {
-    if (!digest_ || EVP_DigestInit_ex(digest_.get(), EVP_sha256(), nullptr) != 1)
-      throw Error(ExitCode::internal, "OpenSSL does not offer SHA-256");
+    static const Sha256Algorithm algorithm;
+    if (!digest_ || EVP_DigestInit_ex(digest_.get(), algorithm.get(), nullptr) != 1)
+      throw std::bad_alloc();
   }
 
-  void add(std::string_view bytes) { EVP_DigestUpdate(digest_.get(), bytes.data(), bytes.size()); }
+  void add(std::string_view bytes) {
+    if (EVP_DigestUpdate(digest_.get(), bytes.data(), bytes.size()) != 1) throw std::bad_alloc();
+  }
 
   /// 64 lower-case hex digits.
   std::string hex() {
     std::array<unsigned char, EVP_MAX_MD_SIZE> sum{};
     unsigned int length = 0;
-    EVP_DigestFinal_ex(digest_.get(), sum.data(), &length);
+    if (EVP_DigestFinal_ex(digest_.get(), sum.data(), &length) != 1) throw std::bad_alloc();
     std::string text;
     for (unsigned int i = 0; i < length; ++i) text += fmt::format("{:02x}", sum[i]);
     return text;

@@ -1,14 +1,15 @@
 // Preloaded into rigcal by tests/reliability/faults.py: one call of a kind fails, as if memory or
 // disk had run out.
 //
-// RIGCAL_FAIL=memory:N or files:N  the N-th allocation, or the N-th call that opens to write,
-// writes,
-//                                  syncs, closes, renames or makes a folder, fails; 0: none
-// RIGCAL_COUNT=FILE                where both are counted at the end
+// RIGCAL_FAIL=KIND:N  the N-th call of a kind fails; 0: none does
+//   memory            operator new
+//   malloc            malloc() and its kin, called by the program itself (Eigen) or a library in C
+//   files             opens to write, writes, syncs, closes, renames or makes a folder
+// RIGCAL_COUNT=FILE   where they are counted at the end, in this order
 //
 // Counting begins with main(), whose first call is mallopt(): what fails before it is not the
-// program's. It pauses within UDUNITS-2, which does not look whether it was given memory: it
-// crashes, or forgets units.
+// program's. UDUNITS-2 is left out: it does not look whether it was given memory, and crashes or
+// forgets units. So are glibc, libstdc++ and the loader, which make do or end the program.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -28,9 +29,46 @@ namespace {
 
 std::atomic<bool> counting{false};
 std::atomic<long> allocations{0};
+std::atomic<long> mallocs{0};
 std::atomic<long> file_calls{0};
 long failing_allocation = 0;
+long failing_malloc = 0;
 long failing_file_call = 0;
+
+// glibc's own, which need no looking up: that would allocate.
+extern "C" void* __libc_malloc(std::size_t);
+extern "C" void* __libc_calloc(std::size_t, std::size_t);
+extern "C" void* __libc_realloc(void*, std::size_t);
+extern "C" void* __libc_memalign(std::size_t, std::size_t);
+
+/// Whether an address is in code whose allocations count.
+bool counts(const void* address) {
+  Dl_info info{};
+  if (::dladdr(address, &info) == 0 || info.dli_fname == nullptr) return false;
+  static const void* const own = [] {
+    Dl_info mine{};
+    ::dladdr(reinterpret_cast<const void*>(&counts), &mine);
+    return static_cast<const void*>(mine.dli_fbase);
+  }();
+  if (info.dli_fbase == own) return false;
+  const char* const slash = std::strrchr(info.dli_fname, '/');
+  const char* const name = slash == nullptr ? info.dli_fname : slash + 1;
+  for (const char* left_out :
+       {"libc.so", "libm.so", "ld-linux", "libstdc++", "libgcc_s", "libudunits2", "libexpat"}) {
+    if (std::strncmp(name, left_out, std::strlen(left_out)) == 0) return false;
+  }
+  return true;
+}
+
+/// Whether the malloc() that is called from an address fails.
+bool malloc_fails(const void* caller) {
+  return counting && counts(caller) && ++mallocs == failing_malloc;
+}
+
+void* not_enough_memory() {
+  errno = ENOMEM;
+  return nullptr;
+}
 
 long number_after(const char* text, const char* kind) {
   const std::size_t length = std::strlen(kind);
@@ -40,8 +78,7 @@ long number_after(const char* text, const char* kind) {
 void* allocated(std::size_t alignment, std::size_t size) {
   const bool fails = counting && ++allocations == failing_allocation;
   void* const memory =
-      fails ? nullptr
-            : std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+      fails ? nullptr : __libc_memalign(alignment, (size + alignment - 1) / alignment * alignment);
   if (memory != nullptr) return memory;
   if (const std::new_handler handler = std::get_new_handler()) handler();
   throw std::bad_alloc();
@@ -64,7 +101,7 @@ void write_counts() {
   if (path == nullptr) return;
   std::FILE* const file = std::fopen(path, "w");
   if (file == nullptr) return;
-  std::fprintf(file, "%ld %ld\n", allocations.load(), file_calls.load());
+  std::fprintf(file, "%ld %ld %ld\n", allocations.load(), mallocs.load(), file_calls.load());
   std::fclose(file);
 }
 
@@ -78,11 +115,37 @@ int mallopt(int parameter, int value) {
   if (counting) return result;
   if (const char* const which = std::getenv("RIGCAL_FAIL")) {
     failing_allocation = number_after(which, "memory:");
+    failing_malloc = number_after(which, "malloc:");
     failing_file_call = number_after(which, "files:");
     std::atexit(write_counts);
     counting = true;
   }
   return result;
+}
+
+void* malloc(std::size_t size) {
+  return malloc_fails(__builtin_return_address(0)) ? not_enough_memory() : __libc_malloc(size);
+}
+
+void* calloc(std::size_t count, std::size_t size) {
+  return malloc_fails(__builtin_return_address(0)) ? not_enough_memory()
+                                                   : __libc_calloc(count, size);
+}
+
+void* realloc(void* memory, std::size_t size) {
+  return malloc_fails(__builtin_return_address(0)) ? not_enough_memory()
+                                                   : __libc_realloc(memory, size);
+}
+
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  return malloc_fails(__builtin_return_address(0)) ? not_enough_memory()
+                                                   : __libc_memalign(alignment, size);
+}
+
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) {
+  if (malloc_fails(__builtin_return_address(0))) return ENOMEM;
+  *memory = __libc_memalign(alignment, size);
+  return *memory == nullptr ? ENOMEM : 0;
 }
 
 ssize_t write(int descriptor, const void* bytes, std::size_t count) {

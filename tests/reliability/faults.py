@@ -5,6 +5,13 @@ import shutil
 
 from runs import SMALL_RIG, Count, comparable, content, left_behind, must, run
 
+# What fails, in the order in which fail_nth.cpp counts it, and in words.
+KINDS = {
+    "memory": "faults: {}, allocations",
+    "malloc": "malloc: {}, calls by Eigen and libraries in C",
+    "files": "faults: {}, calls that write",
+}
+
 
 def places(count, most):
     """Which of `count` calls fail: all, or the first of them one by one and others evenly over the rest."""
@@ -14,7 +21,7 @@ def places(count, most):
     return [*range(1, first + 1), *(first + 1 + k * (count - first - 1) // (most - first - 1) for k in range(most - first))]
 
 
-def study(rigcal, folder, size):
+def study(rigcal, folder, size, kinds=("memory", "files")):
     library = rigcal.parent / "tests" / "libfail_nth.so"
     must(rigcal, ["synthesize", SMALL_RIG, "--seed", "1", "--out", folder / "twin", "--quiet"])
     campaign = folder / "twin" / "campaign.toml"
@@ -40,8 +47,10 @@ def study(rigcal, folder, size):
         whole = {path: hash_ for path, hash_ in content(out).items() if path not in ("fit.json", "report.html")}
         result = comparable(out / "fit.json")
         before = content(folder / "earlier")
-        for kind, count in zip(("memory", "files"), map(int, counts.read_text().split())):
-            row = Count(f"faults: {verb}, {'allocations' if kind == 'memory' else 'calls that write'}")
+        for kind, count in zip(KINDS, map(int, counts.read_text().split())):
+            if kind not in kinds:
+                continue
+            row = Count(KINDS[kind].format(verb))
             chosen = places(count, most)
             for n in chosen:
                 code, err, _ = attempt(f"{kind}:{n}")
