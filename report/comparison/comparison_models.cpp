@@ -53,14 +53,15 @@ void take_likeliest_noise(const Json& weights, Candidate& candidate) {
   if (estimated) candidate.cost = cost;
 }
 
-/// A number of things. Conversion of a double beyond its range to a whole number is undefined.
-double count_of(const Compared& compared, const std::string& key) {
+/// A number of things, at least so many. Conversion of a double beyond its range to a whole number
+/// is undefined.
+double count_of(const Compared& compared, const std::string& key, double least) {
   constexpr double kLargestCount = 1e9;
   const double count = compared.result.at(key).get<double>();
-  if (count >= 0.0 && count <= kLargestCount && count == std::floor(count)) return count;
+  if (count >= least && count <= kLargestCount && count == std::floor(count)) return count;
   throw InputError({compared.file.string()},
-                   fmt::format("key '{}': found {}, expected a whole number from 0 to {}", key,
-                               count, kLargestCount));
+                   fmt::format("key '{}': found {}, expected a whole number from {} to {}", key,
+                               count, least, kLargestCount));
 }
 
 Candidate candidate_of(const Compared& compared) {
@@ -68,8 +69,8 @@ Candidate candidate_of(const Compared& compared) {
   Candidate candidate;
   candidate.name = compared.name;
   candidate.cost = result.at("cost").get<double>();
-  candidate.parameters = static_cast<int>(count_of(compared, "rank"));
-  candidate.residuals = count_of(compared, "residual_count");
+  candidate.parameters = static_cast<int>(count_of(compared, "rank", 0.0));
+  candidate.residuals = count_of(compared, "residual_count", 1.0);
   candidate.independent_residuals =
       number_of(result, "independent_residuals").value_or(candidate.residuals);
   take_likeliest_noise(result.at("weights"), candidate);
