@@ -35,9 +35,6 @@ void sweep(benchmark::State& state, const std::vector<const char*>& free_keys,
 
 const std::vector<const char*> kFour{"mass", "bulk_modulus", "valve_gain", "leakage_coefficient"};
 
-BENCHMARK_CAPTURE(sweep, automatic, {}, model::Method::automatic)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(sweep, automatic_four_sensitivities, kFour, model::Method::automatic)
-    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sweep, rosenbrock, {}, model::Method::rosenbrock)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(sweep, rosenbrock_four_sensitivities, kFour, model::Method::rosenbrock)
     ->Unit(benchmark::kMillisecond);

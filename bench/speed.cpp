@@ -18,7 +18,7 @@
 #include "calib/fit.hpp"
 #include "calib/search/evaluator.hpp"
 #include "calib/search/multi_start.hpp"
-#include "calib/search/solve.hpp"
+#include "calib/search/search.hpp"
 #include "common/memory.hpp"
 
 namespace rigcal::bench {
@@ -56,10 +56,8 @@ std::vector<int> free_indices(const std::vector<const char*>& keys) {
 const std::vector<const char*> kFour{"mass", "bulk_modulus", "valve_gain", "leakage_coefficient"};
 
 model::Simulation run(const model::ParameterValues& values, const std::vector<int>& free,
-                      const Reference& reference, double tolerance, bool every_period = false,
-                      model::Method method = model::Method::rosenbrock) {
+                      const Reference& reference, double tolerance, bool every_period = false) {
   model::SimulationOptions options;
-  options.method = method;
   options.tolerance = tolerance;
   options.periodic_steady_state = !every_period;
   auto result = model::simulate({}, values, free, inputs(reference), sample_times(reference),
@@ -71,8 +69,8 @@ model::Simulation run(const model::ParameterValues& values, const std::vector<in
   return result;
 }
 
-/// What a fit computes before it describes the result: the problem solved from its start, the last
-/// step predicted. The simulation that judges the optimum belongs to its intervals.
+/// What a fit computes before it describes the result: the problem solved from its start. The
+/// simulation that judges the optimum belongs to its intervals.
 struct Solved {
   calib::Problem problem;
   calib::MultiStart found;
@@ -128,24 +126,21 @@ void six_signals(int rounds) {
   const auto free = free_indices(kFour);
   const baseline::Values ones{1.0, 1.0, 1.0, 1.0};
   const auto sweep = [&](const std::vector<int>& parameters, double tolerance,
-                         bool every_period = false,
-                         model::Method method = model::Method::rosenbrock) {
-    for (const auto& r : kSixSignals) run(truth, parameters, r, tolerance, every_period, method);
+                         bool every_period = false) {
+    for (const auto& r : kSixSignals) run(truth, parameters, r, tolerance, every_period);
   };
-  const auto in_turn = model::Method::automatic;
-  const auto times = medians(
-      {[&] {
-         for (const auto& r : kSixSignals) baseline::simulate(r, ones, 1e-6);
-       },
-       [&] { sweep({}, 1e-6); }, [&] { sweep({}, kAsAccurate); },
-       [&] {
-         for (const auto& r : kSixSignals) baseline::simulate_with_sensitivities(r, ones, 1e-6);
-       },
-       [&] { sweep(free, 1e-6); }, [&] { sweep(free, kAsAccurate); },
-       [&] { sweep({}, 1e-6, true); }, [&] { sweep(free, 1e-6, true); },
-       [&] { sweep({}, 1e-6, false, in_turn); }, [&] { sweep(free, 1e-6, false, in_turn); }},
-      rounds);
-  std::vector<double> error(5, 0.0);
+  const auto times = medians({[&] {
+                                for (const auto& r : kSixSignals) baseline::simulate(r, ones, 1e-6);
+                              },
+                              [&] { sweep({}, 1e-6); }, [&] { sweep({}, kAsAccurate); },
+                              [&] {
+                                for (const auto& r : kSixSignals)
+                                  baseline::simulate_with_sensitivities(r, ones, 1e-6);
+                              },
+                              [&] { sweep(free, 1e-6); }, [&] { sweep(free, kAsAccurate); },
+                              [&] { sweep({}, 1e-6, true); }, [&] { sweep(free, 1e-6, true); }},
+                             rounds);
+  std::vector<double> error(4, 0.0);
   for (const Reference& r : kSixSignals) {
     const auto exact = run(truth, {}, r, 1e-11, true).outputs;
     const auto theirs = baseline::simulate(r, ones, 1e-6);
@@ -158,7 +153,6 @@ void six_signals(int rounds) {
     see(1, run(truth, {}, r, 1e-6).outputs.col(0));
     see(2, run(truth, {}, r, kAsAccurate).outputs.col(0));
     see(3, run(truth, free, r, kAsAccurate).outputs.col(0));
-    see(4, run(truth, {}, r, 1e-6, false, in_turn).outputs.col(0));
   }
 
   const Problem data = six_signal_problem();
@@ -196,8 +190,6 @@ void six_signals(int rounds) {
   row("sweep as accurate as the baseline's", times[0], times[2], "1/2", "1/5");
   row("with four sensitivities at 1e-6", times[3], times[4], "1/4", "1/8");
   row("as accurate as the baseline", times[3], times[5], "1/4", "1/8");
-  row("sweep at 1e-6, two methods in turn", times[0], times[8], "", "");
-  row("with four sensitivities", times[3], times[9], "", "");
   row("fit", fits[0], fits[1], "1/10", "1/25");
   row("fit, with intervals and scores", fits[0], fits[2], "", "");
   fmt::print(
@@ -206,12 +198,12 @@ void six_signals(int rounds) {
       times[6], times[7]);
   fmt::print(
       "Largest error of position, of its peak: baseline at 1e-6 {:.1e}, rigcal at 1e-6 {:.1e}; "
-      "at {:.0e} {:.1e} (with sensitivities {:.1e}); two methods in turn at 1e-6 {:.1e}.\n",
-      error[0], error[1], kAsAccurate, error[2], error[3], error[4]);
+      "at {:.0e} {:.1e} (with sensitivities {:.1e}).\n",
+      error[0], error[1], kAsAccurate, error[2], error[3]);
   fmt::print(
       "Evaluations of a fit: baseline {} with and {} without derivatives, rigcal {} (all but the "
       "first "
-      "with). The last step is predicted; the simulation that judges it is in the row below.\n",
+      "with). The simulation that verifies the optimum is in the row below.\n",
       theirs.jacobians / 6, theirs.residuals / 6, ours->evaluations);
   constexpr unsigned kDraws = 8;
   std::vector<double> distances;
@@ -249,7 +241,8 @@ void stiff(int rounds) {
         calib::make_problem(data.campaign, data.records, conditions, false, nullptr);
     calib::Evaluator evaluator(problem, {});
     const double begin = cpu_ms();
-    require_converged(calib::polish(problem, evaluator, optimum, 100, 1, {}));
+    const calib::FitOptions settings;
+    require_converged(calib::Search(problem, evaluator, settings).polish(optimum));
     refits.push_back(cpu_ms() - begin);
   }
   fmt::print("### Stiff campaign: 24 records, 344 024 samples, seven parameters, one thread\n\n");

@@ -70,8 +70,6 @@ void two_chamber_record(int rounds) {
   struct Row {
     const char* name_of_command;
     const model::Signal* command;
-    model::Method method;
-    const char* name;
     const char* required;
   };
   const auto changing = model::Signal::held(times, every);
@@ -79,17 +77,12 @@ void two_chamber_record(int rounds) {
   const std::vector<Output> outputs{Output::position, Output::pressure_a, Output::pressure_b};
   fmt::print(
       "### The same of a cylinder with two chambers, a valve of first order, dry friction\n\n");
-  fmt::print("| command | method | CPU ms | required | steps |\n| --- | --- | --- | --- | --- |\n");
+  fmt::print("| command | CPU ms | required | steps |\n| --- | --- | --- | --- |\n");
   for (const Row& row :
-       {Row{"changes at every sample", &changing, model::Method::rosenbrock, "rosenbrock (default)",
-            "1000"},
-        Row{"changes at every sample", &changing, model::Method::automatic, "automatic", "1000"},
-        Row{"five steps", &five, model::Method::rosenbrock, "rosenbrock (default)", "200"},
-        Row{"five steps", &five, model::Method::automatic, "automatic", "200"}}) {
+       {Row{"changes at every sample", &changing, "1000"}, Row{"five steps", &five, "200"}}) {
     model::SimulationInputs inputs;
     inputs.drive = *row.command;
     model::SimulationOptions options;
-    options.method = row.method;
     std::vector<double> round_ms;
     long steps = 0;
     for (int r = 0; r < std::max(3, rounds / 5); ++r) {
@@ -101,8 +94,8 @@ void two_chamber_record(int rounds) {
       fmt::print(stderr, "two chambers: {}\n", result.reason);
       std::exit(1);
     }
-    fmt::print("| {} | {} | {:.0f} | {} | {} |\n", row.name_of_command, row.name, median(round_ms),
-               row.required, steps);
+    fmt::print("| {} | {:.0f} | {} | {} |\n", row.name_of_command, median(round_ms), row.required,
+               steps);
   }
   fmt::print("\n");
 }

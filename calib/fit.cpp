@@ -18,7 +18,6 @@
 #include "calib/search/checkpoint.hpp"
 #include "calib/search/evaluator.hpp"
 #include "calib/search/multi_start.hpp"
-#include "calib/search/tighten.hpp"
 #include "calib/search/verify.hpp"
 #include "calib/search/weights.hpp"
 #include "calib/trust/bootstrap.hpp"
@@ -243,13 +242,9 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   evaluator.set_fidelity(problem.of_starts());
   budget_steps(problem, evaluator.evaluate(problem.start()));
   MultiStart found = multi_start(problem, evaluator, options);
-  std::vector<ConditionRows> rows = verify_optimum(problem, evaluator, options, found);
-  if (tighten_tolerance(problem, evaluator, options, found))
-    rows = verify_optimum(problem, evaluator, options, found);
-  if (found.optimum.ok && problem.has_estimated_sd()) {
+  if (found.optimum.ok && problem.has_estimated_sd())
     estimate_weights(problem, evaluator, options, found, fit.warnings);
-    rows = verify_optimum(problem, evaluator, options, found);
-  }
+  std::vector<ConditionRows> rows = verify_optimum(problem, evaluator, options, found);
   fit.status = found.result.status;
   fit.message = found.result.message;
   fit.starts = std::move(found.starts);

@@ -8,7 +8,7 @@
 
 #include "calib/problem/problem.hpp"
 #include "calib/problem/r_factor.hpp"
-#include "calib/search/solve.hpp"
+#include "calib/search/search.hpp"
 #include "diagnosis/phase_clusters.hpp"
 #include "diagnosis/residual_rms.hpp"
 #include "diagnosis/steady_leak.hpp"
@@ -337,8 +337,9 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
     if (scan != nullptr && problem.map.unknowns()[j].index == leak_problem.leak)
       z[j] = problem.map.to_unit(static_cast<int>(j), scan->best_coefficient);
   }
-  const calib::SolveResult solved =
-      calib::solve(problem, evaluator, z, kIterations, 1, calib::FitOptions{});
+  calib::FitOptions settings;
+  settings.max_iterations = kIterations;
+  const calib::SolveResult solved = calib::Search(problem, evaluator, settings).run(z);
   const calib::Evaluation& best = evaluator.best();
   if (!best.ok || evaluator.aborted()) {
     fit.failure = solved.message;

@@ -55,7 +55,6 @@ struct SimulationInputs {
 };
 
 enum class Method {
-  automatic,   ///< whichever of the two is cheaper where the simulation stands
   rosenbrock,  ///< RODAS4P, L-stable
   dopri5,      ///< Odeint's Dormand-Prince 5(4)
 };

@@ -57,7 +57,7 @@ void StatusLine::show(const std::function<std::string(double)>& text) {
 FitProgress::FitProgress(bool quiet, std::string work, const calib::FitOptions& settings)
     : line_(quiet),
       work_(std::move(work)),
-      left_(settings.starts, settings.function_tolerance),
+      left_(settings.starts, calib::kFunctionTolerance),
       max_seconds_(settings.max_seconds) {}
 
 void FitProgress::operator()(int start, int iteration, double cost, double relative_change,

@@ -74,10 +74,6 @@ struct Evaluation {
   double cost = 0.0;   ///< half the sum of squares, priors included
   bool ok = false;     ///< every condition could be simulated
   double share = 1.0;  ///< of the samples that count, those looked at
-  /// The point that was simulated, where the residuals are what its derivatives predict at z.
-  std::vector<double> predicted_from;
-
-  bool simulated() const { return predicted_from.empty(); }
 };
 
 /// Least-squares system of all conditions and priors at one point, as a R factor.

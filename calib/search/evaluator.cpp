@@ -24,8 +24,7 @@ double prior_cost(const Problem& problem, std::span<const double> z) {
 }
 
 bool is_at(const Evaluation& evaluation, std::span<const double> z) {
-  return evaluation.simulated() &&
-         std::equal(evaluation.z.begin(), evaluation.z.end(), z.begin(), z.end());
+  return std::equal(evaluation.z.begin(), evaluation.z.end(), z.begin(), z.end());
 }
 
 }  // namespace
@@ -48,25 +47,6 @@ Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int th
   evaluation.cost = prior_cost(problem, z);
   for (const ConditionEvaluation& each : evaluation.conditions) evaluation.cost += each.cost();
   return evaluation;
-}
-
-Evaluation predict(const Problem& problem, const Evaluation& from, std::span<const double> z) {
-  Evaluation there = from;
-  there.predicted_from = from.z;
-  there.z.assign(z.begin(), z.end());
-  there.cost = prior_cost(problem, z);
-  for (std::size_t i = 0; i < there.conditions.size(); ++i) {
-    const std::vector<int>& acting = problem.map.acting(i);
-    Eigen::VectorXd step(static_cast<Eigen::Index>(acting.size()));
-    for (std::size_t j = 0; j < acting.size(); ++j) {
-      const auto u = static_cast<std::size_t>(acting[j]);
-      step(static_cast<Eigen::Index>(j)) = z[u] - from.z[u];
-    }
-    Eigen::MatrixXd& r_factor = there.conditions[i].r_factor;
-    r_factor.col(step.size()) += r_factor.leftCols(step.size()) * step;
-    there.cost += there.conditions[i].cost();
-  }
-  return there;
 }
 
 const Evaluation& Evaluator::evaluate(std::span<const double> z) {
@@ -123,25 +103,8 @@ void Evaluator::forget() {
   best_ = {};
 }
 
-void Evaluator::PrepareForEvaluation(bool /*evaluate_jacobians*/, bool /*new_evaluation_point*/) {
-  try {
-    evaluate(watched_);
-  } catch (...) {
-    error_ = std::current_exception();
-    last_ = {};
-    last_.conditions.resize(problem_.conditions.size());
-    for (ConditionEvaluation& each : last_.conditions)
-      each.status = model::SimulationStatus::cancelled;
-  }
-}
-
 bool Evaluator::cancelled() const {
-  return error_ != nullptr ||
-         (options_.cancel != nullptr && options_.cancel->load(std::memory_order_relaxed));
-}
-
-void Evaluator::rethrow() const {
-  if (error_) std::rethrow_exception(error_);
+  return options_.cancel != nullptr && options_.cancel->load(std::memory_order_relaxed);
 }
 
 void Evaluator::record(const Evaluation& evaluation) {

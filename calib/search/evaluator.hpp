@@ -1,12 +1,10 @@
 #pragma once
 
-#include <ceres/evaluation_callback.h>
-
 #include <atomic>
 #include <chrono>
-#include <exception>
 #include <map>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "calib/problem/evaluation.hpp"
@@ -34,18 +32,12 @@ struct EvaluationOptions {
 Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
                        const EvaluationOptions& options = {});
 
-/// What the derivatives of an evaluation predict at z.
-///
-/// @param from  one that is ok
-Evaluation predict(const Problem& problem, const Evaluation& from, std::span<const double> z);
-
-/// Evaluates all conditions of a problem in parallel and hands the results to Ceres' cost
-/// functions.
+/// Evaluates all conditions of a problem in parallel.
 ///
 /// Every evaluation carries sensitivities: nearly every trial point becomes the next iterate, whose
 /// Jacobian is then there already, and cost and gradient come from the same steps of the solver.
 /// The last and the best point are kept, so that nothing is computed twice.
-class Evaluator final : public ceres::EvaluationCallback {
+class Evaluator {
  public:
   using Clock = std::chrono::steady_clock;
 
@@ -79,14 +71,6 @@ class Evaluator final : public ceres::EvaluationCallback {
 
   /// Takes the last point for the best, whatever its cost.
   void take_last() { best_ = last_; }
-  /// Takes what was predicted for the best.
-  void take(Evaluation predicted) { best_ = std::move(predicted); }
-
-  /// Where Ceres keeps the point; read at every PrepareForEvaluation.
-  void watch(std::span<const double> z) { watched_ = z; }
-  void PrepareForEvaluation(bool evaluate_jacobians, bool new_evaluation_point) override;
-  /// The evaluation that PrepareForEvaluation made.
-  const Evaluation& prepared() const { return last_; }
 
   /// A signal, the time limit or that of evaluations ends the fit.
   bool out_of_time() const { return options_.deadline && Clock::now() >= *options_.deadline; }
@@ -97,8 +81,6 @@ class Evaluator final : public ceres::EvaluationCallback {
   bool aborted() const { return cancelled() || out_of_time() || out_of_evaluations(); }
   /// Counts an evaluation that was made elsewhere, and records its failures.
   void record(const Evaluation& evaluation);
-  /// Throws what an evaluation threw inside Ceres.
-  void rethrow() const;
 
   const Options& options() const { return options_; }
   const EvaluationCounters& counters() const { return counters_; }
@@ -113,8 +95,6 @@ class Evaluator final : public ceres::EvaluationCallback {
   Options options_;
   Evaluation last_;
   Evaluation best_;
-  std::span<const double> watched_;
-  std::exception_ptr error_;
   Fidelity fidelity_ = Fidelity::full;
   int start_ = 1;
   EvaluationCounters counters_;

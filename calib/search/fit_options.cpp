@@ -16,9 +16,6 @@ void FitOptions::validate() const {
   require(bootstrap >= 0, "bootstrap must not be negative");
   require(!max_evaluations || *max_evaluations > 0, "max_evaluations must be positive");
   require(!max_seconds || *max_seconds > 0.0, "max_seconds must be positive");
-  require(function_tolerance > 0.0, "function_tolerance must be positive");
-  require(gradient_tolerance > 0.0, "gradient_tolerance must be positive");
-  require(parameter_tolerance > 0.0, "parameter_tolerance must be positive");
 }
 
 }  // namespace rigcal::calib

@@ -9,6 +9,9 @@ namespace rigcal::calib {
 
 struct Checkpoint;  // checkpoint.hpp
 
+/// Relative change of the cost below which Ceres calls a search at the working tolerance converged.
+inline constexpr double kFunctionTolerance = 1e-10;
+
 /// What a fit needs beside the campaign and its records.
 struct FitOptions {
   int starts = 1;            ///< 1: the campaign's start values; more: latin hypercube around them
@@ -18,13 +21,10 @@ struct FitOptions {
   int max_iterations = 200;  ///< per start
   std::optional<long> max_evaluations;  ///< of all residuals, of the whole job; then: `stopped`
   std::optional<double> max_seconds;    ///< of the whole job; then: status `stopped`
-  double function_tolerance = 1e-10;    ///< |d cost| / cost of Ceres
-  double gradient_tolerance = 1e-10;
-  double parameter_tolerance = 1e-9;
-  int bootstrap = 0;                   ///< replicates, each fitted from the optimum; 0: none
-  bool profiles = false;               ///< profile likelihood of every unknown that is no nuisance
-  bool cross_validate = false;         ///< leave one condition out after the other
-  const Checkpoint* resume = nullptr;  ///< goes on from there
+  int bootstrap = 0;                    ///< replicates, each fitted from the optimum; 0: none
+  bool profiles = false;                ///< profile likelihood of every unknown that is no nuisance
+  bool cross_validate = false;          ///< leave one condition out after the other
+  const Checkpoint* resume = nullptr;   ///< goes on from there
   std::function<void(const Checkpoint&)> checkpoint;  ///< told after every start that is finished
   const std::atomic<bool>* cancel = nullptr;          ///< ends the fit with the best so far
   /// Told of every iteration: start (from 1), iteration, cost, relative change of cost, seconds.

@@ -94,8 +94,7 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
     report.start_values = problem.to_physical(points[i]);
     const Evaluation& first = evaluator.evaluate(points[i]);
     report.initial_cost = first.ok ? first.cost : 0.0;
-    SolveResult solved =
-        solve(problem, evaluator, points[i], options.max_iterations, number, options);
+    const SolveResult solved = Search(problem, evaluator, options, number).run(points[i]);
     report.status = solved.status;
     report.message = solved.message;
     report.iterations = solved.iterations;
@@ -120,6 +119,16 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
   }
   evaluator.set_fidelity(Fidelity::full);  // a last start that failed, or none that was left
   return result;
+}
+
+bool search_on(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
+               MultiStart& found) {
+  evaluator.forget();
+  Search search(problem, evaluator, options, found.best, found.result.iterations);
+  found.result = search.polish(found.optimum.z);
+  if (!evaluator.best().ok) return false;
+  found.optimum = evaluator.best();
+  return true;
 }
 
 void report_best(const Problem& problem, MultiStart& found) {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "calib/search/solve.hpp"
+#include "calib/search/search.hpp"
 
 namespace rigcal::calib {
 
@@ -27,6 +27,12 @@ struct MultiStart {
 /// alone. The best is the converged one of lowest cost, ties by number; without a converged one,
 /// the lowest cost of all.
 MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options);
+
+/// Polishes the optimum again, where weights or tolerance have changed since.
+///
+/// @return  false where it cannot be simulated any more
+bool search_on(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
+               MultiStart& found);
 
 /// Takes over what the best start ended at into its report.
 void report_best(const Problem& problem, MultiStart& found);

@@ -14,7 +14,7 @@
 
 #include "calib/problem/initial_state.hpp"
 #include "calib/problem/r_factor.hpp"
-#include "calib/search/residual.hpp"
+#include "calib/search/prior_cost.hpp"
 #include "common/parallel.hpp"
 
 namespace rigcal::calib {
@@ -356,17 +356,15 @@ class JumpCost final : public ceres::CostFunction {
 /// Tells of each iteration and ends a stage on a signal or at a limit.
 class StageWatcher final : public ceres::IterationCallback {
  public:
-  StageWatcher(const Pieces& pieces, const FitOptions& options, int start, int first_iteration)
-      : pieces_(pieces), options_(options), start_(start), first_iteration_(first_iteration) {}
+  StageWatcher(const Pieces& pieces, const Iterations& iterations)
+      : pieces_(pieces), iterations_(iterations) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    iterations_ = summary.iteration;
+    made_ = summary.iteration;
     try {
-      if (options_.progress) {
-        const double change = summary.cost > 0.0 ? summary.cost_change / summary.cost : 0.0;
-        options_.progress(start_, first_iteration_ + summary.iteration, summary.cost, change,
-                          summary.cumulative_time_in_seconds);
-      }
+      iterations_.tell(made_, summary.cost,
+                       summary.cost > 0.0 ? summary.cost_change / summary.cost : 0.0,
+                       summary.cumulative_time_in_seconds);
     } catch (...) {
       error_ = std::current_exception();
     }
@@ -374,17 +372,15 @@ class StageWatcher final : public ceres::IterationCallback {
     return stop ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
-  int iterations() const { return iterations_; }
+  int made() const { return made_; }
   void rethrow() const {
     if (error_) std::rethrow_exception(error_);
   }
 
  private:
   const Pieces& pieces_;
-  const FitOptions& options_;
-  int start_;
-  int first_iteration_;
-  int iterations_ = 0;
+  const Iterations& iterations_;
+  int made_ = 0;
   std::exception_ptr error_;
 };
 
@@ -452,21 +448,23 @@ bool stage(const Problem& problem, Pieces& pieces, std::size_t number, int itera
 }  // namespace
 
 ShootingResult multiple_shooting(const Problem& problem, Evaluator& evaluator,
-                                 std::vector<double> z, double interval_s, int iterations,
-                                 int start, const FitOptions& options) {
+                                 std::vector<double> z, double interval_s, int most,
+                                 Iterations& iterations) {
   ShootingResult result{std::move(z), 0, 0.0};
   Pieces pieces(problem, evaluator, interval_s);
   if (pieces.nodes().empty()) return result;  // nothing to cut
   result.largest_gap = std::numeric_limits<double>::infinity();
   if (!pieces.begin_at(result.z, interval_s)) return result;
+  const int end = iterations.used() + most;
   for (std::size_t k = 0; k < kStages; ++k) {
-    const int left = (iterations - result.iterations) / static_cast<int>(kStages - k);
+    const int left = (end - iterations.used()) / static_cast<int>(kStages - k);
     pieces.set_tolerance(k + 1 < kStages ? problem.coarse_tolerance() : problem.tolerance);
-    StageWatcher watcher(pieces, options, start, result.iterations);
+    StageWatcher watcher(pieces, iterations);
     const bool usable = stage(problem, pieces, k, left, watcher);
     pieces.rethrow();
     watcher.rethrow();
-    result.iterations += watcher.iterations();
+    iterations.add(watcher.made());
+    result.iterations += watcher.made();
     if (!usable || pieces.aborted()) break;
     result.z.assign(pieces.z().begin(), pieces.z().end());
     pieces.PrepareForEvaluation(true, true);  // the last trial may not be where it ended

@@ -9,7 +9,7 @@ namespace rigcal::calib {
 /// Where multiple shooting ends.
 struct ShootingResult {
   std::vector<double> z;  ///< in the unit box; the start where it came to nothing
-  int iterations = 0;
+  int iterations = 0;     ///< that it took
   /// Largest jump between two pieces that is left, in floors of the states' error control (1e-6 m,
   /// 1e-5 m/s, 100 Pa, 1e-3 V); infinite where it came to nothing.
   double largest_gap = 0.0;
@@ -24,16 +24,15 @@ struct ShootingResult {
 /// run.
 ///
 /// A jump joins two neighbours alone, so that every other state is eliminated by a Schur complement
-/// (docs/decisions/0010). The result is a start: status and values of a fit come from solve() on
+/// (docs/decisions/0010). The result is a start: status and values of a fit come from Search on
 /// whole records.
 ///
 /// @param z           where it starts, in the unit box
 /// @param interval_s  length of a piece
-/// @param iterations  budget of all stages together
-/// @param start       number of the start, for `options.progress`
+/// @param most        iterations of all stages together
 /// @throws InputError  an interval of fewer than four samples; a controller with `sample_time`
 ShootingResult multiple_shooting(const Problem& problem, Evaluator& evaluator,
-                                 std::vector<double> z, double interval_s, int iterations,
-                                 int start, const FitOptions& options);
+                                 std::vector<double> z, double interval_s, int most,
+                                 Iterations& iterations);
 
 }  // namespace rigcal::calib

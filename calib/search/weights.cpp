@@ -82,29 +82,15 @@ void warn(Problem& problem, const Evaluation& optimum, bool settled,
 void estimate_weights(Problem& problem, Evaluator& evaluator, const FitOptions& options,
                       MultiStart& found, std::vector<std::string>& warnings) {
   bool settled = false;
-  FitOptions counting = options;
-  if (options.progress) {  // one count of iterations through all rounds
-    counting.progress = [&](int start, int iteration, double cost, double change, double seconds) {
-      options.progress(start, found.result.iterations + iteration, cost, change, seconds);
-    };
-  }
   for (int round = 0; round < kMaxRounds && !settled; ++round) {
     if (found.result.status != FitStatus::converged || evaluator.aborted()) break;
     settled = update(problem, found.optimum) <= kSettled;
-    evaluator.forget();
-    const int iterations_before = found.result.iterations;
-    found.result =
-        polish(problem, evaluator, found.optimum.z, options.max_iterations, found.best, counting);
-    found.result.iterations += iterations_before;
-    if (!evaluator.best().ok) break;
-    found.optimum = evaluator.best();
+    if (!search_on(problem, evaluator, options, found)) break;
   }
   if (!settled && evaluator.aborted() && found.result.status == FitStatus::converged) {
     found.result.status = FitStatus::stopped;
     found.result.message = "stopped before the noise was estimated";
   }
-  if (found.result.status == FitStatus::converged)
-    found.result.message = fmt::format("converged after {} iterations", found.result.iterations);
   warn(problem, found.optimum, settled, warnings);
   found.result.message += "; noise estimated from the residual";
 }

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "calib/search/solve.hpp"
+#include "calib/search/search.hpp"
 #include "common/parallel.hpp"
 #include "datasets/synthetic/noise.hpp"
 #include "metrics/distributions.hpp"
@@ -257,8 +257,7 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
                                                                 drawn.conditions[i]);
     }
     Evaluator evaluator(drawn, {1, left.cancel(), left.deadline(), {}});
-    const auto solved =
-        polish(drawn, evaluator, optimum.z, options.max_iterations, static_cast<int>(b) + 1, quiet);
+    const auto solved = Search(drawn, evaluator, quiet, static_cast<int>(b) + 1).polish(optimum.z);
     left.count(evaluator.counters().evaluations);
     if (solved.status == FitStatus::stopped && evaluator.aborted()) return;
     taken[b] = evaluator.counters().evaluations;

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "calib/search/solve.hpp"
+#include "calib/search/search.hpp"
 #include "common/parallel.hpp"
 
 namespace rigcal::calib {
@@ -75,7 +75,7 @@ class Follower {
     if (fixed.map.unknowns().empty()) {
       evaluator.evaluate(from);
     } else {
-      const auto solved = polish(fixed, evaluator, from, options_.max_iterations, 1, options_);
+      const auto solved = Search(fixed, evaluator, options_).polish(from);
       evaluations_ += evaluator.counters().evaluations;
       if (solved.status != FitStatus::converged) return std::nullopt;
     }

@@ -207,9 +207,8 @@ SimulationSettings read_simulation(const TomlNode& node) {
   node.allow_only({"method", "tolerance", "max_seconds"});
   SimulationSettings simulation;
   if (const auto method = node.find("method")) {
-    simulation.method = method->choice<model::Method>({{"automatic", model::Method::automatic},
-                                                       {"rosenbrock", model::Method::rosenbrock},
-                                                       {"dopri5", model::Method::dopri5}});
+    simulation.method = method->choice<model::Method>(
+        {{"rosenbrock", model::Method::rosenbrock}, {"dopri5", model::Method::dopri5}});
   }
   if (const auto tolerance = node.find("tolerance")) {
     simulation.tolerance = tolerance->number();

@@ -19,7 +19,6 @@
 #include "model/solver/repeated_steps.hpp"
 #include "model/solver/rosenbrock.hpp"
 #include "model/solver/steady_state.hpp"
-#include "model/solver/stiffness.hpp"
 
 namespace rigcal::model {
 
@@ -97,11 +96,6 @@ class Run {
   }
 
  private:
-  // Step times spectral radius: beyond the first Dormand-Prince is near its stability limit; below
-  // the second it would take steps at least as long as Rosenbrock's, for less work.
-  static constexpr double kStiff = 1.5;
-  static constexpr double kStaysStiff = 1.0;
-  static constexpr int kStepsBetween = 16;  ///< two measurements of that
   /// Across kinks Dormand and Prince's formula sees less of its error than Rosenbrock's: at a fifth
   /// of the tolerance both are as far off on the six signals of bench/.
   static constexpr double kCare = 5.0;
@@ -143,7 +137,7 @@ class Run {
 
   /// One accepted step, at most to `stop`; false if the run has failed.
   bool step_towards(double stop) {
-    choose_method();
+    prepare_step();
     bool rejected = false;
     while (true) {
       if (!within_budget()) return false;
@@ -188,7 +182,8 @@ class Run {
     }
   }
 
-  /// One step by the method chosen.
+  /// One step.
+  ///
   /// @return  its error in units of the tolerance
   double try_step(double step, X& x_new, X& x_err) {
     if (!implicit_) {
@@ -206,17 +201,11 @@ class Run {
     return error;
   }
 
-  /// Prepares the next step by the method that is the cheaper one here.
-  void choose_method() {
-    const bool measure = options_.method == Method::automatic && --steps_to_measure_ <= 0;
-    if ((implicit_ || measure) && !lin_known_) {
+  /// What the next step begins with: the linearisation, or the slope of the explicit method.
+  void prepare_step() {
+    if (implicit_ && !lin_known_) {
       lin_ = system_.linearise(values_of(x_), t_);
       lin_known_ = true;
-    }
-    if (measure) {
-      steps_to_measure_ = kStepsBetween;
-      const double stiffness = std::min(h_, h_max_) * spectral_radius(lin_.jacobian);
-      implicit_ = stiffness > (implicit_ ? kStaysStiff : kStiff);
     }
     if (!implicit_ && !slope_known_) slope_ = system_.derivative(x_, t_);
   }
@@ -420,13 +409,12 @@ class Run {
   std::vector<std::size_t> state_of_output_;  ///< then this one
   Rosenbrock<N, P> rosenbrock_;
   DormandPrince<N, P> dormand_prince_;
-  bool implicit_;                ///< the step under way
+  bool implicit_;                ///< the method
   Linearisation<N, P> lin_;      ///< at the present point, if known
   Linearisation<N, P> lin_end_;  ///< at the end of the step just tried
   bool lin_known_ = false;
   X slope_{};  ///< derivative at the present point, if explicit and known
   bool slope_known_ = false;
-  int steps_to_measure_ = 0;
   Simulation* result_ = nullptr;  ///< of the caller, for the time of one run
   int first_column_ = 0;
   int columns_ = 0;

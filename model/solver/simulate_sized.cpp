@@ -86,10 +86,6 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   run(start, result, first, count);
 }
 
-/// Columns beyond which explicit steps take longer for one pass than for two: unlike implicit ones
-/// they take the derivatives by all parameters at once, which do not stay in the registers.
-constexpr int kWidestExplicit = 8;
-
 /// The pass from column `first` on: with the first of the widths that has room for what is left, or
 /// the last.
 ///
@@ -97,9 +93,7 @@ constexpr int kWidestExplicit = 8;
 template <typename Plant, int N, int Width, int... Wider>
 int next_pass(const SizedRequest& request, int first, int left, Simulation& result) {
   if constexpr (sizeof...(Wider) > 0) {
-    const bool implicit = request.options.method == Method::rosenbrock;
-    if (left > Width && (implicit || Width < kWidestExplicit))
-      return next_pass<Plant, N, Wider...>(request, first, left, result);
+    if (left > Width) return next_pass<Plant, N, Wider...>(request, first, left, result);
   }
   const int count = std::min(left, Width);
   pass<Plant, N, Width>(request, first, count, result);

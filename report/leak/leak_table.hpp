@@ -5,8 +5,8 @@
 
 #include "calib/published/leak_table.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
-#include "report/leak/stored_leak_table.hpp"
 #include "report/store/provenance.hpp"
+#include "report/store/stored_leak_table.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/leak/stored_leak_table.hpp"
+#include "report/store/stored_leak_table.hpp"
 #include "report/store/table.hpp"
 
 // The files of a result folder, read back. All throw InputError where a file is missing, or is no

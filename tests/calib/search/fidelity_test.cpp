@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "calib/search/evaluator.hpp"
-#include "calib/search/growing_horizon.hpp"
-#include "calib/search/solve.hpp"
+#include "calib/search/search.hpp"
+#include "calib/search/stage.hpp"
 #include "tests/calib/twin.hpp"
 
 namespace rigcal::calib {
@@ -11,6 +11,12 @@ namespace {
 
 using Catch::WithinRel;
 using datasets::Waveform;
+
+const FitOptions kOptions = [] {
+  FitOptions options;
+  options.max_iterations = 100;
+  return options;
+}();
 
 /// 2 s at 1 kHz of three signals, mass and valve gain free.
 Twin three_signals() {
@@ -111,7 +117,7 @@ TEST_CASE("fidelity: the cost of a start needs no derivatives", "[calib]") {
   CHECK_THAT(alone.cost, WithinRel(whole.cost, 1e-2));
 }
 
-TEST_CASE("solve: first periods that mislead are not believed", "[calib]") {
+TEST_CASE("search: first periods that mislead are not believed", "[calib]") {
   const Twin twin = three_signals();
   auto records = twin.records(2000, 1000.0, 1);
   // Someone leant on the rig: all of the first period, a quarter of the record.
@@ -122,8 +128,8 @@ TEST_CASE("solve: first periods that mislead are not believed", "[calib]") {
   const Problem problem = problem_of(twin, records);
   const auto end_from = [&](std::vector<double> z, bool all_at_once) {
     Evaluator evaluator(problem, {});
-    const SolveResult found = all_at_once ? polish(problem, evaluator, std::move(z), 100, 1, {})
-                                          : solve(problem, evaluator, std::move(z), 100, 1, {});
+    Search search(problem, evaluator, kOptions);
+    const SolveResult found = all_at_once ? search.polish(std::move(z)) : search.run(std::move(z));
     CHECK(found.status == FitStatus::converged);
     return evaluator.best();
   };
@@ -135,14 +141,14 @@ TEST_CASE("solve: first periods that mislead are not believed", "[calib]") {
   CHECK_THAT(reference.cost, WithinRel(from_truth.cost, 1e-5));
 }
 
-TEST_CASE("solve: horizons that mislead are not believed", "[calib]") {
+TEST_CASE("search: horizons that mislead are not believed", "[calib]") {
   const Twin twin = three_signals();
   auto records = twin.records(2000, 1000.0, 1);
   for (std::size_t i = 0; i < 12; ++i)  // a plug that was not in yet
     records[1].channels.at(datasets::Channel::position).mean[i] += 0.01 * (i % 2 == 0 ? 1.0 : -1.0);
   const Problem problem = problem_of(twin, records);
   Evaluator evaluator(problem, {});
-  const SolveResult found = solve(problem, evaluator, problem.start(), 100, 1, {});
+  const SolveResult found = Search(problem, evaluator, kOptions).run(problem.start());
   CHECK(found.status == FitStatus::converged);
   const std::vector<double> values = problem.to_physical(evaluator.best().z);
   CHECK_THAT(values[0], WithinRel(85.0, 0.05));
@@ -153,43 +159,13 @@ TEST_CASE("solve: horizons that mislead are not believed", "[calib]") {
     Evaluator::Options limited;
     limited.max_evaluations = most;
     Evaluator stopped(problem, limited);
-    solve(problem, stopped, problem.start(), 100, 1, {});
+    Search(problem, stopped, kOptions).run(problem.start());
     REQUIRE(stopped.best().ok);
     CHECK(stopped.best().cost <= at_start);
   }
 }
 
-TEST_CASE("solve: a step of half a standard error is predicted where residuals are known noise",
-          "[calib]") {
-  const auto evaluations = [](bool tell_sd, double lean_m, LastStep last) {
-    const Twin twin = three_signals();
-    auto records = twin.records(2000, 1000.0, 1, model::InitialState::rest, tell_sd);
-    for (std::size_t i = 0; i < 500; ++i)
-      records[0].channels.at(datasets::Channel::position).mean[i] += lean_m;
-    const Problem problem = problem_of(twin, records);
-    Evaluator evaluator(problem, {});
-    REQUIRE(polish(problem, evaluator, problem.start(), 100, 1, {}, LastStep::simulated).status ==
-            FitStatus::converged);
-    // Along the first unknown until half a standard error is left.
-    std::vector<double> z = evaluator.best().z;
-    const auto offset = [&] {
-      return check_optimum(problem, evaluate_at(problem, z, 1)).relative_offset;
-    };
-    double step = 1e-6;
-    for (; offset() < 0.5; step *= 1.2) z[0] += step;
-    REQUIRE(offset() < 1.0);
-    Evaluator again(problem, {});
-    const auto found = polish(problem, again, z, 100, 1, {}, last);
-    CHECK(found.status == FitStatus::converged);
-    return again.counters().evaluations;
-  };
-  CHECK(evaluations(true, 0.0, LastStep::judged) == 1);
-  CHECK(evaluations(true, 0.0, LastStep::predicted) > 1);
-  CHECK(evaluations(true, 0.001, LastStep::judged) > 1);  // the model lacks what leant on the rig
-  CHECK(evaluations(false, 0.0, LastStep::judged) > 1);
-}
-
-TEST_CASE("solve: more records of the same take no more evaluations", "[calib]") {
+TEST_CASE("search: more records of the same take no more evaluations", "[calib]") {
   // The paper's rig from a start far off, in the first samples of which the leak falls to its
   // bound.
   const auto evaluations = [](int copies) {
@@ -207,13 +183,13 @@ TEST_CASE("solve: more records of the same take no more evaluations", "[calib]")
     for (std::size_t i = 2; i < records.size(); ++i) records[i].channels = records[i % 2].channels;
     const Problem problem = problem_of(twin, records);
     Evaluator evaluator(problem, {});
-    CHECK(solve(problem, evaluator, problem.start(), 100, 1, {}).status == FitStatus::converged);
+    CHECK(Search(problem, evaluator, kOptions).run(problem.start()).status == FitStatus::converged);
     return evaluator.counters().evaluations;
   };
   CHECK(evaluations(8) <= evaluations(1) + 3);
 }
 
-TEST_CASE("solve: what rings is found from a start that is out of step", "[calib]") {
+TEST_CASE("search: what rings is found from a start that is out of step", "[calib]") {
   // Three times the frequency of the truth: out of step by a cycle within 6 ms.
   Twin twin;
   twin.add_channel(datasets::Channel::load_pressure);
@@ -231,9 +207,10 @@ TEST_CASE("solve: what rings is found from a start that is out of step", "[calib
     return problem.to_physical(evaluator.best().z);
   };
   const auto by_growing_horizon = fitted_from(
-      [&](Evaluator& evaluator) { solve(problem, evaluator, problem.start(), 100, 1, {}); });
+      [&](Evaluator& evaluator) { Search(problem, evaluator, kOptions).run(problem.start()); });
   const auto all_at_once = fitted_from([&](Evaluator& evaluator) {
-    minimise(problem, evaluator, problem.start(), kFirstTrustRadius, 100, 1, {});
+    Iterations iterations(kOptions);
+    minimise(problem, evaluator, problem.start(), {Fidelity::full, kFirstTrustRadius}, iterations);
   });
   const std::vector<double> truth{85.0, 689e6, 0.0406e-3};
   for (std::size_t j = 0; j < truth.size(); ++j)
@@ -242,14 +219,14 @@ TEST_CASE("solve: what rings is found from a start that is out of step", "[calib
   CHECK(std::abs(all_at_once[1] / truth[1] - 1.0) > 0.5);
 }
 
-TEST_CASE("solve: a fit stopped among horizons is judged by whole records", "[calib]") {
+TEST_CASE("search: a fit stopped among horizons is judged by whole records", "[calib]") {
   const Twin twin = three_signals();
   const auto records = twin.records(2000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
   Evaluator::Options options;
   options.max_evaluations = 4;
   Evaluator evaluator(problem, options);
-  const SolveResult found = solve(problem, evaluator, problem.start(), 100, 1, {});
+  const SolveResult found = Search(problem, evaluator, kOptions).run(problem.start());
   CHECK(found.status == FitStatus::stopped);
   CHECK(found.message == "stopped after 4 evaluations, the most allowed");
   const Evaluation again = evaluate_at(problem, evaluator.best().z, 1);

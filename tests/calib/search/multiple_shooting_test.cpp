@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "calib/search/solve.hpp"
+#include "calib/search/search.hpp"
 #include "common/error.hpp"
 #include "tests/calib/twin.hpp"
 
@@ -154,7 +154,9 @@ ShootingResult shoot(const Problem& problem, double interval_s, int threads = 1)
   Evaluator::Options settings;
   settings.threads = threads;
   Evaluator evaluator(problem, settings);
-  return multiple_shooting(problem, evaluator, problem.start(), interval_s, 100, 1, {});
+  const FitOptions options;
+  Iterations iterations(options);
+  return multiple_shooting(problem, evaluator, problem.start(), interval_s, 100, iterations);
 }
 
 }  // namespace

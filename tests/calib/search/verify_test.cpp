@@ -21,35 +21,17 @@ Twin two_signals() {
   return twin;
 }
 
-/// A solver that claims to have ended at z, which it never simulated.
+/// A search that claims to have ended at z.
 MultiStart claimed_at(const Problem& problem, const std::vector<double>& z) {
   MultiStart found;
   found.best = 1;
   found.starts.resize(1);
-  found.optimum = predict(problem, evaluate_at(problem, z, 1), z);
+  found.optimum = evaluate_at(problem, z, 1);
   found.result.status = FitStatus::converged;
   return found;
 }
 
 }  // namespace
-
-TEST_CASE("predict: off by the second order of the step", "[calib]") {
-  Twin twin = two_signals();
-  twin.campaign.simulation.tolerance = 1e-10;
-  const auto records = twin.records(1000, 1000.0, 1);
-  const Problem problem = problem_of(twin, records);
-  const Evaluation begin = evaluate_at(problem, problem.start(), 1);
-  const auto error = [&](double step) {
-    std::vector<double> z = begin.z;
-    for (double& each : z) each += step;
-    const Evaluation predicted = predict(problem, begin, z);
-    CHECK_FALSE(predicted.simulated());
-    CHECK(predicted.z == z);
-    return std::abs(predicted.cost - evaluate_at(problem, z, 1).cost);
-  };
-  CHECK_THAT(error(2e-4) / error(1e-4), WithinRel(4.0, 0.1));
-  CHECK_THAT(predict(problem, begin, begin.z).cost, WithinRel(begin.cost, 1e-12));
-}
 
 TEST_CASE("verify: a claimed end that is no minimum is solved on from", "[calib]") {
   const Twin twin = two_signals();
@@ -61,9 +43,9 @@ TEST_CASE("verify: a claimed end that is no minimum is solved on from", "[calib]
   CHECK(found.result.status == FitStatus::converged);
   CHECK(found.result.iterations > 0);
   CHECK(found.result.check.stationary());
-  CHECK(found.optimum.simulated());
   Evaluator other(problem, {});
-  REQUIRE(solve(problem, other, problem.start(), 100, 1, {}).status == FitStatus::converged);
+  const FitOptions options;
+  REQUIRE(Search(problem, other, options).run(problem.start()).status == FitStatus::converged);
   CHECK_THAT(found.optimum.cost, WithinRel(other.best().cost, 1e-5));
   REQUIRE(rows.size() == 2);
   double squares = 0.0;
@@ -79,7 +61,6 @@ TEST_CASE("verify: an end that a checkpoint brings back is judged, too", "[calib
   const Problem problem = problem_of(twin, records);
   Evaluator evaluator(problem, {});
   MultiStart found = multi_start(problem, evaluator, {});
-  // As a predicted end is that misses: evaluated again it is a simulated one.
   std::vector<double> off = found.optimum.z;
   off[0] += 1e-3;
   found.optimum = evaluate_at(problem, off, 1);
@@ -101,7 +82,6 @@ TEST_CASE("verify: where there is no time left to make it good, it is not called
   verify_optimum(problem, evaluator, {}, found);
   CHECK(found.result.status == FitStatus::stopped);
   CHECK_THAT(found.result.message, Contains("evaluations"));
-  CHECK(found.optimum.simulated());
 }
 
 TEST_CASE(

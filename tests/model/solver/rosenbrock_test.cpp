@@ -6,7 +6,6 @@
 #include <functional>
 
 #include "model/solver/dormand_prince.hpp"
-#include "model/solver/stiffness.hpp"
 
 using namespace rigcal::model;
 using Catch::WithinAbs;
@@ -276,14 +275,4 @@ TEST_CASE("dormand_prince: order 5, and 4 between the steps", "[model]") {
   const Errors fine = errors(20);
   CHECK(order(coarse.end, fine.end) > 4.7);
   CHECK(order(coarse.dense, fine.dense) > 4.0);
-}
-
-TEST_CASE("stiffness: the spectral radius, whatever the units of the states", "[model]") {
-  // Oscillator x'' = -w^2 x - d x' with x in metres and in a billionth of it.
-  for (const double unit : {1.0, 1e9}) {
-    const std::array<State<2, 0>, 2> jacobian{State<2, 0>{0.0, unit},
-                                              State<2, 0>{-600.0 * 600.0 / unit, -12.0}};
-    CHECK(spectral_radius(jacobian) > 600.0);
-    CHECK(spectral_radius(jacobian) < 600.0 * 1.1);  // trace of the 8th power: twice, 2^(1/8)
-  }
 }

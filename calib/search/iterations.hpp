@@ -1,0 +1,37 @@
+#pragma once
+
+#include <algorithm>
+
+#include "calib/search/fit_options.hpp"
+
+namespace rigcal::calib {
+
+/// The iterations of one start: one budget for all of its stages, and one count for who is told of
+/// them. Borrows the options.
+class Iterations {
+ public:
+  /// @param start   number of the start
+  /// @param before  that the start has taken already: counted, but not against its budget
+  explicit Iterations(const FitOptions& options, int start = 1, int before = 0)
+      : options_(options), start_(start), before_(before) {}
+
+  int most() const { return options_.max_iterations; }
+  int used() const { return used_; }
+  int left() const { return std::max(0, options_.max_iterations - used_); }
+  int total() const { return before_ + used_; }
+  void add(int iterations) { used_ += iterations; }
+
+  /// Tells of one iteration of a stage, whose iterations are not added yet.
+  void tell(int iteration, double cost, double relative_change, double seconds) const {
+    if (options_.progress)
+      options_.progress(start_, total() + iteration, cost, relative_change, seconds);
+  }
+
+ private:
+  const FitOptions& options_;
+  int start_;
+  int before_;
+  int used_ = 0;
+};
+
+}  // namespace rigcal::calib

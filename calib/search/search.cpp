@@ -1,0 +1,182 @@
+#include "calib/search/search.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "calib/problem/svd.hpp"
+#include "calib/search/multiple_shooting.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// Where full Gauss-Newton steps begin, in standard errors, and how many of them there are.
+constexpr double kFullStepOffset = 30.0;
+constexpr int kFullSteps = 4;
+/// Growth of the mean square residual beyond which the shorter horizon's estimate is discarded.
+constexpr double kForeseen = 4.0;
+
+/// Where a full Gauss-Newton step leads, parameters at an active bound left where they are.
+std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evaluation,
+                                 const std::vector<bool>& active_bound) {
+  const Linearisation system = linearise(problem, evaluation);
+  std::vector<Eigen::Index> free;
+  for (std::size_t j = 0; j < active_bound.size(); ++j) {
+    const auto column = static_cast<Eigen::Index>(j);
+    if (!active_bound[j] && system.jacobian.col(column).norm() > 0.0) free.push_back(column);
+  }
+  std::vector<double> z = evaluation.z;
+  if (free.empty()) return z;
+  Eigen::MatrixXd scaled = system.jacobian(Eigen::all, free);
+  const Eigen::VectorXd norms = scaled.colwise().norm();
+  scaled.array().rowwise() /= norms.transpose().array();
+  Svd svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  svd.setThreshold(rank_threshold(problem.tolerance));
+  const Eigen::VectorXd step = -(svd.solve(system.residual).array() / norms.array()).matrix();
+  for (std::size_t k = 0; k < free.size(); ++k) {
+    double& each = z[static_cast<std::size_t>(free[k])];
+    each = std::clamp(each + step(static_cast<Eigen::Index>(k)), 0.0, 1.0);
+  }
+  return z;
+}
+
+/// Up to a factor that is the same for all horizons.
+double mean_square(const Evaluation& evaluation) { return evaluation.cost / evaluation.share; }
+
+}  // namespace
+
+SolveResult Search::run(std::vector<double> z) {
+  evaluator_.set_fidelity(problem_.of_starts());
+  ends_ = {z};
+  if (const auto interval_s = problem_.campaign->fit.shooting_interval_s) {
+    z = shoot(std::move(z), *interval_s);
+    if (evaluator_.aborted()) return stopped();
+  }
+  const Evaluation first = evaluator_.evaluate(z);
+  if (!first.ok) return no_start(problem_, evaluator_, first);
+  z_ = begin_ = before_ = std::move(z);
+  begin_cost_ = first.cost;
+  foreseen_ = std::numeric_limits<double>::infinity();
+  horizons_until_ = iterations_.used() + iterations_.left() / 2;  // the rest is for whole records
+  SolveResult result;
+  for (const Stage& stage : plan_schedule(problem_)) {
+    if (!enter(stage)) continue;
+    if (stage.fidelity.exact) {
+      result = polish(z_);
+    } else {
+      minimise(problem_, evaluator_, z_, stage, iterations_);
+    }
+    if (evaluator_.best().ok) z_ = evaluator_.best().z;
+    ends_.push_back(z_);
+    if (evaluator_.aborted() && !(stage.fidelity.exact && evaluator_.best().ok)) return stopped();
+    if (!evaluator_.best().ok) return no_start(problem_, evaluator_, evaluator_.evaluate(z_));
+    if (stage.is_horizon()) foreseen_ = mean_square(evaluator_.best());
+  }
+  return result;
+}
+
+/// Sets the fidelity of a stage and the point from which it goes on.
+///
+/// @return  false where it has nothing to do
+bool Search::enter(const Stage& stage) {
+  const bool after_horizons = foreseen_ < std::numeric_limits<double>::infinity();
+  if (stage.is_horizon()) {
+    if (iterations_.used() >= horizons_until_) return false;
+    evaluator_.set_fidelity(stage.fidelity);
+    evaluator_.evaluate(z_);
+    // An estimate that fails at the next horizon, by more than its start does, is discarded.
+    if (!evaluator_.best().ok || mean_square(evaluator_.best()) > kForeseen * foreseen_)
+      evaluator_.evaluate(before_);
+    if (!evaluator_.best().ok) {
+      horizons_until_ = 0;
+      return false;
+    }
+    z_ = before_ = evaluator_.best().z;
+    return true;
+  }
+  if (!stage.fidelity.exact) {
+    evaluator_.set_fidelity(stage.fidelity);
+    if (!after_horizons) return true;
+    const Evaluation& whole = evaluator_.evaluate(z_);
+    if (!whole.ok || whole.cost > begin_cost_) {  // whole records contradict the horizons
+      z_ = begin_;
+      evaluator_.forget();
+      evaluator_.evaluate(z_);
+    }
+    return !evaluator_.best().ok ||
+           check_optimum(problem_, evaluator_.best()).relative_offset > kFullStepOffset;
+  }
+  // From coarse simulations to those of the working tolerance.
+  const Evaluation coarse = evaluator_.best();
+  const OptimumCheck check = check_optimum(problem_, coarse);
+  evaluator_.set_fidelity(stage.fidelity);
+  if (check.relative_offset > kFullStepOffset) return true;
+  const std::vector<double> next = gauss_newton(problem_, coarse, check.active_bound);
+  if (evaluator_.evaluate(next).ok) z_ = next;
+  return true;
+}
+
+/// Where multiple shooting leads, if a simulation of whole records from there is the better one;
+/// half of the iterations at most.
+std::vector<double> Search::shoot(std::vector<double> z, double interval_s) {
+  const Evaluation first = evaluator_.evaluate(z);
+  const ShootingResult found =
+      multiple_shooting(problem_, evaluator_, z, interval_s, iterations_.left() / 2, iterations_);
+  ends_.push_back(found.z);
+  const Evaluation& there = evaluator_.evaluate(found.z);
+  return there.ok && (!first.ok || there.cost < first.cost) ? found.z : z;
+}
+
+SolveResult Search::polish(std::vector<double> z) {
+  if (evaluator_.evaluate(z).ok && iterations_.left() > 0) {
+    const OptimumCheck check = full_steps();
+    if (check.nearly_stationary()) return converged(iterations_, check);
+    z = evaluator_.best().z;
+  }
+  return minimise(problem_, evaluator_, std::move(z), kPolishStage, iterations_);
+}
+
+/// Full Gauss-Newton steps from the evaluator's best point while they come nearer to a stationary
+/// one; near it the cost itself tells nothing, because errors of the simulation move it by more
+/// than is left to gain. Where they end is the evaluator's best point.
+OptimumCheck Search::full_steps() {
+  OptimumCheck check = check_optimum(problem_, evaluator_.best());
+  const int most = std::min(kFullSteps, iterations_.left());
+  for (int steps = 0; steps < most && check.relative_offset <= kFullStepOffset; ++steps) {
+    if (check.stationary()) break;
+    const Evaluation& after =
+        evaluator_.evaluate(gauss_newton(problem_, evaluator_.best(), check.active_bound));
+    if (!after.ok) break;
+    const OptimumCheck found = check_optimum(problem_, after);
+    if (found.relative_offset >= check.relative_offset) break;
+    evaluator_.take_last();
+    iterations_.add(1);
+    check = found;
+  }
+  return check;
+}
+
+/// A start that was stopped before any simulation at the working tolerance: the best of the points
+/// that its stages ended at. Whole records decide, coarsely simulated; the best alone once more at
+/// that tolerance.
+SolveResult Search::stopped() {
+  if (evaluator_.best().ok) ends_.push_back(evaluator_.best().z);
+  const std::vector<double>* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::vector<double>& each : ends_) {
+    const Evaluation there = evaluate_at(problem_, each, evaluator_.options().threads,
+                                         {Fidelity::cost, nullptr, nullptr});
+    if (!there.ok || there.cost >= least) continue;
+    best = &each;
+    least = there.cost;
+  }
+  evaluator_.set_fidelity(Fidelity::full);
+  if (best != nullptr) evaluator_.conclude(*best);
+  SolveResult result{FitStatus::stopped,
+                     stop_reason(evaluator_, options_.max_iterations),
+                     iterations_.total(),
+                     {}};
+  if (evaluator_.best().ok) result.check = check_optimum(problem_, evaluator_.best());
+  return result;
+}
+
+}  // namespace rigcal::calib

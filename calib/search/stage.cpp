@@ -1,0 +1,62 @@
+#include "calib/search/stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace rigcal::calib {
+namespace {
+
+/// Where samples resolve what rings, so few are less than a cycle of it. As many more for each
+/// unknown that one record alone has to tell: its initial state, the offset of a sensor.
+constexpr std::size_t kShortestSamples = 4;
+/// How much longer each horizon is than the one before it, at most.
+constexpr double kGrowth = 4.0;
+/// Iterations at one horizon: the next one carries more information.
+constexpr int kHorizonIterations = 10;
+
+/// How many unknowns no other record tells.
+std::size_t own_unknowns(const Problem& problem, std::size_t condition) {
+  const std::vector<int>& acting = problem.map.acting(condition);
+  return static_cast<std::size_t>(std::count_if(acting.begin(), acting.end(), [&](int j) {
+    return problem.map.unknowns()[static_cast<std::size_t>(j)].scope == datasets::Scope::condition;
+  }));
+}
+
+}  // namespace
+
+std::vector<double> horizons_s(const Problem& problem) {
+  double longest_s = 0.0;
+  double interval_s = std::numeric_limits<double>::infinity();
+  std::size_t samples = 0;
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    const ProblemCondition& each = problem.conditions[i];
+    samples = std::max(samples, kShortestSamples * (1 + own_unknowns(problem, i)));
+    const auto& time_s = each.record->time_s;
+    const double last_s = time_s[each.rows[each.first_period_rows - 1]];
+    longest_s = std::max(longest_s, last_s - time_s[each.rows.front()]);
+    if (time_s.size() < 2) continue;
+    interval_s = std::min(
+        interval_s, (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1));
+  }
+  const double shortest_s = static_cast<double>(samples) * interval_s;
+  const double growth = std::log(std::max(1.0, longest_s / shortest_s));
+  const double steps = std::ceil(growth / std::log(kGrowth));
+  std::vector<double> result;
+  for (double k = steps; k > 0.0; --k) result.push_back(longest_s * std::exp(-growth * k / steps));
+  result.push_back(longest_s);
+  return result;
+}
+
+std::vector<Stage> plan_schedule(const Problem& problem) {
+  std::vector<Stage> stages;
+  if (problem.repeats_itself()) {
+    for (const double length_s : horizons_s(problem))
+      stages.push_back({Fidelity::first(length_s), kFirstTrustRadius, kHorizonIterations});
+  }
+  stages.push_back(kCoarseStage);
+  stages.push_back(kPolishStage);
+  return stages;
+}
+
+}  // namespace rigcal::calib
