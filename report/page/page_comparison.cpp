@@ -291,14 +291,14 @@ std::string change_sentence(const Change& change) {
 
 /// What the tests found, and how many parameters they left out.
 std::string significance_sentence(const Json& comparison) {
-  int compared = 0;
-  int tested = 0;
-  int significant = 0;
+  long compared = 0;
+  long tested = 0;
+  long significant = 0;
   for (const Json& each : comparison.at("significance")) {
     if (!each.is_object()) continue;
-    compared += each.at("compared").get<int>();
-    tested += each.at("tested").get<int>();
-    significant += each.at("significant").get<int>();
+    compared += count_at(each, "compared");
+    tested += count_at(each, "tested");
+    significant += count_at(each, "significant");
   }
   const std::string differences =
       fmt::format("{} results, {} parameter difference{}", comparison.at("results").size(),

@@ -116,15 +116,16 @@ Plot share_plot(const Json& diagnosis) {
 Json confusion_view(const Json& confusion) {
   Json view{{"found", confusion.at("found")}, {"rows", Json::array()}};
   for (std::size_t i = 0; i < confusion.at("truth").size(); ++i) {
-    int total = 0;
-    for (const Json& count : confusion.at("counts").at(i)) total += count.get<int>();
+    long total = 0;
+    for (const Json& count : confusion.at("counts").at(i)) total += count_of(count);
     if (total == 0) continue;
     Json cells = Json::array();
     for (std::size_t j = 0; j < confusion.at("counts").at(i).size(); ++j) {
-      const int count = confusion.at("counts").at(i).at(j).get<int>();
+      const long count = count_of(confusion.at("counts").at(i).at(j));
       cells.push_back({{"count", fmt::format("{}", count)},
                        {"sign", i == j ? "minus" : "plus"},
-                       {"strength", fmt::format("{:.2f}", static_cast<double>(count) / total)}});
+                       {"strength", fmt::format("{:.2f}", static_cast<double>(count) /
+                                                              static_cast<double>(total))}});
     }
     view["rows"].push_back({{"truth", confusion.at("truth").at(i)}, {"cells", std::move(cells)}});
   }

@@ -220,8 +220,8 @@ Json identifiability_view(const Json& result) {
   Json view;
   view["known"] = !values.empty();
   if (values.empty()) return view;
-  const int rank = result.at("rank").get<int>();
-  const auto all = static_cast<int>(values.size());
+  const long rank = count_at(result, "rank");
+  const auto all = static_cast<long>(values.size());
   if (rank < all) {
     view["reading"] = fmt::format(
         "The Jacobian has rank {} of {}: {} combination{} of the parameters can be changed without "

@@ -1,5 +1,9 @@
 #include "report/store/json_fields.hpp"
 
+#include <fmt/format.h>
+
+#include <cmath>
+
 namespace rigcal::report {
 
 std::string text_of(const Json& json, const std::string& key) {
@@ -11,6 +15,17 @@ std::optional<double> number_of(const Json& json, const std::string& key) {
   const auto found = json.find(key);
   if (found == json.end() || !found->is_number()) return std::nullopt;
   return found->get<double>();
+}
+
+long count_at(const Json& json, const std::string& key) { return count_of(json.at(key)); }
+
+long count_of(const Json& number) {
+  constexpr double kLargest = 1e9;
+  const auto count = number.get<double>();
+  if (count >= 0.0 && count <= kLargest && count == std::floor(count))
+    return static_cast<long>(count);
+  throw Json::out_of_range::create(
+      401, fmt::format("found {}, expected a whole number from 0 to {}", count, kLargest), &number);
 }
 
 }  // namespace rigcal::report

@@ -14,4 +14,10 @@ using Json = nlohmann::ordered_json;
 std::string text_of(const Json& json, const std::string& key);
 std::optional<double> number_of(const Json& json, const std::string& key);
 
+/// A number of things, from 0 to 1e9, so that a few hundred of them can be added up.
+///
+/// @throws Json::exception  it is missing, or another number
+long count_at(const Json& json, const std::string& key);
+long count_of(const Json& number);
+
 }  // namespace rigcal::report
