@@ -8,7 +8,7 @@
 #include "datasets/prepare/load_record.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/folder.hpp"
-#include "report/text/terminal.hpp"
+#include "report/text/repeatability_text.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -18,7 +18,6 @@ ExitCode run_average(const CampaignOptions& options) {
   const report::HeldFolder held(options.out);
   std::vector<datasets::Record> records;
   std::vector<report::ResultFile> files;
-  std::string text;
   report::Json json;
   json["campaign"] = campaign.name;
   json["records"] = report::Json::array();
@@ -33,7 +32,6 @@ ExitCode run_average(const CampaignOptions& options) {
     const datasets::Condition& condition = *campaign.find(record.condition);
     files.push_back({std::filesystem::path("averaged") / (condition.id + ".csv"),
                      report::averaged_csv(record)});
-    text += report::record_text(condition, record);
     json["records"].push_back(report::record_json(condition, record));
   }
   if (records.empty()) {
@@ -42,6 +40,7 @@ ExitCode run_average(const CampaignOptions& options) {
   }
   files.push_back({"repeatability.csv", report::repeatability_csv(records)});
   report::write_results(options.out, files, report::hash_inputs(campaign, records));
+  std::string text = report::repeatability_text(campaign, records, terminal_style());
   text += fmt::format("files: {} {}\n", (options.out / "repeatability.csv").string(),
                       (options.out / "averaged" / "").string());
   print(options.print, text, json);

@@ -9,10 +9,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <string_view>
 #include <system_error>
 #include <thread>
 
 #include "common/error.hpp"
+#include "report/text/text_table.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -92,15 +94,37 @@ std::size_t terminal_columns(int stream) {
   return size.ws_col;
 }
 
+namespace {
+
+/// What COLUMNS says, as other programs take it; else what the terminal says.
+std::size_t output_columns() {
+  constexpr std::size_t kFewest = 20;
+  constexpr std::size_t kMost = 10'000;
+  const char* const text = std::getenv("COLUMNS");
+  if (text != nullptr) {
+    const std::string_view wanted(text);
+    std::size_t columns = 0;
+    const auto [end, error] =
+        std::from_chars(wanted.data(), wanted.data() + wanted.size(), columns);
+    if (error == std::errc() && end == wanted.data() + wanted.size() && columns >= kFewest &&
+        columns <= kMost)
+      return columns;
+  }
+  return terminal_columns(STDOUT_FILENO);
+}
+
+}  // namespace
+
 report::Style terminal_style() {
   const char* no_colour = std::getenv("NO_COLOR");
   const bool wanted = no_colour == nullptr || std::strlen(no_colour) == 0;
-  return {wanted && ::isatty(STDOUT_FILENO) == 1, terminal_columns(STDOUT_FILENO)};
+  return {wanted && ::isatty(STDOUT_FILENO) == 1, output_columns()};
 }
 
 void print(const PrintOptions& options, const std::string& text, const report::Json& json) {
   if (options.quiet) return;
-  const std::string shown = options.json ? report::json_text(json) : text;
+  const std::string shown =
+      options.json ? report::json_text(json) : report::wrapped_lines(text, output_columns());
   const bool written = std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size();
   if (!written || std::fflush(stdout) != 0) {
     throw WriteError("standard output: cannot be written: " +

@@ -60,15 +60,13 @@ std::vector<report::ResultFile> files_of(const CampaignOptions& options,
 std::string text_of(const CampaignOptions& options, const report::Result& result,
                     const std::vector<report::ResultFile>& files) {
   const report::Style style = terminal_style();
-  std::string text = report::scorecard_text(result, style) + "\n" +
-                     report::parameters_text(result, style) + "\n" +
-                     report::verdict_text(result, style) + "files:";
-  for (const report::ResultFile& file : files) {
-    if (!file.path.has_parent_path()) {
-      text += fmt::format(" {}", (options.out / file.path).string());
-    }
-  }
-  return text + fmt::format(" {}\n", (options.out / "residuals" / "").string());
+  std::vector<std::string> paths;
+  for (auto file = files.rbegin(); file != files.rend(); ++file)  // the page and the result first
+    if (!file->path.has_parent_path()) paths.push_back((options.out / file->path).string());
+  paths.push_back((options.out / "residuals" / "").string());
+  return report::summary_text(result, paths, style) + "\n" +
+         report::parameters_text(result, style) + "\n" + report::scorecard_text(result, style) +
+         "\n" + report::reasons_text(result, style);
 }
 
 }  // namespace

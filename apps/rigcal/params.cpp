@@ -12,7 +12,8 @@ ExitCode run_params(const PrintOptions& options) {
   report::Json json = report::Json::object();
   for (const std::string& name : model::plant_names()) {
     const model::PlantKind plant = model::plant_from_name(name).value();
-    text += "model \"" + name + "\" (SI units)\n" + report::parameter_table_text(plant);
+    text += "model \"" + name + "\" (SI units)\n" +
+            report::parameter_table_text(plant, terminal_style());
     json[name] = report::parameters_json(plant);
   }
   print(options, text, json);

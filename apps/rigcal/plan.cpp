@@ -43,7 +43,7 @@ ExitCode run_plan(const PlanRequest& options, const Invocation& invocation) {
   report::write_results(options.common.out, {{"plan.json", report::json_text(json)}},
                         provenance.inputs);
   print(options.common.print,
-        report::plan_text(campaign, plan) +
+        report::plan_text(campaign, plan, terminal_style().columns) +
             fmt::format("files: {}\n", (options.common.out / "plan.json").string()),
         json);
   return ExitCode::done;

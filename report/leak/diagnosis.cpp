@@ -25,6 +25,8 @@ using diagnosis::RecordDiagnosis;
 using diagnosis::SignalDiagnosis;
 using Align = TextTable::Align;
 
+constexpr std::size_t kSentenceColumns = 80;  ///< sentences read better so, whatever the terminal
+
 Json class_or_null(const std::optional<LeakClass>& leak_class) {
   return leak_class ? Json(std::string(to_string(*leak_class))) : Json(nullptr);
 }
@@ -177,17 +179,17 @@ std::string in_colour(const std::string& text, const char* code, const Style& st
   return style.colour ? fmt::format("\x1b[{}m{}\x1b[0m", code, text) : text;
 }
 
-std::string record_table(const diagnosis::Diagnosis& found) {
+std::string record_table(const diagnosis::Diagnosis& found, const Style& style) {
   TextTable table({{"condition"},
                    {"repeats", Align::right},
                    {"C_leak", Align::right},
                    {"95 % interval", Align::right},
                    {"share %", Align::right},
                    {"95 % interval", Align::right},
-                   {"leak L/min", Align::right},
+                   {"leak L/min", Align::right, 2},
                    {"class"},
-                   {"probability", Align::right},
-                   {"by features"},
+                   {"probability", Align::right, 1},
+                   {"by features", Align::left, 3},
                    {"known class"}});
   for (const RecordDiagnosis& record : found.records) {
     if (record.repeat) continue;
@@ -209,10 +211,10 @@ std::string record_table(const diagnosis::Diagnosis& found) {
                fmt::format("{:.3f}", best), class_name(record.by_features, "-"),
                class_name(record.truth, "-")});
   }
-  return table.text();
+  return table.text(style.columns);
 }
 
-std::string accuracy_table(const diagnosis::Diagnosis& found) {
+std::string accuracy_table(const diagnosis::Diagnosis& found, const Style& style) {
   TextTable table({{"method"},
                    {"records"},
                    {"right", Align::right},
@@ -232,10 +234,10 @@ std::string accuracy_table(const diagnosis::Diagnosis& found) {
   add("fitted leak", "averages", found.averaged);
   add("paper's features, without this repeat", "single repeats", found.features);
   add("paper's features, without this signal", "single repeats", found.features_of_other_signals);
-  return table.empty() ? std::string() : table.text();
+  return table.empty() ? std::string() : table.text(style.columns);
 }
 
-std::string limit_table(const diagnosis::Diagnosis& found) {
+std::string limit_table(const diagnosis::Diagnosis& found, const Style& style) {
   TextTable table({{"signal"},
                    {"single, L/min", Align::right},
                    {"averaged, L/min", Align::right},
@@ -249,11 +251,11 @@ std::string limit_table(const diagnosis::Diagnosis& found) {
                    ? fmt::format("{:.2f}", kInPercent * signal.smallest_leak->share)
                    : signal.reason});
   }
-  return table.empty() ? std::string() : table.text();
+  return table.empty() ? std::string() : table.text(style.columns);
 }
 
 /// Per signal the coefficient at which each class ends: the column of a leak table.
-std::string class_limit_table(const DiagnosisResult& result) {
+std::string class_limit_table(const DiagnosisResult& result, const Style& style) {
   std::vector<std::string> signals;
   std::map<std::string, std::map<double, std::string>> cells;
   std::map<double, std::string> heads;
@@ -281,7 +283,7 @@ std::string class_limit_table(const DiagnosisResult& result) {
       row.push_back(cells[signal][percent].empty() ? "-" : cells[signal][percent]);
     table.add(row);
   }
-  return table.empty() ? std::string() : table.text();
+  return table.empty() ? std::string() : table.text(style.columns);
 }
 
 /// What failed, and the warnings of averages, of repeats that no leak explains, and of all.
@@ -374,20 +376,20 @@ std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
   }
   std::string text = in_colour("State of the machine", "1", style) + "\n";
   for (const diagnosis::MachineState& state : found.states)
-    text += wrapped("  " + state_sentence(state), 80, 4) + "\n";
+    text += wrapped("  " + state_sentence(state), kSentenceColumns, 4) + "\n";
   for (const diagnosis::LeakTrend& trend : found.trends)
-    text += wrapped("  " + trend_sentence(trend), 80, 4) + "\n";
+    text += wrapped("  " + trend_sentence(trend), kSentenceColumns, 4) + "\n";
   text += "\n" + in_colour("Leak in the average of each condition", "1", style) + "\n" +
-          record_table(found);
-  if (const std::string table = accuracy_table(found); !table.empty()) {
+          record_table(found, style);
+  if (const std::string table = accuracy_table(found, style); !table.empty()) {
     text += "\n" + in_colour("Against the known classes (undecided counts as wrong)", "1", style) +
             "\n" + table;
   }
-  if (const std::string table = class_limit_table(result); !table.empty())
+  if (const std::string table = class_limit_table(result, style); !table.empty())
     text += "\n" +
             in_colour("Coefficient at which each class ends, by the leak table", "1", style) +
             "\n" + table;
-  if (const std::string table = limit_table(found); !table.empty()) {
+  if (const std::string table = limit_table(found, style); !table.empty()) {
     const datasets::DiagnosisSettings& settings = result.campaign.diagnosis;
     text +=
         "\n" +

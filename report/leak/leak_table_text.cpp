@@ -68,7 +68,7 @@ std::string share_cell(const calib::LeakEntry& entry) {
 }
 
 template <typename Cell>
-std::string grid(const LeakTableResult& result, Cell text_of) {
+std::string grid(const LeakTableResult& result, Cell text_of, const Style& style) {
   std::vector<TextTable::Column> columns{{"share", Align::right}};
   for (const datasets::LeakSignal& signal : result.settings.signals) {
     columns.push_back({signal_text(signal), Align::right});
@@ -82,7 +82,7 @@ std::string grid(const LeakTableResult& result, Cell text_of) {
     }
     table.add(row);
   }
-  return table.text();
+  return table.text(style.columns);
 }
 
 std::string notes_text(const LeakTableResult& result) {
@@ -102,7 +102,7 @@ std::string normal_text(const LeakTableResult& result, const Style& style) {
     table.add({signal_text(normal.signal), fmt::format("{:g}", normal.coefficient),
                fmt::format("{:.3g} %", normal.share_percent)});
   }
-  return "\n" + heading("Without a fault", style) + table.text();
+  return "\n" + heading("Without a fault", style) + table.text(style.columns);
 }
 
 /// "2.0887/2.089 -0.1 %"
@@ -147,7 +147,7 @@ std::string features_text(const LeakTableResult& result, const Style& style) {
          heading(fmt::format("Flows and features of the residual, {}: computed/published",
                              signal_text(*result.settings.feature_signal)),
                  style) +
-         table.text() + notes;
+         table.text(style.columns) + notes;
 }
 
 bool has_intervals(const calib::LeakTable& table) {
@@ -167,7 +167,7 @@ std::string assumptions_text(const LeakTableResult& result, const Style& style) 
           datasets::assumption_spec(result.campaign.rig.plant, assumption.index);
       table.add({std::string(spec.key), readable(assumption.value, spec.unit), assumption.source});
     }
-    text += "\n" + heading("What it rests on", style) + table.text();
+    text += "\n" + heading("What it rests on", style) + table.text(style.columns);
   }
   if (!result.table.fixed_combinations.empty()) {
     TextTable table({{"combination"}, {"value", Align::right}, {"unit"}});
@@ -178,7 +178,7 @@ std::string assumptions_text(const LeakTableResult& result, const Style& style) 
     text +=
         "\n" +
         heading("Combinations that the shares depend on, and not on the values in them", style) +
-        table.text();
+        table.text(style.columns);
   }
   return text;
 }
@@ -194,11 +194,11 @@ std::string leak_table_text(const LeakTableResult& result, const Style& style) {
                           has_intervals(result.table) ? " with its 95 % interval" : "",
                           published ? ", computed/published and error" : ""),
               style) +
-      grid(result, cell) + notes_text(result);
+      grid(result, cell, style) + notes_text(result);
   if (published) {
     text += "\n" +
             heading("Share in % at the published coefficient (and within its rounding)", style) +
-            grid(result, share_cell);
+            grid(result, share_cell, style);
   }
   text +=
       normal_text(result, style) + features_text(result, style) + assumptions_text(result, style);

@@ -104,7 +104,7 @@ std::string length_text(const std::optional<double>& value_m) {
   return value_m ? readable(*value_m, "m", kTextDigits) : std::string("-");
 }
 
-std::string condition_table(const ParityResult& result) {
+std::string condition_table(const ParityResult& result, const Style& style) {
   TextTable table({{"condition"},
                    {"leak level", Align::left, 1},
                    {"alarms", Align::right},
@@ -138,7 +138,7 @@ std::string condition_table(const ParityResult& result) {
                has_threshold ? length_text(signal->threshold_m) : "-",
                first_s ? readable(*first_s, "s", kTextDigits) : "-"});
   }
-  return table.text();
+  return table.text(style.columns);
 }
 
 std::string check_text(const ParityResult& result) {
@@ -232,7 +232,7 @@ std::string parity_text(const ParityResult& result, const Style& style) {
     return text;
   }
   text = "Moving root mean square of the parity residual, against its threshold\n" +
-         condition_table(result) + "\n" + check_text(result);
+         condition_table(result, style) + "\n" + check_text(result);
   for (const ParitySignal& signal : result.parity.signals)
     if (!signal.reason.empty()) text += fmt::format("{}: {}\n", signal.signal, signal.reason);
   for (const ParityCondition& condition : result.parity.conditions)

@@ -74,7 +74,8 @@ Json plan_json(const datasets::Campaign& campaign, const calib::Plan& plan,
   return json;
 }
 
-std::string plan_text(const datasets::Campaign& campaign, const calib::Plan& plan) {
+std::string plan_text(const datasets::Campaign& campaign, const calib::Plan& plan,
+                      std::size_t columns_of_terminal) {
   std::vector<TextTable::Column> columns{{"standard deviation in % from"}};
   for (const auto& parameter : plan.parameters)
     columns.push_back({planned_name(campaign, parameter), TextTable::Align::right});
@@ -85,7 +86,7 @@ std::string plan_text(const datasets::Campaign& campaign, const calib::Plan& pla
   }
   add_plan_row(table, "all that are recorded", plan, plan.recorded);
   add_plan_row(table, "all", plan, plan.all);
-  std::string text = table.text() + "\n";
+  std::string text = table.text(columns_of_terminal) + "\n";
   text += "at best: white noise, the model right (Cramer-Rao); -: not determined\n";
   for (const calib::PlannedRecord& record : plan.records) {
     if (!record.problem.empty()) text += record.condition + ": " + record.problem + "\n";

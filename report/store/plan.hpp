@@ -13,6 +13,9 @@ Json plan_json(const datasets::Campaign& campaign, const calib::Plan& plan,
                const Provenance& provenance);
 
 /// Table of relative standard deviations per record, and what is wanting, for the terminal.
-std::string plan_text(const datasets::Campaign& campaign, const calib::Plan& plan);
+///
+/// @param columns  of the terminal; 0: as wide as it is
+std::string plan_text(const datasets::Campaign& campaign, const calib::Plan& plan,
+                      std::size_t columns);
 
 }  // namespace rigcal::report

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "common/significant.hpp"
@@ -172,18 +173,75 @@ std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& r
   return text;
 }
 
+std::vector<std::pair<std::string_view, const calib::Aspect*>> aspects_of(
+    const calib::Assessment& assessment) {
+  return {{"agreement", &assessment.agreement},
+          {"validation", &assessment.validation},
+          {"adequacy", &assessment.adequacy},
+          {"parameters", &assessment.parameters}};
+}
+
+std::string state_text(AspectState state, const Style& style) {
+  const char* const code = state == AspectState::pass   ? "32"
+                           : state == AspectState::fail ? "31"
+                                                        : "33";
+  return coloured(
+      state == AspectState::not_assessed ? "not assessed" : std::string(to_string(state)), code,
+      style);
+}
+
+/// "rho2 0.9997", "error 0.373 %"
+std::string metric_text(const std::string& metric, double value) {
+  return metric == "absolute_error_percent" ? fmt::format("error {:.3f} %", value)
+                                            : fmt::format("{} {}", metric, agreement_text(value));
+}
+
+/// The three conditions that are farthest from what is asked for: those without a score, then by
+/// the share of the tolerance that they use; where there are no limits, by their errors.
+std::vector<std::string> worst_conditions(const calib::Fit& fit) {
+  constexpr std::size_t kShown = 3;
+  constexpr double kWithoutScore = std::numeric_limits<double>::infinity();
+  std::vector<std::pair<double, std::string>> ranked;
+  for (const calib::ConditionScore& score : fit.conditions) {
+    const std::string& why = score.failure.empty() ? score.not_scored : score.failure;
+    if (!why.empty()) {
+      ranked.emplace_back(kWithoutScore, fmt::format("{}: {}", score.id, why));
+      continue;
+    }
+    const auto check =
+        std::max_element(score.checks.begin(), score.checks.end(),
+                         [](const calib::LimitCheck& a, const calib::LimitCheck& b) {
+                           return std::pair(a.verdict, a.used) < std::pair(b.verdict, b.used);
+                         });
+    if (check != score.checks.end()) {
+      ranked.emplace_back(check->value ? check->used : kWithoutScore,
+                          check->value
+                              ? fmt::format("{}: {} of {}, {:.2g} % of the tolerance used",
+                                            score.id, metric_text(check->metric, *check->value),
+                                            info(check->channel).key, 100.0 * check->used)
+                              : fmt::format("{}: {}", score.id, check->words));
+      continue;
+    }
+    for (const calib::ChannelScore& channel : score.channels) {
+      if (!channel.agreement) continue;
+      ranked.emplace_back(
+          channel.agreement->absolute_error_percent,
+          fmt::format("{}: error of {} {:.3f} %", score.id, info(channel.channel).key,
+                      channel.agreement->absolute_error_percent));
+    }
+  }
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::string> worst;
+  for (std::size_t i = 0; i < std::min(kShown, ranked.size()); ++i)
+    worst.push_back(ranked[i].second);
+  return worst;
+}
+
 /// State of an aspect; what speaks against it, the gravest first; then what speaks for it.
 std::string aspect_text(std::string_view name, const calib::Aspect& aspect, const Style& style) {
   constexpr std::size_t kShown = 3;  // of one state; the files hold all
-  const auto code = [](AspectState state) {
-    return state == AspectState::pass ? "32" : state == AspectState::fail ? "31" : "33";
-  };
-  const auto words = [](AspectState state) {
-    return state == AspectState::not_assessed ? std::string("not assessed")
-                                              : std::string(to_string(state));
-  };
-  std::string text =
-      fmt::format("  {}: {}\n", name, coloured(words(aspect.state), code(aspect.state), style));
+  std::string text = fmt::format("  {}: {}\n", name, state_text(aspect.state, style));
   std::map<AspectState, std::size_t> told;
   for (const calib::Reason& reason : aspect.reasons) {
     if (++told[reason.state] > kShown) continue;
@@ -226,7 +284,8 @@ std::string parameters_text(const Result& result, const Style& style) {
                   {"std. error", Align::right, 1},
                   {"95 % interval", Align::right},
                   {"bounds", Align::right, 2},
-                  {"identifiability"}});
+                  {"identifiability"}},
+                 2);
   std::vector<std::pair<std::string, std::string>> reasons;  // whose, why
   for (const calib::FittedParameter& p : result.fit.parameters) {
     if (!p.fitted) continue;
@@ -252,7 +311,28 @@ std::string parameters_text(const Result& result, const Style& style) {
          foot_notes(reasons, text.rows(), style.columns);
 }
 
-std::string verdict_text(const Result& result, const Style& style) {
+std::string summary_text(const Result& result, const std::vector<std::string>& files,
+                         const Style& style) {
+  const calib::Fit& fit = result.fit;
+  std::string text;
+  const auto say = [&](const std::string& line) { text += wrapped(line, style.columns, 2) + "\n"; };
+  say((fit.verdict ? "verdict: " + coloured(*fit.verdict, style) +
+                         (*fit.verdict == Verdict::warn ? " (passed with reservations)" : "")
+       : fit.conditions.empty() ? std::string("verdict: none (no condition was scored)")
+                                : std::string("verdict: none (the campaign has no [acceptance])")) +
+      (result.campaign.synthetic ? "; the records of this campaign are synthetic" : ""));
+  std::vector<std::string> aspects;
+  for (const auto& [name, aspect] : aspects_of(fit.assessment))
+    aspects.push_back(fmt::format("{} {}", name, state_text(aspect->state, style)));
+  say(fmt::format("  {}", fmt::join(aspects, ", ")));
+  const std::vector<std::string> worst = worst_conditions(fit);
+  if (!worst.empty()) text += "worst:\n";
+  for (const std::string& line : worst) text += wrapped("  " + line, style.columns, 4) + "\n";
+  say(fmt::format("files: {}", fmt::join(files, " ")));
+  return text;
+}
+
+std::string reasons_text(const Result& result, const Style& style) {
   const calib::Fit& fit = result.fit;
   const FitStatus status = status_of(fit);
   const char* code = status == FitStatus::converged ? "32"
@@ -268,21 +348,12 @@ std::string verdict_text(const Result& result, const Style& style) {
       coloured(only_scored ? "done" : std::string(to_string(status)), code, style);
   say(fit.message.empty() ? "status: " + word : fmt::format("status: {}: {}", word, fit.message),
       2);
-  say(fit.verdict ? "verdict: " + coloured(*fit.verdict, style) +
-                        (*fit.verdict == Verdict::warn ? " (passed with reservations)" : "")
-      : fit.conditions.empty() ? std::string("verdict: none (no condition was scored)")
-                               : std::string("verdict: none (the campaign has no [acceptance])"),
-      2);
-  const auto& [agreement, validation, adequacy, parameters] = fit.assessment;
-  for (const auto& [name, aspect] :
-       {std::pair{"agreement", &agreement}, std::pair{"validation", &validation},
-        std::pair{"adequacy", &adequacy}, std::pair{"parameters", &parameters}})
+  for (const auto& [name, aspect] : aspects_of(fit.assessment))
     text += aspect_text(name, *aspect, style);
   if (!fit.agreement.empty()) say("starts: " + fit.agreement, 2);
   if (!fit.bootstrap_message.empty()) say("bootstrap: " + fit.bootstrap_message, 2);
   if (!fit.interval_advice.empty()) say("intervals: " + fit.interval_advice, 2);
   for (const std::string& warning : fit.warnings) say("warning: " + warning, 2);
-  if (result.campaign.synthetic) say("note: the records of this campaign are synthetic", 2);
   return text;
 }
 
@@ -311,16 +382,16 @@ std::string record_text(const datasets::Condition& condition, const datasets::Re
   return text;
 }
 
-std::string parameter_table_text(model::PlantKind plant) {
+std::string parameter_table_text(model::PlantKind plant, const Style& style) {
   TextTable table({{"key"},
-                   {"symbol"},
+                   {"symbol", Align::left, 1},
                    {"unit"},
-                   {"default", Align::right},
-                   {"lowest", Align::right},
-                   {"highest", Align::right},
-                   {"kind"},
+                   {"default", Align::right, 4},
+                   {"lowest", Align::right, 5},
+                   {"highest", Align::right, 6},
+                   {"kind", Align::left, 2},
                    {"meaning"},
-                   {"source"}});
+                   {"source", Align::left, 3}});
   for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
     table.add({std::string(spec.key), std::string(spec.symbol), std::string(spec.unit),
                spec.default_value ? fmt::format("{:g}", *spec.default_value) : "-",
@@ -328,7 +399,7 @@ std::string parameter_table_text(model::PlantKind plant) {
                std::string(to_string(spec.kind)), std::string(spec.meaning),
                std::string(spec.source)});
   }
-  return table.text();
+  return table.text(style.columns);
 }
 
 }  // namespace rigcal::report

@@ -57,6 +57,19 @@ std::string wrapped(std::string_view line, std::size_t columns, std::size_t inde
   return result;
 }
 
+std::string wrapped_lines(std::string_view text, std::size_t columns) {
+  constexpr std::size_t kDeeper = 2;
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    result += wrapped(line, columns, std::min(line.find_first_not_of(' '), line.size()) + kDeeper);
+    if (end < text.size()) result += "\n";
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return result;
+}
+
 void TextTable::add(std::vector<std::string> row) {
   for (std::string& text : row) text = on_one_line(text);
   rows_.push_back(std::move(row));
@@ -104,25 +117,49 @@ std::vector<std::string> TextTable::left_out(std::size_t columns) const {
   return titles;
 }
 
-std::string TextTable::text(std::size_t columns) const {
+std::vector<std::vector<std::size_t>> TextTable::blocks(std::size_t columns) const {
   const std::vector<std::size_t> width = widths();
   const std::vector<bool> is_shown = shown(columns);
-  std::string result;
-  const auto add_line = [&](const auto& cell) {
-    std::string line;
-    for (std::size_t i = 0; i < width.size(); ++i) {
-      if (!is_shown[i]) continue;
-      const std::string& text = cell(i);
-      const std::string blanks(width[i] - text_width(text), ' ');
-      if (i > 0) line += std::string(kGap, ' ');
-      line += columns_[i].align == Align::left ? text + blanks : blanks + text;
+  std::vector<std::size_t> keys;
+  std::size_t of_keys = 0;
+  for (std::size_t i = 0; i < keys_; ++i) {
+    if (!is_shown[i]) continue;
+    keys.push_back(i);
+    of_keys += width[i] + kGap;
+  }
+  std::vector<std::vector<std::size_t>> result{keys};
+  std::size_t all = of_keys;
+  for (std::size_t i = keys_; i < width.size(); ++i) {
+    if (!is_shown[i]) continue;
+    if (columns > 0 && all + width[i] > columns && result.back().size() > keys.size()) {
+      result.push_back(keys);
+      all = of_keys;
     }
-    line.erase(line.find_last_not_of(' ') + 1);
-    result += line + "\n";
-  };
-  add_line([&](std::size_t i) -> const std::string& { return columns_[i].title; });
-  for (const auto& row : rows_)
-    add_line([&](std::size_t i) -> const std::string& { return row[i]; });
+    result.back().push_back(i);
+    all += width[i] + kGap;
+  }
+  return result;
+}
+
+std::string TextTable::text(std::size_t columns) const {
+  const std::vector<std::size_t> width = widths();
+  std::string result;
+  for (const std::vector<std::size_t>& block : blocks(columns)) {
+    const auto add_line = [&](const auto& cell) {
+      std::string line;
+      for (const std::size_t i : block) {
+        const std::string& text = cell(i);
+        const std::string blanks(width[i] - text_width(text), ' ');
+        if (i != block.front()) line += std::string(kGap, ' ');
+        line += columns_[i].align == Align::left ? text + blanks : blanks + text;
+      }
+      line.erase(line.find_last_not_of(' ') + 1);
+      result += line + "\n";
+    };
+    add_line([&](std::size_t i) -> const std::string& { return columns_[i].title; });
+    for (const auto& row : rows_)
+      add_line([&](std::size_t i) -> const std::string& { return row[i]; });
+  }
   return result;
 }
 

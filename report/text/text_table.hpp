@@ -13,6 +13,9 @@ std::size_t text_width(std::string_view text);
 /// blanks; a word that is wider alone stays whole. 0 columns: not broken.
 std::string wrapped(std::string_view line, std::size_t columns, std::size_t indent);
 
+/// Every line of a text wrapped, further lines two blanks deeper than its own.
+std::string wrapped_lines(std::string_view text, std::size_t columns);
+
 /// Rows of texts as aligned columns: texts to the left, columns that hold numbers to the right.
 class TextTable {
  public:
@@ -23,14 +26,19 @@ class TextTable {
     int spare = 0;  ///< the highest is left out first where there is no room; 0: never
   };
 
-  explicit TextTable(std::vector<Column> columns) : columns_(std::move(columns)) {}
+  /// @param keys  leading columns that tell what a row is of
+  explicit TextTable(std::vector<Column> columns, std::size_t keys = 1)
+      : columns_(std::move(columns)), keys_(keys) {}
   /// @param row  shape (columns); line ends and other control characters become blanks
   void add(std::vector<std::string> row);
   bool empty() const { return rows_.empty(); }
   std::size_t rows() const { return rows_.size(); }
   /// Title line and rows, two blanks between columns, without blanks at line ends.
   ///
-  /// @param columns  of the terminal: what can be spared is left out until the lines fit; 0: all
+  /// @param columns  of the terminal: what can be spared is left out until the lines fit; what is
+  /// still
+  ///                 too wide follows in further blocks, each with the keys; 0: all as it
+  ///                 is
   std::string text(std::size_t columns = 0) const;
   /// Of the widest line.
   std::size_t width() const;
@@ -41,8 +49,11 @@ class TextTable {
   std::vector<std::size_t> widths() const;
   /// Whether each column is shown.
   std::vector<bool> shown(std::size_t columns) const;
+  /// Shown columns that stand side by side, the keys in every block.
+  std::vector<std::vector<std::size_t>> blocks(std::size_t columns) const;
 
   std::vector<Column> columns_;
+  std::size_t keys_;
   std::vector<std::vector<std::string>> rows_;
 };
 

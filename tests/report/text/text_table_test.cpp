@@ -45,3 +45,24 @@ TEST_CASE("TextTable: a name of several lines takes one", "[report]") {
   table.add({"a\nb\x1b[2J", "\x1b[1;32mPASS\x1b[0m"});
   CHECK(table.text() == "name     verdict\na b [2J  \x1b[1;32mPASS\x1b[0m\n");
 }
+
+TEST_CASE("TextTable: what is too wide follows in blocks, each with its keys", "[report]") {
+  TextTable table({{"rig"}, {"level"}, {"first"}, {"second"}, {"third"}}, 2);
+  table.add({"a", "0 %", "1", "2", "3"});
+  CHECK(table.text(19) ==
+        "rig  level  first\na    0 %    1\n"
+        "rig  level  second\na    0 %    2\n"
+        "rig  level  third\na    0 %    3\n");
+  CHECK(table.text(26) ==
+        "rig  level  first  second\na    0 %    1      2\n"
+        "rig  level  third\na    0 %    3\n");
+  CHECK(table.text(1) == table.text(19));  // narrower than a column: one each
+  CHECK(table.text(0) == "rig  level  first  second  third\na    0 %    1      2       3\n");
+}
+
+TEST_CASE("wrapped_lines: each line by itself, further ones deeper", "[report]") {
+  CHECK(wrapped_lines("one two\n  three four\n\n", 9) == "one two\n  three\n    four\n\n");
+  CHECK(wrapped_lines("one two", 5) == "one\n  two");
+  CHECK(wrapped_lines("one two\n", 0) == "one two\n");
+  CHECK(wrapped_lines("", 5).empty());
+}
