@@ -14,6 +14,11 @@ namespace {
 
 using Align = TextTable::Align;
 
+std::string offset_text(double offset_s) {
+  constexpr double kRounding_s = 1e-9;  // records that were made without an offset
+  return offset_s < kRounding_s ? "0 ms" : fmt::format("{:.2g} ms", 1e3 * offset_s);
+}
+
 void add_rows(const datasets::Record& record, TextTable& table) {
   const double offset_s = datasets::offset_range_s(record);
   for (const datasets::Repeatability& each : datasets::repeatability(record)) {
@@ -25,7 +30,7 @@ void add_rows(const datasets::Record& record, TextTable& table) {
                std::isfinite(each.pooled_sd) ? readable(each.pooled_sd, about.unit, 3) : "unknown",
                floor ? agreement_text(floor->rho2) : "-",
                floor ? fmt::format("{:.3f}", floor->absolute_error_percent) : "-",
-               record.repeats > 1 ? readable(offset_s, "s", 2) : "-",
+               record.repeats > 1 ? offset_text(offset_s) : "-",
                fmt::format("{}", datasets::outliers(record).size())});
   }
 }

@@ -88,7 +88,7 @@ TEST_CASE("average: the terminal tells noise floor and offsets", "[apps]") {
   const std::string out = folder.run({"average", "twin/campaign.toml", "--out", "average"}).out;
   CHECK_THAT(line_of(out, 2), Contains("floor rho2") && Contains("floor error %") &&
                                   Contains("offsets") && Contains("outliers"));
-  CHECK_THAT(line_of(out, 3), Contains("sine") && Contains("position") && Contains(" s"));
+  CHECK_THAT(line_of(out, 3), Contains("sine") && Contains("position") && Contains(" ms "));
 }
 
 TEST_CASE("rigcal: COLUMNS that is no number of columns is passed over", "[apps]") {
