@@ -8,6 +8,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
 #include <memory>
@@ -16,6 +17,7 @@
 #include <optional>
 
 #include "common/error.hpp"
+#include "common/installed_file.hpp"
 #include "common/suggest.hpp"
 
 namespace rigcal {
@@ -103,7 +105,12 @@ class UnitSystem {
   UnitSystem() {
     const PlainLocale plain;
     ut_set_error_message_handler(ut_ignore);  // it would write to stderr
-    system_.reset(ut_read_xml(nullptr));
+    // Debian's database lies where the library looks; the archive of scripts/package has one of its
+    // own.
+    const auto own = std::getenv("UDUNITS2_XML_PATH") == nullptr
+                         ? installed_file("rigcal/udunits/udunits2.xml")
+                         : std::nullopt;
+    system_.reset(ut_read_xml(own ? own->c_str() : nullptr));
     if (!system_)
       throw Error(ExitCode::internal,
                   "the unit database of UDUNITS-2 cannot be read (it belongs to the package "

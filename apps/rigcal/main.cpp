@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "apps/rigcal/interrupt.hpp"
+#include "apps/rigcal/manual.hpp"
+#include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/memory.hpp"
@@ -104,8 +106,21 @@ void check_verb(int argc, char** argv) {
   }
 }
 
+/// What writes the manual page and the completions of the package; true if that was asked for.
+bool print_manual(const CLI::App& app, const std::vector<std::string>& arguments) {
+  std::string text;
+  if (arguments == std::vector<std::string>{"--man-page"}) {
+    text = rigcal::app::man_page(app);
+  } else if (!arguments.empty() && arguments.front() == "--completion") {
+    text = rigcal::app::completion(app, arguments.size() == 2 ? arguments.back() : "");
+  } else {
+    return false;
+  }
+  rigcal::app::print({}, text, {});
+  return true;
+}
+
 ExitCode run(int argc, char** argv) {
-  check_verb(argc, argv);
   CLI::App app{"Calibrates models of servo-hydraulic rigs from recorded runs", "rigcal"};
   app.set_version_flag("--version", fmt::format("rigcal {} ({})", rigcal::report::version(),
                                                 rigcal::report::revision()));
@@ -116,6 +131,8 @@ ExitCode run(int argc, char** argv) {
     CLI::App* verb = app.add_subcommand(row.name, row.summary);
     verbs.emplace_back(verb, row.add(*verb));
   }
+  if (print_manual(app, {argv + std::min(argc, 1), argv + argc})) return ExitCode::done;
+  check_verb(argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -19,6 +19,7 @@ ELSEWHERE = {
     "build": ".ci/run",
     "lint": ".ci/run",
     "setup": ".ci/run",
+    "package": ".ci/run",
     "docs-numbers": "tests/docs/numbers_test.py",
     "mutation-study": "tests/CMakeLists.txt",
     "reliability": "tests/CMakeLists.txt",

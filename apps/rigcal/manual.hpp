@@ -1,0 +1,27 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rigcal::app {
+
+// Written from what --help prints, so that neither can tell anything else.
+
+/// The manual page rigcal(1) in roff.
+std::string man_page(const CLI::App& app);
+
+inline constexpr std::array<std::string_view, 3> kShells{"bash", "zsh", "fish"};
+
+/// What a shell completes verbs, options and paths by.
+///
+/// @param shell  one of kShells
+/// @throws UsageError  it is none
+std::string completion(const CLI::App& app, std::string_view shell);
+
+/// The verbs in the order of --help.
+std::vector<const CLI::App*> verbs_of(const CLI::App& app);
+
+}  // namespace rigcal::app

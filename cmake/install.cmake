@@ -1,0 +1,44 @@
+# cmake --install, in two components: `program` is what the packages hold (scripts/package); `development` the headers,
+# the libraries and what find_package(rigcal) reads.
+include(CMakePackageConfigHelpers)
+set(config ${CMAKE_INSTALL_LIBDIR}/cmake/rigcal)
+
+# Not the headers that need a package which the libraries keep to themselves; none of the others includes one.
+install(DIRECTORY common model metrics datasets calib diagnosis report
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rigcal COMPONENT development
+  FILES_MATCHING PATTERN *.hpp
+  PATTERN rigs EXCLUDE
+  PATTERN toml_*.hpp EXCLUDE
+  PATTERN campaign_parameters.hpp EXCLUDE
+  PATTERN campaign_sections.hpp EXCLUDE
+  PATTERN byte_stream.hpp EXCLUDE
+  PATTERN mat_*.hpp EXCLUDE)
+install(EXPORT rigcal NAMESPACE rigcal:: FILE rigcalTargets.cmake DESTINATION ${config} COMPONENT development)
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/rigcalConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/rigcalConfig.cmake INSTALL_DESTINATION ${config})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/rigcalConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/rigcalConfig.cmake ${PROJECT_BINARY_DIR}/rigcalConfigVersion.cmake
+  DESTINATION ${config} COMPONENT development)
+
+install(DIRECTORY datasets/rigs docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/rigcal COMPONENT program
+  FILES_MATCHING PATTERN *.toml PATTERN *.json)
+install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
+
+# The .deb: the program without the libraries that it is made of.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME rigcal)
+set(CPACK_PACKAGE_CONTACT "rigcal maintainers <rigcal@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "calibrates models of servo-hydraulic rigs from recorded runs")
+set(CPACK_PACKAGE_DESCRIPTION "Model parameters with intervals, a statement of how far they can be trusted,
+and a validation report, from repeated records of a rig. Works offline, from one campaign file.")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_COMPONENTS_ALL program)
+set(CPACK_COMPONENTS_GROUPING ALL_COMPONENTS_IN_ONE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+include(CPack)

@@ -1,0 +1,127 @@
+"""What `cmake --install` leaves is what a project finds and a user reads. usage: package_test.py BUILD COMPILER"""
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+BUILD = COMPILER = ""  # from the command line
+
+
+def run(*arguments, **options):
+    done = subprocess.run([str(argument) for argument in arguments], capture_output=True, text=True, check=False, **options)
+    if done.returncode != 0:
+        raise AssertionError(f"exit code {done.returncode}: {arguments}\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = pathlib.Path(folder.name)
+        cls.prefix = cls.folder / "prefix"
+        run("cmake", "--install", BUILD, "--prefix", cls.prefix)
+        cls.rigcal = cls.prefix / "bin" / "rigcal"
+        cls.verbs = re.findall(r"^  ([a-z][\w-]*) ", run(cls.rigcal, "--help").partition("Subcommands:")[2], re.MULTILINE)
+        cls.options = {verb: re.findall(r"^  (?:-\w,)?(--[\w-]+)", run(cls.rigcal, verb, "--help"), re.MULTILINE)
+                       for verb in cls.verbs}
+
+    def test_headers_include_what_is_installed(self):
+        include = self.prefix / "include" / "rigcal"
+        headers = list(include.rglob("*.hpp"))
+        self.assertGreater(len(headers), 100)
+        for header in headers:
+            text = header.read_text()
+            self.assertNotRegex(text, r"#include <(toml\+\+|matio|hpdf|zlib|udunits2|openssl|kainjow|CLI)", header)
+            for name in re.findall(r'#include "([^"]+)"', text):
+                self.assertTrue((include / name).is_file(), f"{header}: {name}")
+
+    def test_a_project_finds_the_libraries_and_fits(self):
+        made = self.folder / "made"
+        run(self.rigcal, "synthesize", ROOT / "docs" / "tutorial" / "known_rig.toml", "--seed", "1", "--out", made, "--quiet")
+        build = self.folder / "consumer"
+        run("cmake", "-S", ROOT / "tests" / "package" / "consumer", "-B", build, "-G", "Ninja",
+            f"-DCMAKE_PREFIX_PATH={self.prefix}", f"-DCMAKE_CXX_COMPILER={COMPILER}", "-DCMAKE_CXX_FLAGS=-O0",
+            "-DCMAKE_EXE_LINKER_FLAGS=-fuse-ld=lld")
+        run("cmake", "--build", build)
+        printed = run(build / "consumer", made / "campaign.toml")
+        self.assertRegex(printed, r"^Bench 4 \(synthetic\) by rigcal [\d.]+:\n")
+        self.assertRegex(printed, r"\nmass 8[45]\.")  # 85 kg is the truth
+
+    def test_another_minor_version_is_refused(self):
+        source = self.folder / "another"
+        source.mkdir()
+        (source / "CMakeLists.txt").write_text(
+            "cmake_minimum_required(VERSION 3.25)\nproject(another LANGUAGES CXX)\nfind_package(rigcal 99.0 REQUIRED)\n")
+        with self.assertRaisesRegex(AssertionError, "version: 0.1.0"):
+            run("cmake", "-S", source, "-B", source / "build", f"-DCMAKE_PREFIX_PATH={self.prefix}")
+
+    def test_nothing_installed_names_the_sources(self):
+        for path in (self.prefix / "lib").rglob("*.cmake"):
+            self.assertNotIn(str(ROOT), path.read_text(), path)
+
+    def test_campaigns_and_schemas_are_installed(self):
+        share = self.prefix / "share" / "rigcal"
+        for folder, installed, pattern in (("datasets/rigs", "rigs", "*.toml"), ("docs/schema", "schema", "*.json")):
+            names = {path.relative_to(ROOT / folder) for path in (ROOT / folder).rglob(pattern)}
+            self.assertEqual(names, {path.relative_to(share / installed) for path in (share / installed).rglob("*.*")})
+
+    def test_the_manual_tells_every_verb_and_option(self):
+        page = (self.prefix / "share" / "man" / "man1" / "rigcal.1").read_text().replace("\\-", "-")
+        sections = {section.partition("\n")[0]: section for section in page.split(".SS ")[1:]}
+        self.assertEqual(list(sections), self.verbs)
+        for verb, options in self.options.items():
+            self.assertIn("--json", options)
+            for option in options:
+                self.assertIn(f"\\fB{option}\\fR", sections[verb])
+
+    def test_the_manual_renders_without_warnings(self):
+        if not shutil.which("groff"):
+            self.skipTest("no groff")
+        page = self.prefix / "share" / "man" / "man1" / "rigcal.1"
+        done = subprocess.run(["groff", "-man", "-ww", "-Tutf8", page], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+
+    def test_completions_have_every_verb_and_option(self):
+        share = self.prefix / "share"
+        for name, long in (("bash-completion/completions/rigcal", "--"), ("zsh/vendor-completions/_rigcal", "--"),
+                           ("fish/vendor_completions.d/rigcal.fish", "-l ")):
+            text = (share / name).read_text()
+            for verb, options in self.options.items():
+                self.assertRegex(text, rf"(?m)\b{verb}\b")
+                for option in options:
+                    self.assertIn(long + option[2:], text)
+
+    def bash_completes(self, *words):
+        script = ('source "$1"; shift; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); compopt() { :; }; _rigcal; '
+                  'printf "%s\\n" "${COMPREPLY[@]}"')
+        return run("bash", "-c", script, "bash", self.prefix / "share/bash-completion/completions/rigcal", "rigcal",
+                   *words).split()
+
+    def test_bash_completes(self):
+        self.assertEqual(self.bash_completes("va"), ["validate"])
+        self.assertEqual(self.bash_completes("fit", "--boot"), ["--bootstrap"])
+        self.assertEqual(self.bash_completes("init", str(ROOT / "LICEN")), [str(ROOT / "LICENSE")])
+
+    def test_completions_are_read_by_their_shells(self):
+        for shell, name in (("bash", "bash"), ("zsh", "zsh"), ("fish", "fish")):
+            if shutil.which(shell):
+                script = self.folder / f"completion.{shell}"
+                script.write_text(run(self.rigcal, "--completion", name))
+                run(shell, "-n", script)
+
+    def test_an_unknown_shell_is_refused(self):
+        for arguments in (["tcsh"], [], ["bash", "zsh"]):
+            done = subprocess.run([self.rigcal, "--completion", *arguments], capture_output=True, text=True, check=False)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("expected bash, zsh, fish", done.stderr)
+
+
+if __name__ == "__main__":
+    BUILD, COMPILER = sys.argv.pop(1), sys.argv.pop(1)
+    unittest.main()
