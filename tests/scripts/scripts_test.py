@@ -20,6 +20,7 @@ ELSEWHERE = {
     "lint": ".ci/run",
     "setup": ".ci/run",
     "package": ".ci/run",
+    "docs": "scripts/lint",
     "docs-numbers": "tests/docs/numbers_test.py",
     "mutation-study": "tests/CMakeLists.txt",
     "reliability": "tests/CMakeLists.txt",
