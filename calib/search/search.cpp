@@ -12,6 +12,8 @@ namespace {
 /// Where full Gauss-Newton steps begin, in standard errors, and how many of them there are.
 constexpr double kFullStepOffset = 30.0;
 constexpr int kFullSteps = 4;
+/// Where they end: a third of what counts as stationary, since each is all but exact.
+constexpr double kFullStepEnd = 0.003;
 /// Growth of the mean square residual beyond which the shorter horizon's estimate is discarded.
 constexpr double kForeseen = 4.0;
 
@@ -142,7 +144,7 @@ OptimumCheck Search::full_steps() {
   OptimumCheck check = check_optimum(problem_, evaluator_.best());
   const int most = std::min(kFullSteps, iterations_.left());
   for (int steps = 0; steps < most && check.relative_offset <= kFullStepOffset; ++steps) {
-    if (check.stationary()) break;
+    if (check.relative_offset <= kFullStepEnd) break;
     const Evaluation& after =
         evaluator_.evaluate(gauss_newton(problem_, evaluator_.best(), check.active_bound));
     if (!after.ok) break;

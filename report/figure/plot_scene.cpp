@@ -277,20 +277,20 @@ std::vector<Shape> plot_scene(const Plot& plot) {
     leave_room(x, 0.0);
   }
   leave_room(y, 0.06);
-  x.start = kLeft;
-  x.length = plot.width - kLeft - kRight;
-  y.start = plot.height - kBottom;
-  y.length = kTop + kBottom - plot.height;
+  x.start = plot.bare ? 0.0 : kLeft;
+  x.length = plot.bare ? plot.width : plot.width - kLeft - kRight;
+  y.start = plot.bare ? plot.height : plot.height - kBottom;
+  y.length = plot.bare ? -plot.height : kTop + kBottom - plot.height;
 
   std::vector<Shape> shapes;
-  add_axes(plot, x, y, shapes);
+  if (!plot.bare) add_axes(plot, x, y, shapes);
   for (const double level : plot.levels) {
     if (!y.shows(level)) continue;
     const double at = y.pixel(level);
     shapes.push_back(line_shape("level", {{x.start, at}, {x.start + x.length, at}}));
   }
   for (const Trace& trace : plot.traces) shapes.push_back(trace_shape(trace, x, y));
-  add_legend(plot, shapes);
+  if (!plot.bare) add_legend(plot, shapes);
   return shapes;
 }
 

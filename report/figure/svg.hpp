@@ -34,6 +34,7 @@ struct Plot {
   double height = 200.0;
   bool log_x = false;
   bool log_y = false;
+  bool bare = false;     ///< traces alone, from edge to edge: one of many small pictures
   bool whole_x = false;  ///< x counts: ticks at whole numbers, room beside the first and last
   std::vector<Trace> traces;
   std::vector<double> levels;  ///< dashed horizontal lines, in units of y

@@ -55,6 +55,7 @@ struct Part {
   Json headline;        ///< as headline_view() makes it
   Json view;
   Json identity = {{"there", false}};  ///< as identity_view() makes it
+  Json overview = {{"there", false}};  ///< as overview_view() makes it
   Json provenance;
   std::vector<std::pair<const char*, const char*>> nav;  ///< id and name of its sections
   bool synthetic = false;
@@ -89,6 +90,7 @@ Part calibration_part(const ReadFile& read, const std::string& where, int thread
   }
   part.synthetic = result.at("synthetic").get<bool>();
   part.headline = headline_view(result);
+  part.overview = overview_view(stored);
   const std::string stopped_in = text_of(result, "stopped_in");
   part.view["unfinished"] =
       text_of(result, "status") == "stopped" && (stopped_in.empty() || stopped_in == "starts");
@@ -224,6 +226,7 @@ Json page_view(Parts parts) {
   view["kind"] = first.name;
   view["campaign"] = first.campaign;
   view["identity"] = first.identity;
+  view["overview"] = first.overview;
   view["headline"] = first.headline;
   view["page_class"] = first.headline.at("class");
   view["problems"] = std::move(parts.problems);

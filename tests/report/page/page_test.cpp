@@ -67,6 +67,29 @@ TEST_CASE("page: sections in the order of the guide", "[report]") {
     CHECK_THAT(html, !Contains(outside));
 }
 
+TEST_CASE("page: the first screen has three numbers and every condition as a picture", "[report]") {
+  Json json = stored_result();
+  const std::string html = page(json);
+  CHECK_THAT(html, Contains("<dt>Lowest rho2</dt><dd>0.9988 <small>sine</small>"));
+  CHECK_THAT(html, Contains("<dt>Largest mean error</dt><dd>") &&
+                       Contains("<dt>Least certain estimate</dt><dd>± "));
+  const std::size_t overview = html.find("<div class=\"overview\">");
+  REQUIRE(overview != std::string::npos);
+  CHECK(overview < html.find("<section id=\"matrix\""));
+  const std::string cells = html.substr(overview, html.find("</div>", overview) - overview);
+  CHECK_THAT(cells, Contains("href=\"#condition-sine\""));
+  CHECK_THAT(cells, Contains("class=\"line measured\"") && Contains("class=\"line model\""));
+  CHECK_THAT(cells, Contains("position of sine, measured and model"));
+  CHECK_THAT(cells, !Contains("class=\"line grid\""));  // no axes in a small picture
+  // What was not simulated has a cell without a picture.
+  json["conditions"][0]["id"] = "lost";
+  const std::string without = page(json);
+  CHECK_THAT(without,
+             Contains("href=\"#condition-lost\"") && Contains("<small>not simulated</small>"));
+  json["conditions"] = Json::array();
+  CHECK_THAT(page(json), !Contains("<div class=\"overview\">"));
+}
+
 TEST_CASE("page: carries the exact numbers beside the readable ones", "[report]") {
   const std::string html = page(stored_result());
   CHECK_THAT(html, Contains("value=\"85.01139529\">85.01<"));
