@@ -70,8 +70,8 @@ void add_reason(Json& headline, const std::string& text, const std::string& link
 
 /// What the campaign states about the test and its report; {"there": false} where nothing.
 Json identity_view(const Json& result);
-/// Three numbers, and measurement and model of every condition as a small picture; {"there": false} where
-/// nothing was scored.
+/// Three numbers, and measurement and model of every condition as a small picture; {"there": false}
+/// where nothing was scored.
 Json overview_view(const Calibration& stored);
 /// Headline, the four aspects of the assessment, and the range that is covered.
 Json headline_view(const Json& result);
