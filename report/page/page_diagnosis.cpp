@@ -117,11 +117,11 @@ Json confusion_view(const Json& confusion) {
   Json view{{"found", confusion.at("found")}, {"rows", Json::array()}};
   for (std::size_t i = 0; i < confusion.at("truth").size(); ++i) {
     long total = 0;
-    for (const Json& count : confusion.at("counts").at(i)) total += count_of(count);
+    for (const Json& count : confusion.at("counts").at(i)) total += as_count(count);
     if (total == 0) continue;
     Json cells = Json::array();
     for (std::size_t j = 0; j < confusion.at("counts").at(i).size(); ++j) {
-      const long count = count_of(confusion.at("counts").at(i).at(j));
+      const long count = as_count(confusion.at("counts").at(i).at(j));
       cells.push_back({{"count", fmt::format("{}", count)},
                        {"sign", i == j ? "minus" : "plus"},
                        {"strength", fmt::format("{:.2f}", static_cast<double>(count) /

@@ -17,9 +17,9 @@ std::optional<double> number_of(const Json& json, const std::string& key) {
   return found->get<double>();
 }
 
-long count_at(const Json& json, const std::string& key) { return count_of(json.at(key)); }
+long count_at(const Json& json, const std::string& key) { return as_count(json.at(key)); }
 
-long count_of(const Json& number) {
+long as_count(const Json& number) {
   constexpr double kLargest = 1e9;
   const auto count = number.get<double>();
   if (count >= 0.0 && count <= kLargest && count == std::floor(count))

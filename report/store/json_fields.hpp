@@ -18,6 +18,6 @@ std::optional<double> number_of(const Json& json, const std::string& key);
 ///
 /// @throws Json::exception  it is missing, or another number
 long count_at(const Json& json, const std::string& key);
-long count_of(const Json& number);
+long as_count(const Json& number);
 
 }  // namespace rigcal::report
