@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <cstdint>
 #include <cstdio>
-#include <limits>
 #include <memory>
 #include <optional>
 
 #include "apps/rigcal/checkpoint_file.hpp"
+#include "apps/rigcal/fit_choices.hpp"
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/outcome.hpp"
@@ -17,39 +15,17 @@
 #include "apps/rigcal/verb.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/whole_result.hpp"
 
 namespace rigcal::app {
 namespace {
 
-constexpr int kMostStarts = 100'000;
-/// Where nobody said how many starts to make and the campaign's ends at no minimum.
-constexpr int kFurtherStarts = 3;
-constexpr int kMostReplicates = 1'000'000;
-
 struct FitRequest {
   CampaignOptions common;
-  std::optional<int> starts;
-  std::uint64_t seed = 1;
-  int bootstrap = 0;
-  bool profiles = false;
-  bool cross_validate = false;
+  FitChoices choices;
   bool resume = false;
-  bool strict = false;
-  std::optional<double> max_time_s;
-  std::optional<long> max_evaluations;
+  bool if_changed = false;
 };
-
-/// CLI11's own check of a positive number lets "nan" and "inf" pass.
-CLI::Validator finite_positive() {
-  return CLI::Validator(
-      [](std::string& text) {
-        double value = 0.0;
-        const bool valid =
-            CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0;
-        return valid ? std::string() : fmt::format("found {}, expected a number above zero", text);
-      },
-      "POSITIVE");
-}
 
 /// A fit that begins anew must not look as if it went on.
 void say_nothing_to_resume(const FitRequest& options, int starts) {
@@ -60,26 +36,35 @@ void say_nothing_to_resume(const FitRequest& options, int starts) {
       stderr);
 }
 
+/// Exit code of the result that is there already, if it is the one that would be made.
+std::optional<ExitCode> made_before(const FitRequest& options,
+                                    const report::Provenance& provenance) {
+  const auto result = report::whole_result(options.common.out, "fit.json", provenance);
+  if (!result) return std::nullopt;
+  const std::string file = (options.common.out / "fit.json").string();
+  print(options.common.print, fmt::format("unchanged: {}\n", file), *result);
+  return exit_code_of(*result, options.choices.strict);
+}
+
 ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
   const auto records = datasets::load_records(
       campaign, {datasets::Use::fit, datasets::Use::validate}, options.common.threads, true);
   calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
-  settings.starts = options.starts.value_or(settings.starts);
-  if (!options.starts) settings.further_starts = kFurtherStarts;
-  settings.seed = options.seed;
-  settings.bootstrap = options.bootstrap;
-  settings.profiles = options.profiles;
-  settings.cross_validate = options.cross_validate;
-  settings.max_evaluations = options.max_evaluations;
-  if (options.max_time_s) settings.max_seconds = options.max_time_s;
-  report::Provenance provenance{invocation.command, options.seed, recorded(options.common),
-                                report::hash_inputs(campaign, records)};
-  provenance.options.emplace_back("starts", fmt::format("{}", settings.starts));
+  apply(options.choices, settings);
+  report::Provenance searched{invocation.command, options.choices.seed, recorded(options.common),
+                              report::hash_inputs(campaign, records)};
+  searched.options.emplace_back("starts", fmt::format("{}", settings.starts));
+  report::Provenance provenance = searched;
+  for (const auto& option : recorded(options.choices)) provenance.options.push_back(option);
   const Kept kept;
   const report::HeldFolder held(options.common.out);
+  if (options.if_changed) {
+    if (const auto code = made_before(options, provenance)) return *code;
+  }
 
-  CheckpointFile checkpoint(options.common.out, provenance);
+  // What is made beside the starts does not change them.
+  CheckpointFile checkpoint(options.common.out, searched);
   const auto earlier = options.resume ? checkpoint.read() : std::nullopt;
   if (earlier) settings.resume = &*earlier;
   if (options.resume && !earlier && !options.common.print.quiet)
@@ -100,7 +85,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   }
   const ExitCode code =
       write_and_print(options.common, {report::ResultKind::fit, campaign, records, fit, provenance},
-                      options.strict);
+                      options.choices.strict);
   checkpoint.finish(fit.status);
   return code;
 }
@@ -110,30 +95,11 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
 Run add_fit(CLI::App& verb) {
   const auto options = std::make_shared<FitRequest>();
   add_campaign_options(verb, options->common);
-  verb.add_option(
-          "--starts", options->starts,
-          "Number of starts (default: the campaign's, or 1, and 3 more where that ends at no "
-          "minimum); the best result counts")
-      ->check(CLI::Range(1, kMostStarts));
-  verb.add_option("--seed", options->seed, "Seed of the further starts")
-      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
-      ->capture_default_str();
-  verb.add_option("--bootstrap", options->bootstrap,
-                  "Intervals from so many fits to redrawn repeats or residuals")
-      ->check(CLI::Range(0, kMostReplicates));
-  verb.add_flag("--profiles", options->profiles, "Profile likelihood of every parameter");
-  verb.add_flag("--cross-validate", options->cross_validate,
-                "Leave out one condition after the other and predict it");
+  add_fit_choices(verb, options->choices);
   verb.add_flag("--resume", options->resume,
                 "Go on where a fit of the same inputs and options was stopped or killed");
-  verb.add_option(
-          "--max-time", options->max_time_s,
-          "Stop after so many seconds, bootstrap and all (default: the campaign's, or none)")
-      ->check(finite_positive());
-  verb.add_option("--max-evaluations", options->max_evaluations,
-                  "Stop after so many evaluations of all conditions")
-      ->check(whole_number(1, std::numeric_limits<long>::max()));
-  add_strict_option(verb, options->strict);
+  verb.add_flag("--if-changed", options->if_changed,
+                "Do nothing where --out holds the whole result of the same inputs and options");
   return [options](const Invocation& invocation) { return run_fit(*options, invocation); };
 }
 

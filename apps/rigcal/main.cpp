@@ -54,6 +54,7 @@ constexpr std::array kVerbs{
             rigcal::app::add_plan},
     VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},
     VerbRow{"init", "Draft a campaign file from recordings", rigcal::app::add_init},
+    VerbRow{"batch", "Fit every rig beneath a folder; one overview", rigcal::app::add_batch},
     VerbRow{"compare", "Fits side by side: what differs, and the leak's trend",
             rigcal::app::add_compare},
     VerbRow{"report", "Draw the report of a result folder again", rigcal::app::add_report},

@@ -5,6 +5,7 @@
 #include "apps/rigcal/result_page.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/json_fields.hpp"
 #include "report/store/parameters_csv.hpp"
 #include "report/store/residual_tests_json.hpp"
 #include "report/store/result_files.hpp"
@@ -82,6 +83,15 @@ ExitCode exit_code_of(const calib::Fit& fit, bool strict) {
   }
   const bool failed =
       fit.verdict == calib::Verdict::fail || (strict && fit.verdict == calib::Verdict::warn);
+  return failed ? ExitCode::verdict_fail : ExitCode::done;
+}
+
+ExitCode exit_code_of(const report::Json& result, bool strict) {
+  const std::string status = report::text_of(result, "status");
+  if (status == "failed") return ExitCode::no_result;
+  if (status != "converged") return ExitCode::stopped;
+  const std::string verdict = report::text_of(result, "verdict");
+  const bool failed = verdict == "FAIL" || (strict && verdict == "WARN");
   return failed ? ExitCode::verdict_fail : ExitCode::done;
 }
 

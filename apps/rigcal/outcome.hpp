@@ -13,6 +13,9 @@ namespace rigcal::app {
 /// @param strict  WARN counts as FAIL
 ExitCode exit_code_of(const calib::Fit& fit, bool strict);
 
+/// The same of a result that is stored: `status` and `verdict`.
+ExitCode exit_code_of(const report::Json& result, bool strict);
+
 /// Writes the files of a fit or validation into --out and prints scorecard, parameters and verdict.
 ///
 /// @throws WriteError

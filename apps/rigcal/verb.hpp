@@ -30,6 +30,7 @@ Run add_parity(CLI::App& verb);
 Run add_plan(CLI::App& verb);
 Run add_synthesize(CLI::App& verb);
 Run add_init(CLI::App& verb);
+Run add_batch(CLI::App& verb);
 Run add_compare(CLI::App& verb);
 Run add_report(CLI::App& verb);
 Run add_params(CLI::App& verb);

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "report/comparison/comparison.hpp"
@@ -63,6 +64,9 @@ Json compared_conditions(const std::vector<Compared>& results);
 Json compared_metrics(const Json& conditions, const std::vector<Compared>& results);
 /// `records`: which file went into which result.
 Json compared_records(const std::vector<Compared>& results);
+/// Estimates of the parameter of a key along dates and temperatures: a list of {`of`, `points`,
+/// `along_date`, `along_temperature`}.
+Json trends(const std::vector<Compared>& results, std::string_view key);
 /// `leak_trends`: leakage coefficients along dates and temperatures.
 Json leak_trends(const std::vector<Compared>& results);
 

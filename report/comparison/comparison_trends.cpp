@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <string_view>
 
 #include "common/calendar.hpp"
 #include "metrics/significance.hpp"
@@ -27,7 +28,7 @@ std::optional<double> mean_over(const Json& result, const Json& parameter, Quant
   return count > 0 ? std::optional<double>(sum / count) : std::nullopt;
 }
 
-/// What a leak is a leak of: estimates of equal name are points of one trend.
+/// What an estimate is of: those of equal name are points of one trend.
 std::string series_of(const Json& result, const Json& parameter) {
   const std::string scope = text_of(parameter, "scope");
   const std::string level = text_of(parameter, "level");
@@ -96,7 +97,7 @@ bool any_share_records(const std::vector<const Json*>& results) {
 
 }  // namespace
 
-Json leak_trends(const std::vector<Compared>& results) {
+Json trends(const std::vector<Compared>& results, std::string_view key) {
   struct Series {
     std::string name;
     Json points = Json::array();
@@ -106,8 +107,7 @@ Json leak_trends(const std::vector<Compared>& results) {
   for (const Compared& compared : results) {
     if (!is_usable(compared.result)) continue;
     for (const Json& parameter : compared.result.at("parameters")) {
-      if (text_of(parameter, "key") != "leakage_coefficient" || !parameter.at("fitted").get<bool>())
-        continue;
+      if (text_of(parameter, "key") != key || !parameter.at("fitted").get<bool>()) continue;
       const std::string name = series_of(compared.result, parameter);
       auto found = std::find_if(series.begin(), series.end(),
                                 [&](const auto& each) { return each.name == name; });
@@ -138,6 +138,10 @@ Json leak_trends(const std::vector<Compared>& results) {
     list.push_back(std::move(json));
   }
   return list;
+}
+
+Json leak_trends(const std::vector<Compared>& results) {
+  return trends(results, "leakage_coefficient");
 }
 
 }  // namespace rigcal::report

@@ -176,6 +176,21 @@ Part comparison_part(const ReadFile& read, const std::string& where) {
   return part;
 }
 
+Part batch_part(const ReadFile& read, const std::string& where) {
+  const auto batch = load<StoredBatch>(read, where, "batch.json");
+  Part part;
+  part.section = "batch";
+  part.link = "rigs";
+  part.name = "Batch";
+  part.campaign = batch.folder;
+  for (const StoredRig& rig : batch.rigs) part.synthetic = part.synthetic || rig.synthetic;
+  part.headline = batch_headline(batch);
+  part.view["batch"] = batch_view(batch);
+  part.provenance = provenance_view(batch.provenance, part.name, "batch.json");
+  part.nav = {{"rigs", "Rigs"}, {"rig-trends", "Trends"}};
+  return part;
+}
+
 /// What is JSON but no result of this version, as an error of the input.
 template <typename Work>
 void with_json_errors(const std::string& where, const Work& work) {
@@ -212,11 +227,12 @@ Parts parts_of(const ReadFile& read, const std::string& where, int threads) {
   add(has("diagnosis.json"), [&] { return diagnosis_part(read, where); });
   add(has("parity.json"), [&] { return parity_part(read, where); });
   add(has("comparison.json"), [&] { return comparison_part(read, where); });
+  add(has("batch.json"), [&] { return batch_part(read, where); });
   if (!parts.drawn.empty()) return parts;
   if (first) std::rethrow_exception(first);
   throw InputError({where},
                    "found neither fit.json nor validation.json, leak_table.json, diagnosis.json, "
-                   "parity.json or comparison.json; expected a result folder");
+                   "parity.json, comparison.json or batch.json; expected a result folder");
 }
 
 /// The first part speaks for the page; the others say beside it what they found.
@@ -268,7 +284,8 @@ Json page_view(Parts parts) {
 
 std::string result_page(const ReadFile& read, const std::string& where, int threads) {
   std::vector<Partial> sections;
-  for (const std::string name : {"calibration", "leak_table", "diagnosis", "parity", "comparison"})
+  for (const std::string name :
+       {"calibration", "leak_table", "diagnosis", "parity", "comparison", "batch"})
     sections.push_back({"section_" + name, asset(name + ".html")});
   return render(asset("report.html"), page_view(parts_of(read, where, threads)), sections);
 }
@@ -292,6 +309,7 @@ std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& rea
     if (has("diagnosis.json")) add(diagnosis_figures(load_json(read, where, "diagnosis.json")));
     if (has("parity.json")) add(parity_figures(load_parity(read, where)));
     if (has("comparison.json")) add(comparison_figures(load_json(read, where, "comparison.json")));
+    if (has("batch.json")) add(batch_figures(load<StoredBatch>(read, where, "batch.json")));
   });
   std::vector<std::pair<fs::path, std::string>> files;
   const std::string style(asset("figure.css"));

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "report/batch/batch.hpp"
 #include "report/figure/svg.hpp"
 #include "report/store/json_fields.hpp"
 #include "report/store/stored.hpp"
@@ -121,6 +122,7 @@ std::vector<Figure> leak_table_figures(const LeakTableFiles& stored);
 std::vector<Figure> diagnosis_figures(const Json& diagnosis);
 std::vector<Figure> parity_figures(const ParityFiles& stored);
 std::vector<Figure> comparison_figures(const Json& comparison);
+std::vector<Figure> batch_figures(const StoredBatch& batch);
 
 /// leak_table.json against what was published.
 Json leak_table_headline(const StoredLeakTable& table);
@@ -137,5 +139,9 @@ Json parity_view(const ParityFiles& stored);
 /// comparison.json: estimates, scores and records side by side, and the leak's trend.
 Json comparison_headline(const Json& comparison);
 Json comparison_view(const Json& comparison);
+
+/// batch.json: a row for each rig, and the trends of its estimates.
+Json batch_headline(const StoredBatch& batch);
+Json batch_view(const StoredBatch& batch);
 
 }  // namespace rigcal::report

@@ -54,6 +54,7 @@ TEST_CASE("rigcal: every verb fits on 80 columns", "[apps]") {
            {"plan", campaign, "--fit", "fit/fit.json", "--out", "plan"},
            {"leak-table", campaign, "--signals", "sine@2Hz@5mm,square@1Hz@4mm", "--targets", "5,10",
             "--out", "table"},
+           {"batch", "twin", "--out", "batch"},
            {"compare", "fit", "validation", "--out", "comparison"},
            {"synthesize", "truth.toml", "--seed", "4", "--out", "other"}}) {
     CAPTURE(arguments.front());

@@ -1,0 +1,96 @@
+#include "apps/rigcal/fit_choices.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+
+#include "apps/rigcal/options.hpp"
+#include "apps/rigcal/outcome.hpp"
+
+namespace rigcal::app {
+namespace {
+
+constexpr int kMostStarts = 100'000;
+/// Where nobody said how many starts to make and the campaign's ends at no minimum.
+constexpr int kFurtherStarts = 3;
+constexpr int kMostReplicates = 1'000'000;
+
+/// CLI11's own check of a positive number lets "nan" and "inf" pass.
+CLI::Validator finite_positive() {
+  return CLI::Validator(
+      [](std::string& text) {
+        double value = 0.0;
+        const bool valid =
+            CLI::detail::lexical_cast(text, value) && std::isfinite(value) && value > 0.0;
+        return valid ? std::string() : fmt::format("found {}, expected a number above zero", text);
+      },
+      "POSITIVE");
+}
+
+}  // namespace
+
+void add_fit_choices(CLI::App& verb, FitChoices& choices) {
+  verb.add_option(
+          "--starts", choices.starts,
+          "Number of starts (default: the campaign's, or 1, and 3 more where that ends at no "
+          "minimum); the best result counts")
+      ->check(CLI::Range(1, kMostStarts));
+  verb.add_option("--seed", choices.seed, "Seed of the further starts")
+      ->check(whole_number(0, std::numeric_limits<std::uint64_t>::max()))
+      ->capture_default_str();
+  verb.add_option("--bootstrap", choices.bootstrap,
+                  "Intervals from so many fits to redrawn repeats or residuals")
+      ->check(CLI::Range(0, kMostReplicates));
+  verb.add_flag("--profiles", choices.profiles, "Profile likelihood of every parameter");
+  verb.add_flag("--cross-validate", choices.cross_validate,
+                "Leave out one condition after the other and predict it");
+  verb.add_option(
+          "--max-time", choices.max_time_s,
+          "Stop after so many seconds, bootstrap and all (default: the campaign's, or none)")
+      ->check(finite_positive());
+  verb.add_option("--max-evaluations", choices.max_evaluations,
+                  "Stop after so many evaluations of all conditions")
+      ->check(whole_number(1, std::numeric_limits<long>::max()));
+  add_strict_option(verb, choices.strict);
+}
+
+std::vector<std::string> arguments_of(const FitChoices& choices) {
+  std::vector<std::string> arguments;
+  const auto add = [&](const char* option, const std::string& value) {
+    arguments.emplace_back(option);
+    arguments.push_back(value);
+  };
+  if (choices.starts) add("--starts", fmt::format("{}", *choices.starts));
+  if (choices.seed != FitChoices{}.seed) add("--seed", fmt::format("{}", choices.seed));
+  if (choices.bootstrap > 0) add("--bootstrap", fmt::format("{}", choices.bootstrap));
+  if (choices.profiles) arguments.emplace_back("--profiles");
+  if (choices.cross_validate) arguments.emplace_back("--cross-validate");
+  if (choices.max_time_s) add("--max-time", fmt::format("{}", *choices.max_time_s));
+  if (choices.max_evaluations)
+    add("--max-evaluations", fmt::format("{}", *choices.max_evaluations));
+  if (choices.strict) arguments.emplace_back("--strict");
+  return arguments;
+}
+
+void apply(const FitChoices& choices, calib::FitOptions& settings) {
+  settings.starts = choices.starts.value_or(settings.starts);
+  if (!choices.starts) settings.further_starts = kFurtherStarts;
+  settings.seed = choices.seed;
+  settings.bootstrap = choices.bootstrap;
+  settings.profiles = choices.profiles;
+  settings.cross_validate = choices.cross_validate;
+  settings.max_evaluations = choices.max_evaluations;
+  if (choices.max_time_s) settings.max_seconds = choices.max_time_s;
+}
+
+std::vector<std::pair<std::string, std::string>> recorded(const FitChoices& choices) {
+  std::vector<std::pair<std::string, std::string>> options;
+  if (choices.bootstrap > 0)
+    options.emplace_back("bootstrap", fmt::format("{}", choices.bootstrap));
+  if (choices.profiles) options.emplace_back("profiles", "true");
+  if (choices.cross_validate) options.emplace_back("cross_validate", "true");
+  return options;
+}
+
+}  // namespace rigcal::app

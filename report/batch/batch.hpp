@@ -1,0 +1,117 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/error.hpp"
+#include "report/comparison/comparison.hpp"
+#include "report/store/described.hpp"
+#include "report/text/terminal.hpp"
+
+// batch.json, as docs/command-line.md describes it: one row for each rig of `batch`.
+
+namespace rigcal::report {
+
+inline constexpr const char* kBatchSchema = "rigcal.batch/1";
+
+/// Agreement of one channel of one condition.
+struct StoredRigScore {
+  std::string condition;
+  std::string channel;
+  std::string use;
+  std::optional<std::string> verdict;
+  std::optional<double> rho2;
+  std::optional<double> absolute_error_percent;
+  std::string failure;
+  RIGCAL_DESCRIBE(condition, channel, use, verdict, rho2, absolute_error_percent, failure)
+};
+
+/// An estimate, SI.
+struct StoredRigEstimate {
+  std::string key;
+  std::string name;
+  std::string unit;
+  std::string scope;
+  std::optional<std::string> level;
+  double value = 0.0;
+  std::optional<Range> ci95;
+  std::optional<std::string> identifiability;
+  RIGCAL_DESCRIBE(key, name, unit, scope, level, value, ci95, identifiability)
+};
+
+/// How an estimate moved over the earlier results and this one.
+struct StoredRigTrend {
+  std::string key;
+  std::string unit;
+  Json series;  ///< as trends() of comparison_parts.hpp makes one
+  RIGCAL_DESCRIBE(key, unit, series)
+};
+
+struct StoredRig {
+  std::string rig;       ///< its folder, relative to that of the batch
+  std::string campaign;  ///< the campaign file
+  std::string folder;    ///< of its results, relative to that of the batch's
+  std::optional<std::string> name;
+  int exit_code = 0;
+  bool unchanged = false;  ///< its result was there already
+  double seconds = 0.0;
+  std::optional<std::string> status;
+  std::optional<std::string> verdict;
+  std::string message;  ///< of the fit; or the error that left no result
+  bool synthetic = false;
+  bool has_report = false;
+  std::vector<std::string> reasons;  ///< why it is no PASS, in words
+  std::vector<StoredRigScore> worst_scores;
+  std::vector<StoredRigEstimate> parameters;
+  std::vector<std::string> warnings;
+  std::vector<StoredRigTrend> trends;
+  RIGCAL_DESCRIBE(rig, campaign, folder, name, exit_code, unchanged, seconds, status, verdict,
+                  message, synthetic, has_report, reasons, worst_scores, parameters, warnings,
+                  trends)
+};
+
+struct StoredBatch {
+  std::string status = "done";  ///< or "stopped": rigs are left
+  std::string schema = kBatchSchema;
+  std::string folder;  ///< whose rigs these are
+  int exit_code = 0;   ///< the highest of the rigs
+  std::vector<StoredRig> rigs;
+  StoredProvenance provenance;
+  RIGCAL_DESCRIBE(status, schema, folder, exit_code, rigs, provenance)
+};
+
+/// How the run of one rig ended.
+struct RigRun {
+  std::string rig;
+  std::filesystem::path campaign;
+  std::string folder;
+  ExitCode code = ExitCode::internal;
+  bool unchanged = false;
+  double seconds = 0.0;
+  std::string error;
+  std::optional<Compared> result;   ///< its fit.json; empty where this run left none
+  std::vector<Compared> earlier;    ///< of the same rig, in any order
+  std::vector<std::string> unread;  ///< why earlier ones are left out
+};
+
+/// The row of one rig. A result that is not what this version writes counts as none.
+StoredRig rig_row(const RigRun& run);
+
+/// batch.csv: a line for each rig; `parameter_ci95_low` and so on of every estimate that one has.
+std::string batch_csv(const StoredBatch& batch);
+
+/// The same for people: a line for each rig, then what failed.
+std::string batch_text(const StoredBatch& batch, const Style& style);
+
+/// "leakage_coefficient: +0.000966 per day (0.000694 to 0.00124): significant trend."
+std::string trend_sentence(const StoredRigTrend& trend);
+bool is_significant(const StoredRigTrend& trend);
+/// "mass_kg of rig": what a series is of.
+std::string trend_name(const StoredRigTrend& trend);
+
+/// "3 of 4 rigs: PASS 1, WARN 1, FAIL 1; 1 without a result".
+std::string batch_sentence(const StoredBatch& batch);
+
+}  // namespace rigcal::report

@@ -1,0 +1,169 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "report/batch/batch.hpp"
+#include "report/store/csv_fields.hpp"
+#include "report/store/json_fields.hpp"
+#include "report/text/readable.hpp"
+#include "report/text/text_table.hpp"
+
+namespace rigcal::report {
+namespace {
+
+/// What a table has room for: the first reason, or the message of a run that left no result.
+std::string first_reason(const StoredRig& rig) {
+  return rig.reasons.empty() ? "" : rig.reasons.front();
+}
+
+/// Verdict of a rig that was judged; else how it ended.
+std::string outcome_of(const StoredRig& rig) {
+  if (rig.status && rig.status != "converged") return *rig.status;
+  if (!rig.status) return "no result";
+  return rig.verdict.value_or("not judged");
+}
+
+std::string worst_of(const StoredRig& rig) {
+  if (rig.worst_scores.empty()) return "-";
+  const StoredRigScore& worst = rig.worst_scores.front();
+  if (!worst.failure.empty()) return worst.condition + ": not simulated";
+  return fmt::format("{} {}: {}", worst.condition, worst.channel,
+                     worst.rho2 ? fmt::format("rho2 {:.4f}", *worst.rho2) : "no rho2");
+}
+
+/// Names of all estimates of any rig, in the order in which they come up.
+std::vector<std::string> estimate_columns(const StoredBatch& batch) {
+  std::vector<std::string> names;
+  for (const StoredRig& rig : batch.rigs) {
+    for (const StoredRigEstimate& each : rig.parameters) {
+      const std::string name = each.level ? each.name + "[" + *each.level + "]" : each.name;
+      if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    }
+  }
+  return names;
+}
+
+const StoredRigEstimate* estimate_of(const StoredRig& rig, const std::string& column) {
+  for (const StoredRigEstimate& each : rig.parameters)
+    if ((each.level ? each.name + "[" + *each.level + "]" : each.name) == column) return &each;
+  return nullptr;
+}
+
+}  // namespace
+
+std::string batch_sentence(const StoredBatch& batch) {
+  constexpr std::array kOutcomes{"PASS",    "WARN",   "FAIL",     "not judged",
+                                 "stopped", "failed", "no result"};
+  std::string counts;
+  for (const char* outcome : kOutcomes) {
+    const auto count = std::count_if(batch.rigs.begin(), batch.rigs.end(),
+                                     [&](const auto& rig) { return outcome_of(rig) == outcome; });
+    if (count > 0) counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, outcome);
+  }
+  return fmt::format("{} rig{}: {}", batch.rigs.size(), batch.rigs.size() == 1 ? "" : "s", counts);
+}
+
+std::string trend_name(const StoredRigTrend& trend) {
+  const std::string of = text_of(trend.series, "of");
+  return of == "rig" ? trend.key : fmt::format("{} ({})", trend.key, of);
+}
+
+bool is_significant(const StoredRigTrend& trend) {
+  const Json& along = trend.series.at("along_date");
+  return number_of(along, "slope_per_day") && along.at("significant").get<bool>();
+}
+
+std::string trend_sentence(const StoredRigTrend& trend) {
+  const Json& along = trend.series.at("along_date");
+  const auto slope = number_of(along, "slope_per_day");
+  if (!slope) return fmt::format("{}: {}.", trend_name(trend), text_of(along, "reason"));
+  const std::string unit = trend.unit == "1" ? "" : trend.unit + " ";
+  return fmt::format("{}: {:+.3g} {}per day ({:.3g} to {:.3g}): {}.", trend_name(trend), *slope,
+                     unit, along.at("ci95").at(0).get<double>(),
+                     along.at("ci95").at(1).get<double>(),
+                     is_significant(trend) ? "significant trend" : "no significant trend");
+}
+
+std::string batch_text(const StoredBatch& batch, const Style& style) {
+  using Align = TextTable::Align;
+  TextTable table({{"rig"},
+                   {"verdict"},
+                   {"exit", Align::right},
+                   {"worst score", Align::left, 1},
+                   {"estimates", Align::right, 3},
+                   {"warnings", Align::right, 2},
+                   {"seconds", Align::right, 4}});
+  for (const StoredRig& rig : batch.rigs) {
+    table.add({rig.rig, outcome_of(rig) + (rig.unchanged ? ", unchanged" : ""),
+               fmt::format("{}", rig.exit_code), worst_of(rig),
+               fmt::format("{}", rig.parameters.size()), fmt::format("{}", rig.warnings.size()),
+               fmt::format("{:.1f}", rig.seconds)});
+  }
+  std::string text = batch_sentence(batch) + "\n\n" + table.text(style.columns);
+  text += "\n";
+  for (const StoredRig& rig : batch.rigs) {
+    const auto say = [&](const std::string& line) {
+      text += wrapped(fmt::format("{}: {}", rig.rig, line), style.columns, 2) + "\n";
+    };
+    std::vector<std::string> lines = rig.reasons;
+    if (rig.status != "converged" || rig.exit_code > 1) lines.insert(lines.begin(), rig.message);
+    for (const std::string& line : lines) say(line);
+    for (const StoredRigTrend& trend : rig.trends) {
+      if (is_significant(trend)) say(trend_sentence(trend));
+    }
+  }
+  return text;
+}
+
+std::string batch_csv(const StoredBatch& batch) {
+  const std::vector<std::string> columns = estimate_columns(batch);
+  std::vector<std::string> head{"rig",
+                                "name",
+                                "exit_code",
+                                "status",
+                                "verdict",
+                                "seconds",
+                                "unchanged",
+                                "warnings",
+                                "message",
+                                "first_reason",
+                                "worst_condition",
+                                "worst_channel",
+                                "worst_rho2",
+                                "worst_absolute_error_percent"};
+  for (const std::string& name : columns) {
+    for (const char* what : {"", "_ci95_low", "_ci95_high"}) head.push_back(csv_text(name + what));
+  }
+  std::string text = csv_row(head);
+  for (const StoredRig& rig : batch.rigs) {
+    const StoredRigScore none;
+    const StoredRigScore& worst = rig.worst_scores.empty() ? none : rig.worst_scores.front();
+    std::vector<std::string> row{csv_text(rig.rig),
+                                 csv_text(rig.name.value_or("")),
+                                 fmt::format("{}", rig.exit_code),
+                                 rig.status.value_or(""),
+                                 rig.verdict.value_or(""),
+                                 csv_number(rig.seconds),
+                                 rig.unchanged ? "1" : "0",
+                                 fmt::format("{}", rig.warnings.size()),
+                                 csv_text(rig.message),
+                                 csv_text(first_reason(rig)),
+                                 csv_text(worst.condition),
+                                 worst.channel,
+                                 csv_number(worst.rho2),
+                                 csv_number(worst.absolute_error_percent)};
+    for (const std::string& name : columns) {
+      const StoredRigEstimate* each = estimate_of(rig, name);
+      row.push_back(each == nullptr ? "" : csv_number(each->value));
+      for (const bool low : {true, false}) {
+        const bool known = each != nullptr && each->ci95;
+        row.push_back(!known ? "" : csv_number(low ? each->ci95->low : each->ci95->high));
+      }
+    }
+    text += csv_row(row);
+  }
+  return text;
+}
+
+}  // namespace rigcal::report
