@@ -37,13 +37,13 @@ ExitCode run_compare(const CompareOptions& options, const Invocation& invocation
   for (const report::Compared& each : results)
     provenance.inputs.push_back({each.file.string(), sha256_of_file(each.file)});
   const report::Json json = report::comparison_json(results, provenance);
+  const std::string text = report::comparison_text(json, terminal_style());
   std::vector<report::ResultFile> files{{"comparison.json", report::json_text(json)}};
   add_page(options.out, hardware_threads(), files);
   report::write_results(options.out, files, provenance.inputs);
   print(options.print,
-        report::comparison_text(json, terminal_style()) +
-            fmt::format("files: {} {}\n", (options.out / "comparison.json").string(),
-                        (options.out / "report.html").string()),
+        text + fmt::format("files: {} {}\n", (options.out / "comparison.json").string(),
+                           (options.out / "report.html").string()),
         json);
   return json.at("status") == "done" ? ExitCode::done : ExitCode::no_result;
 }

@@ -101,10 +101,6 @@ Json made_comparison(const std::vector<Compared>& results, const Provenance& pro
 }  // namespace
 
 Json comparison_json(const std::vector<Compared>& results, const Provenance& provenance) {
-  const auto refuse = [](const Compared& result, const Json::exception& error) {
-    throw InputError({result.file.string()},
-                     fmt::format("the result is not as this version writes it: {}", error.what()));
-  };
   try {
     return made_comparison(results, provenance);
   } catch (const Json::exception& error) {
@@ -113,11 +109,10 @@ Json comparison_json(const std::vector<Compared>& results, const Provenance& pro
       try {
         made_comparison({result, result}, provenance);
       } catch (const Json::exception& of_result) {
-        refuse(result, of_result);
+        refuse_json(result.file.string(), of_result);
       }
     }
-    refuse(results.back(), error);  // which shows beside another alone
-    throw;
+    refuse_json(results.back().file.string(), error);  // which shows beside another alone
   }
 }
 

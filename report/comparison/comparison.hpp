@@ -33,6 +33,8 @@ std::vector<Compared> load_compared(const std::vector<std::filesystem::path>& fo
 Json comparison_json(const std::vector<Compared>& results, const Provenance& provenance);
 
 /// The same for people.
+///
+/// @throws InputError  it holds what a result of this version does not
 std::string comparison_text(const Json& comparison, const Style& style);
 
 }  // namespace rigcal::report

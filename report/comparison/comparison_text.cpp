@@ -217,9 +217,7 @@ std::string trends_text(const Json& comparison, std::size_t columns) {
   return text;
 }
 
-}  // namespace
-
-std::string comparison_text(const Json& comparison, const Style& style) {
+std::string made_text(const Json& comparison, const Style& style) {
   const std::size_t columns = style.columns;
   std::string text = titled("Results", results_table(comparison, columns), style);
   text += titled(
@@ -251,6 +249,14 @@ std::string comparison_text(const Json& comparison, const Style& style) {
   for (const Json& warning : comparison.at("warnings"))
     text += wrapped("warning: " + warning.get<std::string>(), columns, 2) + "\n";
   text += fmt::format("status: {}\n", text_of(comparison, "status"));
+  return text;
+}
+
+}  // namespace
+
+std::string comparison_text(const Json& comparison, const Style& style) {
+  std::string text;
+  with_json_errors("comparison", [&] { text = made_text(comparison, style); });
   return text;
 }
 

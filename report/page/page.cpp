@@ -191,17 +191,6 @@ Part batch_part(const ReadFile& read, const std::string& where) {
   return part;
 }
 
-/// What is JSON but no result of this version, as an error of the input.
-template <typename Work>
-void with_json_errors(const std::string& where, const Work& work) {
-  try {
-    work();
-  } catch (const Json::exception& error) {
-    throw InputError({where},
-                     fmt::format("the result is not as this version writes it: {}", error.what()));
-  }
-}
-
 struct Parts {
   std::vector<Part> drawn;
   Json problems = Json::array();  ///< results that are there but could not be drawn

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "common/error.hpp"
+
 namespace rigcal::report {
 
 std::string text_of(const Json& json, const std::string& key) {
@@ -26,6 +28,11 @@ long as_count(const Json& number) {
     return static_cast<long>(count);
   throw Json::out_of_range::create(
       401, fmt::format("found {}, expected a whole number from 0 to {}", count, kLargest), &number);
+}
+
+void refuse_json(const std::string& where, const Json::exception& error) {
+  throw InputError({where},
+                   fmt::format("the result is not as this version writes it: {}", error.what()));
 }
 
 }  // namespace rigcal::report
