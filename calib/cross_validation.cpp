@@ -7,10 +7,18 @@
 #include <chrono>
 #include <cmath>
 
+#include "common/bytes.hpp"
 #include "common/error.hpp"
-#include "common/parallel.hpp"
+#include "common/task_farm.hpp"
 
 namespace rigcal::calib {
+
+template <typename Archive>
+void serialize(Archive& archive, HeldOut& held) {
+  archive(held.condition, held.problem, held.rms, held.fitted_rms, held.largest_shift,
+          held.shifted);
+}
+
 namespace {
 
 using datasets::Campaign;
@@ -124,20 +132,32 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
     none.problem = "not left out: " + left.reason();
     return none;
   };
-  parallel_for(ids.size(), options.threads, [&](std::size_t i) {
-    if (left.spent()) {
-      result[i] = not_made(i);
-      return;
-    }
+  const auto make = [&](std::size_t i) -> TaskResult {
+    if (left.spent()) return {{}, false};
     FitOptions fold = once;
     if (left.deadline()) {
       const std::chrono::duration<double> time = *left.deadline() - Budget::Clock::now();
       fold.max_seconds = std::max(1e-3, time.count());
     }
-    result[i] = leave_out(campaign, records, ids[i], whole, fold, taken[i]);
-    left.count(taken[i]);
-    if (options.beside) options.beside("conditions left out", ++done, static_cast<int>(ids.size()));
-  });
+    long evaluations = 0;
+    const HeldOut held = leave_out(campaign, records, ids[i], whole, fold, evaluations);
+    left.count(evaluations);
+    return {to_bytes(evaluations, held), !left.cancelled() && !left.out_of_time()};
+  };
+  const auto tell = [&](std::size_t /*i*/, const TaskResult& made) {
+    if (options.beside && made.whole)
+      options.beside("conditions left out", ++done, static_cast<int>(ids.size()));
+  };
+  ThreadFarm threads;
+  TaskFarm& farm = options.farm != nullptr ? *options.farm : threads;
+  std::vector<double> values;
+  for (const FittedParameter& each : whole.parameters) values.push_back(each.value);
+  const auto made =
+      farm.run({"folds", to_bytes(values, options.seed), ids.size(), options.threads}, make, tell);
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    result[i] = not_made(i);
+    if (!made[i].bytes.empty()) from_bytes(made[i].bytes, taken[i], result[i]);
+  }
   // Which were made beyond the one that reached a limit depends on the threads.
   long sum = 0;
   for (std::size_t i = 0; i < ids.size(); ++i) {

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -9,38 +11,59 @@
 
 namespace rigcal {
 
-/// Runs equal pieces of work whose results are bytes: in the threads of this process, or in other
-/// processes too. Each task must depend on its number alone, so that it may run anywhere, and more
-/// than once.
+/// Equal pieces of work whose results are bytes.
+struct FarmJob {
+  std::string name;       ///< "profiles"; the same job is run once at most
+  std::string state;      ///< bytes of what its tasks rest on: where it differs, so do results
+  std::size_t count = 0;  ///< of tasks
+  int lanes = 1;          ///< tasks at a time in each process
+  std::map<std::size_t, std::string> known = {};  ///< results that need not be made again
+};
+
+/// The first process has ended without this job.
+class FarmEnded : public std::runtime_error {
+ public:
+  FarmEnded() : std::runtime_error("the first process has ended without this job") {}
+};
+
+/// What a task made.
+struct TaskResult {
+  std::string bytes;
+  bool whole = true;  ///< false: a limit or a signal cut it short, or it was not begun
+};
+
+/// Runs jobs: in the threads of this process, or in other processes too. Each task must depend on
+/// its number and on the job's state alone, so that it may run anywhere, and more than once.
 class TaskFarm {
  public:
-  /// Makes the result of one task.
-  using Task = std::function<std::string(std::size_t)>;
-  /// Told of each result as soon as it is there, in any order and from any thread, one at a time
-  /// or not.
-  using Done = std::function<void(std::size_t, const std::string&)>;
+  using Task = std::function<TaskResult(std::size_t)>;
+  /// Told of each result as soon as it is there, in any order and from any thread, one at a time or
+  /// not. Of processes that work together only the first is told.
+  using Done = std::function<void(std::size_t, const TaskResult&)>;
 
   TaskFarm() = default;
   TaskFarm(const TaskFarm&) = delete;
   TaskFarm& operator=(const TaskFarm&) = delete;
   virtual ~TaskFarm() = default;
 
-  /// Results of tasks 0 to count - 1, in their order.
+  /// Results of tasks 0 to count - 1, in their order, for every process that runs the job.
   ///
-  /// @param lanes  tasks at a time in each process
-  /// @throws  what a task threw
-  virtual std::vector<std::string> run(std::size_t count, int lanes, const Task& task,
-                                       const Done& done) = 0;
+  /// @throws  what the task of the lowest index threw; FarmEnded
+  virtual std::vector<TaskResult> run(const FarmJob& job, const Task& task, const Done& done) = 0;
+
+  /// Number of this process, from 0, and of all.
+  virtual int rank() const { return 0; }
+  virtual int processes() const { return 1; }
 };
 
 /// In the threads of this process.
 class ThreadFarm final : public TaskFarm {
  public:
-  std::vector<std::string> run(std::size_t count, int lanes, const Task& task,
-                               const Done& done) override {
-    std::vector<std::string> results(count);
-    parallel_for(count, lanes, [&](std::size_t i) {
-      results[i] = task(i);
+  std::vector<TaskResult> run(const FarmJob& job, const Task& task, const Done& done) override {
+    std::vector<TaskResult> results(job.count);
+    parallel_for(job.count, job.lanes, [&](std::size_t i) {
+      const auto known = job.known.find(i);
+      results[i] = known != job.known.end() ? TaskResult{known->second, true} : task(i);
       if (done) done(i, results[i]);
     });
     return results;

@@ -149,21 +149,29 @@ ExitCode run_batch(const BatchRequest& options, const Invocation& invocation) {
   require_other_folders(options);
   const std::vector<BatchRig> rigs = find_rigs(options.folder, options.out);
   const Kept kept;
-  const report::HeldFolder held(options.out);
+  ThreadFarm threads;
+  TaskFarm& farm = invocation.processes != nullptr ? *invocation.processes : threads;
   const RigTask task = task_of(options);
+  const auto make = [&](std::size_t i) -> TaskResult {
+    return {bytes_of(run_rig(rigs[i], task, invocation.cancel))};
+  };
+  const FarmJob job{"rigs", {}, rigs.size(), options.jobs, {}};
+  if (!invocation.leads()) {
+    farm.run(job, make, {});
+    return ExitCode::done;
+  }
+  const report::HeldFolder held(options.out);
   EndedRigs ended(options.print.quiet, rigs.size());
-  ThreadFarm farm;
-  const auto ends = farm.run(
-      rigs.size(), options.jobs,
-      [&](std::size_t i) { return bytes_of(run_rig(rigs[i], task, invocation.cancel)); },
-      [&](std::size_t i, const std::string& bytes) { ended(rigs[i], rig_end_of(bytes)); });
+  const auto ends = farm.run(job, make, [&](std::size_t i, const TaskResult& result) {
+    ended(rigs[i], rig_end_of(result.bytes));
+  });
 
   std::vector<report::RigRun> runs;
   report::StoredBatch batch;
   batch.folder = options.folder.string();
   if (invocation.cancel) batch.status = "stopped";
   for (std::size_t i = 0; i < rigs.size(); ++i) {
-    runs.push_back(finished(options, rigs[i], rig_end_of(ends[i])));
+    runs.push_back(finished(options, rigs[i], rig_end_of(ends[i].bytes)));
     batch.rigs.push_back(report::rig_row(runs.back()));
     batch.exit_code = std::max(batch.exit_code, batch.rigs.back().exit_code);
   }

@@ -15,6 +15,7 @@
 #include "apps/rigcal/verb.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/kept_tasks.hpp"
 #include "report/store/whole_result.hpp"
 
 namespace rigcal::app {
@@ -46,6 +47,18 @@ std::optional<ExitCode> made_before(const FitRequest& options,
   return exit_code_of(*result, options.choices.strict);
 }
 
+/// The same fit in a process that leads nothing: it makes tasks of the one that does, and goes on
+/// with the same results.
+void help(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
+          const FitRequest& options, const report::Provenance& searched, TaskFarm& processes,
+          calib::FitOptions settings) {
+  settings.farm = &processes;
+  const auto earlier =
+      options.resume ? CheckpointFile(options.common.out, searched).read() : std::nullopt;
+  if (earlier) settings.resume = &*earlier;
+  calib::fit(campaign, records, settings);
+}
+
 ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
   const auto records = datasets::load_records(
@@ -58,6 +71,10 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   report::Provenance provenance = searched;
   for (const auto& option : recorded(options.choices)) provenance.options.push_back(option);
   const Kept kept;
+  if (!invocation.leads()) {
+    help(campaign, records, options, searched, *invocation.processes, settings);
+    return ExitCode::done;
+  }
   const report::HeldFolder held(options.common.out);
   if (options.if_changed) {
     if (const auto code = made_before(options, provenance)) return *code;
@@ -65,9 +82,13 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
 
   // What is made beside the starts does not change them.
   CheckpointFile checkpoint(options.common.out, searched);
+  ThreadFarm threads;
+  report::KeptTasks tasks(invocation.processes != nullptr ? *invocation.processes : threads,
+                          options.common.out / report::kKeptTasksFile, searched, options.resume);
+  settings.farm = &tasks;
   const auto earlier = options.resume ? checkpoint.read() : std::nullopt;
   if (earlier) settings.resume = &*earlier;
-  if (options.resume && !earlier && !options.common.print.quiet)
+  if (options.resume && !earlier && tasks.found() == 0 && !options.common.print.quiet)
     say_nothing_to_resume(options, settings.starts);
   if (settings.starts > 1)
     settings.checkpoint = [&](const calib::Checkpoint& reached) { checkpoint.keep(reached); };
@@ -87,6 +108,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
       write_and_print(options.common, {report::ResultKind::fit, campaign, records, fit, provenance},
                       options.choices.strict);
   checkpoint.finish(fit.status);
+  if (fit.status != calib::FitStatus::stopped) tasks.remove();
   return code;
 }
 

@@ -14,6 +14,7 @@
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/manual.hpp"
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/processes.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/memory.hpp"
@@ -32,6 +33,7 @@ struct VerbRow {
   const char* name;
   const char* summary;
   Run (*add)(CLI::App&);
+  bool spreads = false;  ///< over the processes that were started together
 };
 
 constexpr std::array kVerbs{
@@ -39,7 +41,8 @@ constexpr std::array kVerbs{
     VerbRow{"average", "Mean, sd and count of the repeats, and the noise floor",
             rigcal::app::add_average},
     VerbRow{"simulate", "Run the model: all signals and flows", rigcal::app::add_simulate},
-    VerbRow{"fit", "Estimate the free parameters and score the conditions", rigcal::app::add_fit},
+    VerbRow{"fit", "Estimate the free parameters and score the conditions", rigcal::app::add_fit,
+            true},
     VerbRow{"validate", "Score the conditions with the parameters of a fit",
             rigcal::app::add_validate},
     VerbRow{"leak-table", "Leakage coefficients by share of the servo flow that leaks",
@@ -54,7 +57,7 @@ constexpr std::array kVerbs{
             rigcal::app::add_plan},
     VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},
     VerbRow{"init", "Draft a campaign file from recordings", rigcal::app::add_init},
-    VerbRow{"batch", "Fit every rig beneath a folder; one overview", rigcal::app::add_batch},
+    VerbRow{"batch", "Fit every rig beneath a folder; one overview", rigcal::app::add_batch, true},
     VerbRow{"compare", "Fits side by side: what differs, and the leak's trend",
             rigcal::app::add_compare},
     VerbRow{"report", "Draw the report of a result folder again", rigcal::app::add_report},
@@ -121,16 +124,31 @@ bool print_manual(const CLI::App& app, const std::vector<std::string>& arguments
   return true;
 }
 
+/// What a process does that was started beside the first one. What goes wrong goes wrong there too,
+/// and is said there.
+ExitCode help(const VerbRow& row, const Run& action, const Invocation& invocation) {
+  if (!row.spreads) return ExitCode::done;
+  try {
+    return action(invocation);
+  } catch (const rigcal::FarmEnded&) {
+    return ExitCode::done;
+  } catch (const rigcal::InputError&) {
+    return ExitCode::done;
+  } catch (const rigcal::UsageError&) {
+    return ExitCode::done;
+  }
+}
+
 ExitCode run(int argc, char** argv) {
   CLI::App app{"Calibrates models of servo-hydraulic rigs from recorded runs", "rigcal"};
   app.set_version_flag("--version", fmt::format("rigcal {} ({})", rigcal::report::version(),
                                                 rigcal::report::revision()));
   app.require_subcommand(1);
   app.fallthrough();
-  std::vector<std::pair<CLI::App*, Run>> verbs;
+  std::vector<std::tuple<const VerbRow*, CLI::App*, Run>> verbs;
   for (const VerbRow& row : kVerbs) {
     CLI::App* verb = app.add_subcommand(row.name, row.summary);
-    verbs.emplace_back(verb, row.add(*verb));
+    verbs.emplace_back(&row, verb, row.add(*verb));
   }
   if (print_manual(app, {argv + std::min(argc, 1), argv + argc})) return ExitCode::done;
   check_verb(argc, argv);
@@ -145,9 +163,13 @@ ExitCode run(int argc, char** argv) {
                                  ? std::string(error.what())
                                  : fmt::format("{}: {}", chosen.front()->get_name(), error.what()));
   }
-  const Invocation invocation{command_line(argc, argv), rigcal::app::watch_signals()};
-  for (const auto& [verb, action] : verbs) {
-    if (verb->parsed()) return action(invocation);
+  const auto processes = rigcal::app::launched_processes();
+  const Invocation invocation{command_line(argc, argv), rigcal::app::watch_signals(),
+                              processes.get()};
+  for (const auto& [row, verb, action] : verbs) {
+    if (!verb->parsed()) continue;
+    if (!invocation.leads()) return help(*row, action, invocation);
+    return action(invocation);
   }
   throw std::logic_error("no verb was parsed");
 }

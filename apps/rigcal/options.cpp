@@ -13,6 +13,7 @@
 #include <system_error>
 #include <thread>
 
+#include "apps/rigcal/processes.hpp"
 #include "common/error.hpp"
 #include "report/text/text_table.hpp"
 
@@ -45,7 +46,8 @@ CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest) {
 }
 
 int hardware_threads() {
-  const unsigned count = std::thread::hardware_concurrency();
+  const unsigned count =
+      std::thread::hardware_concurrency() / static_cast<unsigned>(processes_on_this_machine());
   return count > 0 ? static_cast<int>(std::min<unsigned>(count, kMostThreads)) : 1;
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/error.hpp"
+#include "common/task_farm.hpp"
 
 namespace rigcal::app {
 
@@ -13,6 +14,10 @@ namespace rigcal::app {
 struct Invocation {
   std::string command;              ///< the command line
   const std::atomic<bool>& cancel;  ///< becomes true when a signal asks the run to end
+  TaskFarm* processes = nullptr;    ///< that were started together; null: this one alone
+
+  /// Of processes that work together the first alone writes and prints.
+  bool leads() const { return processes == nullptr || processes->rank() == 0; }
 };
 
 using Run = std::function<ExitCode(const Invocation&)>;

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "model/simulate.hpp"
+
 // How the search went.
 
 namespace rigcal::calib {
@@ -26,7 +28,7 @@ struct StartReport {
   std::vector<double> start_values;  ///< SI, order of the unknowns
   std::vector<double> end_values;
   double initial_cost = 0.0;
-  double final_cost = 0.0;  ///< its last step may be predicted, not simulated
+  double final_cost = 0.0;
   int iterations = 0;
   FitStatus status = FitStatus::failed;
   std::string message;
@@ -45,6 +47,7 @@ struct SimulationFailure {
   std::vector<std::pair<std::string, double>> parameters;  ///< names and SI values of the unknowns
   double time_s = 0.0;
   std::string reason;
+  model::SimulationStatus status = model::SimulationStatus::ok;
   int start = 1;
 };
 

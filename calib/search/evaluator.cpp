@@ -49,6 +49,20 @@ Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int th
   return evaluation;
 }
 
+void EvaluationCounters::add(const EvaluationCounters& later, const Problem& problem) {
+  evaluations += later.evaluations;
+  failure_count += later.failure_count;
+  std::map<std::pair<std::size_t, model::SimulationStatus>, int> seen = kept;
+  for (const SimulationFailure& failure : later.failures) {
+    const auto at = std::find_if(
+        problem.conditions.begin(), problem.conditions.end(),
+        [&](const ProblemCondition& each) { return each.condition->id == failure.condition; });
+    const auto index = static_cast<std::size_t>(at - problem.conditions.begin());
+    if (++seen[{index, failure.status}] <= kFailuresKept) failures.push_back(failure);
+  }
+  for (const auto& [kind, count] : later.kept) kept[kind] += count;
+}
+
 const Evaluation& Evaluator::evaluate(std::span<const double> z) {
   if (!last_.conditions.empty() && is_at(last_, z)) {
     keep_best();  // it may be of an earlier start
@@ -123,6 +137,7 @@ void Evaluator::record(const Evaluation& evaluation) {
     }
     failure.time_s = each.failed_at_s;
     failure.reason = each.reason;
+    failure.status = each.status;
     failure.start = start_;
     counters_.failures.push_back(std::move(failure));
   }

@@ -19,6 +19,9 @@ struct EvaluationCounters {
   long failure_count = 0;
   std::vector<SimulationFailure> failures;  ///< the first few of each condition and kind
   std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept;
+
+  /// As if what `later` has counted had been counted here, one after the other.
+  void add(const EvaluationCounters& later, const Problem& problem);
 };
 
 /// How a point is evaluated.
@@ -86,6 +89,8 @@ class Evaluator {
   const EvaluationCounters& counters() const { return counters_; }
   /// Goes on counting from there, as after a resumed fit.
   void set_counters(EvaluationCounters counters) { counters_ = std::move(counters); }
+  /// Counts what another evaluator of the same problem has counted.
+  void add(const EvaluationCounters& counters) { counters_.add(counters, problem_); }
 
  private:
   Evaluation evaluate_now(std::span<const double> z, const std::atomic<bool>* cancel) const;

@@ -5,6 +5,10 @@
 #include <functional>
 #include <optional>
 
+namespace rigcal {
+class TaskFarm;  // common/task_farm.hpp
+}
+
 namespace rigcal::calib {
 
 struct Checkpoint;  // checkpoint.hpp
@@ -26,7 +30,10 @@ struct FitOptions {
   bool cross_validate = false;          ///< leave one condition out after the other
   const Checkpoint* resume = nullptr;   ///< goes on from there
   std::function<void(const Checkpoint&)> checkpoint;  ///< told after every start that is finished
-  const std::atomic<bool>* cancel = nullptr;          ///< ends the fit with the best so far
+  /// Makes starts (where it has several processes), replicates, profiles and folds; null: the
+  /// threads of this process do.
+  TaskFarm* farm = nullptr;
+  const std::atomic<bool>* cancel = nullptr;  ///< ends the fit with the best so far
   /// Told of every iteration: start (from 1), iteration, cost, relative change of cost, seconds.
   std::function<void(int, int, double, double, double)> progress;
   /// Told of what is made beside the fit: "replicates of the bootstrap", how many are done, of how

@@ -4,9 +4,29 @@
 #include <numeric>
 
 #include "calib/search/checkpoint.hpp"
+#include "common/bytes.hpp"
 #include "common/error.hpp"
+#include "common/task_farm.hpp"
 
 namespace rigcal::calib {
+
+template <typename Archive>
+void serialize(Archive& archive, StartReport& report) {
+  archive(report.number, report.start_values, report.end_values, report.initial_cost,
+          report.final_cost, report.iterations, report.status, report.message);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, SimulationFailure& failure) {
+  archive(failure.condition, failure.parameters, failure.time_s, failure.reason, failure.status,
+          failure.start);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, EvaluationCounters& counters) {
+  archive(counters.evaluations, counters.failure_count, counters.failures, counters.kept);
+}
+
 namespace {
 
 /// Uniform in [0, 1) with 53 bits; std::uniform_real_distribution differs between libraries.
@@ -35,6 +55,50 @@ bool better(const StartReport& a, const StartReport& b) {
   return a_converged != b_converged ? a_converged : a.final_cost < b.final_cost;
 }
 
+/// Makes one start; where it ends is the evaluator's best point.
+StartReport make_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                       int number, const std::vector<double>& from, SolveResult& solved) {
+  evaluator.begin_start(number);
+  evaluator.set_fidelity(problem.of_starts());
+  StartReport report;
+  report.number = number;
+  report.start_values = problem.to_physical(from);
+  const Evaluation& first = evaluator.evaluate(from);
+  report.initial_cost = first.ok ? first.cost : 0.0;
+  solved = Search(problem, evaluator, options, number).run(from);
+  report.status = solved.status;
+  report.message = solved.message;
+  report.iterations = solved.iterations;
+  const Evaluation& end = evaluator.best();
+  if (end.ok) {
+    report.end_values = problem.to_physical(end.z);
+    report.final_cost = end.cost;
+  }
+  return report;
+}
+
+/// Whether a start, which has a point that can be simulated, is better than those before it.
+bool is_best(const MultiStart& before, const StartReport& report) {
+  return before.best == 0 ||
+         better(report, before.starts[static_cast<std::size_t>(before.best) - 1]);
+}
+
+/// Takes over status and words of the best start, or of the first where none can be simulated, and
+/// evaluates its end point.
+void describe_best(const Problem& problem, const std::vector<double>& best_z, int threads,
+                   MultiStart& found) {
+  if (found.starts.empty()) return;
+  const bool any = found.best > 0;
+  const StartReport& report = found.starts[any ? static_cast<std::size_t>(found.best) - 1 : 0];
+  found.result.status = report.status;
+  found.result.message = report.message;
+  found.result.iterations = report.iterations;
+  if (!any) return;
+  if (best_z.size() == problem.map.unknowns().size())
+    found.optimum = evaluate_at(problem, best_z, threads);
+  if (found.optimum.ok) found.result.check = check_optimum(problem, found.optimum);
+}
+
 /// The state after the starts of a checkpoint; evaluates the best point again.
 MultiStart resumed(const Problem& problem, Evaluator& evaluator, const FitOptions& options) {
   const Checkpoint& from = *options.resume;
@@ -42,21 +106,72 @@ MultiStart resumed(const Problem& problem, Evaluator& evaluator, const FitOption
   result.starts = from.starts;
   result.best = from.best;
   evaluator.set_counters(from.counters);
-  if (from.starts.empty()) return result;
-  const bool any = from.best > 0;
-  const StartReport& report = from.starts[any ? static_cast<std::size_t>(from.best) - 1 : 0];
-  result.result.status = report.status;
-  result.result.message = report.message;
-  result.result.iterations = report.iterations;
-  if (!any) return result;
-  if (from.best_z.size() == problem.map.unknowns().size())
-    result.optimum = evaluate_at(problem, from.best_z, options.threads);
-  if (!result.optimum.ok) {
+  describe_best(problem, from.best_z, options.threads, result);
+  if (result.best > 0 && !result.optimum.ok) {
     throw InputError({"checkpoint"},
                      "its best point cannot be simulated: expected one of this fit");
   }
-  result.result.check = check_optimum(problem, result.optimum);
   return result;
+}
+
+/// Makes the starts one after the other.
+void make_in_turn(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                  const std::vector<std::vector<double>>& points, MultiStart& found) {
+  for (std::size_t i = found.starts.size(); i < points.size(); ++i) {
+    if (i > 0 && evaluator.aborted()) break;
+    SolveResult solved;
+    StartReport report =
+        make_start(problem, evaluator, options, static_cast<int>(i) + 1, points[i], solved);
+    if (evaluator.best().ok) {
+      if (is_best(found, report)) {
+        found.best = report.number;
+        found.optimum = evaluator.best();
+        found.result = solved;
+      }
+    } else if (found.best == 0 && i == 0) {
+      found.result = solved;
+    }
+    found.starts.push_back(std::move(report));
+    // A start that was cut short is made again.
+    if (options.checkpoint && !evaluator.aborted())
+      options.checkpoint({found.starts, found.best, found.optimum.z, evaluator.counters()});
+  }
+}
+
+/// Makes the starts side by side in the processes of a farm: to the same bits, since each begins
+/// with what the evaluator has before the first.
+void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                  const std::vector<std::vector<double>>& points, TaskFarm& farm,
+                  MultiStart& found) {
+  const std::size_t first = found.starts.size();
+  const auto make = [&](std::size_t i) -> TaskResult {
+    if (first + i > 0 && evaluator.aborted()) return {{}, false};
+    Evaluator own = evaluator;
+    own.set_counters({});
+    SolveResult solved;
+    const StartReport report = make_start(problem, own, options, static_cast<int>(first + i) + 1,
+                                          points[first + i], solved);
+    return {to_bytes(report, own.best().ok ? own.best().z : std::vector<double>(), own.counters()),
+            !own.aborted()};
+  };
+  const FarmJob job{"starts", to_bytes(points.front(), options.seed, points.size(), first),
+                    points.size() - first, 1};
+  std::vector<double> best_z = found.optimum.z;
+  for (const TaskResult& made : farm.run(job, make, {})) {
+    if (made.bytes.empty()) break;
+    StartReport report;
+    std::vector<double> end;
+    EvaluationCounters counters;
+    from_bytes(made.bytes, report, end, counters);
+    evaluator.add(counters);
+    if (!end.empty() && is_best(found, report)) {
+      found.best = report.number;
+      best_z = std::move(end);
+    }
+    found.starts.push_back(std::move(report));
+    if (!made.whole) break;
+  }
+  describe_best(problem, best_z, options.threads, found);
 }
 
 }  // namespace
@@ -84,38 +199,13 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
   MultiStart result;
   if (options.resume != nullptr) result = resumed(problem, evaluator, options);
   const auto points = start_points(problem, options);
-  for (std::size_t i = result.starts.size(); i < points.size(); ++i) {
-    if (i > 0 && evaluator.aborted()) break;
-    const int number = static_cast<int>(i) + 1;
-    evaluator.begin_start(number);
-    evaluator.set_fidelity(problem.of_starts());
-    StartReport report;
-    report.number = number;
-    report.start_values = problem.to_physical(points[i]);
-    const Evaluation& first = evaluator.evaluate(points[i]);
-    report.initial_cost = first.ok ? first.cost : 0.0;
-    const SolveResult solved = Search(problem, evaluator, options, number).run(points[i]);
-    report.status = solved.status;
-    report.message = solved.message;
-    report.iterations = solved.iterations;
-    const Evaluation& end = evaluator.best();
-    if (end.ok) {
-      report.end_values = problem.to_physical(end.z);
-      report.final_cost = end.cost;
-      const bool first_usable = result.best == 0;
-      if (first_usable ||
-          better(report, result.starts[static_cast<std::size_t>(result.best) - 1])) {
-        result.best = number;
-        result.optimum = end;
-        result.result = solved;
-      }
-    } else if (result.best == 0 && i == 0) {
-      result.result = solved;
-    }
-    result.starts.push_back(std::move(report));
-    // A start that was cut short is made again.
-    if (options.checkpoint && !evaluator.aborted())
-      options.checkpoint({result.starts, result.best, result.optimum.z, evaluator.counters()});
+  // A limit of evaluations is counted over one start after the other.
+  const bool spread = options.farm != nullptr && options.farm->processes() > 1 &&
+                      points.size() > 1 && !options.max_evaluations;
+  if (spread) {
+    make_in_farm(problem, evaluator, options, points, *options.farm, result);
+  } else {
+    make_in_turn(problem, evaluator, options, points, result);
   }
   evaluator.set_fidelity(Fidelity::full);  // a last start that failed, or none that was left
   return result;

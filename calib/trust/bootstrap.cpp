@@ -7,7 +7,8 @@
 #include <cmath>
 
 #include "calib/search/search.hpp"
-#include "common/parallel.hpp"
+#include "common/bytes.hpp"
+#include "common/task_farm.hpp"
 #include "datasets/synthetic/noise.hpp"
 #include "metrics/distributions.hpp"
 
@@ -246,8 +247,8 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   const std::optional<long> allowed = left.evaluations_left();
   std::vector<long> taken(replicates, 0);  // evaluations; 0: not made to its end
   std::atomic<int> done = 0;
-  parallel_for(replicates, options.threads, [&](std::size_t b) {
-    if (left.spent()) return;
+  const auto make = [&](std::size_t b) -> TaskResult {
+    if (left.spent()) return {{}, false};
     Problem drawn = problem;
     for (std::size_t i = 0; i < drawn.conditions.size(); ++i) {
       auto stream = datasets::random_stream(
@@ -259,12 +260,23 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
     Evaluator evaluator(drawn, {1, left.cancel(), left.deadline(), {}});
     const auto solved = Search(drawn, evaluator, quiet, static_cast<int>(b) + 1).polish(optimum.z);
     left.count(evaluator.counters().evaluations);
-    if (solved.status == FitStatus::stopped && evaluator.aborted()) return;
-    taken[b] = evaluator.counters().evaluations;
-    if (solved.status == FitStatus::converged) values[b] = drawn.to_physical(evaluator.best().z);
-    if (options.beside)
+    if (solved.status == FitStatus::stopped && evaluator.aborted()) return {{}, false};
+    return {to_bytes(evaluator.counters().evaluations, solved.status == FitStatus::converged
+                                                           ? drawn.to_physical(evaluator.best().z)
+                                                           : std::vector<double>())};
+  };
+  const auto tell = [&](std::size_t /*b*/, const TaskResult& result) {
+    if (options.beside && result.whole)
       options.beside("replicates of the bootstrap", ++done, static_cast<int>(replicates));
-  });
+  };
+  ThreadFarm threads;
+  TaskFarm& farm = options.farm != nullptr ? *options.farm : threads;
+  const auto results = farm.run(
+      {"bootstrap", to_bytes(optimum.z, optimum.cost, options.seed), replicates, options.threads},
+      make, tell);
+  for (std::size_t b = 0; b < replicates; ++b) {
+    if (results[b].whole) from_bytes(results[b].bytes, taken[b], values[b]);
+  }
   cut_at(allowed, taken, values);
   const auto made = static_cast<std::size_t>(
       std::count_if(taken.begin(), taken.end(), [](long each) { return each > 0; }));

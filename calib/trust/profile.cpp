@@ -8,9 +8,21 @@
 #include <map>
 
 #include "calib/search/search.hpp"
-#include "common/parallel.hpp"
+#include "common/bytes.hpp"
+#include "common/task_farm.hpp"
 
 namespace rigcal::calib {
+
+template <typename Archive>
+void serialize(Archive& archive, ProfileEnd& end) {
+  archive(end.value, end.reached, end.lost);
+}
+
+template <typename Archive>
+void serialize(Archive& archive, Profile& profile) {
+  archive(profile.low, profile.high, profile.values, profile.rises, profile.lower_cost_found);
+}
+
 namespace {
 
 constexpr double kProfile95 = 1.96;
@@ -245,26 +257,35 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
   const std::optional<long> allowed = left.evaluations_left();
   std::vector<long> taken(unknowns.size(), 0);
   std::atomic<int> done = 0;
-  parallel_for(unknowns.size(), options.threads, [&](std::size_t j) {
-    if (unknowns[j].nuisance) return;
-    FittedParameter& parameter = fit.parameters[j];
-    if (left.spent()) {
-      parameter.profile = not_made(parameter.value);
-      return;
-    }
-    Follower follower(problem, records, j, optimum, threshold_of(parameter, fit.reduced_chi_square),
-                      options, left);
-    const double step = first_step(problem, j, optimum.z[j], parameter);
+  const auto make = [&](std::size_t j) -> TaskResult {
+    if (unknowns[j].nuisance) return {};
+    if (left.spent()) return {{}, false};
+    Follower follower(problem, records, j, optimum,
+                      threshold_of(fit.parameters[j], fit.reduced_chi_square), options, left);
+    const double step = first_step(problem, j, optimum.z[j], fit.parameters[j]);
     const ProfileEnd low = follow(follower, problem, j, optimum.z[j], step, -1.0);
     const ProfileEnd high = follow(follower, problem, j, optimum.z[j], step, 1.0);
     Profile profile = follower.table();
     profile.low = low;
     profile.high = high;
-    parameter.profile = std::move(profile);
-    taken[j] = follower.evaluations();
-    left.count(taken[j]);
-    if (options.beside) options.beside("profiles", ++done, static_cast<int>(unknowns.size()));
-  });
+    left.count(follower.evaluations());
+    return {to_bytes(follower.evaluations(), profile), !follower.cancelled()};
+  };
+  const auto tell = [&](std::size_t j, const TaskResult& result) {
+    if (options.beside && result.whole && !unknowns[j].nuisance)
+      options.beside("profiles", ++done, static_cast<int>(unknowns.size()));
+  };
+  ThreadFarm threads;
+  TaskFarm& farm = options.farm != nullptr ? *options.farm : threads;
+  const auto results =
+      farm.run({"profiles", to_bytes(optimum.z, optimum.cost), unknowns.size(), options.threads},
+               make, tell);
+  for (std::size_t j = 0; j < unknowns.size(); ++j) {
+    if (unknowns[j].nuisance) continue;
+    FittedParameter& parameter = fit.parameters[j];
+    parameter.profile = not_made(parameter.value);
+    if (!results[j].bytes.empty()) from_bytes(results[j].bytes, taken[j], *parameter.profile);
+  }
   // Which profiles were made beyond the one that reached a limit depends on the threads.
   long sum = 0;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {

@@ -134,6 +134,10 @@ void require_own_hash(Json json) {
 
 }  // namespace
 
+std::string fit_identity(const Provenance& provenance) {
+  return sha256_of_text(json_text(identity(provenance)));
+}
+
 std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenance& provenance) {
   Json json;
   json["schema"] = kSchema;

@@ -84,6 +84,45 @@ TEST_CASE("resume: a stopped fit keeps what it needs, and only the same fit take
   }
 }
 
+TEST_CASE("resume: a fit that was killed in what it makes beside the search loses none of it",
+          "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_quick_twin(folder).exit_code == 0);
+  const CommandFolder::Arguments whole{
+      "fit",        "twin/campaign.toml", "--bootstrap", kSanitized ? "200" : "3000",
+      "--profiles", "--cross-validate",   "--out",       "whole",
+      "--quiet"};
+  REQUIRE(folder.run(whole).exit_code == 0);
+  CHECK_FALSE(folder.has("whole/checkpoint.tasks"));
+  CommandFolder::Arguments parts = whole;
+  parts[7] = "parts";
+  std::size_t kept = 0;
+  int killed = 0;
+  for (int i = 0; i < 3; ++i) {
+    killed += folder.run_and_kill(parts, "parts/checkpoint.tasks", "0").exit_code == -SIGKILL;
+    if (parts.back() != "--resume") parts.push_back("--resume");
+    if (!folder.has("parts/checkpoint.tasks")) break;  // it was faster
+    const std::size_t bytes = folder.read("parts/checkpoint.tasks").size();
+    CHECK(bytes >= kept);
+    kept = bytes;
+  }
+  CHECK(killed >= 1);
+  SECTION("as it was left") {}
+  SECTION("its last entry half written") {
+    if (kept > 40)
+      folder.write("parts/checkpoint.tasks",
+                   folder.read("parts/checkpoint.tasks").substr(0, kept - 30));
+  }
+  SECTION("one byte of it damaged") {
+    std::string text = folder.read("parts/checkpoint.tasks");
+    if (kept > 400) text[400] = static_cast<char>(text[400] ^ 1);
+    folder.write("parts/checkpoint.tasks", text);
+  }
+  REQUIRE(folder.run(parts).exit_code == 0);
+  CHECK(comparable(folder, "parts/fit.json") == comparable(folder, "whole/fit.json"));
+  CHECK_FALSE(folder.has("parts/checkpoint.tasks"));
+}
+
 TEST_CASE("resume: a fit with nothing to go on from says so", "[apps]") {
   const CommandFolder folder;
   REQUIRE(write_quick_twin(folder).exit_code == 0);

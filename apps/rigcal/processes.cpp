@@ -1,0 +1,74 @@
+#include "apps/rigcal/processes.hpp"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+#include <string_view>
+
+#include "common/error.hpp"
+
+namespace rigcal::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kModule = "rigcal_mpi.so";
+
+int number_in(const char* variable) {
+  const char* text = std::getenv(variable);
+  int number = 0;
+  if (text != nullptr) {
+    const std::string_view view(text);
+    std::from_chars(view.data(), view.data() + view.size(), number);
+  }
+  return number;
+}
+
+/// As the launcher says: mpirun of Open MPI, that of MPICH, srun with PMIx (which tells no number).
+bool is_one_of_several() {
+  return number_in("OMPI_COMM_WORLD_SIZE") > 1 || number_in("PMI_SIZE") > 1 ||
+         (std::getenv("PMIX_RANK") != nullptr && number_in("SLURM_NTASKS") > 1);
+}
+
+/// Beside the program as it is built, or where it is installed.
+fs::path module_file() {
+  std::error_code unknown;
+  const fs::path program = fs::read_symlink("/proc/self/exe", unknown).parent_path();
+  for (const fs::path& file :
+       {program / kModule, program.parent_path() / "lib" / "rigcal" / kModule}) {
+    if (fs::exists(file, unknown)) return file;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::unique_ptr<TaskFarm> launched_processes() {
+  if (!is_one_of_several()) return nullptr;
+  const fs::path file = module_file();
+  if (file.empty())
+    throw UsageError(
+        fmt::format("this is one of several processes of mpirun, and {} is not there: expected a "
+                    "rigcal that was built where MPI is (docs/many-rigs.md), or one process",
+                    kModule));
+  // Open MPI loads parts of its own, which look for its symbols.
+  void* const module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
+  if (module == nullptr)
+    throw UsageError(fmt::format("{}: it cannot be loaded: {}", file.string(), ::dlerror()));
+  using MakeFarm = TaskFarm* (*)();
+  const auto make = reinterpret_cast<MakeFarm>(::dlsym(module, "rigcal_mpi_farm"));
+  if (make == nullptr)
+    throw UsageError(fmt::format("{}: it is no module of rigcal: {}", file.string(), ::dlerror()));
+  return std::unique_ptr<TaskFarm>(make());
+}
+
+int processes_on_this_machine() {
+  const int open_mpi = number_in("OMPI_COMM_WORLD_LOCAL_SIZE");
+  return open_mpi > 0 ? open_mpi : 1;
+}
+
+}  // namespace rigcal::app

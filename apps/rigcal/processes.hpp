@@ -1,0 +1,18 @@
+#pragma once
+
+#include <memory>
+
+#include "common/task_farm.hpp"
+
+namespace rigcal::app {
+
+/// The processes that `mpirun` or `srun` has started together with this one, or null where there
+/// are none. Lives until the run has ended: where another process still works, its end waits.
+///
+/// @throws UsageError  there are others, and this rigcal was built without MPI
+std::unique_ptr<TaskFarm> launched_processes();
+
+/// How many of them share this machine; 1 where there are none.
+int processes_on_this_machine();
+
+}  // namespace rigcal::app

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cereal/archives/portable_binary.hpp>
+#include <cereal/cereal.hpp>
+#include <cereal/types/map.hpp>
+#include <cereal/types/optional.hpp>
+#include <cereal/types/string.hpp>
+#include <cereal/types/utility.hpp>
+#include <cereal/types/vector.hpp>
+#include <sstream>
+#include <string>
+#include <tuple>
+
+// Values as bytes that read back to the same bits, for what goes from one process to another. A
+// struct gets there by `template <typename Archive> void serialize(Archive&, Struct&)` beside it.
+
+namespace rigcal {
+
+template <typename... Values>
+std::string to_bytes(const Values&... values) {
+  std::ostringstream stream;
+  cereal::PortableBinaryOutputArchive archive(stream);
+  archive(values...);
+  return stream.str();
+}
+
+/// @throws cereal::Exception  these are no such bytes
+template <typename... Values>
+void from_bytes(const std::string& bytes, Values&... values) {
+  std::istringstream stream(bytes);
+  cereal::PortableBinaryInputArchive archive(stream);
+  archive(values...);
+}
+
+}  // namespace rigcal

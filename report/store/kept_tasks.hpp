@@ -1,0 +1,52 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "common/task_farm.hpp"
+#include "report/store/provenance.hpp"
+
+namespace rigcal::report {
+
+/// Where a fit keeps the results of replicates, profiles, folds, and of starts in several
+/// processes.
+inline constexpr const char* kKeptTasksFile = "checkpoint.tasks";
+
+/// A farm that keeps every result in a file as soon as it is there, so that a run which is killed
+/// loses no more than the tasks it was at. Each entry carries its hash: one that is half written,
+/// and whatever follows it, counts as not there. A result is known by the hash of what it was made
+/// from (inputs, options, seed, version, and the state of its job), so that those of another fit
+/// are of no effect.
+class KeptTasks final : public TaskFarm {
+ public:
+  /// @param farm        what runs the tasks; borrowed
+  /// @param provenance  of the fit
+  /// @param resume      false: begins anew
+  /// @throws InputError  the file cannot be read
+  KeptTasks(TaskFarm& farm, std::filesystem::path file, const Provenance& provenance, bool resume);
+
+  /// @throws WriteError  a result cannot be kept
+  std::vector<TaskResult> run(const FarmJob& job, const Task& task, const Done& done) override;
+  int rank() const override { return farm_.rank(); }
+  int processes() const override { return farm_.processes(); }
+
+  /// How many results of an earlier run there are.
+  std::size_t found() const { return found_; }
+  /// Removes the file, once the results of the fit are written.
+  void remove();
+
+ private:
+  void read();
+  void keep(const std::string& job, std::size_t index, const std::string& bytes);
+
+  TaskFarm& farm_;
+  std::filesystem::path file_;
+  std::string of_;  ///< hash of the provenance
+  std::map<std::string, std::map<std::size_t, std::string>> known_;
+  std::size_t found_ = 0;
+  std::mutex mutex_;
+};
+
+}  // namespace rigcal::report
