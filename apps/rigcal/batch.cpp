@@ -48,8 +48,8 @@ void require_other_folders(const BatchRequest& options) {
   }
 }
 
-report::Json read_result(const fs::path& folder) {
-  return report::load_json(report::files_in(folder), folder.string(), "fit.json");
+report::Compared read_fit_of(const fs::path& folder) {
+  return report::load_compared_file(folder / "fit.json", folder.string());
 }
 
 /// What earlier batches found of a rig; `unread` says what could not be read.
@@ -58,7 +58,7 @@ void add_earlier(const BatchRequest& options, report::RigRun& run) {
     const fs::path folder = batch / run.folder;
     if (!fs::exists(folder / "fit.json")) continue;
     try {
-      run.earlier.push_back({folder.string(), folder / "fit.json", read_result(folder)});
+      run.earlier.push_back(read_fit_of(folder));
     } catch (const InputError& error) {
       run.unread.push_back(fmt::format("an earlier result is left out: {}", error.what()));
     }
@@ -77,7 +77,7 @@ report::RigRun finished(const BatchRequest& options, const BatchRig& rig, const 
   if (!end.left_result) return run;
   const fs::path folder = options.out / rig.folder;
   try {
-    run.result = report::Compared{folder.string(), folder / "fit.json", read_result(folder)};
+    run.result = read_fit_of(folder);
   } catch (const InputError& error) {
     run.code = ExitCode::internal;
     run.error = error.what();

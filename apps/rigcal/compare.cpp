@@ -10,6 +10,7 @@
 #include "common/file.hpp"
 #include "report/comparison/comparison.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/json.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -36,8 +37,9 @@ ExitCode run_compare(const CompareOptions& options, const Invocation& invocation
   provenance.command = invocation.command;
   for (const report::Compared& each : results)
     provenance.inputs.push_back({each.file.string(), sha256_of_file(each.file)});
-  const report::Json json = report::comparison_json(results, provenance);
-  const std::string text = report::comparison_text(json, terminal_style());
+  const report::StoredComparison comparison = report::compared(results, provenance);
+  const std::string text = report::comparison_text(comparison, terminal_style());
+  const report::Json json = report::json_of(comparison);
   std::vector<report::ResultFile> files{{"comparison.json", report::json_text(json)}};
   add_page(options.out, hardware_threads(), files);
   report::write_results(options.out, files, provenance.inputs);
@@ -45,7 +47,7 @@ ExitCode run_compare(const CompareOptions& options, const Invocation& invocation
         text + fmt::format("files: {} {}\n", (options.out / "comparison.json").string(),
                            (options.out / "report.html").string()),
         json);
-  return json.at("status") == "done" ? ExitCode::done : ExitCode::no_result;
+  return comparison.status == "done" ? ExitCode::done : ExitCode::no_result;
 }
 
 }  // namespace

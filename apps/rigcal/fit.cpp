@@ -16,7 +16,7 @@
 #include "datasets/prepare/load_record.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/kept_tasks.hpp"
-#include "report/store/whole_result.hpp"
+#include "report/store/whole_fit.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -40,11 +40,11 @@ void say_nothing_to_resume(const FitRequest& options, int starts) {
 /// Exit code of the result that is there already, if it is the one that would be made.
 std::optional<ExitCode> made_before(const FitRequest& options,
                                     const report::Provenance& provenance) {
-  const auto result = report::whole_result(options.common.out, "fit.json", provenance);
+  const auto result = report::whole_fit(options.common.out, provenance);
   if (!result) return std::nullopt;
   const std::string file = (options.common.out / "fit.json").string();
-  print(options.common.print, fmt::format("unchanged: {}\n", file), *result);
-  return exit_code_of(*result, options.choices.strict);
+  print(options.common.print, fmt::format("unchanged: {}\n", file), report::json_of(*result));
+  return exit_code_of(result->status, result->verdict, options.choices.strict);
 }
 
 /// The same fit in a process that leads nothing: it makes tasks of the one that does, and goes on

@@ -11,6 +11,7 @@
 #include "apps/rigcal/verb.hpp"
 #include "report/leak/fit_tables.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/json.hpp"
 #include "report/store/parameters_csv.hpp"
 
 namespace rigcal::app {
@@ -40,8 +41,10 @@ ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invoca
     files.push_back(
         {"fitted.toml", fitted_leak_table_text(input.campaign, fit.settings, options.out)});
   }
-  const report::Json json = report::tables_fit_json(result);
-  files.push_back({"parameters.csv", report::parameters_csv(json)});
+  const report::StoredTablesFit stored = report::stored(result);
+  const report::Json json = report::json_of(stored);
+  files.push_back(
+      {"parameters.csv", report::parameters_csv(stored.status, stored.message, stored.parameters)});
   files.push_back({"fit.json", report::json_text(json)});
   add_page(options.out, options.threads, files);
   report::write_results(options.out, files, provenance.inputs);

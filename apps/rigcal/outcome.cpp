@@ -5,10 +5,10 @@
 #include "apps/rigcal/result_page.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/folder.hpp"
-#include "report/store/json_fields.hpp"
+#include "report/store/json.hpp"
 #include "report/store/parameters_csv.hpp"
-#include "report/store/residual_tests_json.hpp"
 #include "report/store/result_files.hpp"
+#include "report/store/stored_fit.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::app {
@@ -26,9 +26,9 @@ std::string fitted_toml(const CampaignOptions& options, const report::Result& re
   return "# status: stopped: the best so far, not a fit that converged\n" + text;
 }
 
-/// @param json  the result, to which the names of its files are added
+/// @param stored  the result, to which the names of its files are added
 std::vector<report::ResultFile> files_of(const CampaignOptions& options,
-                                         const report::Result& result, report::Json& json) {
+                                         const report::Result& result, report::StoredFit& stored) {
   const bool is_fit = result.kind == report::ResultKind::fit;
   std::vector<report::ResultFile> files;
   for (const calib::ConditionScore& score : result.fit.conditions) {
@@ -46,14 +46,17 @@ std::vector<report::ResultFile> files_of(const CampaignOptions& options,
                      report::residuals_csv(result, score)});
   }
   files.push_back({"scorecard.csv", report::scorecard_csv(result)});
-  files.push_back({"parameters.csv", report::parameters_csv(json)});
-  files.push_back({"residual_tests.json", report::residual_curves_text(result)});
+  files.push_back(
+      {"parameters.csv", report::parameters_csv(stored.status, stored.message, stored.parameters)});
+  files.push_back(
+      {"residual_tests.json", report::json_line(report::json_of(report::stored_curves(result)))});
   if (is_fit && report::status_of(result.fit) != FitStatus::failed) {
     files.push_back({"fitted.toml", fitted_toml(options, result)});
   }
-  name_files(files, json);
+  name_files(files, stored.provenance);
   // Last, so that whoever finds it finds the others too.
-  files.push_back({is_fit ? "fit.json" : "validation.json", report::json_text(json)});
+  files.push_back(
+      {is_fit ? "fit.json" : "validation.json", report::json_text(report::json_of(stored))});
   add_page(options.out, options.threads, files);
   return files;
 }
@@ -72,8 +75,8 @@ std::string text_of(const CampaignOptions& options, const report::Result& result
 
 }  // namespace
 
-ExitCode exit_code_of(const calib::Fit& fit, bool strict) {
-  switch (report::status_of(fit)) {
+ExitCode exit_code_of(FitStatus status, std::optional<calib::Verdict> verdict, bool strict) {
+  switch (status) {
     case FitStatus::failed:
       return ExitCode::no_result;
     case FitStatus::stopped:
@@ -82,16 +85,7 @@ ExitCode exit_code_of(const calib::Fit& fit, bool strict) {
       break;
   }
   const bool failed =
-      fit.verdict == calib::Verdict::fail || (strict && fit.verdict == calib::Verdict::warn);
-  return failed ? ExitCode::verdict_fail : ExitCode::done;
-}
-
-ExitCode exit_code_of(const report::Json& result, bool strict) {
-  const std::string status = report::text_of(result, "status");
-  if (status == "failed") return ExitCode::no_result;
-  if (status != "converged") return ExitCode::stopped;
-  const std::string verdict = report::text_of(result, "verdict");
-  const bool failed = verdict == "FAIL" || (strict && verdict == "WARN");
+      verdict == calib::Verdict::fail || (strict && verdict == calib::Verdict::warn);
   return failed ? ExitCode::verdict_fail : ExitCode::done;
 }
 
@@ -101,14 +95,14 @@ void add_strict_option(CLI::App& verb, bool& strict) {
 
 ExitCode write_and_print(const CampaignOptions& options, const report::Result& result,
                          bool strict) {
-  report::Json json = report::result_json(result);
-  const std::vector<report::ResultFile> files = files_of(options, result, json);
-  const ExitCode code = exit_code_of(result.fit, strict);
+  report::StoredFit stored = report::stored(result);
+  const std::vector<report::ResultFile> files = files_of(options, result, stored);
+  const ExitCode code = exit_code_of(stored.status, stored.verdict, strict);
   report::write_results(options.out, files, result.provenance.inputs);
   if (result.kind == report::ResultKind::fit && code == ExitCode::no_result) {
     report::remove_stale(options.out / "fitted.toml");
   }
-  print(options.print, text_of(options, result, files), json);
+  print(options.print, text_of(options, result, files), report::json_of(stored));
   return code;
 }
 

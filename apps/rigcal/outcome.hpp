@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include "apps/rigcal/options.hpp"
 #include "common/error.hpp"
@@ -11,10 +12,7 @@ namespace rigcal::app {
 /// Exit code of a fit or validation: failed, stopped, or by its verdict.
 ///
 /// @param strict  WARN counts as FAIL
-ExitCode exit_code_of(const calib::Fit& fit, bool strict);
-
-/// The same of a result that is stored: `status` and `verdict`.
-ExitCode exit_code_of(const report::Json& result, bool strict);
+ExitCode exit_code_of(calib::FitStatus status, std::optional<calib::Verdict> verdict, bool strict);
 
 /// Writes the files of a fit or validation into --out and prints scorecard, parameters and verdict.
 ///

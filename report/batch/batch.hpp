@@ -20,8 +20,8 @@ inline constexpr const char* kBatchSchema = "rigcal.batch/1";
 struct StoredRigScore {
   std::string condition;
   std::string channel;
-  std::string use;
-  std::optional<std::string> verdict;
+  datasets::Use use = datasets::Use::fit;
+  std::optional<calib::Verdict> verdict;
   std::optional<double> rho2;
   std::optional<double> absolute_error_percent;
   std::string failure;
@@ -33,11 +33,11 @@ struct StoredRigEstimate {
   std::string key;
   std::string name;
   std::string unit;
-  std::string scope;
+  datasets::Scope scope = datasets::Scope::rig;
   std::optional<std::string> level;
   double value = 0.0;
   std::optional<Range> ci95;
-  std::optional<std::string> identifiability;
+  std::optional<calib::Identifiability> identifiability;
   RIGCAL_DESCRIBE(key, name, unit, scope, level, value, ci95, identifiability)
 };
 
@@ -45,7 +45,7 @@ struct StoredRigEstimate {
 struct StoredRigTrend {
   std::string key;
   std::string unit;
-  Json series;  ///< as trends() of comparison_parts.hpp makes one
+  StoredSeries series;
   RIGCAL_DESCRIBE(key, unit, series)
 };
 
@@ -57,8 +57,8 @@ struct StoredRig {
   int exit_code = 0;
   bool unchanged = false;  ///< its result was there already
   double seconds = 0.0;
-  std::optional<std::string> status;
-  std::optional<std::string> verdict;
+  std::optional<calib::FitStatus> status;
+  std::optional<calib::Verdict> verdict;
   std::string message;  ///< of the fit; or the error that left no result
   bool synthetic = false;
   bool has_report = false;
@@ -96,7 +96,7 @@ struct RigRun {
   std::vector<std::string> unread;  ///< why earlier ones are left out
 };
 
-/// The row of one rig. A result that is not what this version writes counts as none.
+/// The row of one rig.
 StoredRig rig_row(const RigRun& run);
 
 /// batch.csv: a line for each rig; `parameter_ci95_low` and so on of every estimate that one has.
@@ -104,6 +104,14 @@ std::string batch_csv(const StoredBatch& batch);
 
 /// The same for people: a line for each rig, then what failed.
 std::string batch_text(const StoredBatch& batch, const Style& style);
+
+inline std::string parameter_label(const StoredRigEstimate& each) {
+  return parameter_label(each.key, each.scope, each.level);
+}
+/// The fit converged.
+inline bool has_converged(const StoredRig& rig) {
+  return rig.status == calib::FitStatus::converged;
+}
 
 /// "leakage_coefficient: +0.000966 per day (0.000694 to 0.00124): significant trend."
 std::string trend_sentence(const StoredRigTrend& trend);

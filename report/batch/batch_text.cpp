@@ -5,7 +5,6 @@
 
 #include "report/batch/batch.hpp"
 #include "report/store/csv_fields.hpp"
-#include "report/store/json_fields.hpp"
 #include "report/text/readable.hpp"
 #include "report/text/text_table.hpp"
 
@@ -19,9 +18,9 @@ std::string first_reason(const StoredRig& rig) {
 
 /// Verdict of a rig that was judged; else how it ended.
 std::string outcome_of(const StoredRig& rig) {
-  if (rig.status && rig.status != "converged") return *rig.status;
   if (!rig.status) return "no result";
-  return rig.verdict.value_or("not judged");
+  if (!has_converged(rig)) return std::string(to_string(*rig.status));
+  return rig.verdict ? std::string(to_string(*rig.verdict)) : "not judged";
 }
 
 std::string worst_of(const StoredRig& rig) {
@@ -65,23 +64,21 @@ std::string batch_sentence(const StoredBatch& batch) {
 }
 
 std::string trend_name(const StoredRigTrend& trend) {
-  const std::string of = text_of(trend.series, "of");
+  const std::string& of = trend.series.of;
   return of == "rig" ? trend.key : fmt::format("{} ({})", trend.key, of);
 }
 
 bool is_significant(const StoredRigTrend& trend) {
-  const Json& along = trend.series.at("along_date");
-  return number_of(along, "slope_per_day") && along.at("significant").get<bool>();
+  return trend.series.along_date.significant == true;
 }
 
 std::string trend_sentence(const StoredRigTrend& trend) {
-  const Json& along = trend.series.at("along_date");
-  const auto slope = number_of(along, "slope_per_day");
-  if (!slope) return fmt::format("{}: {}.", trend_name(trend), text_of(along, "reason"));
+  const StoredTrend& along = trend.series.along_date;
+  if (!along.slope || !along.ci95)
+    return fmt::format("{}: {}.", trend_name(trend), along.reason.value_or(""));
   const std::string unit = trend.unit == "1" ? "" : trend.unit + " ";
-  return fmt::format("{}: {:+.3g} {}per day ({:.3g} to {:.3g}): {}.", trend_name(trend), *slope,
-                     unit, along.at("ci95").at(0).get<double>(),
-                     along.at("ci95").at(1).get<double>(),
+  return fmt::format("{}: {:+.3g} {}per day ({:.3g} to {:.3g}): {}.", trend_name(trend),
+                     *along.slope, unit, along.ci95->low, along.ci95->high,
                      is_significant(trend) ? "significant trend" : "no significant trend");
 }
 
@@ -107,7 +104,7 @@ std::string batch_text(const StoredBatch& batch, const Style& style) {
       text += wrapped(fmt::format("{}: {}", rig.rig, line), style.columns, 2) + "\n";
     };
     std::vector<std::string> lines = rig.reasons;
-    if (rig.status != "converged" || rig.exit_code > 1) lines.insert(lines.begin(), rig.message);
+    if (!has_converged(rig) || rig.exit_code > 1) lines.insert(lines.begin(), rig.message);
     for (const std::string& line : lines) say(line);
     for (const StoredRigTrend& trend : rig.trends) {
       if (is_significant(trend)) say(trend_sentence(trend));
@@ -142,8 +139,8 @@ std::string batch_csv(const StoredBatch& batch) {
     std::vector<std::string> row{csv_text(rig.rig),
                                  csv_text(rig.name.value_or("")),
                                  fmt::format("{}", rig.exit_code),
-                                 rig.status.value_or(""),
-                                 rig.verdict.value_or(""),
+                                 rig.status ? std::string(to_string(*rig.status)) : "",
+                                 rig.verdict ? std::string(to_string(*rig.verdict)) : "",
                                  csv_number(rig.seconds),
                                  rig.unchanged ? "1" : "0",
                                  fmt::format("{}", rig.warnings.size()),

@@ -38,24 +38,48 @@ std::vector<std::string> short_names(const std::vector<std::filesystem::path>& f
 
 }  // namespace
 
-bool is_usable(const Json& result) {
-  const std::string status = text_of(result, "status");
-  return status == "converged" || status == "stopped";
+Compared compared_of(const Json& json, const std::filesystem::path& file, const std::string& name) {
+  const std::string where = file.parent_path().string();
+  const std::string result = file.filename().string();
+  Compared compared{name, file, {}, is_of_tables(json), {}};
+  if (!compared.of_tables) {
+    compared.result = as<StoredFit>(json, where, result);
+    return compared;
+  }
+  const auto tables = as<StoredTablesFit>(json, where, result);
+  compared.result = as_fit(tables);
+  for (const StoredTableResidual& residual : tables.residuals)
+    compared.published_numbers.push_back(residual.of);
+  return compared;
 }
 
-bool is_of_tables(const Json& result) { return text_of(result, "of") == "published tables"; }
-
-std::optional<double> error_of(const Json& parameter) {
-  const auto standard = number_of(parameter, "standard_error");
-  const auto robust = number_of(parameter, "robust_standard_error");
-  if (!standard) return robust;
-  return robust ? std::max(*standard, *robust) : *standard;
+StoredComparison load_comparison(const ReadFile& read, const std::string& where) {
+  auto comparison = load<StoredComparison>(read, where, "comparison.json");
+  const std::size_t results = comparison.results.size();
+  const auto require_each = [&](const auto& list, const char* key) {
+    if (list.size() == results) return;
+    throw InputError({(std::filesystem::path(where) / "comparison.json").string()},
+                     fmt::format("key '{}': found {} entries, expected one for each of the {} "
+                                 "results",
+                                 key, list.size(), results));
+  };
+  require_each(comparison.significance, "significance");
+  require_each(comparison.models, "models");
+  for (const StoredComparedParameter& parameter : comparison.parameters) {
+    require_each(parameter.estimates, "parameters.estimates");
+    require_each(parameter.differences, "parameters.differences");
+  }
+  for (const StoredComparedCondition& condition : comparison.conditions)
+    require_each(condition.scores, "conditions.scores");
+  for (const StoredComparedMetric& metric : comparison.metrics)
+    require_each(metric.against_first, "metrics.against_first");
+  return comparison;
 }
 
-const Json* find_condition(const Json& result, const std::string& id) {
-  for (const Json& condition : result.at("conditions"))
-    if (text_of(condition, "id") == id) return &condition;
-  return nullptr;
+Compared load_compared_file(const std::filesystem::path& file, const std::string& name) {
+  const std::string result = file.filename().string();
+  return compared_of(load_json(files_in(file.parent_path()), file.parent_path().string(), result),
+                     file, name);
 }
 
 std::vector<Compared> load_compared(const std::vector<std::filesystem::path>& folders) {
@@ -65,9 +89,7 @@ std::vector<Compared> load_compared(const std::vector<std::filesystem::path>& fo
     const ReadFile read = files_in(folders[i]);
     for (const char* name : {"fit.json", "validation.json"}) {
       if (!read(name)) continue;
-      Json result = load_json(read, folders[i].string(), name);
-      if (result.is_object() && is_of_tables(result)) result["conditions"] = Json::array();
-      results.push_back({names[i], folders[i] / name, std::move(result)});
+      results.push_back(load_compared_file(folders[i] / name, names[i]));
       break;
     }
     if (results.size() == i + 1) continue;

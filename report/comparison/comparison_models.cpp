@@ -17,123 +17,102 @@ namespace rigcal::report {
 namespace {
 
 using calib::Candidate;
+using datasets::Scope;
 
 /// Whether what the residuals are divided by is the same wherever it is known.
-bool same_weights(const Json& a, const Json& b) {
-  constexpr double kSame = 1e-9;
-  if (a.size() != b.size()) return false;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    for (const char* key : {"condition", "channel", "samples"})
-      if (a.at(i).at(key) != b.at(i).at(key)) return false;
-    const auto mine = number_of(a.at(i), "sd");
-    const auto theirs = number_of(b.at(i), "sd");
-    if (mine.has_value() != theirs.has_value()) return false;
-    if (mine && !(std::abs(*theirs - *mine) <= kSame * *mine)) return false;
-  }
-  return true;
+bool same_weights(const std::vector<StoredWeight>& a, const std::vector<StoredWeight>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+    constexpr double kSame = 1e-9;
+    return x.condition == y.condition && x.channel == y.channel && x.samples == y.samples &&
+           x.sd.has_value() == y.sd.has_value() &&
+           (!x.sd || std::abs(*y.sd - *x.sd) <= kSame * *x.sd);
+  });
 }
 
 /// Where the fit estimated the noise of a channel: cost and logarithms at its likeliest standard
 /// deviation, the rms of the residual. (The fit itself stops to follow that within a tenth. Priors,
 /// a few residuals among many, do not count then.)
-void take_likeliest_noise(const Json& weights, Candidate& candidate) {
+void take_likeliest_noise(const std::vector<StoredWeight>& weights, Candidate& candidate) {
   constexpr double kLeastRms = 1e-12;  // SI; an exact fit must not be infinitely likely
   double cost = 0.0;
   bool estimated = false;
-  for (const Json& weight : weights) {
-    const double samples = weight.at("samples").get<double>();
-    const double rms = std::max(kLeastRms, number_of(weight, "rms").value_or(0.0));
-    const auto known = number_of(weight, "sd");
-    const double sd = known.value_or(rms);
+  for (const StoredWeight& weight : weights) {
+    const auto samples = static_cast<double>(weight.samples);
+    const double rms = std::max(kLeastRms, weight.rms.value_or(0.0));
+    const double sd = weight.sd.value_or(rms);
     cost += 0.5 * samples * (rms / sd) * (rms / sd);
-    if (known) continue;
+    if (weight.sd) continue;
     estimated = true;
     candidate.log_sd += samples * std::log(sd);
   }
   if (estimated) candidate.cost = cost;
 }
 
-/// A number of things, at least so many. Conversion of a double beyond its range to a whole number
-/// is undefined.
-double count_of(const Compared& compared, const std::string& key, double least) {
-  constexpr double kLargestCount = 1e9;
-  const double count = compared.result.at(key).get<double>();
-  if (count >= least && count <= kLargestCount && count == std::floor(count)) return count;
-  throw InputError({compared.file.string()},
-                   fmt::format("key '{}': found {}, expected a whole number from {} to {}", key,
-                               count, least, kLargestCount));
-}
-
 Candidate candidate_of(const Compared& compared) {
-  const Json& result = compared.result;
+  const StoredFit& fit = compared.result;
+  if (fit.residual_count == 0)
+    throw InputError({compared.file.string()},
+                     "key 'residual_count': found 0, expected a whole number from 1");
   Candidate candidate;
   candidate.name = compared.name;
-  candidate.cost = result.at("cost").get<double>();
-  candidate.parameters = static_cast<int>(count_of(compared, "rank", 0.0));
-  candidate.residuals = count_of(compared, "residual_count", 1.0);
-  candidate.independent_residuals =
-      number_of(result, "independent_residuals").value_or(candidate.residuals);
-  take_likeliest_noise(result.at("weights"), candidate);
+  candidate.cost = *fit.cost;
+  candidate.parameters = fit.rank;
+  candidate.residuals = static_cast<double>(fit.residual_count);
+  candidate.independent_residuals = fit.independent_residuals->value_or(candidate.residuals);
+  take_likeliest_noise(*fit.weights, candidate);
   return candidate;
 }
 
 /// Why two fits cannot be compared as models; empty if they can.
 std::string obstacle(const Compared& a, const Compared& b) {
   for (const Compared* each : {&a, &b}) {
-    if (!each->result.contains("weights") || !each->result.contains("independent_residuals") ||
-        text_of(each->result, "schema") != "rigcal.fit/1")
+    const StoredFit& fit = each->result;
+    if (each->of_tables || !fit.weights || !fit.independent_residuals || fit.schema != kFitSchema)
       return fmt::format("{} is no fit of records by this version", each->name);
-    if (text_of(each->result, "status") != "converged")
+    if (fit.status != calib::FitStatus::converged || !fit.cost)
       return fmt::format("{} did not converge", each->name);
   }
   // The same content under another name is the same record.
-  const auto hashes_of = [](const Json& result) {
+  const auto hashes_of = [](const StoredFit& fit) {
     std::set<std::string> hashes;
-    for (const auto& [hash, file] : record_hashes(result)) hashes.insert(hash);
+    for (const auto& [hash, file] : record_hashes(fit)) hashes.insert(hash);
     return hashes;
   };
   const auto hashes = hashes_of(a.result);
   if (hashes.empty() || hashes != hashes_of(b.result)) return "not fitted to the same records";
-  if (!same_weights(a.result.at("weights"), b.result.at("weights")) ||
-      a.result.at("residual_count") != b.result.at("residual_count"))
+  if (!same_weights(*a.result.weights, *b.result.weights) ||
+      a.result.residual_count != b.result.residual_count)
     return "the records count differently: other channels, samples, priors or standard deviations";
   return {};
 }
 
-int fineness(const std::string& scope) {
-  return scope == "rig" ? 0 : scope == "leak_level" ? 1 : 2;
-}
-
 /// The parameters of a fit, by what it does with them.
 struct Terms {
-  std::map<std::string, std::string> free;  ///< key and scope
+  std::map<std::string, Scope> free;  ///< by key
   std::map<std::string, std::pair<double, double>> bounds;
-  std::map<std::tuple<std::string, std::string, std::string>, double> known;
+  std::map<std::tuple<std::string, Scope, std::string>, double> known;
 
-  explicit Terms(const Json& result) {
-    for (const Json& parameter : result.at("parameters")) {
-      const std::string key = text_of(parameter, "key");
-      if (parameter.at("fitted").get<bool>()) {
-        free[key] = text_of(parameter, "scope");
-        bounds[key] = {number_of(parameter, "lower").value_or(-HUGE_VAL),
-                       number_of(parameter, "upper").value_or(HUGE_VAL)};
+  explicit Terms(const StoredFit& fit) {
+    for (const StoredParameter& p : fit.parameters) {
+      if (p.fitted) {
+        free[p.key] = p.scope;
+        bounds[p.key] = {p.lower.value_or(-HUGE_VAL), p.upper.value_or(HUGE_VAL)};
       } else {
-        known[{key, text_of(parameter, "scope"), text_of(parameter, "level")}] =
-            number_of(parameter, "value").value_or(HUGE_VAL);
+        known[{p.key, p.scope, p.level.value_or("")}] = p.value.value_or(HUGE_VAL);
       }
     }
   }
 };
 
 /// Why the larger model does not contain the smaller one; empty if it does.
-std::string not_contained(const Json& smaller_result, const Json& larger_result) {
-  if (text_of(smaller_result, "model") != text_of(larger_result, "model"))
-    return "the plants are different models";
+std::string not_contained(const StoredFit& smaller_result, const StoredFit& larger_result) {
+  const std::optional<model::PlantKind>& plant = smaller_result.model;
+  if (plant != larger_result.model) return "the plants are different models";
   const Terms smaller(smaller_result);
   const Terms larger(larger_result);
   for (const auto& [key, scope] : smaller.free) {
     const auto found = larger.free.find(key);
-    if (found == larger.free.end() || fineness(found->second) < fineness(scope))
+    if (found == larger.free.end() || found->second < scope)  // from rig to condition
       return fmt::format("{} is free in one alone, and something else in the other", key);
   }
   for (const auto& [id, value] : smaller.known) {
@@ -155,63 +134,57 @@ std::string not_contained(const Json& smaller_result, const Json& larger_result)
   return {};
 }
 
-Json empty_choice(const std::string& reason) {
-  Json json;
-  for (const char* key : {"delta_aic", "delta_bic", "smaller", "larger", "likelihood_ratio",
-                          "freedom", "p_value", "verdict"})
-    json[key] = nullptr;
-  json["reason"] = reason;
-  return json;
-}
-
 /// A model that contains another fits no worse, but for what simulations differ by.
 constexpr double kWorse = 2.0;
 
-Json choice_json(const Compared& first, const Compared& other) {
-  if (const std::string why = obstacle(first, other); !why.empty()) return empty_choice(why);
+StoredModelChoice choice_of(const Compared& first, const Compared& other) {
+  StoredModelChoice result;
+  if (std::string why = obstacle(first, other); !why.empty()) {
+    result.reason = std::move(why);
+    return result;
+  }
   const Candidate a = candidate_of(first);
   const Candidate b = candidate_of(other);
   const calib::InformationDifference information = calib::compare_information(a, b);
-  Json json = empty_choice("");
-  json["delta_aic"] = number(information.aic);
-  json["delta_bic"] = number(information.bic);
-  json["verdict"] = information.message;
+  result.delta_aic = information.aic;
+  result.delta_bic = information.bic;
+  result.verdict = information.message;
   if (a.parameters == b.parameters) {
-    json["reason"] = "as many parameters in both: neither contains the other";
-    return json;
+    result.reason = "as many parameters in both: neither contains the other";
+    return result;
   }
   const bool first_smaller = a.parameters < b.parameters;
   const Compared& smaller = first_smaller ? first : other;
   const Compared& larger = first_smaller ? other : first;
   if (const std::string why = not_contained(smaller.result, larger.result); !why.empty()) {
-    json["reason"] = fmt::format("{} does not contain {}: {}", larger.name, smaller.name, why);
-    return json;
+    result.reason = fmt::format("{} does not contain {}: {}", larger.name, smaller.name, why);
+    return result;
   }
   const double worse = first_smaller ? b.deviance() - a.deviance() : a.deviance() - b.deviance();
   if (worse > kWorse) {
-    json["reason"] = fmt::format(
+    result.reason = fmt::format(
         "{} has more free parameters and fits worse: its bounds leave {} out, or its fit is no "
         "minimum",
         larger.name, smaller.name);
-    return json;
+    return result;
   }
   const calib::ModelChoice choice = first_smaller ? calib::choose(a, b) : calib::choose(b, a);
-  json["smaller"] = smaller.name;
-  json["larger"] = larger.name;
-  json["likelihood_ratio"] = number(choice.likelihood_ratio);
-  json["freedom"] = choice.freedom;
-  json["p_value"] = number(choice.p);
-  json["verdict"] = choice.message;
-  json["reason"] = nullptr;
-  return json;
+  result.smaller = smaller.name;
+  result.larger = larger.name;
+  result.likelihood_ratio = choice.likelihood_ratio;
+  result.freedom = choice.freedom;
+  result.p_value = choice.p;
+  result.verdict = choice.message;
+  return result;
 }
 
 }  // namespace
 
-Json models_json(const std::vector<Compared>& results) {
-  Json list = Json::array({nullptr});
+std::vector<std::optional<StoredModelChoice>> compared_models(
+    const std::vector<Compared>& results) {
+  std::vector<std::optional<StoredModelChoice>> list(1);
   for (std::size_t i = 1; i < results.size(); ++i)
-    list.push_back(choice_json(results[0], results[i]));
+    list.emplace_back(choice_of(results[0], results[i]));
   return list;
 }
 

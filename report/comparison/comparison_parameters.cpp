@@ -9,162 +9,134 @@
 namespace rigcal::report {
 namespace {
 
-/// What tells a parameter of one result from all others of it.
-struct ParameterId {
-  std::string name, scope, level;
-  bool operator==(const ParameterId&) const = default;
-};
-
-ParameterId id_of(const Json& parameter) {
-  return {text_of(parameter, "name"), text_of(parameter, "scope"), text_of(parameter, "level")};
+/// Whether two are the same parameter, each of its result.
+template <typename A, typename B>
+bool same_parameter(const A& a, const B& b) {
+  return a.name == b.name && a.scope == b.scope && a.level == b.level;
 }
 
-const Json* find_parameter(const Json& result, const ParameterId& id) {
-  for (const Json& parameter : result.at("parameters"))
-    if (id_of(parameter) == id) return &parameter;
-  return nullptr;
-}
-
-Json estimate_json(const Json* parameter, bool usable) {
-  if (parameter == nullptr) return nullptr;
-  const bool fitted = parameter->at("fitted").get<bool>();
-  Json json;
-  json["value"] = usable || !fitted ? parameter->at("value") : Json(nullptr);
-  json["fitted"] = fitted;
-  json["standard_error"] = usable && fitted ? number(error_of(*parameter)) : Json(nullptr);
-  json["ci95"] = usable ? parameter->at("ci95") : Json(nullptr);
-  json["identifiability"] = parameter->at("identifiability");
-  json["at_bound"] = parameter->at("at_bound");
-  return json;
+std::optional<StoredEstimate> estimate_of(const StoredFit& fit,
+                                          const StoredComparedParameter& wanted) {
+  const auto found = std::find_if(fit.parameters.begin(), fit.parameters.end(),
+                                  [&](const auto& each) { return same_parameter(each, wanted); });
+  if (found == fit.parameters.end()) return std::nullopt;
+  StoredEstimate estimate;
+  const bool usable = is_usable(fit);
+  if (usable || !found->fitted) estimate.value = found->value;
+  estimate.fitted = found->fitted;
+  if (usable && found->fitted) estimate.standard_error = error_of(*found);
+  if (usable) estimate.ci95 = found->ci95;
+  estimate.identifiability = found->identifiability;
+  estimate.at_bound = found->at_bound;
+  return estimate;
 }
 
 /// Whether a value is zero or not significantly different from it, so that nothing is a percentage
 /// of it.
-bool may_be_zero(const Json& estimate) {
-  if (number_of(estimate, "value").value_or(0.0) == 0.0) return true;
-  const Json& ci = estimate.at("ci95");
-  if (!ci.is_array() || !ci.at(0).is_number() || !ci.at(1).is_number()) return false;
-  return ci.at(0).get<double>() <= 0.0 && ci.at(1).get<double>() >= 0.0;
+bool may_be_zero(const StoredEstimate& estimate) {
+  if (estimate.value.value_or(0.0) == 0.0) return true;
+  const Interval interval(estimate.ci95);
+  return interval.ends && interval.ends->low <= 0.0 && interval.ends->high >= 0.0;
 }
 
-/// `p_value` is that of this difference alone; `significant` is set later, for all together.
-Json difference_json(const Json& first, const Json& other, bool same_records) {
-  if (!first.is_object() || !other.is_object()) return nullptr;
-  const auto a = number_of(first, "value");
-  const auto b = number_of(other, "value");
-  Json json;
-  json["difference"] = a && b ? number(*b - *a) : Json(nullptr);
-  json["percent"] = a && b && !may_be_zero(first) ? number(100.0 * (*b / *a - 1.0)) : Json(nullptr);
-  json["standard_error"] = nullptr;
-  json["p_value"] = nullptr;
-  json["p_value_of_all"] = nullptr;
-  json["significant"] = nullptr;
-  const auto reason = [&](const char* text) {
-    json["reason"] = text;
-    return json;
+/// All but what is judged later, for all parameters together.
+std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate>& first,
+                                              const std::optional<StoredEstimate>& other,
+                                              bool same_records) {
+  if (!first || !other) return std::nullopt;
+  StoredDifference result;
+  const auto untested = [&](const char* reason) {
+    result.reason = reason;
+    return result;
   };
-  if (!a || !b) return reason("one has no value");
-  const bool first_fitted = first.at("fitted").get<bool>();
-  const bool other_fitted = other.at("fitted").get<bool>();
-  if (!first_fitted && !other_fitted) return reason(kKnownInBoth);
-  const auto error = [](const Json& estimate) -> std::optional<double> {
-    if (!estimate.at("fitted").get<bool>()) return 0.0;
-    return number_of(estimate, "standard_error");
+  if (!first->value || !other->value) return untested("one has no value");
+  const double difference = *other->value - *first->value;
+  result.difference = difference;
+  if (!may_be_zero(*first)) result.percent = 100.0 * (*other->value / *first->value - 1.0);
+  if (!first->fitted && !other->fitted) return untested(kKnownInBoth);
+  const auto error = [](const StoredEstimate& estimate) {
+    return estimate.fitted ? estimate.standard_error : std::optional(0.0);
   };
-  const auto error_a = error(first);
-  const auto error_b = error(other);
-  if (!error_a || !error_b) return reason("an estimate has no standard error");
-  if (first_fitted && other_fitted && same_records)
-    return reason("estimated from the same data, so not independent of each other");
+  const auto error_a = error(*first);
+  const auto error_b = error(*other);
+  if (!error_a || !error_b) return untested("an estimate has no standard error");
+  if (first->fitted && other->fitted && same_records)
+    return untested("estimated from the same data, so not independent of each other");
   const double both = std::hypot(*error_a, *error_b);
-  if (!(both > 0.0)) return reason("an estimate has no standard error");
-  json["standard_error"] = number(both);
-  json["p_value"] = number(metrics::difference_p_value(*b - *a, both));
-  json["reason"] = nullptr;
-  return json;
+  if (!(both > 0.0)) return untested("an estimate has no standard error");
+  result.standard_error = both;
+  result.p_value = metrics::difference_p_value(difference, both);
+  return result;
 }
 
 /// Judges all differences of one result from the first together.
-void judge_together(Json& parameters, std::size_t result) {
+void judge_together(std::vector<StoredComparedParameter>& parameters, std::size_t result) {
   std::vector<double> p_values;
-  std::vector<Json*> differences;
-  for (Json& parameter : parameters) {
-    Json& difference = parameter["differences"][result];
-    if (!difference.is_object() || !difference.at("p_value").is_number()) continue;
-    p_values.push_back(difference.at("p_value").get<double>());
-    differences.push_back(&difference);
+  std::vector<StoredDifference*> differences;
+  for (StoredComparedParameter& parameter : parameters) {
+    auto& difference = parameter.differences[result];
+    if (!difference || !difference->p_value) continue;
+    p_values.push_back(*difference->p_value);
+    differences.push_back(&*difference);
   }
   const std::vector<double> adjusted = metrics::holm(p_values);
   for (std::size_t i = 0; i < differences.size(); ++i) {
-    (*differences[i])["p_value_of_all"] = number(adjusted[i]);
-    (*differences[i])["significant"] = adjusted[i] < kSignificantLevel;
+    differences[i]->p_value_of_all = adjusted[i];
+    differences[i]->significant = adjusted[i] < kSignificantLevel;
   }
+}
+
+/// Every parameter that a result has, but for nuisance parameters, without values yet.
+std::vector<StoredComparedParameter> all_parameters(const std::vector<Compared>& results) {
+  std::vector<StoredComparedParameter> list;
+  for (const Compared& compared : results) {
+    for (const StoredParameter& p : compared.result.parameters) {
+      const bool known = std::any_of(list.begin(), list.end(),
+                                     [&](const auto& each) { return same_parameter(each, p); });
+      if (p.nuisance || known) continue;
+      list.push_back({p.name, p.key, p.symbol, p.unit, p.scope, p.level, {}, {}});
+    }
+  }
+  return list;
 }
 
 }  // namespace
 
-Json compared_parameters(const std::vector<Compared>& results) {
-  std::vector<ParameterId> ids;
-  for (const Compared& compared : results) {
-    for (const Json& parameter : compared.result.at("parameters")) {
-      const ParameterId id = id_of(parameter);
-      if (!parameter.at("nuisance").get<bool>() &&
-          std::find(ids.begin(), ids.end(), id) == ids.end())
-        ids.push_back(id);
-    }
-  }
-  Json list = Json::array();
-  for (const ParameterId& id : ids) {
-    Json json;
-    Json estimates = Json::array();
-    for (const Compared& compared : results) {
-      const Json* parameter = find_parameter(compared.result, id);
-      if (parameter != nullptr && !json.contains("name")) {
-        for (const char* key : {"name", "key", "symbol", "unit", "scope", "level"}) {
-          text_of(*parameter, key);  // or else it is not what this version writes
-          json[key] = parameter->at(key);
-        }
-      }
-      estimates.push_back(estimate_json(parameter, is_usable(compared.result)));
-    }
-    Json differences = Json::array({nullptr});
+std::vector<StoredComparedParameter> compared_parameters(const std::vector<Compared>& results) {
+  std::vector<StoredComparedParameter> list = all_parameters(results);
+  for (StoredComparedParameter& parameter : list) {
+    for (const Compared& compared : results)
+      parameter.estimates.push_back(estimate_of(compared.result, parameter));
+    parameter.differences.emplace_back();
     for (std::size_t i = 1; i < results.size(); ++i) {
-      differences.push_back(difference_json(estimates[0], estimates[i],
-                                            share_records(results[0].result, results[i].result)));
+      parameter.differences.push_back(difference_of(parameter.estimates[0], parameter.estimates[i],
+                                                    share_records(results[0], results[i])));
     }
-    json["estimates"] = std::move(estimates);
-    json["differences"] = std::move(differences);
-    list.push_back(std::move(json));
   }
   for (std::size_t i = 1; i < results.size(); ++i) judge_together(list, i);
   return list;
 }
 
-std::string change_text(const Json& difference, const RowUnit& unit) {
-  if (const auto percent = number_of(difference, "percent"))
-    return fmt::format("{:+.3g} %", *percent);
-  const auto absolute = number_of(difference, "difference");
-  if (!absolute) return {};
-  return fmt::format("{:+.2g}{}{}", *absolute / unit.si, unit.name.empty() ? "" : " ", unit.name);
+std::string change_text(const StoredDifference& difference, const RowUnit& unit) {
+  if (difference.percent) return fmt::format("{:+.3g} %", *difference.percent);
+  if (!difference.difference) return {};
+  return fmt::format("{:+.2g}{}{}", *difference.difference / unit.si, unit.name.empty() ? "" : " ",
+                     unit.name);
 }
 
-bool worth_a_row(const Json& parameter) {
-  for (const Json& estimate : parameter.at("estimates"))
-    if (estimate.is_object() && estimate.at("fitted").get<bool>()) return true;
-  for (const Json& difference : parameter.at("differences")) {
-    if (difference.is_object() && number_of(difference, "difference").value_or(0.0) != 0.0)
-      return true;
-  }
-  return false;
+bool worth_a_row(const StoredComparedParameter& parameter) {
+  return std::any_of(parameter.estimates.begin(), parameter.estimates.end(),
+                     [](const auto& each) { return each && each->fitted; }) ||
+         std::any_of(
+             parameter.differences.begin(), parameter.differences.end(),
+             [](const auto& each) { return each && each->difference.value_or(0.0) != 0.0; });
 }
 
-RowUnit unit_of_estimates(const Json& parameter) {
+RowUnit unit_of_estimates(const StoredComparedParameter& parameter) {
   double size = 0.0;
-  for (const Json& estimate : parameter.at("estimates")) {
-    if (estimate.is_object())
-      size = std::max(size, std::abs(number_of(estimate, "value").value_or(0.0)));
-  }
-  return row_unit(size, parameter);
+  for (const auto& estimate : parameter.estimates)
+    if (estimate) size = std::max(size, std::abs(estimate->value.value_or(0.0)));
+  return row_unit(size, parameter.unit);
 }
 
 }  // namespace rigcal::report

@@ -11,8 +11,7 @@
 
 namespace rigcal::report {
 
-// What comparison.json is made of, and what its readers share. Functions of results throw
-// nlohmann::json::exception where one is not what this version writes.
+// What a comparison is made of, and what its readers share.
 
 inline constexpr double kSignificantLevel = 0.05;
 
@@ -20,27 +19,21 @@ inline constexpr double kSignificantLevel = 0.05;
 inline constexpr const char* kKnownInBoth = "known in both";
 
 /// Converged or stopped: its numbers may be shown.
-bool is_usable(const Json& result);
-/// A fit to published tables; it has no records.
-bool is_of_tables(const Json& result);
-/// The larger of standard and robust error.
-std::optional<double> error_of(const Json& parameter);
-/// The condition of this name; null where the result has none.
-const Json* find_condition(const Json& result, const std::string& id);
+inline bool is_usable(const StoredFit& fit) { return fit.status != calib::FitStatus::failed; }
 
 /// Files by hash of what a result was made from, but for the campaign file and an earlier fit.
-std::map<std::string, std::string> record_hashes(const Json& result);
+std::map<std::string, std::string> record_hashes(const StoredFit& fit);
 /// Whether two results rest on the same records or published numbers, at least in part.
-bool share_records(const Json& a, const Json& b);
+bool share_records(const Compared& a, const Compared& b);
 
-/// `parameters` of comparison.json: estimates side by side, differences from the first.
-Json compared_parameters(const std::vector<Compared>& results);
-/// `significance`: per result, null for the first, how many parameters that one of the two
-/// estimates were compared with the first, how many of these tested, and why the others were not,
-/// in words.
+/// Estimates side by side, differences from the first.
+std::vector<StoredComparedParameter> compared_parameters(const std::vector<Compared>& results);
+/// Per result, nothing for the first, how many parameters that one of the two estimates were
+/// compared with the first, how many of these tested, and why the others were not, in words.
 ///
 /// @param parameters  as compared_parameters() gives them, of `results` results
-Json tested_parameters(const Json& parameters, std::size_t results);
+std::vector<std::optional<StoredSignificance>> tested_parameters(
+    const std::vector<StoredComparedParameter>& parameters, std::size_t results);
 
 /// A difference from the first result that a reader must see: significant, or not tested.
 struct Change {
@@ -51,32 +44,30 @@ struct Change {
 };
 /// The significant ones first, the surest before the others; then the others, the largest in
 /// standard errors first.
-///
-/// @param comparison  with `results` and `parameters`
-std::vector<Change> changes_of(const Json& comparison);
+std::vector<Change> changes_of(const StoredComparison& comparison);
 
-/// `conditions`: scores side by side.
-Json compared_conditions(const std::vector<Compared>& results);
-/// `metrics`: means over the conditions that the first and another result have; a sign test where
-/// the records are not shared and enough conditions differ.
+/// Scores side by side.
+std::vector<StoredComparedCondition> compared_conditions(const std::vector<Compared>& results);
+/// Means over the conditions that the first and another result have; a sign test where the records
+/// are not shared and enough conditions differ.
 ///
 /// @param conditions  as compared_conditions() gives them, of `results`
-Json compared_metrics(const Json& conditions, const std::vector<Compared>& results);
-/// `records`: which file went into which result.
-Json compared_records(const std::vector<Compared>& results);
-/// Estimates of the parameter of a key along dates and temperatures: a list of {`of`, `points`,
-/// `along_date`, `along_temperature`}.
-Json trends(const std::vector<Compared>& results, std::string_view key);
-/// `leak_trends`: leakage coefficients along dates and temperatures.
-Json leak_trends(const std::vector<Compared>& results);
+std::vector<StoredComparedMetric> compared_metrics(
+    const std::vector<StoredComparedCondition>& conditions, const std::vector<Compared>& results);
+/// Which file went into which result.
+std::vector<StoredComparedRecord> compared_records(const std::vector<Compared>& results);
+/// Estimates of the parameter of a key along dates and temperatures.
+std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key);
 
 /// A difference from the first result in percent; where that value is zero or not significantly
 /// different from it, in the unit. Empty where one has no value.
-std::string change_text(const Json& difference, const RowUnit& unit);
-/// Whether a parameter of comparison.json tells anything: some result estimates it, or known
-/// values differ.
-bool worth_a_row(const Json& parameter);
-/// The unit in which the largest estimate of a parameter of comparison.json has few digits.
-RowUnit unit_of_estimates(const Json& parameter);
+std::string change_text(const StoredDifference& difference, const RowUnit& unit);
+/// Whether a parameter tells anything: some result estimates it, or known values differ.
+bool worth_a_row(const StoredComparedParameter& parameter);
+/// The unit in which the largest estimate of a parameter has few digits.
+RowUnit unit_of_estimates(const StoredComparedParameter& parameter);
+inline std::string parameter_label(const StoredComparedParameter& p) {
+  return parameter_label(p.key, p.scope, p.level);
+}
 
 }  // namespace rigcal::report

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "metrics/significance.hpp"
 #include "report/comparison/comparison_parts.hpp"
@@ -9,116 +10,120 @@
 namespace rigcal::report {
 namespace {
 
-constexpr std::array kComparedMetrics{"rho2", "ccc", "absolute_error_percent"};
+struct ComparedMetric {
+  const char* name;
+  std::optional<double> StoredComparedScore::*value;
+  bool higher_is_better = true;
+};
+constexpr std::array kComparedMetrics{
+    ComparedMetric{"rho2", &StoredComparedScore::rho2},
+    ComparedMetric{"ccc", &StoredComparedScore::ccc},
+    ComparedMetric{"absolute_error_percent", &StoredComparedScore::absolute_error_percent, false}};
 
-Json score_of(const Json* condition, const std::string& channel, bool usable) {
-  if (condition == nullptr) return nullptr;
-  const Json& metrics_of = condition->at("metrics");
-  const auto scores = metrics_of.find(channel);
-  Json json;
-  json["use"] = condition->at("use");
-  json["samples"] = condition->at("samples");
-  json["date"] = text_of(*condition, "date").empty() ? Json(nullptr) : condition->at("date");
-  json["temperature_k"] = number(number_of(*condition, "temperature_k"));
-  json["verdict"] = condition->at("verdict");
-  json["failure"] = condition->at("failure");
-  for (const char* metric : kComparedMetrics)
-    json[metric] = usable && scores != metrics_of.end() ? scores->at(metric) : Json(nullptr);
-  return json;
+std::optional<StoredComparedScore> score_of(const StoredFit& fit, const std::string& id,
+                                            const std::string& channel) {
+  const StoredCondition* condition = fit.find(id);
+  if (condition == nullptr) return std::nullopt;
+  StoredComparedScore score;
+  score.use = condition->use;
+  score.samples = condition->samples;
+  score.date = condition->date;
+  score.temperature_k = condition->temperature_k;
+  score.verdict = condition->verdict;
+  score.failure = condition->failure;
+  const StoredScore* scores = find(condition->metrics, channel);
+  if (scores == nullptr || !is_usable(fit)) return score;
+  score.rho2 = finite(scores->rho2);
+  score.ccc = finite(scores->ccc);
+  score.absolute_error_percent = finite(scores->absolute_error_percent);
+  return score;
 }
 
-/// Means over the conditions that both have, and in how many of them the other is the better.
-Json metric_against(const Json& conditions, const std::string& channel, const char* metric,
-                    std::size_t other, bool shared) {
-  const bool higher_is_better = std::string_view(metric) != "absolute_error_percent";
-  int better = 0;
-  int worse = 0;
-  int pairs = 0;
-  double first_sum = 0.0;
-  double other_sum = 0.0;
-  for (const Json& condition : conditions) {
-    if (text_of(condition, "channel") != channel) continue;
-    const Json& scores = condition.at("scores");
-    if (!scores.at(0).is_object() || !scores.at(other).is_object()) continue;
-    const auto a = number_of(scores.at(0), metric);
-    const auto b = number_of(scores.at(other), metric);
-    if (!a || !b) continue;
-    ++pairs;
-    first_sum += *a;
-    other_sum += *b;
-    if (*a == *b) continue;
-    ++((*b > *a) == higher_is_better ? better : worse);
-  }
-  if (pairs == 0) return nullptr;
-  Json json;
-  json["conditions"] = pairs;
-  json["mean_of_first"] = number(first_sum / pairs);
-  json["mean"] = number(other_sum / pairs);
-  json["better"] = better;
-  json["worse"] = worse;
-  json["p_value"] = json["significant"] = json["reason"] = nullptr;
-  const int untied = better + worse;
+/// Tests whether one is the better more often than chance has it.
+void sign_test(bool shared, StoredMetricAgainst& result) {
+  const int untied = result.better + result.worse;
   if (shared) {
-    json["reason"] = "not tested: the results share records, so their scores are not independent";
+    result.reason = "not tested: the results share records, so their scores are not independent";
   } else if (untied < metrics::kLeastSignPairs) {
-    json["reason"] = fmt::format("not tested: {} condition{}, and a sign test needs {}", untied,
-                                 untied == 1 ? "" : "s", metrics::kLeastSignPairs);
+    result.reason = fmt::format("not tested: {} condition{}, and a sign test needs {}", untied,
+                                untied == 1 ? "" : "s", metrics::kLeastSignPairs);
   } else {
-    const double p = metrics::sign_test_p_value(better, worse);
-    json["p_value"] = number(p);
-    json["significant"] = p < kSignificantLevel;
+    result.p_value = metrics::sign_test_p_value(result.better, result.worse);
+    result.significant = *result.p_value < kSignificantLevel;
   }
-  return json;
+}
+
+std::optional<StoredMetricAgainst> metric_against(
+    const std::vector<StoredComparedCondition>& conditions, const std::string& channel,
+    const ComparedMetric& metric, std::size_t other, bool shared) {
+  StoredMetricAgainst result;
+  for (const StoredComparedCondition& condition : conditions) {
+    const auto& scores = condition.scores;
+    if (condition.channel != channel || !scores[0] || !scores[other]) continue;
+    const auto& a = (*scores[0]).*metric.value;
+    const auto& b = (*scores[other]).*metric.value;
+    if (!a || !b) continue;
+    ++result.conditions;
+    result.mean_of_first += *a;
+    result.mean += *b;
+    if (*a != *b) ++((*b > *a) == metric.higher_is_better ? result.better : result.worse);
+  }
+  if (result.conditions == 0) return std::nullopt;
+  result.mean_of_first /= result.conditions;
+  result.mean /= result.conditions;
+  sign_test(shared, result);
+  return result;
 }
 
 }  // namespace
 
-Json compared_conditions(const std::vector<Compared>& results) {
-  std::vector<std::pair<std::string, std::string>> ids;  // condition and channel
+std::vector<StoredComparedCondition> compared_conditions(const std::vector<Compared>& results) {
+  std::vector<StoredComparedCondition> list;
   for (const Compared& compared : results) {
-    for (const Json& condition : compared.result.at("conditions")) {
-      for (const auto& [channel, unused] : condition.at("metrics").items()) {
-        const std::pair<std::string, std::string> id{text_of(condition, "id"), channel};
-        if (std::find(ids.begin(), ids.end(), id) == ids.end()) ids.push_back(id);
+    for (const StoredCondition& condition : compared.result.conditions) {
+      for (const auto& [channel, unused] : condition.metrics) {
+        const bool there =
+            std::any_of(list.begin(), list.end(), [&, &name = channel](const auto& e) {
+              return e.id == condition.id && e.channel == name;
+            });
+        if (there) continue;
+        // As the first result that has the condition describes it.
+        const auto first = std::find_if(results.begin(), results.end(), [&](const Compared& each) {
+          return each.result.find(condition.id) != nullptr;
+        });
+        const StoredCondition& described = *first->result.find(condition.id);
+        list.push_back({condition.id,
+                        channel,
+                        described.waveform,
+                        described.frequency_hz,
+                        described.leak_level,
+                        {}});
       }
     }
   }
-  Json list = Json::array();
-  for (const auto& [id, channel] : ids) {
-    Json json{{"id", id}, {"channel", channel}};
-    Json scores = Json::array();
-    for (const Compared& compared : results) {
-      const Json* condition = find_condition(compared.result, id);
-      if (condition != nullptr && !json.contains("waveform")) {
-        for (const char* key : {"waveform", "frequency_hz", "leak_level"}) {
-          const auto found = condition->find(key);
-          json[key] = found == condition->end() ? Json(nullptr) : *found;
-        }
-      }
-      scores.push_back(score_of(condition, channel, is_usable(compared.result)));
-    }
-    json["scores"] = std::move(scores);
-    list.push_back(std::move(json));
+  for (StoredComparedCondition& condition : list) {
+    for (const Compared& compared : results)
+      condition.scores.push_back(score_of(compared.result, condition.id, condition.channel));
   }
   return list;
 }
 
-Json compared_metrics(const Json& conditions, const std::vector<Compared>& results) {
+std::vector<StoredComparedMetric> compared_metrics(
+    const std::vector<StoredComparedCondition>& conditions, const std::vector<Compared>& results) {
   std::vector<std::string> channels;
-  for (const Json& condition : conditions) {
-    const std::string channel = text_of(condition, "channel");
-    if (std::find(channels.begin(), channels.end(), channel) == channels.end())
-      channels.push_back(channel);
+  for (const StoredComparedCondition& condition : conditions) {
+    if (std::find(channels.begin(), channels.end(), condition.channel) == channels.end())
+      channels.push_back(condition.channel);
   }
-  Json list = Json::array();
+  std::vector<StoredComparedMetric> list;
   for (const std::string& channel : channels) {
-    for (const char* metric : kComparedMetrics) {
-      Json against = Json::array({nullptr});
-      for (std::size_t i = 1; i < results.size(); ++i) {
-        against.push_back(metric_against(conditions, channel, metric, i,
-                                         share_records(results[0].result, results[i].result)));
-      }
-      list.push_back({{"channel", channel}, {"metric", metric}, {"against_first", against}});
+    for (const ComparedMetric& metric : kComparedMetrics) {
+      StoredComparedMetric& entry =
+          list.emplace_back(StoredComparedMetric{channel, metric.name, {}});
+      entry.against_first.emplace_back();
+      for (std::size_t i = 1; i < results.size(); ++i)
+        entry.against_first.push_back(
+            metric_against(conditions, channel, metric, i, share_records(results[0], results[i])));
     }
   }
   return list;

@@ -37,50 +37,45 @@ std::string sentence(int compared, int tested, int significant, const std::vecto
 
 }  // namespace
 
-Json tested_parameters(const Json& parameters, std::size_t results) {
-  Json list = Json::array({nullptr});
+std::vector<std::optional<StoredSignificance>> tested_parameters(
+    const std::vector<StoredComparedParameter>& parameters, std::size_t results) {
+  std::vector<std::optional<StoredSignificance>> list(1);
   for (std::size_t i = 1; i < results; ++i) {
-    int compared = 0;
-    int tested = 0;
-    int significant = 0;
+    StoredSignificance count;
     std::vector<Untested> open;
-    for (const Json& parameter : parameters) {
-      const Json& difference = parameter.at("differences").at(i);
-      if (!difference.is_object() || difference.at("reason") == kKnownInBoth) continue;
-      ++compared;
-      if (!difference.at("significant").is_boolean()) {
-        add_untested(open, text_of(difference, "reason"), parameter_label(parameter));
+    for (const StoredComparedParameter& parameter : parameters) {
+      const auto& difference = parameter.differences[i];
+      if (!difference || difference->reason == kKnownInBoth) continue;
+      ++count.compared;
+      if (!difference->significant) {
+        add_untested(open, difference->reason.value_or(""), parameter_label(parameter));
         continue;
       }
-      ++tested;
-      significant += difference.at("significant").get<bool>() ? 1 : 0;
+      ++count.tested;
+      count.significant += *difference->significant ? 1 : 0;
     }
-    list.push_back({{"compared", compared},
-                    {"tested", tested},
-                    {"significant", significant},
-                    {"text", sentence(compared, tested, significant, open)}});
+    count.text = sentence(count.compared, count.tested, count.significant, open);
+    list.emplace_back(std::move(count));
   }
   return list;
 }
 
-std::vector<Change> changes_of(const Json& comparison) {
+std::vector<Change> changes_of(const StoredComparison& comparison) {
   std::vector<std::pair<double, Change>> changes;  // with the size in standard errors
-  for (const Json& parameter : comparison.at("parameters")) {
-    const Json& estimates = parameter.at("estimates");
-    for (std::size_t i = 1; i < parameter.at("differences").size(); ++i) {
-      const Json& difference = parameter.at("differences").at(i);
-      if (!difference.is_object() || difference.at("reason") == kKnownInBoth) continue;
-      const auto size = number_of(difference, "difference");
-      if (!size || *size == 0.0) continue;
-      const Json& significant = difference.at("significant");
-      if (significant == false) continue;
-      const double error = std::hypot(number_of(estimates[0], "standard_error").value_or(0.0),
-                                      number_of(estimates[i], "standard_error").value_or(0.0));
-      changes.emplace_back(
-          std::abs(*size) / error,
-          Change{parameter_label(parameter), text_of(comparison.at("results").at(i), "name"),
-                 change_text(difference, unit_of_estimates(parameter)),
-                 number_of(difference, "p_value_of_all"), text_of(difference, "reason")});
+  for (const StoredComparedParameter& parameter : comparison.parameters) {
+    const auto error_of_estimate = [&](std::size_t i) {
+      const auto& estimate = parameter.estimates.at(i);
+      return estimate ? estimate->standard_error.value_or(0.0) : 0.0;
+    };
+    for (std::size_t i = 1; i < parameter.differences.size(); ++i) {
+      const auto& difference = parameter.differences[i];
+      if (!difference || difference->reason == kKnownInBoth) continue;
+      const double size = difference->difference.value_or(0.0);
+      if (size == 0.0 || difference->significant == false) continue;
+      changes.emplace_back(std::abs(size) / std::hypot(error_of_estimate(0), error_of_estimate(i)),
+                           Change{parameter_label(parameter), comparison.results.at(i).name,
+                                  change_text(*difference, unit_of_estimates(parameter)),
+                                  difference->p_value_of_all, difference->reason.value_or("")});
     }
   }
   std::stable_sort(changes.begin(), changes.end(), [](const auto& a, const auto& b) {

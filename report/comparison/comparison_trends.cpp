@@ -1,6 +1,4 @@
 #include <algorithm>
-#include <array>
-#include <string_view>
 
 #include "common/calendar.hpp"
 #include "metrics/significance.hpp"
@@ -9,83 +7,67 @@
 namespace rigcal::report {
 namespace {
 
+using datasets::Scope;
+
 /// Mean of a condition's quantity over those that an estimate of this scope and level rests on.
 template <typename Quantity>
-std::optional<double> mean_over(const Json& result, const Json& parameter, Quantity quantity) {
-  const std::string scope = text_of(parameter, "scope");
-  const std::string level = text_of(parameter, "level");
+std::optional<double> mean_over(const StoredFit& fit, const StoredParameter& parameter,
+                                Quantity quantity) {
   double sum = 0.0;
   int count = 0;
-  for (const Json& condition : result.at("conditions")) {
-    if (text_of(condition, "use") != "fit") continue;
-    if (scope == "leak_level" && text_of(condition, "leak_level") != level) continue;
-    if (scope == "condition" && text_of(condition, "id") != level) continue;
+  for (const StoredCondition& condition : fit.conditions) {
+    if (condition.use != datasets::Use::fit) continue;
+    if (parameter.scope == Scope::leak_level && condition.leak_level != parameter.level) continue;
+    if (parameter.scope == Scope::condition && condition.id != parameter.level) continue;
     const std::optional<double> value = quantity(condition);
     if (!value) continue;
     sum += *value;
     ++count;
   }
-  return count > 0 ? std::optional<double>(sum / count) : std::nullopt;
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
 /// What an estimate is of: those of equal name are points of one trend.
-std::string series_of(const Json& result, const Json& parameter) {
-  const std::string scope = text_of(parameter, "scope");
-  const std::string level = text_of(parameter, "level");
-  if (scope == "rig") return "rig";
-  if (scope == "leak_level") return level;
-  const Json* condition = find_condition(result, level);
-  const std::string own = condition == nullptr ? std::string() : text_of(*condition, "leak_level");
-  return own.empty() ? "rig" : own;
+std::string series_of(const StoredFit& fit, const StoredParameter& parameter) {
+  const std::string level = parameter.level.value_or("");
+  if (parameter.scope == Scope::rig) return "rig";
+  if (parameter.scope == Scope::leak_level) return level;
+  const StoredCondition* condition = fit.find(level);
+  return condition == nullptr ? "rig" : condition->leak_level.value_or("rig");
 }
 
-struct Along {
-  const char* key;       ///< of a point
-  const char* trend;     ///< of the series
-  const char* per_unit;  ///< of the slope
-};
-constexpr std::array kAlong{Along{"day", "along_date", "slope_per_day"},
-                            Along{"temperature_k", "along_temperature", "slope_per_k"}};
-
+/// @param place   of a point
 /// @param shared  whether results of the series share records
-Json trend_json(const Json& points, const Along& along, bool shared) {
+void find_trend(const std::vector<StoredTrendPoint>& points,
+                std::optional<double> StoredTrendPoint::*place, bool shared, StoredTrend& result) {
   std::vector<double> x, y, error;
-  for (const Json& point : points) {
-    const auto at = number_of(point, along.key);
-    const auto value = number_of(point, "value");
-    const auto sd = number_of(point, "standard_error");
-    if (!at || !value || !sd || !(*sd > 0.0)) continue;
-    x.push_back(*at);
-    y.push_back(*value);
-    error.push_back(*sd);
+  for (const StoredTrendPoint& point : points) {
+    if (!(point.*place) || !point.value || !(point.standard_error.value_or(0.0) > 0.0)) continue;
+    x.push_back(*(point.*place));
+    y.push_back(*point.value);
+    error.push_back(*point.standard_error);
   }
-  Json json;
-  json["points"] = x.size();
-  for (const char* key : {along.per_unit, "intercept", "standard_error", "ci95", "p_value",
-                          "reduced_chi_square", "significant"})
-    json[key] = nullptr;
-  json["reason"] = nullptr;
+  result.points = static_cast<long>(x.size());
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   if (x.size() < 3 || *low == *high || shared) {
-    json["reason"] = x.empty()      ? "no estimate has it"
-                     : x.size() < 3 ? "fewer than three estimates with an error"
-                     : *low == *high
-                         ? "all estimates are at the same place"
-                         : "not tested: the results share records, so they are not independent";
-    return json;
+    result.reason = x.empty()      ? "no estimate has it"
+                    : x.size() < 3 ? "fewer than three estimates with an error"
+                    : *low == *high
+                        ? "all estimates are at the same place"
+                        : "not tested: the results share records, so they are not independent";
+    return;
   }
   const metrics::Trend trend = metrics::weighted_trend(x, y, error);
-  json[along.per_unit] = number(trend.slope);
-  json["intercept"] = number(trend.intercept);
-  json["standard_error"] = number(trend.slope_standard_error);
-  json["ci95"] = Json::array({number(trend.ci95_low), number(trend.ci95_high)});
-  json["p_value"] = number(trend.p_value);
-  json["reduced_chi_square"] = number(trend.reduced_chi_square);
-  json["significant"] = trend.p_value < kSignificantLevel;
-  return json;
+  result.slope = trend.slope;
+  result.intercept = trend.intercept;
+  result.standard_error = trend.slope_standard_error;
+  result.ci95 = {trend.ci95_low, trend.ci95_high};
+  result.p_value = trend.p_value;
+  result.reduced_chi_square = trend.reduced_chi_square;
+  result.significant = trend.p_value < kSignificantLevel;
 }
 
-bool any_share_records(const std::vector<const Json*>& results) {
+bool any_share_records(const std::vector<const Compared*>& results) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     for (std::size_t j = i + 1; j < results.size(); ++j) {
       // Several levels of one fit are told apart by their own records.
@@ -95,53 +77,50 @@ bool any_share_records(const std::vector<const Json*>& results) {
   return false;
 }
 
-}  // namespace
-
-Json trends(const std::vector<Compared>& results, std::string_view key) {
-  struct Series {
-    std::string name;
-    Json points = Json::array();
-    std::vector<const Json*> results;
-  };
-  std::vector<Series> series;
-  for (const Compared& compared : results) {
-    if (!is_usable(compared.result)) continue;
-    for (const Json& parameter : compared.result.at("parameters")) {
-      if (text_of(parameter, "key") != key || !parameter.at("fitted").get<bool>()) continue;
-      const std::string name = series_of(compared.result, parameter);
-      auto found = std::find_if(series.begin(), series.end(),
-                                [&](const auto& each) { return each.name == name; });
-      if (found == series.end())
-        found = series.insert(series.end(), Series{name, Json::array(), {}});
-      Json point;
-      point["result"] = compared.name;
-      point["level"] = parameter.at("level");
-      point["day"] = number(mean_over(compared.result, parameter, [](const Json& condition) {
-        return std::optional<double>(day_of(text_of(condition, "date")));
-      }));
-      point["temperature_k"] =
-          number(mean_over(compared.result, parameter, [](const Json& condition) {
-            return number_of(condition, "temperature_k");
-          }));
-      point["value"] = parameter.at("value");
-      point["standard_error"] = number(error_of(parameter));
-      point["ci95"] = parameter.at("ci95");
-      found->points.push_back(std::move(point));
-      found->results.push_back(&compared.result);
-    }
-  }
-  Json list = Json::array();
-  for (const Series& each : series) {
-    Json json{{"of", each.name}, {"points", each.points}};
-    const bool shared = any_share_records(each.results);
-    for (const Along& along : kAlong) json[along.trend] = trend_json(each.points, along, shared);
-    list.push_back(std::move(json));
-  }
-  return list;
+StoredTrendPoint point_of(const Compared& compared, const StoredParameter& parameter) {
+  StoredTrendPoint point;
+  point.result = compared.name;
+  point.level = parameter.level;
+  point.day = mean_over(compared.result, parameter, [](const StoredCondition& condition) {
+    return std::optional<double>(condition.date ? day_of(*condition.date) : std::nullopt);
+  });
+  point.temperature_k = mean_over(compared.result, parameter,
+                                  [](const StoredCondition& condition) -> std::optional<double> {
+                                    return condition.temperature_k;
+                                  });
+  point.value = parameter.value;
+  point.standard_error = error_of(parameter);
+  point.ci95 = parameter.ci95;
+  return point;
 }
 
-Json leak_trends(const std::vector<Compared>& results) {
-  return trends(results, "leakage_coefficient");
+}  // namespace
+
+std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key) {
+  std::vector<StoredSeries> list;
+  std::vector<std::vector<const Compared*>> sources;  // of each series
+  for (const Compared& compared : results) {
+    if (!is_usable(compared.result)) continue;
+    for (const StoredParameter& parameter : compared.result.parameters) {
+      if (parameter.key != key || !parameter.fitted) continue;
+      const std::string of = series_of(compared.result, parameter);
+      const auto found =
+          std::find_if(list.begin(), list.end(), [&](const auto& each) { return each.of == of; });
+      const auto at = static_cast<std::size_t>(found - list.begin());
+      if (found == list.end()) {
+        list.push_back({of, {}, {}, {}});
+        sources.emplace_back();
+      }
+      list[at].points.push_back(point_of(compared, parameter));
+      sources[at].push_back(&compared);
+    }
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const bool shared = any_share_records(sources[i]);
+    find_trend(list[i].points, &StoredTrendPoint::day, shared, list[i].along_date);
+    find_trend(list[i].points, &StoredTrendPoint::temperature_k, shared, list[i].along_temperature);
+  }
+  return list;
 }
 
 }  // namespace rigcal::report

@@ -35,67 +35,54 @@ std::string reason(const calib::FittedAssumption& p) {
   return fmt::format("half width of the interval is {:.0f} % of the value", 100.0 * half_width(p));
 }
 
-Json parameter_json(const TablesFitResult& result, const calib::FittedAssumption& p) {
+StoredParameter stored(const TablesFitResult& result, const calib::FittedAssumption& p) {
   const auto& spec = datasets::assumption_spec(result.campaign.rig.plant, p.index);
-  const bool failed = result.fit.status == FitStatus::failed;
-  Json json;
-  json["name"] = std::string(spec.name);
-  json["key"] = std::string(spec.key);
-  json["symbol"] = std::string(spec.symbol);
-  json["unit"] = std::string(spec.unit);
-  json["scope"] = "rig";
-  json["level"] = nullptr;
-  json["value"] = failed ? Json(nullptr) : number(p.value);
-  json["start"] = number(p.start);
-  json["lower"] = number(p.lower);
-  json["upper"] = number(p.upper);
-  json["fitted"] = true;
-  json["nuisance"] = false;
-  json["standard_error"] = number(p.standard_error);
-  json["robust_standard_error"] = nullptr;
-  json["ci95"] =
-      p.ci95 ? Json::array({number(p.ci95->first), number(p.ci95->second)}) : Json(nullptr);
-  json["at_bound"] = p.at_bound;
-  json["identifiability"] = std::string(to_string(identifiability(p)));
-  json["reason"] = reason(p);
-  return json;
+  StoredParameter parameter;
+  parameter.name = spec.name;
+  parameter.key = spec.key;
+  parameter.symbol = spec.symbol;
+  parameter.unit = spec.unit;
+  if (result.fit.status != FitStatus::failed) parameter.value = p.value;
+  parameter.start = p.start;
+  parameter.lower = p.lower;
+  parameter.upper = p.upper;
+  parameter.fitted = true;
+  parameter.standard_error = p.standard_error;
+  if (p.ci95) {
+    parameter.ci95 = {p.ci95->first, p.ci95->second};
+    parameter.ci95_from = std::optional(calib::IntervalSource::standard_error);
+  }
+  parameter.at_bound = p.at_bound;
+  parameter.identifiability = identifiability(p);
+  parameter.reason = reason(p);
+  return parameter;
 }
 
 }  // namespace
 
-Json tables_fit_json(const TablesFitResult& result) {
+StoredTablesFit stored(const TablesFitResult& result) {
   const calib::TablesFit& fit = result.fit;
   const bool failed = fit.status == FitStatus::failed;
-  Json json;
-  json["status"] = std::string(to_string(fit.status));
-  json["schema"] = kFitSchema;
-  json["verdict"] = nullptr;
-  json["message"] = fit.message;
-  json["campaign"] = result.campaign.name;
-  json["of"] = "published tables";
-  json["cost"] = failed ? Json(nullptr) : number(fit.cost);
-  json["residual_count"] = fit.residuals.size();
-  json["rms"] = failed ? Json(nullptr) : number(fit.rms);
-  json["evaluations"] = fit.evaluations;
-  json["iterations"] = fit.iterations;
-  json["wall_seconds"] = number(fit.wall_seconds);
-  json["parameters"] = Json::array();
-  std::vector<std::string> names;
+  StoredTablesFit json;
+  json.status = fit.status;
+  json.message = fit.message;
+  json.campaign = result.campaign.name;
+  if (!failed) json.cost = fit.cost;
+  json.residual_count = static_cast<long>(fit.residuals.size());
+  if (!failed) json.rms = fit.rms;
+  json.evaluations = fit.evaluations;
+  json.iterations = fit.iterations;
+  json.wall_seconds = fit.wall_seconds;
   for (const calib::FittedAssumption& p : fit.parameters) {
-    json["parameters"].push_back(parameter_json(result, p));
-    names.emplace_back(datasets::assumption_spec(result.campaign.rig.plant, p.index).name);
+    json.parameters.push_back(stored(result, p));
+    json.correlation.names.push_back(json.parameters.back().name);
   }
-  json["correlation"] = correlation_json(names, fit.correlation);
-  json["residuals"] = Json::array();
-  for (const calib::TableResidual& residual : fit.residuals) {
-    Json entry;
-    entry["of"] = residual.what;
-    entry["weight"] = residual.weight;
-    entry["log_ratio"] = number(residual.log_ratio);
-    json["residuals"].push_back(std::move(entry));
-  }
-  json["left_out"] = fit.left_out;
-  json["provenance"] = json_of(stored(result.provenance));
+  for (const auto& row : fit.correlation.rowwise())
+    json.correlation.matrix.emplace_back(row.begin(), row.end());
+  for (const calib::TableResidual& residual : fit.residuals)
+    json.residuals.push_back({residual.what, residual.weight, residual.log_ratio});
+  json.left_out = fit.left_out;
+  json.provenance = stored(result.provenance);
   return json;
 }
 

@@ -3,8 +3,7 @@
 #include <string>
 
 #include "calib/published/fit_tables.hpp"
-#include "report/store/json.hpp"
-#include "report/store/stored_provenance.hpp"
+#include "report/store/stored_tables_fit.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {
@@ -17,7 +16,7 @@ struct TablesFitResult {
 };
 
 /// fit.json of `fit-tables`, with the keys of a fit as far as they apply.
-Json tables_fit_json(const TablesFitResult& result);
+StoredTablesFit stored(const TablesFitResult& result);
 
 /// Estimated values with intervals, what was left out, and the status.
 std::string tables_fit_text(const TablesFitResult& result, const Style& style);

@@ -33,16 +33,12 @@ std::size_t points_of(const std::vector<Table>& series) {
 }
 
 Json condition_views(const Calibration& stored, int threads) {
-  const Json& conditions = stored.result.at("conditions");
+  const std::vector<StoredCondition>& conditions = stored.result.conditions;
   const std::size_t points = points_of(stored.series);
   std::vector<Json> sections(conditions.size());
-  const Json none;
-  const auto all = stored.curves.find("conditions");
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    const std::string id = text_of(conditions.at(i), "id");
-    const bool found = all != stored.curves.end() && all->contains(id);
-    sections[i] =
-        condition_view(conditions.at(i), stored.series[i], found ? all->at(id) : none, points);
+    sections[i] = condition_view(conditions[i], stored.series[i],
+                                 find(stored.curves.conditions, conditions[i].id), points);
   });
   return sections;
 }
@@ -68,45 +64,56 @@ StoredProvenance provenance_of(const Json& result, const std::string& file) {
   return provenance;
 }
 
-Part calibration_part(const ReadFile& read, const std::string& where, int threads) {
-  const Calibration stored = load_calibration(read, where, threads);
-  const Json& result = stored.result;
-  const bool is_fit = text_of(result, "schema") == "rigcal.fit/1";
+Part tables_fit_part(const StoredTablesFit& fit) {
   Part part;
   part.section = "calibration";
   part.link = "parameters";
-  part.name = is_fit ? "Calibration" : "Validation";
-  part.campaign = text_of(result, "campaign");
-  part.identity = identity_view(result);
-  part.provenance = provenance_view(provenance_of(result, stored.file), part.name, stored.file);
-  add_making(result, part.provenance);
-  part.view["parameters"] = parameters_view(result);
-  part.view["has_records"] = !stored.of_tables;
-  if (stored.of_tables) {
-    part.name = "Calibration from published tables";
-    part.headline = tables_headline(result);
-    part.nav = {{"parameters", "Parameters"}};
-    return part;
-  }
-  part.synthetic = result.at("synthetic").get<bool>();
-  part.headline = headline_view(result);
+  part.name = "Calibration from published tables";
+  part.campaign = fit.campaign;
+  part.provenance = provenance_view(fit.provenance, "Calibration", "fit.json");
+  add_making(fit, part.provenance);
+  part.view["parameters"] = parameters_view(fit.parameters, fit.correlation);
+  part.view["has_records"] = false;
+  part.headline = tables_headline(fit);
+  part.nav = {{"parameters", "Parameters"}};
+  return part;
+}
+
+Part calibration_part(const Calibration& stored, int threads) {
+  const StoredFit& fit = stored.result;
+  Part part;
+  part.section = "calibration";
+  part.link = "parameters";
+  part.name = fit.schema == kFitSchema ? "Calibration" : "Validation";
+  part.campaign = fit.campaign;
+  part.identity = identity_view(fit.report);
+  part.provenance = provenance_view(fit.provenance, part.name, stored.file);
+  add_making(fit, part.provenance);
+  part.synthetic = fit.synthetic;
+  part.headline = headline_view(fit);
   part.overview = overview_view(stored);
-  const std::string stopped_in = text_of(result, "stopped_in");
-  part.view["unfinished"] =
-      text_of(result, "status") == "stopped" && (stopped_in.empty() || stopped_in == "starts");
-  part.view["matrix"] = matrix_view(result);
+  part.view["parameters"] = parameters_view(fit.parameters, fit.correlation);
+  part.view["has_records"] = true;
+  part.view["unfinished"] = fit.status == calib::FitStatus::stopped && !searched_to_the_end(fit);
+  part.view["matrix"] = matrix_view(fit);
   part.view["has_matrix"] = !part.view["matrix"].empty();
-  part.view["groups"] = groups_view(result);
-  part.view["has_conditions"] = !result.at("conditions").empty();
+  part.view["groups"] = groups_view(fit);
+  part.view["has_conditions"] = !fit.conditions.empty();
   part.view["conditions"] = condition_views(stored, threads);
-  part.view["identifiability"] = identifiability_view(result);
-  part.view["trust"] = trust_view(result);
-  part.view["starts"] = starts_view(result);
-  part.view["ledger"] = ledger_view(result);
+  part.view["identifiability"] = identifiability_view(fit);
+  part.view["trust"] = trust_view(fit);
+  part.view["starts"] = starts_view(fit);
+  part.view["ledger"] = ledger_view(fit);
   part.nav = {{"matrix", "Scores"},         {"parameters", "Parameters"},
               {"conditions", "Conditions"}, {"identifiability", "Identifiability"},
               {"starts", "Starts"},         {"warnings", "Warnings"}};
   return part;
+}
+
+Part fit_part(const ReadFile& read, const std::string& where, int threads) {
+  const auto stored = load_calibration(read, where, threads);
+  if (const auto* tables = std::get_if<StoredTablesFit>(&stored)) return tables_fit_part(*tables);
+  return calibration_part(std::get<Calibration>(stored), threads);
 }
 
 Part leak_table_part(const ReadFile& read, const std::string& where) {
@@ -129,7 +136,7 @@ Part diagnosis_part(const ReadFile& read, const std::string& where) {
   part.name = "Diagnosis";
   part.campaign = text_of(diagnosis, "campaign");
   part.synthetic = diagnosis.at("synthetic").get<bool>();
-  part.identity = identity_view(diagnosis);
+  part.identity = identity_view(diagnosis.value("report", Json()));
   part.headline = diagnosis_headline(diagnosis);
   part.view["diagnosis"] = diagnosis_view(diagnosis);
   part.provenance =
@@ -145,7 +152,7 @@ Part parity_part(const ReadFile& read, const std::string& where) {
   part.name = "Parity residual";
   part.campaign = text_of(stored.parity, "campaign");
   part.synthetic = stored.parity.at("synthetic").get<bool>();
-  part.identity = identity_view(stored.parity);
+  part.identity = identity_view(stored.parity.value("report", Json()));
   part.headline = parity_headline(stored.parity);
   part.view["parity"] = parity_view(stored);
   part.provenance =
@@ -155,19 +162,18 @@ Part parity_part(const ReadFile& read, const std::string& where) {
 }
 
 Part comparison_part(const ReadFile& read, const std::string& where) {
-  const Json comparison = load_json(read, where, "comparison.json");
+  const StoredComparison comparison = load_comparison(read, where);
   Part part;
   part.section = "comparison";
   part.link = "results";
   part.name = "Comparison";
-  for (const Json& result : comparison.at("results")) {
-    part.campaign += (part.campaign.empty() ? "" : ", ") + text_of(result, "name");
-    part.synthetic = part.synthetic || result.at("synthetic") == true;
+  for (const StoredComparedResult& result : comparison.results) {
+    part.campaign += (part.campaign.empty() ? "" : ", ") + result.name;
+    part.synthetic = part.synthetic || result.synthetic;
   }
   part.headline = comparison_headline(comparison);
   part.view["comparison"] = comparison_view(comparison);
-  part.provenance =
-      provenance_view(provenance_of(comparison, "comparison.json"), part.name, "comparison.json");
+  part.provenance = provenance_view(comparison.provenance, part.name, "comparison.json");
   part.nav = {{"results", "Results"}, {"estimates", "Parameters"}, {"models", "Models"}};
   if (part.view["comparison"].at("has_trends").get<bool>()) part.nav.push_back({"trends", "Trend"});
   if (part.view["comparison"].at("has_conditions").get<bool>())
@@ -210,8 +216,7 @@ Parts parts_of(const ReadFile& read, const std::string& where, int threads) {
     }
   };
   const auto has = [&](const char* file) { return read(file).has_value(); };
-  add(has("fit.json") || has("validation.json"),
-      [&] { return calibration_part(read, where, threads); });
+  add(has("fit.json") || has("validation.json"), [&] { return fit_part(read, where, threads); });
   add(has("leak_table.json"), [&] { return leak_table_part(read, where); });
   add(has("diagnosis.json"), [&] { return diagnosis_part(read, where); });
   add(has("parity.json"), [&] { return parity_part(read, where); });
@@ -288,16 +293,18 @@ std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& rea
   const auto has = [&](const char* file) { return read(file).has_value(); };
   with_json_errors(where, [&] {
     if (has("fit.json") || has("validation.json")) {
-      const Calibration stored = load_calibration(read, where, 1);
-      for (std::size_t i = 0; i < stored.series.size(); ++i) {
-        const Json& condition = stored.result.at("conditions").at(i);
-        add(condition_figures(condition, stored.series[i]), text_of(condition, "id") + "_");
+      const auto stored = load_calibration(read, where, 1);
+      if (const auto* fit = std::get_if<Calibration>(&stored)) {
+        for (std::size_t i = 0; i < fit->series.size(); ++i) {
+          const StoredCondition& condition = fit->result.conditions[i];
+          add(condition_figures(condition, fit->series[i]), condition.id + "_");
+        }
       }
     }
     if (has("leak_table.json")) add(leak_table_figures(load_leak_table(read, where)));
     if (has("diagnosis.json")) add(diagnosis_figures(load_json(read, where, "diagnosis.json")));
     if (has("parity.json")) add(parity_figures(load_parity(read, where)));
-    if (has("comparison.json")) add(comparison_figures(load_json(read, where, "comparison.json")));
+    if (has("comparison.json")) add(comparison_figures(load_comparison(read, where)));
     if (has("batch.json")) add(batch_figures(load<StoredBatch>(read, where, "batch.json")));
   });
   std::vector<std::pair<fs::path, std::string>> files;

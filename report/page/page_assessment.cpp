@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 #include "report/page/page_parts.hpp"
@@ -8,49 +7,55 @@
 namespace rigcal::report {
 namespace {
 
+using calib::AspectState;
+
 struct AspectName {
-  const char* key;
+  StoredAspect StoredAssessment::*aspect;
   const char* name;
   const char* link;  ///< id of the section with the evidence
 };
-constexpr std::array kAspects{AspectName{"agreement", "Agreement with the limits", "matrix"},
-                              AspectName{"validation", "Independent validation", "matrix"},
-                              AspectName{"adequacy", "Adequacy of the model", "conditions"},
-                              AspectName{"parameters", "Parameters", "parameters"}};
+constexpr std::array kAspects{
+    AspectName{&StoredAssessment::agreement, "Agreement with the limits", "matrix"},
+    AspectName{&StoredAssessment::validation, "Independent validation", "matrix"},
+    AspectName{&StoredAssessment::adequacy, "Adequacy of the model", "conditions"},
+    AspectName{&StoredAssessment::parameters, "Parameters", "parameters"}};
 
-Json state_badge(const std::string& state) {
-  if (state == "pass") return {{"word", "pass"}, {"mark", "✓"}, {"class", "good"}};
-  if (state == "reservation") return {{"word", "reservation"}, {"mark", "!"}, {"class", "warn"}};
-  if (state == "fail") return {{"word", "fail"}, {"mark", "✕"}, {"class", "bad"}};
-  return {{"word", "not assessed"}, {"mark", "○"}, {"class", "none"}};
+struct StateBadge {
+  const char *word, *mark, *css;
+};
+StateBadge state_badge(AspectState state) {
+  switch (state) {
+    case AspectState::pass:
+      return {"pass", "✓", "good"};
+    case AspectState::reservation:
+      return {"reservation", "!", "warn"};
+    case AspectState::fail:
+      return {"fail", "✕", "bad"};
+    case AspectState::not_assessed:
+      break;
+  }
+  return {"not assessed", "○", "none"};
 }
 
 /// Where the evidence for a reason is.
-std::string link_of(const Json& result, const Json& reason, const char* section) {
-  const std::string subject = text_of(reason, "subject");
-  const Json& conditions = result.at("conditions");
-  const bool condition = std::any_of(conditions.begin(), conditions.end(), [&](const Json& each) {
-    return text_of(each, "id") == subject;
-  });
-  return condition ? anchor(subject) : section;
+std::string link_of(const StoredFit& fit, const StoredReason& reason, const char* section) {
+  return reason.subject && fit.find(*reason.subject) != nullptr ? anchor(*reason.subject) : section;
 }
 
 }  // namespace
 
-Json assessment_view(const Json& result) {
+Json assessment_view(const StoredFit& fit) {
   constexpr std::size_t kShown = 3;  // against; the rest is counted, and stands in the sections
-  const auto assessment = result.find("assessment");
-  if (assessment == result.end()) return Json::array();
   Json rows = Json::array();
+  if (!fit.assessment) return rows;
   for (const AspectName& aspect : kAspects) {
-    const Json& found = assessment->at(aspect.key);
+    const StoredAspect& found = (*fit.assessment).*aspect.aspect;
     Json against = Json::array();
     Json in_favour = Json::array();
     std::size_t more = 0;
-    for (const Json& reason : found.at("reasons")) {
-      const Json entry{{"text", text_of(reason, "words")},
-                       {"link", link_of(result, reason, aspect.link)}};
-      if (text_of(reason, "state") == "pass") {
+    for (const StoredReason& reason : found.reasons) {
+      const Json entry{{"text", reason.words}, {"link", link_of(fit, reason, aspect.link)}};
+      if (reason.state == AspectState::pass) {
         in_favour.push_back(entry);
       } else if (against.size() < kShown) {
         against.push_back(entry);
@@ -58,8 +63,9 @@ Json assessment_view(const Json& result) {
         ++more;
       }
     }
+    const StateBadge badge = state_badge(found.state);
     rows.push_back({{"name", aspect.name},
-                    {"badge", state_badge(text_of(found, "state"))},
+                    {"badge", {{"word", badge.word}, {"mark", badge.mark}, {"class", badge.css}}},
                     {"against", std::move(against)},
                     {"for", std::move(in_favour)},
                     {"has_more", more > 0},
@@ -68,17 +74,15 @@ Json assessment_view(const Json& result) {
   return rows;
 }
 
-std::string open_aspects(const Json& result) {
-  const auto assessment = result.find("assessment");
-  if (assessment == result.end()) return {};
+std::string open_aspects(const StoredFit& fit) {
   std::string text;
+  if (!fit.assessment) return text;
   for (const AspectName& aspect : kAspects) {
-    const std::string state = text_of(assessment->at(aspect.key), "state");
-    if (state == "pass") continue;
+    const AspectState state = ((*fit.assessment).*aspect.aspect).state;
+    if (state == AspectState::pass) continue;
     std::string name = aspect.name;
     name.front() = static_cast<char>(name.front() | 0x20);  // ASCII, to lower case
-    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", name,
-                        text_of(state_badge(state), "word"));
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", name, state_badge(state).word);
   }
   return text;
 }

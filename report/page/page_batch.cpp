@@ -27,8 +27,9 @@ std::string as_link(const std::string& path) {
 
 Json rig_badge(const StoredRig& rig) {
   if (!rig.status) return {{"word", "no result"}, {"mark", "✕"}, {"class", "bad"}};
-  if (rig.status != "converged") return {{"word", *rig.status}, {"mark", "✕"}, {"class", "bad"}};
-  return badge(rig.verdict ? Json(*rig.verdict) : Json(nullptr));
+  if (!has_converged(rig))
+    return {{"word", to_string(*rig.status)}, {"mark", "✕"}, {"class", "bad"}};
+  return badge(rig.verdict);
 }
 
 Json score_views(const StoredRig& rig) {
@@ -37,9 +38,9 @@ Json score_views(const StoredRig& rig) {
     list.push_back({{"condition", score.condition},
                     {"channel", score.channel},
                     {"failed", !score.failure.empty()},
-                    {"badge", badge(score.verdict ? Json(*score.verdict) : Json(nullptr))},
-                    {"rho2", shown_agreement(json_of(score.rho2))},
-                    {"error", shown_in(json_of(score.absolute_error_percent), 1.0, 3)}});
+                    {"badge", badge(score.verdict)},
+                    {"rho2", shown_agreement(score.rho2)},
+                    {"error", shown_in(score.absolute_error_percent, 1.0, 3)}});
   }
   return list;
 }
@@ -47,49 +48,43 @@ Json score_views(const StoredRig& rig) {
 Json rig_estimate_views(const StoredRig& rig) {
   Json list = Json::array();
   for (const StoredRigEstimate& each : rig.parameters) {
-    const Json parameter = json_of(each);
-    const RowUnit unit = row_unit(each.value, parameter);
-    const Json interval = shown_interval(parameter.at("ci95"), unit.si);
-    const std::string grade = each.identifiability.value_or("");
-    list.push_back(
-        {{"name", parameter_label(parameter)},
-         {"unit", unit.name},
-         {"value", shown_matched(parameter.at("value"), parameter.at("ci95"), unit.si, 6)},
-         {"interval", interval.at("known")},
-         {"low", interval.at("low")},
-         {"high", interval.at("high")},
-         {"doubtful", !grade.empty() && grade != "identified"},
-         {"grade", grade == "not_identifiable" ? "not identifiable" : grade}});
+    const RowUnit unit = row_unit(each.value, each.unit);
+    const Json interval = shown_interval(each.ci95, unit.si);
+    list.push_back({{"name", parameter_label(each)},
+                    {"unit", unit.name},
+                    {"value", shown_matched(each.value, each.ci95, unit.si, 6)},
+                    {"interval", interval.at("known")},
+                    {"low", interval.at("low")},
+                    {"high", interval.at("high")},
+                    {"doubtful", is_doubtful(each.identifiability)},
+                    {"grade", grade_words(each.identifiability)}});
   }
   return list;
 }
 
 /// Points over days since the first; nothing where fewer than two have a date.
 std::optional<Plot> rig_trend_plot(const StoredRig& rig, const StoredRigTrend& trend) {
-  const Json& points = trend.series.at("points");
+  const std::vector<StoredTrendPoint>& points = trend.series.points;
   double first = std::numeric_limits<double>::infinity();
   double last = -first;
   double largest = 0.0;
   int dated = 0;
-  for (const Json& point : points) {
-    const auto day = number_of(point, "day");
-    if (!day || !number_of(point, "value")) continue;
-    first = std::min(first, *day);
-    last = std::max(last, *day);
-    largest = std::max(largest, std::abs(*number_of(point, "value")));
+  for (const StoredTrendPoint& point : points) {
+    if (!point.day || !point.value) continue;
+    first = std::min(first, *point.day);
+    last = std::max(last, *point.day);
+    largest = std::max(largest, std::abs(*point.value));
     ++dated;
   }
   if (dated < 2) return std::nullopt;
-  const RowUnit unit = row_unit(largest, Json{{"unit", trend.unit}});
+  const RowUnit unit = row_unit(largest, trend.unit);
   Trace spans = empty_trace(Trace::Kind::intervals, "model");
   Trace middles = empty_trace(Trace::Kind::points, "model");
-  for (const Json& point : points) {
-    const auto day = number_of(point, "day");
-    const auto value = number_of(point, "value");
-    if (!day || !value) continue;
-    middles.x.push_back(*day - first);
-    middles.y.push_back(*value / unit.si);
-    add_interval(spans, *day - first, point.at("ci95"), unit.si);
+  for (const StoredTrendPoint& point : points) {
+    if (!point.day || !point.value) continue;
+    middles.x.push_back(*point.day - first);
+    middles.y.push_back(*point.value / unit.si);
+    add_interval(spans, *point.day - first, point.ci95, unit.si);
   }
   Plot plot;
   plot.title = fmt::format("{} of {} over time, with 95 % intervals", trend_name(trend), rig.rig);
@@ -97,12 +92,12 @@ std::optional<Plot> rig_trend_plot(const StoredRig& rig, const StoredRigTrend& t
   plot.y_label = trend_name(trend) + (unit.name.empty() ? "" : fmt::format(" [{}]", unit.name));
   plot.width = 300.0;
   plot.height = 170.0;
-  const Json& along = trend.series.at("along_date");
-  if (const auto slope = number_of(along, "slope_per_day")) {
+  const StoredTrend& along = trend.series.along_date;
+  if (along.slope && along.intercept) {
     Trace line = empty_trace(Trace::Kind::line, "reference");
     for (const double day : {first, last}) {
       line.x.push_back(day - first);
-      line.y.push_back((*number_of(along, "intercept") + *slope * day) / unit.si);
+      line.y.push_back((*along.intercept + *along.slope * day) / unit.si);
     }
     plot.traces.push_back(std::move(line));
   }
@@ -124,7 +119,7 @@ Json rig_view(const StoredRig& rig) {
   Json warnings = Json::array();
   for (std::size_t i = 0; i < std::min(rig.warnings.size(), kShownWarnings); ++i)
     warnings.push_back(rig.warnings[i]);
-  const bool troubled = rig.status != "converged" || rig.exit_code > 1;
+  const bool troubled = !has_converged(rig) || rig.exit_code > 1;
   Json trends = trend_views_of(rig);
   const bool undated = trends.empty() && !rig.trends.empty();
   return {{"rig", rig.rig},
@@ -135,7 +130,7 @@ Json rig_view(const StoredRig& rig) {
           {"badge", rig_badge(rig)},
           {"exit_code", fmt::format("{}", rig.exit_code)},
           {"unchanged", rig.unchanged},
-          {"seconds", shown_in(Json(rig.seconds), 1.0, 3)},
+          {"seconds", shown_in(rig.seconds, 1.0, 3)},
           {"message", rig.message},
           {"troubled", troubled},
           {"reasons", rig.reasons},
@@ -154,8 +149,9 @@ Json rig_view(const StoredRig& rig) {
 Json batch_headline(const StoredBatch& batch) {
   const bool failed = batch.exit_code > 1;
   const bool fails = batch.exit_code == 1;
-  const bool warns = std::any_of(batch.rigs.begin(), batch.rigs.end(),
-                                 [](const StoredRig& rig) { return rig.verdict == "WARN"; });
+  const bool warns = std::any_of(batch.rigs.begin(), batch.rigs.end(), [](const StoredRig& rig) {
+    return rig.verdict == calib::Verdict::warn;
+  });
   const bool judged = std::all_of(batch.rigs.begin(), batch.rigs.end(),
                                   [](const StoredRig& rig) { return rig.verdict.has_value(); });
   const std::string sentence = batch_sentence(batch) + ".";
@@ -166,7 +162,7 @@ Json batch_headline(const StoredBatch& batch) {
                        : make_headline("DONE", "○", "none", sentence);
   for (const StoredRig& rig : batch.rigs) {
     const std::string link = "rig-" + anchor(rig.rig);
-    if (rig.status != "converged" || rig.exit_code > 1)
+    if (!has_converged(rig) || rig.exit_code > 1)
       add_reason(view, fmt::format("{}: {}", rig.rig, rig.message), link);
     for (const std::string& reason : rig.reasons)
       add_reason(view, fmt::format("{}: {}", rig.rig, reason), link);

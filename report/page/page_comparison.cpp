@@ -11,50 +11,48 @@
 namespace rigcal::report {
 namespace {
 
-Json estimate_cell(const Json& estimate, const RowUnit& unit) {
-  if (!estimate.is_object()) return {{"there", false}};
-  const Json interval = shown_interval(estimate.at("ci95"), unit.si);
-  const std::string grade = text_of(estimate, "identifiability");
+Json estimate_cell(const std::optional<StoredEstimate>& estimate, const RowUnit& unit) {
+  if (!estimate) return {{"there", false}};
+  const Json interval = shown_interval(estimate->ci95, unit.si);
   return {{"there", true},
-          {"value", shown_matched(estimate.at("value"), estimate.at("ci95"), unit.si, 6)},
-          {"fitted", estimate.at("fitted")},
+          {"value", shown_matched(estimate->value, estimate->ci95, unit.si, 6)},
+          {"fitted", estimate->fitted},
           {"interval", interval.at("known")},
           {"low", interval.at("low")},
           {"high", interval.at("high")},
-          {"doubtful", !grade.empty() && grade != "identified"},
-          {"grade", grade == "not_identifiable" ? "not identifiable" : grade}};
+          {"doubtful", is_doubtful(estimate->identifiability)},
+          {"grade", grade_words(estimate->identifiability)}};
 }
 
-Json change_cell(const Json& difference, const RowUnit& unit) {
-  if (!difference.is_object()) return {{"there", false}};
-  const std::string by = change_text(difference, unit);
-  const auto p = number_of(difference, "p_value_of_all");
-  const bool significant = p && difference.at("significant").get<bool>();
+Json change_cell(const std::optional<StoredDifference>& difference, const RowUnit& unit) {
+  if (!difference) return {{"there", false}};
+  const std::string by = change_text(*difference, unit);
+  const auto& p = difference->p_value_of_all;
+  const bool significant = p && difference->significant == true;
   return {{"there", !by.empty()},
           {"by", by},
-          {"exact", shown_in(difference.at("difference"), 1.0).at("exact")},
+          {"exact", shown_in(difference->difference, 1.0).at("exact")},
           {"judged", p.has_value()},
           {"p", p ? p_value_text(*p) : std::string()},
           {"class", !p            ? "none"
                     : significant ? "warn"
                                   : "good"},
           {"word", p ? significant ? "significant" : "not significant"
-                   : difference.at("reason") == kKnownInBoth ? "known in both"
-                                                             : "not tested"},
-          {"reason", text_of(difference, "reason")}};
+                   : difference->reason == kKnownInBoth ? "known in both"
+                                                        : "not tested"},
+          {"reason", difference->reason.value_or("")}};
 }
 
-Json parameter_rows(const Json& parameters) {
+Json parameter_rows(const StoredComparison& comparison) {
   Json rows = Json::array();
-  for (const Json& parameter : parameters) {
+  for (const StoredComparedParameter& parameter : comparison.parameters) {
     if (!worth_a_row(parameter)) continue;
     const RowUnit unit = unit_of_estimates(parameter);
     Json cells = Json::array();
-    const Json& estimates = parameter.at("estimates");
-    for (std::size_t i = 0; i < estimates.size(); ++i) {
-      Json cell{{"estimate", estimate_cell(estimates[i], unit)}};
+    for (std::size_t i = 0; i < parameter.estimates.size(); ++i) {
+      Json cell{{"estimate", estimate_cell(parameter.estimates[i], unit)}};
       cell["later"] = i > 0;
-      cell["change"] = change_cell(parameter.at("differences").at(i), unit);
+      cell["change"] = change_cell(parameter.differences.at(i), unit);
       cells.push_back(std::move(cell));
     }
     rows.push_back({{"name", parameter_label(parameter)},
@@ -65,79 +63,80 @@ Json parameter_rows(const Json& parameters) {
 }
 
 /// Each fitted parameter by result, with its interval.
-std::vector<Figure> parameter_figures(const Json& parameters) {
+std::vector<Figure> parameter_figures(const StoredComparison& comparison) {
   std::vector<Figure> figures;
-  for (const Json& parameter : parameters) {
+  for (const StoredComparedParameter& parameter : comparison.parameters) {
     const RowUnit unit = unit_of_estimates(parameter);
     Trace spans = empty_trace(Trace::Kind::intervals, "model");
     Trace middles = empty_trace(Trace::Kind::points, "model");
     double number = 0.0;
-    for (const Json& estimate : parameter.at("estimates")) {
+    for (const auto& estimate : parameter.estimates) {
       number += 1.0;
-      if (!estimate.is_object() || !estimate.at("fitted").get<bool>()) continue;
-      const auto value = number_of(estimate, "value");
-      if (!value) continue;
+      if (!estimate || !estimate->fitted || !estimate->value) continue;
       middles.x.push_back(number);
-      middles.y.push_back(*value / unit.si);
-      add_interval(spans, number, estimate.at("ci95"), unit.si);
+      middles.y.push_back(*estimate->value / unit.si);
+      add_interval(spans, number, estimate->ci95, unit.si);
     }
     if (middles.x.size() < 2) continue;
+    const std::string label = parameter_label(parameter);
     Plot plot;
-    plot.title = fmt::format("{} by result, with 95 % intervals", parameter_label(parameter));
+    plot.title = fmt::format("{} by result, with 95 % intervals", label);
     plot.x_label = "result";
-    plot.y_label = unit.name.empty()
-                       ? parameter_label(parameter)
-                       : fmt::format("{} [{}]", parameter_label(parameter), unit.name);
+    plot.y_label = unit.name.empty() ? label : fmt::format("{} [{}]", label, unit.name);
     plot.width = 300.0;
     plot.height = 170.0;
     plot.whole_x = true;
     plot.traces = {std::move(spans), std::move(middles)};
-    figures.push_back({"comparison_" + plain_name(parameter_label(parameter)), std::move(plot)});
+    figures.push_back({"comparison_" + plain_name(label), std::move(plot)});
   }
   return figures;
 }
 
+/// A series along dates or temperatures.
 struct TrendAxis {
   const char* key;
-  const char* trend;
-  const char* slope;
+  std::optional<double> StoredTrendPoint::*place;
   const char* per_unit;
+  bool by_day;
+  const StoredTrend& trend_of(const StoredSeries& series) const {
+    if (by_day) return series.along_date;
+    return series.along_temperature;
+  }
 };
 constexpr std::array kTrendAxes{
-    TrendAxis{"day", "along_date", "slope_per_day", "per day"},
-    TrendAxis{"temperature_k", "along_temperature", "slope_per_k", "per K"}};
+    TrendAxis{"day", &StoredTrendPoint::day, "per day", true},
+    TrendAxis{"temperature_k", &StoredTrendPoint::temperature_k, "per K", false}};
 
-Plot trend_plot(const Json& series, const TrendAxis& axis) {
-  const bool by_day = std::string_view(axis.key) == "day";
+Plot trend_plot(const StoredSeries& series, const TrendAxis& axis) {
   Trace spans = empty_trace(Trace::Kind::intervals, "model");
   Trace middles = empty_trace(Trace::Kind::points, "model");
   double first = HUGE_VAL;
   double last = -HUGE_VAL;
-  for (const Json& point : series.at("points")) {
-    const auto at = number_of(point, axis.key);
-    const auto value = number_of(point, "value");
-    if (!at || !value) continue;
+  for (const StoredTrendPoint& point : series.points) {
+    const auto& at = point.*axis.place;
+    if (!at || !point.value) continue;
     first = std::min(first, *at);
     last = std::max(last, *at);
     middles.x.push_back(*at);
-    middles.y.push_back(*value);
-    add_interval(spans, *at, point.at("ci95"));
+    middles.y.push_back(*point.value);
+    add_interval(spans, *at, point.ci95);
   }
-  const double origin = by_day ? first : 273.15;
+  const double origin = axis.by_day ? first : 273.15;
   Plot plot;
-  plot.title = fmt::format("Leakage coefficient of {} along {}", text_of(series, "of"),
-                           by_day ? "dates" : "temperatures");
-  plot.x_label = by_day ? "days since " + (std::isfinite(first) ? date_of(first) : std::string())
-                        : std::string("temperature [°C]");
-  plot.y_label = "leakage coefficient, " + text_of(series, "of");
+  plot.title = fmt::format("Leakage coefficient of {} along {}", series.of,
+                           axis.by_day ? "dates" : "temperatures");
+  plot.x_label = axis.by_day
+                     ? "days since " + (std::isfinite(first) ? date_of(first) : std::string())
+                     : std::string("temperature [°C]");
+  plot.y_label = "leakage coefficient, " + series.of;
   plot.width = 460.0;
   plot.height = 220.0;
-  const Json& trend = series.at(axis.trend);
-  if (const auto slope = number_of(trend, axis.slope)) {
+  const StoredTrend& trend = axis.trend_of(series);
+  if (trend.slope && trend.intercept) {
     Trace line;
     line.style = "reference";
     line.x = {first, last};
-    for (const double x : line.x) line.y.push_back(*number_of(trend, "intercept") + *slope * x);
+    for (const double x : line.x) line.y.push_back(*trend.intercept + *trend.slope * x);
     plot.traces.push_back(std::move(line));
   }
   plot.traces.push_back(std::move(spans));
@@ -147,137 +146,128 @@ Plot trend_plot(const Json& series, const TrendAxis& axis) {
   return plot;
 }
 
-bool differ(const Json& points, const char* key) {
+/// Whether the points lie at several places.
+bool differ(const StoredSeries& series, const TrendAxis& axis) {
   std::optional<double> first;
-  for (const Json& point : points) {
-    const auto value = number_of(point, key);
-    if (!value) continue;
-    if (first && *first != *value) return true;
-    first = value;
+  for (const StoredTrendPoint& point : series.points) {
+    const auto& at = point.*axis.place;
+    if (first && at && *first != *at) return true;
+    if (at) first = at;
   }
   return false;
 }
 
-Json trend_views(const Json& trends) {
+std::string trend_reading(const StoredSeries& series, const TrendAxis& axis) {
+  const StoredTrend& trend = axis.trend_of(series);
+  if (!trend.slope || !trend.ci95 || !trend.p_value) return trend.reason.value_or("");
+  return fmt::format("{}: {:+.3g} {} ({:.3g} to {:.3g}), {}: {}.", series.of, *trend.slope,
+                     axis.per_unit, trend.ci95->low, trend.ci95->high, p_value_text(*trend.p_value),
+                     trend.significant == true ? "significant trend" : "no significant trend");
+}
+
+Json trend_views(const StoredComparison& comparison) {
   Json list = Json::array();
-  for (const Json& series : trends) {
+  for (const StoredSeries& series : comparison.leak_trends) {
     for (const TrendAxis& axis : kTrendAxes) {
-      if (!differ(series.at("points"), axis.key)) continue;
-      const Json& trend = series.at(axis.trend);
-      const auto slope = number_of(trend, axis.slope);
-      std::string reading = text_of(trend, "reason");
-      if (slope) {
-        const double p = trend.at("p_value").get<double>();
-        reading = fmt::format(
-            "{}: {:+.3g} {} ({:.3g} to {:.3g}), {}: {}.", text_of(series, "of"), *slope,
-            axis.per_unit, trend.at("ci95").at(0).get<double>(),
-            trend.at("ci95").at(1).get<double>(), p_value_text(p),
-            trend.at("significant").get<bool>() ? "significant trend" : "no significant trend");
-      }
-      list.push_back({{"svg_html", svg(trend_plot(series, axis))}, {"reading", reading}});
+      if (!differ(series, axis)) continue;
+      list.push_back(
+          {{"svg_html", svg(trend_plot(series, axis))}, {"reading", trend_reading(series, axis)}});
     }
   }
   return list;
 }
 
-Json score_rows_of(const Json& conditions) {
+Json score_cell(const std::optional<StoredComparedScore>& score) {
+  if (!score) return {{"there", false}};
+  const bool failed = score->failure.has_value();
+  return {{"there", true},
+          {"failed", failed},
+          {"badge", badge(failed ? std::optional(calib::Verdict::fail) : score->verdict)},
+          {"rho2", shown_agreement(score->rho2)},
+          {"error", shown_in(score->absolute_error_percent, 1.0, 3)},
+          {"use", to_string(score->use)}};
+}
+
+Json score_rows_of(const StoredComparison& comparison) {
   Json rows = Json::array();
-  for (const Json& condition : conditions) {
+  for (const StoredComparedCondition& condition : comparison.conditions) {
     Json cells = Json::array();
-    for (const Json& score : condition.at("scores")) {
-      Json cell{{"there", score.is_object()}};
-      if (score.is_object()) {
-        const bool failed = !text_of(score, "failure").empty();
-        cell["failed"] = failed;
-        cell["badge"] = badge(failed ? Json("FAIL") : score.at("verdict"));
-        cell["rho2"] = shown_agreement(score.at("rho2"));
-        cell["error"] = shown_in(score.at("absolute_error_percent"), 1.0, 3);
-        cell["use"] = text_of(score, "use");
-      }
-      cells.push_back(std::move(cell));
-    }
-    rows.push_back({{"condition", text_of(condition, "id")},
-                    {"channel", text_of(condition, "channel")},
-                    {"cells", std::move(cells)}});
+    for (const auto& score : condition.scores) cells.push_back(score_cell(score));
+    rows.push_back(
+        {{"condition", condition.id}, {"channel", condition.channel}, {"cells", std::move(cells)}});
   }
   return rows;
 }
 
-Json metric_rows(const Json& comparison) {
+Json metric_rows(const StoredComparison& comparison) {
   Json rows = Json::array();
-  for (const Json& metric : comparison.at("metrics")) {
-    const Json& against = metric.at("against_first");
-    for (std::size_t i = 1; i < against.size(); ++i) {
-      if (!against.at(i).is_object()) continue;
-      const auto p = number_of(against.at(i), "p_value");
-      rows.push_back(
-          {{"channel", text_of(metric, "channel")},
-           {"metric", text_of(metric, "metric")},
-           {"result", text_of(comparison.at("results").at(i), "name")},
-           {"conditions", fmt::format("{}", against.at(i).at("conditions").get<int>())},
-           {"first", shown_score(text_of(metric, "metric"), against.at(i).at("mean_of_first"))},
-           {"mean", shown_score(text_of(metric, "metric"), against.at(i).at("mean"))},
-           {"better", fmt::format("{}", against.at(i).at("better").get<int>())},
-           {"worse", fmt::format("{}", against.at(i).at("worse").get<int>())},
-           {"p", p ? p_value_text(*p) : text_of(against.at(i), "reason")},
-           {"significant", against.at(i).at("significant") == true}});
+  for (const StoredComparedMetric& metric : comparison.metrics) {
+    for (std::size_t i = 1; i < metric.against_first.size(); ++i) {
+      const auto& against = metric.against_first[i];
+      if (!against) continue;
+      const auto& p = against->p_value;
+      rows.push_back({{"channel", metric.channel},
+                      {"metric", metric.metric},
+                      {"result", comparison.results.at(i).name},
+                      {"conditions", fmt::format("{}", against->conditions)},
+                      {"first", shown_score(metric.metric, against->mean_of_first)},
+                      {"mean", shown_score(metric.metric, against->mean)},
+                      {"better", fmt::format("{}", against->better)},
+                      {"worse", fmt::format("{}", against->worse)},
+                      {"p", p ? p_value_text(*p) : against->reason.value_or("")},
+                      {"significant", against->significant == true}});
     }
   }
   return rows;
 }
 
-Json result_rows(const Json& results) {
+/// "1 to 2", or "1" where both are the same.
+std::string span(const std::string& first, const std::string& last) {
+  return first == last ? first : fmt::format("{} to {}", first, last);
+}
+
+Json result_rows(const StoredComparison& comparison) {
   Json rows = Json::array();
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const Json& result = results.at(i);
-    const std::string status = text_of(result, "status");
-    Json mark = badge(result.at("verdict"));
-    if (status != "converged") mark = {{"word", status}, {"mark", "✕"}, {"class", "bad"}};
-    const Json& dates = result.at("dates");
-    const Json& kelvin = result.at("temperature_k");
-    std::string when;
-    if (dates.is_array()) {
-      when = dates.at(0).get<std::string>();
-      if (dates.at(0) != dates.at(1)) when += " to " + dates.at(1).get<std::string>();
-    }
+  for (const StoredComparedResult& result : comparison.results) {
+    Json mark = badge(result.verdict);
+    if (result.status != calib::FitStatus::converged)
+      mark = {{"word", to_string(result.status)}, {"mark", "✕"}, {"class", "bad"}};
     std::string warm;
-    if (kelvin.is_array()) {
-      warm = fmt::format("{:.4g}", kelvin.at(0).get<double>() - 273.15);
-      if (kelvin.at(0) != kelvin.at(1))
-        warm += fmt::format(" to {:.4g}", kelvin.at(1).get<double>() - 273.15);
-    }
-    rows.push_back({{"number", fmt::format("{}", i + 1)},
-                    {"name", text_of(result, "name")},
+    if (const auto& kelvin = result.temperature_k)
+      warm = span(fmt::format("{:.4g}", kelvin->low - 273.15),
+                  fmt::format("{:.4g}", kelvin->high - 273.15));
+    const auto& dates = result.dates;
+    rows.push_back({{"number", fmt::format("{}", rows.size() + 1)},
+                    {"name", result.name},
                     {"badge", std::move(mark)},
-                    {"campaign", text_of(result, "campaign")},
-                    {"model", text_of(result, "model")},
-                    {"conditions", fmt::format("{}", result.at("conditions").get<int>())},
-                    {"dates", when},
+                    {"campaign", result.campaign},
+                    {"model", result.model ? to_string(*result.model) : ""},
+                    {"conditions", fmt::format("{}", result.conditions)},
+                    {"dates", dates ? span((*dates)[0], (*dates)[1]) : std::string()},
                     {"temperature", warm},
-                    {"cost", shown_in(result.at("cost"), 1.0, 6)},
-                    {"residuals", fmt::format("{}", result.at("residual_count").get<long>())},
-                    {"chi", shown_in(result.at("reduced_chi_square"), 1.0, 4)},
-                    {"command", text_of(result, "command")}});
+                    {"cost", shown_in(result.cost, 1.0, 6)},
+                    {"residuals", fmt::format("{}", result.residual_count)},
+                    {"chi", shown_in(result.reduced_chi_square, 1.0, 4)},
+                    {"command", result.command}});
   }
   return rows;
 }
 
-Json model_rows(const Json& comparison) {
+Json model_rows(const StoredComparison& comparison) {
   Json rows = Json::array();
-  const Json& models = comparison.at("models");
-  for (std::size_t i = 1; i < models.size(); ++i) {
-    const Json& model = models.at(i);
-    const auto p = number_of(model, "p_value");
-    const std::string verdict = text_of(model, "verdict");
-    rows.push_back({{"name", text_of(comparison.at("results").at(i), "name")},
-                    {"aic", shown_in(model.at("delta_aic"), 1.0, 4)},
-                    {"bic", shown_in(model.at("delta_bic"), 1.0, 4)},
-                    {"ratio", shown_in(model.at("likelihood_ratio"), 1.0, 4)},
-                    {"freedom", p ? fmt::format("{}", model.at("freedom").get<int>()) : "–"},
-                    {"p", p ? p_value_text(*p) : std::string("–")},
-                    {"verdict", verdict.empty() ? std::string("not compared") : verdict},
-                    {"reason", text_of(model, "reason")},
-                    {"has_reason", !text_of(model, "reason").empty()}});
+  for (std::size_t i = 1; i < comparison.models.size(); ++i) {
+    const StoredModelChoice model = comparison.models[i].value_or(StoredModelChoice());
+    const auto& p = model.p_value;
+    rows.push_back(
+        {{"name", comparison.results.at(i).name},
+         {"aic", shown_in(model.delta_aic, 1.0, 4)},
+         {"bic", shown_in(model.delta_bic, 1.0, 4)},
+         {"ratio", shown_in(model.likelihood_ratio, 1.0, 4)},
+         {"freedom", p && model.freedom ? fmt::format("{}", *model.freedom) : std::string("–")},
+         {"p", p ? p_value_text(*p) : std::string("–")},
+         {"verdict", model.verdict.value_or("not compared")},
+         {"reason", model.reason.value_or("")},
+         {"has_reason", model.reason.has_value()}});
   }
   return rows;
 }
@@ -290,100 +280,101 @@ std::string change_sentence(const Change& change) {
 }
 
 /// What the tests found, and how many parameters they left out.
-std::string significance_sentence(const Json& comparison) {
+std::string significance_sentence(const StoredComparison& comparison) {
   long compared = 0;
   long tested = 0;
   long significant = 0;
-  for (const Json& each : comparison.at("significance")) {
-    if (!each.is_object()) continue;
-    compared += count_at(each, "compared");
-    tested += count_at(each, "tested");
-    significant += count_at(each, "significant");
+  for (const auto& each : comparison.significance) {
+    if (!each) continue;
+    compared += each->compared;
+    tested += each->tested;
+    significant += each->significant;
   }
   const std::string differences =
-      fmt::format("{} results, {} parameter difference{}", comparison.at("results").size(),
-                  compared, compared == 1 ? "" : "s");
+      fmt::format("{} results, {} parameter difference{}", comparison.results.size(), compared,
+                  compared == 1 ? "" : "s");
   if (compared == 0) return differences + ".";
   if (tested == 0) return differences + "; none could be tested for significance.";
   return fmt::format("{}: {} tested, {} significant, {} not tested.", differences, tested,
                      significant, compared - tested);
 }
 
+/// Adds the records, and how many are in all results.
+void add_records(const StoredComparison& comparison, Json& view) {
+  view["records"] = Json::array();
+  std::size_t shared = 0;
+  for (const StoredComparedRecord& record : comparison.records) {
+    Json cells = Json::array();
+    bool everywhere = true;
+    for (const bool in : record.in) {
+      cells.push_back(in ? "✓" : "–");
+      everywhere = everywhere && in;
+    }
+    shared += everywhere ? 1 : 0;
+    view["records"].push_back(
+        {{"file", record.file}, {"sha256", record.sha256}, {"cells", std::move(cells)}});
+  }
+  view["record_count"] = fmt::format("{}", comparison.records.size());
+  view["shared"] = fmt::format("{}", shared);
+}
+
 }  // namespace
 
-Json comparison_headline(const Json& comparison) {
-  const Json& results = comparison.at("results");
+Json comparison_headline(const StoredComparison& comparison) {
   const auto changes = changes_of(comparison);
-  const bool failed = text_of(comparison, "status") != "done";
   const bool different = !changes.empty() && changes.front().p.has_value();
-  Json view = failed
+  Json view = comparison.status != "done"
                   ? make_headline("FAILED", "✕", "bad",
                                   "Fewer than two results are usable: there is nothing to "
                                   "compare.")
                   : make_headline(different ? "DIFFERENT" : "COMPARED", different ? "!" : "○",
                                   different ? "warn" : "none", significance_sentence(comparison));
-  for (const Json& result : results) {
-    if (text_of(result, "status") == "converged") continue;
+  for (const StoredComparedResult& result : comparison.results) {
+    if (result.status == calib::FitStatus::converged) continue;
     view["class"] = "bad";
     add_reason(view,
-               fmt::format("{}: {}: {}", text_of(result, "name"), text_of(result, "status"),
-                           text_of(result, "message")),
+               fmt::format("{}: {}: {}", result.name, to_string(result.status), result.message),
                "results");
   }
   for (const Change& change : changes) add_reason(view, change_sentence(change), "estimates");
   return view;
 }
 
-std::vector<Figure> comparison_figures(const Json& comparison) {
-  std::vector<Figure> figures = parameter_figures(comparison.at("parameters"));
-  for (const Json& series : comparison.at("leak_trends")) {
+std::vector<Figure> comparison_figures(const StoredComparison& comparison) {
+  std::vector<Figure> figures = parameter_figures(comparison);
+  for (const StoredSeries& series : comparison.leak_trends) {
     for (const TrendAxis& axis : kTrendAxes) {
-      if (!differ(series.at("points"), axis.key)) continue;
-      figures.push_back({fmt::format("trend_{}_{}", axis.key, plain_name(text_of(series, "of"))),
-                         trend_plot(series, axis)});
+      if (!differ(series, axis)) continue;
+      figures.push_back(
+          {fmt::format("trend_{}_{}", axis.key, plain_name(series.of)), trend_plot(series, axis)});
     }
   }
   return figures;
 }
 
-Json comparison_view(const Json& comparison) {
+Json comparison_view(const StoredComparison& comparison) {
   Json view;
-  view["results"] = result_rows(comparison.at("results"));
+  view["results"] = result_rows(comparison);
   view["significance"] = Json::array();
-  for (std::size_t i = 1; i < comparison.at("significance").size(); ++i) {
+  for (std::size_t i = 1; i < comparison.significance.size(); ++i) {
+    const auto& each = comparison.significance[i];
     view["significance"].push_back(
-        fmt::format("{}: {}.", text_of(comparison.at("results").at(i), "name"),
-                    text_of(comparison.at("significance").at(i), "text")));
+        fmt::format("{}: {}.", comparison.results.at(i).name, each ? each->text : std::string()));
   }
-  view["parameters"] = parameter_rows(comparison.at("parameters"));
+  view["parameters"] = parameter_rows(comparison);
   view["plots"] = Json::array();
-  for (const Figure& figure : parameter_figures(comparison.at("parameters")))
+  for (const Figure& figure : parameter_figures(comparison))
     view["plots"].push_back({{"svg_html", svg(figure.plot)}});
   view["metrics"] = metric_rows(comparison);
   view["models"] = model_rows(comparison);
   view["has_metrics"] = !view["metrics"].empty();
-  view["conditions"] = score_rows_of(comparison.at("conditions"));
+  view["conditions"] = score_rows_of(comparison);
   view["has_conditions"] = !view["conditions"].empty();
-  view["trends"] = trend_views(comparison.at("leak_trends"));
+  view["trends"] = trend_views(comparison);
   view["has_trends"] = !view["trends"].empty();
-  view["records"] = Json::array();
-  std::size_t shared = 0;
-  for (const Json& record : comparison.at("records")) {
-    Json cells = Json::array();
-    bool everywhere = true;
-    for (const Json& in : record.at("in")) {
-      cells.push_back(in.get<bool>() ? "✓" : "–");
-      everywhere = everywhere && in.get<bool>();
-    }
-    shared += everywhere ? 1 : 0;
-    view["records"].push_back({{"file", text_of(record, "file")},
-                               {"sha256", text_of(record, "sha256")},
-                               {"cells", std::move(cells)}});
-  }
-  view["record_count"] = fmt::format("{}", view["records"].size());
-  view["shared"] = fmt::format("{}", shared);
-  view["warnings"] = comparison.at("warnings");
-  view["has_warnings"] = !comparison.at("warnings").empty();
+  add_records(comparison, view);
+  view["warnings"] = comparison.warnings;
+  view["has_warnings"] = !comparison.warnings.empty();
   return view;
 }
 

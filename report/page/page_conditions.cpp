@@ -7,81 +7,83 @@
 namespace rigcal::report {
 namespace {
 
-Json score_rows(const Json& condition) {
+Json score_rows(const StoredCondition& condition) {
   Json rows = Json::array();
-  for (const auto& [channel, scores] : condition.at("metrics").items()) {
+  for (const auto& [channel, scores] : condition.metrics) {
     const std::string_view unit = channel_unit(channel);
-    const auto floors = condition.at("noise_floor").find(channel);
-    const bool floor = floors != condition.at("noise_floor").end() && floors->is_object();
-    rows.push_back({{"channel", channel},
-                    {"badge", badge(channel_verdict(condition, channel))},
-                    {"rho2", shown_agreement(scores.at("rho2"))},
-                    {"r", shown_agreement(scores.at("r"))},
-                    {"ccc", shown_agreement(scores.at("ccc"))},
-                    {"error", shown_in(scores.at("absolute_error_percent"), 1.0, 4)},
-                    {"fit", shown_in(scores.at("nrmse_fit_percent"), 1.0, 5)},
-                    {"rmse", shown(scores.at("rmse"), unit, 4)},
-                    {"maximum", shown(scores.at("maximum_error"), unit, 4)},
-                    {"floor", shown_agreement(floor ? floors->at("rho2") : Json())},
-                    {"gain", shown_in(scores.at("gain_ratio"), 1.0, 5)},
-                    {"phase", shown_in(scores.at("phase_deg"), 1.0, 2)},
-                    {"delay", shown(scores.at("delay_s"), "s", 2)},
-                    {"problem", text_of(scores, "problem")},
-                    {"has_problem", !text_of(scores, "problem").empty()}});
+    const auto* floor = find(condition.noise_floor, channel);
+    const bool has_floor = floor != nullptr && floor->has_value();
+    rows.push_back(
+        {{"channel", channel},
+         {"badge", badge(condition.verdict_of(channel))},
+         {"rho2", shown_agreement(scores.rho2)},
+         {"r", shown_agreement(scores.r)},
+         {"ccc", shown_agreement(scores.ccc)},
+         {"error", shown_in(scores.absolute_error_percent, 1.0, 4)},
+         {"fit", shown_in(scores.nrmse_fit_percent, 1.0, 5)},
+         {"rmse", shown(scores.rmse, unit, 4)},
+         {"maximum", shown(scores.maximum_error, unit, 4)},
+         {"floor", shown_agreement(has_floor ? std::optional((*floor)->rho2) : std::nullopt)},
+         {"gain", shown_in(scores.gain_ratio, 1.0, 5)},
+         {"phase", shown_in(scores.phase_deg, 1.0, 2)},
+         {"delay", shown(scores.delay_s, "s", 2)},
+         {"problem", scores.problem.value_or("")},
+         {"has_problem", scores.problem.has_value()}});
   }
   return rows;
 }
 
-Json facts_of(const Json& condition) {
+Json facts_of(const StoredCondition& condition) {
   Json facts = Json::array();
   const auto add = [&](const std::string& text) { facts.push_back({{"text", text}}); };
-  if (const std::string waveform = text_of(condition, "waveform"); !waveform.empty()) add(waveform);
-  const auto quantity = [&](const char* key, const char* unit, const char* name) {
-    if (const auto value = number_of(condition, key))
-      add(fmt::format("{}{}", name, readable(*value, unit, 5)));
+  if (condition.waveform) add(std::string(to_string(*condition.waveform)));
+  const auto quantity = [&](const std::optional<double>& value, const char* unit,
+                            const char* name) {
+    if (value) add(fmt::format("{}{}", name, readable(*value, unit, 5)));
   };
-  quantity("frequency_hz", "Hz", "");
-  quantity("amplitude_m", "m", "amplitude ");
-  quantity("amplitude_v", "V", "amplitude ");
-  if (const std::string level = text_of(condition, "leak_level"); !level.empty())
-    add("leak " + level);
-  if (const auto kelvin = number_of(condition, "temperature_k"))
-    add(fmt::format("{:.4g} °C", *kelvin - 273.15));
-  if (const std::string date = text_of(condition, "date"); !date.empty()) add(date);
-  add("used to " + text_of(condition, "use"));
-  add(fmt::format("{} samples", condition.at("samples").get<long>()));
+  quantity(condition.frequency_hz, "Hz", "");
+  quantity(condition.amplitude_m, "m", "amplitude ");
+  quantity(condition.amplitude_v.value_or(std::nullopt), "V", "amplitude ");
+  if (condition.leak_level) add("leak " + *condition.leak_level);
+  if (condition.temperature_k) add(fmt::format("{:.4g} °C", *condition.temperature_k - 273.15));
+  if (condition.date) add(*condition.date);
+  add("used to " + std::string(to_string(condition.use)));
+  add(fmt::format("{} samples", condition.samples));
   return facts;
+}
+
+Json texts_view(const std::vector<std::string>& texts) {
+  Json list = Json::array();
+  for (const std::string& text : texts) list.push_back({{"text", text}});
+  return list;
 }
 
 }  // namespace
 
-std::vector<Figure> condition_figures(const Json& condition, const Table& series) {
+std::vector<Figure> condition_figures(const StoredCondition& condition, const Table& series) {
   std::vector<Figure> figures;
   if (series.columns.empty() || series.columns.front().empty()) return figures;
   for (const TimePlot& plot : time_plots(series))
-    figures.push_back({plot.name, picture(plot, series, text_of(condition, "id"))});
+    figures.push_back({plot.name, picture(plot, series, condition.id)});
   return figures;
 }
 
-Json condition_view(const Json& condition, const Table& series, const Json& curves,
-                    std::size_t points) {
-  const std::string id = text_of(condition, "id");
+Json condition_view(const StoredCondition& condition, const Table& series,
+                    const StoredChannelCurves* curves, std::size_t points) {
+  const std::string& id = condition.id;
   Json view;
   view["id"] = id;
-  view["not_scored"] = text_of(condition, "not_scored");
-  view["is_not_scored"] = !text_of(condition, "not_scored").empty();
+  view["not_scored"] = condition.not_scored.value_or("");
+  view["is_not_scored"] = condition.not_scored.has_value();
   view["anchor"] = anchor(id);
-  view["badge"] = badge(condition.at("verdict"));
-  view["failure"] = text_of(condition, "failure");
-  view["failed"] = !text_of(condition, "failure").empty();
+  view["badge"] = badge(condition.verdict);
+  view["failure"] = condition.failure.value_or("");
+  view["failed"] = condition.failure.has_value();
   view["facts"] = facts_of(condition);
-  view["reasons"] = Json::array();
-  for (const Json& reason : condition.at("reasons")) view["reasons"].push_back({{"text", reason}});
-  view["has_reasons"] = !condition.at("reasons").empty();
-  view["doubts"] = Json::array();
-  if (const auto doubts = condition.find("warnings"); doubts != condition.end())
-    for (const Json& doubt : *doubts) view["doubts"].push_back({{"text", doubt}});
-  view["has_doubts"] = !view["doubts"].empty();
+  view["reasons"] = texts_view(condition.reasons);
+  view["has_reasons"] = !condition.reasons.empty();
+  view["doubts"] = texts_view(condition.warnings);
+  view["has_doubts"] = !condition.warnings.empty();
   view["scores"] = score_rows(condition);
   view["has_scores"] = !view["scores"].empty();
   view["plots"] = Json::array();

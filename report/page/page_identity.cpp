@@ -5,10 +5,8 @@
 
 namespace rigcal::report {
 
-Json identity_view(const Json& result) {
-  const auto found = result.find("report");
-  if (found == result.end() || !found->is_object()) return {{"there", false}};
-  const Json& identity = *found;
+Json identity_view(const Json& identity) {
+  if (!identity.is_object()) return {{"there", false}};
   Json view{{"there", true}, {"facts", Json::array()}, {"sensors", Json::array()}};
   const auto add = [&](std::string_view label, const std::string& value) {
     if (!value.empty()) view["facts"].push_back({{"name", label}, {"value", value}});

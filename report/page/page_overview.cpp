@@ -26,10 +26,10 @@ std::string spaced(std::string key) {
 }
 
 /// Position where it was compared, else the first channel.
-std::string shown_channel(const Json& conditions) {
+std::string shown_channel(const std::vector<StoredCondition>& conditions) {
   std::string first;
-  for (const Json& condition : conditions) {
-    for (const auto& [channel, scores] : condition.at("metrics").items()) {
+  for (const StoredCondition& condition : conditions) {
+    for (const auto& [channel, scores] : condition.metrics) {
       if (channel == "position") return channel;
       if (first.empty()) first = channel;
     }
@@ -43,17 +43,17 @@ std::string column_name(const char* what, const std::string& channel) {
 }
 
 /// The last two periods of a record, or all of it where it has fewer.
-std::size_t first_shown(const Json& condition, const std::vector<double>& time_s) {
-  const auto frequency = number_of(condition, "frequency_hz");
+std::size_t first_shown(const StoredCondition& condition, const std::vector<double>& time_s) {
+  const std::optional<double>& frequency = condition.frequency_hz;
   if (!frequency || !(*frequency > 0.0)) return 0;
   const double from = time_s.back() - kPeriods / *frequency;
   return static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), from) -
                                   time_s.begin());
 }
 
-Plot small_plot(const Json& condition, const Table& series, const std::string& channel) {
+Plot small_plot(const StoredCondition& condition, const Table& series, const std::string& channel) {
   Plot plot;
-  plot.title = fmt::format("{} of {}, measured and model", channel, text_of(condition, "id"));
+  plot.title = fmt::format("{} of {}, measured and model", channel, condition.id);
   plot.width = kCellWidth;
   plot.height = kCellHeight;
   plot.bare = true;
@@ -76,74 +76,68 @@ Plot small_plot(const Json& condition, const Table& series, const std::string& c
 /// The condition with the least or the greatest of a metric.
 struct Extreme {
   double value = 0.0;
-  std::string condition;
+  std::string of;
 };
 
 template <typename Worse>
-std::optional<Extreme> extreme(const Json& conditions, const std::string& channel,
-                               const char* metric, Worse worse) {
+std::optional<Extreme> extreme(const std::vector<StoredCondition>& conditions,
+                               const std::string& channel, double metrics::Agreement::*metric,
+                               Worse worse) {
   std::optional<Extreme> found;
-  for (const Json& condition : conditions) {
-    const auto scores = condition.at("metrics").find(channel);
-    if (scores == condition.at("metrics").end()) continue;
-    const auto value = number_of(*scores, metric);
-    if (value && (!found || worse(*value, found->value)))
-      found = Extreme{*value, text_of(condition, "id")};
+  for (const StoredCondition& condition : conditions) {
+    const StoredScore* scores = find(condition.metrics, channel);
+    if (scores == nullptr || std::isnan(scores->*metric)) continue;
+    if (!found || worse(scores->*metric, found->value))
+      found = Extreme{scores->*metric, condition.id};
   }
   return found;
 }
 
 /// Half an interval over its value of the estimate that is known the least, nuisance parameters and
 /// those without an interval left out.
-std::optional<Extreme> widest_interval(const Json& parameters) {
+std::optional<Extreme> widest_interval(const std::vector<StoredParameter>& parameters) {
   std::optional<Extreme> widest;
-  for (const Json& parameter : parameters) {
-    const auto value = number_of(parameter, "value");
-    const Json& ends = parameter.at("ci95");
-    if (!parameter.at("fitted").get<bool>() || parameter.at("nuisance").get<bool>() ||
-        !ends.is_array() || !ends.at(0).is_number() || !ends.at(1).is_number() || !value ||
-        *value == 0.0 || text_of(parameter, "identifiability") == "bounded")
+  for (const StoredParameter& p : parameters) {
+    const Interval interval(p.ci95);
+    if (!p.fitted || p.nuisance || !interval.ends || !p.value || *p.value == 0.0 ||
+        p.identifiability == calib::Identifiability::bounded)
       continue;
-    const double half =
-        0.5 * (ends.at(1).get<double>() - ends.at(0).get<double>()) / std::abs(*value);
-    if (!widest || half > widest->value) widest = Extreme{half, parameter_label(parameter)};
+    const double half = interval.half_width() / std::abs(*p.value);
+    if (!widest || half > widest->value) widest = Extreme{half, parameter_label(p)};
   }
   return widest;
 }
 
-Json three_numbers(const Json& result, const std::string& channel) {
+Json three_numbers(const StoredFit& fit, const std::string& channel) {
+  using metrics::Agreement;
   Json numbers = Json::array();
   const auto add = [&](const char* name, const std::string& text, const std::string& of) {
     numbers.push_back({{"name", name}, {"text", text}, {"of", of}});
   };
-  const Json& conditions = result.at("conditions");
-  if (const auto least = extreme(conditions, channel, "rho2", std::less<>()))
-    add("Lowest rho2", agreement_text(least->value), least->condition);
-  if (const auto largest = extreme(conditions, channel, "absolute_error_percent", std::greater<>()))
-    add("Largest mean error", fmt::format("{:.3g} % of the range", largest->value),
-        largest->condition);
-  if (const auto widest = widest_interval(result.at("parameters")))
-    add("Least certain estimate", fmt::format("± {:.2g} %", 100.0 * widest->value),
-        widest->condition);
+  if (const auto least = extreme(fit.conditions, channel, &Agreement::rho2, std::less<>()))
+    add("Lowest rho2", agreement_text(least->value), least->of);
+  if (const auto largest =
+          extreme(fit.conditions, channel, &Agreement::absolute_error_percent, std::greater<>()))
+    add("Largest mean error", fmt::format("{:.3g} % of the range", largest->value), largest->of);
+  if (const auto widest = widest_interval(fit.parameters))
+    add("Least certain estimate", fmt::format("± {:.2g} %", 100.0 * widest->value), widest->of);
   return numbers;
 }
 
 }  // namespace
 
 Json overview_view(const Calibration& stored) {
-  const Json& conditions = stored.result.at("conditions");
+  const std::vector<StoredCondition>& conditions = stored.result.conditions;
   const std::string channel = shown_channel(conditions);
   Json view{{"there", !channel.empty()}, {"channel", spaced(channel)}, {"cells", Json::array()}};
   view["numbers"] = channel.empty() ? Json::array() : three_numbers(stored.result, channel);
   view["has_numbers"] = !view["numbers"].empty();
   if (channel.empty()) return view;
   for (std::size_t i = 0; i < conditions.size(); ++i) {
-    const Json& condition = conditions.at(i);
-    const std::string id = text_of(condition, "id");
-    const Plot plot = small_plot(condition, stored.series[i], channel);
-    view["cells"].push_back({{"id", id},
-                             {"anchor", anchor(id)},
-                             {"badge", badge(condition.at("verdict"))},
+    const Plot plot = small_plot(conditions[i], stored.series[i], channel);
+    view["cells"].push_back({{"id", conditions[i].id},
+                             {"anchor", anchor(conditions[i].id)},
+                             {"badge", badge(conditions[i].verdict)},
                              {"drawn", !plot.traces.empty()},
                              {"plot_html", plot.traces.empty() ? std::string() : svg(plot)}});
   }

@@ -10,124 +10,126 @@
 namespace rigcal::report {
 namespace {
 
-RowUnit unit_of(const Json& parameter) {
-  return row_unit(number_of(parameter, "value").value_or(0.0), parameter);
-}
-
 /// The 95 % interval of one of the errors alone, as if it were known exactly.
-Json interval_by(const Json& parameter, const char* error_key, const RowUnit& unit) {
+Json interval_by(const StoredParameter& p, const std::optional<double>& error,
+                 const RowUnit& unit) {
   constexpr double kNormalQuantile = 1.96;
-  const auto value = number_of(parameter, "value");
-  const auto error = number_of(parameter, error_key);
-  if (!value || !error) return shown_interval(nullptr, unit.si);
-  return shown_interval(
-      Json::array({*value - kNormalQuantile * *error, *value + kNormalQuantile * *error}), unit.si);
+  std::optional<Range> range;
+  if (p.value && error)
+    range = {*p.value - kNormalQuantile * *error, *p.value + kNormalQuantile * *error};
+  return shown_interval(range, unit.si);
 }
 
 /// "± 2.1 %" of the value; empty where that says nothing.
-std::string half_width_text(const Json& parameter) {
-  const Json& ci = parameter.at("ci95");
-  const auto value = number_of(parameter, "value");
-  if (!ci.is_array() || !ci.at(0).is_number() || !ci.at(1).is_number() || !value || *value == 0.0)
-    return {};
+std::string half_width_text(const StoredParameter& p) {
+  const auto ends = Interval(p.ci95).ends;
+  if (!ends || !p.value || *p.value == 0.0) return {};
   // The end that no limit of the parameter has cut, as the grade and its reason count.
-  const double half = std::max(ci.at(1).get<double>() - *value, *value - ci.at(0).get<double>());
-  const double percent = 100.0 * half / std::abs(*value);
+  const double half = std::max(ends->high - *p.value, *p.value - ends->low);
+  const double percent = 100.0 * half / std::abs(*p.value);
   if (percent > 1000.0) return "over 1000 %";
   return percent < 100.0 ? fmt::format("± {:.2g} %", percent) : fmt::format("± {:.0f} %", percent);
 }
 
-Json grade(const Json& parameter) {
-  const std::string text = text_of(parameter, "identifiability");
-  const bool bound = parameter.at("at_bound").get<bool>();
-  Json view{{"word", text == "not_identifiable" ? "not identifiable" : text},
-            {"mark", "✓"},
-            {"class", "good"}};
-  if (text == "weak" || text == "bounded" || bound) {
-    view["mark"] = "!";
-    view["class"] = "warn";
+Json grade(const StoredParameter& p) {
+  using calib::Identifiability;
+  if (!p.identifiability) return {{"word", ""}, {"mark", "✓"}, {"class", "good"}};
+  std::string word;
+  switch (*p.identifiability) {
+    case Identifiability::not_identifiable:
+      word = "not identifiable";
+      break;
+    case Identifiability::bounded:
+      return {{"word", "bounded: not different from zero"}, {"mark", "!"}, {"class", "warn"}};
+    case Identifiability::weak:
+    case Identifiability::identified:
+      word = to_string(*p.identifiability);
   }
-  if (text == "not_identifiable") {
-    view["mark"] = "✕";
-    view["class"] = "bad";
-  }
-  if (text == "bounded") view["word"] = "bounded: not different from zero";
-  if (bound && text != "bounded") view["word"] = view["word"].get<std::string>() + ", at a bound";
+  if (p.at_bound) word += ", at a bound";
+  if (p.identifiability == Identifiability::not_identifiable)
+    return {{"word", word}, {"mark", "✕"}, {"class", "bad"}};
+  const bool doubtful = p.at_bound || p.identifiability == Identifiability::weak;
+  return {{"word", word}, {"mark", doubtful ? "!" : "✓"}, {"class", doubtful ? "warn" : "good"}};
+}
+
+Json shown_error(const StoredParameter& p, const std::optional<double>& error,
+                 const RowUnit& unit) {
+  Json view = shown_in(error, unit.si, 2);
+  view["interval"] = interval_by(p, error, unit);
   return view;
 }
 
-Json fitted_row(const Json& p) {
+Json fitted_row(const StoredParameter& p) {
   const RowUnit unit = unit_of(p);
   Json row;
-  row["name"] = text_of(p, "key");
-  row["symbol"] = text_of(p, "symbol");
-  const std::string level = text_of(p, "level");
-  row["whose"] = level.empty() ? std::string("rig") : level;
-  row["nuisance"] = p.at("nuisance").get<bool>();
-  row["value"] = shown_matched(p.at("value"), p.at("ci95"), unit.si, 6);
+  row["name"] = p.key;
+  row["symbol"] = p.symbol;
+  row["whose"] = p.level.value_or("rig");
+  row["nuisance"] = p.nuisance;
+  row["value"] = shown_matched(p.value, p.ci95, unit.si, 6);
   row["unit"] = unit.name;
-  row["interval"] = shown_interval(p.at("ci95"), unit.si);
+  row["interval"] = shown_interval(p.ci95, unit.si);
   row["half_width"] = half_width_text(p);
-  for (const char* key : {"standard_error", "robust_standard_error"}) {
-    row[key] = shown_in(p.at(key), unit.si, 2);
-    row[key]["interval"] = interval_by(p, key, unit);
-  }
-  row["start"] = shown_in(p.at("start"), unit.si, 5);
-  row["lower"] = shown_in(p.at("lower"), unit.si, 4);
-  row["upper"] = shown_in(p.at("upper"), unit.si, 4);
+  row["standard_error"] = shown_error(p, p.standard_error, unit);
+  row["robust_standard_error"] = shown_error(p, p.robust_standard_error, unit);
+  row["start"] = shown_in(p.start, unit.si, 5);
+  row["lower"] = shown_in(p.lower, unit.si, 4);
+  row["upper"] = shown_in(p.upper, unit.si, 4);
   row["grade"] = grade(p);
-  row["reason"] = text_of(p, "reason");
-  row["has_reason"] = !text_of(p, "reason").empty();
+  row["reason"] = p.reason;
+  row["has_reason"] = !p.reason.empty();
   return row;
 }
 
-Json known_row(const Json& p) {
+Json known_row(const StoredParameter& p) {
   const RowUnit unit = unit_of(p);
-  const std::string level = text_of(p, "level");
-  return {{"name", text_of(p, "key")},
-          {"symbol", text_of(p, "symbol")},
-          {"whose", level.empty() ? std::string("rig") : level},
-          {"value", shown_in(p.at("value"), unit.si, 6)},
+  return {{"name", p.key},
+          {"symbol", p.symbol},
+          {"whose", p.level.value_or("rig")},
+          {"value", shown_in(p.value, unit.si, 6)},
           {"unit", unit.name},
-          {"reason", text_of(p, "reason")}};
+          {"reason", p.reason}};
 }
 
-Json correlation_rows(const Json& correlation) {
-  const Json& names = correlation.at("names");
-  const Json& matrix = correlation.at("matrix");
+/// Correlation of two estimates; NaN where it is not known.
+double at(const StoredCorrelation& correlation, std::size_t i, std::size_t j) {
+  const auto& matrix = correlation.matrix;
+  return i < matrix.size() && j < matrix[i].size() ? matrix[i][j] : std::nan("");
+}
+
+Json correlation_rows(const StoredCorrelation& correlation) {
+  const std::vector<std::string>& names = correlation.names;
   Json rows = Json::array();
   for (std::size_t i = 0; i < names.size(); ++i) {
     Json cells = Json::array();
     for (std::size_t j = 0; j < names.size(); ++j) {
-      const Json& value = matrix.at(i).at(j);
-      const double r = value.is_number() ? value.get<double>() : 0.0;
+      const double value = at(correlation, i, j);
+      const double r = std::isnan(value) ? 0.0 : value;
       Json cell{{"r", shown_in(value, 1.0, 3)},
                 {"strength", fmt::format("{:.2f}", std::min(1.0, std::abs(r)))},
                 {"sign", i == j    ? "self"
                          : r < 0.0 ? "minus"
                                    : "plus"}};
-      if (value.is_number()) cell["r"]["text"] = fmt::format("{:.2f}", r);
+      if (!std::isnan(value)) cell["r"]["text"] = fmt::format("{:.2f}", r);
       cells.push_back(std::move(cell));
     }
-    rows.push_back({{"number", fmt::format("{}", i + 1)},
-                    {"name", names.at(i).get<std::string>()},
-                    {"cells", std::move(cells)}});
+    rows.push_back(
+        {{"number", fmt::format("{}", i + 1)}, {"name", names[i]}, {"cells", std::move(cells)}});
   }
   return rows;
 }
 
 /// Pairs that can hardly be told apart, in words.
-std::string correlation_reading(const Json& correlation) {
-  const Json& names = correlation.at("names");
-  const Json& matrix = correlation.at("matrix");
+std::string correlation_reading(const StoredCorrelation& correlation) {
+  const std::vector<std::string>& names = correlation.names;
   double strongest = 0.0;
   std::string pair;
   for (std::size_t i = 0; i < names.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      const Json& value = matrix.at(i).at(j);
-      if (!value.is_number() || std::abs(value.get<double>()) <= std::abs(strongest)) continue;
-      strongest = value.get<double>();
-      pair = names.at(j).get<std::string>() + " and " + names.at(i).get<std::string>();
+      const double value = at(correlation, i, j);
+      if (!(std::abs(value) > std::abs(strongest))) continue;
+      strongest = value;
+      pair = names[j] + " and " + names[i];
     }
   }
   if (pair.empty()) return {};
@@ -177,10 +179,10 @@ std::string lift_common_reasons(Json& rows) {
   return joined_reason(common);
 }
 
-std::vector<std::string> not_identifiable(const Json& result) {
+std::vector<std::string> not_identifiable(const StoredFit& fit) {
   std::vector<std::string> names;
-  for (const Json& p : result.at("parameters")) {
-    if (p.at("fitted").get<bool>() && text_of(p, "identifiability") == "not_identifiable")
+  for (const StoredParameter& p : fit.parameters) {
+    if (p.fitted && p.identifiability == calib::Identifiability::not_identifiable)
       names.push_back(parameter_label(p));
   }
   return names;
@@ -188,17 +190,17 @@ std::vector<std::string> not_identifiable(const Json& result) {
 
 }  // namespace
 
-Json parameters_view(const Json& result) {
+Json parameters_view(const std::vector<StoredParameter>& parameters,
+                     const StoredCorrelation& correlation) {
   Json fitted = Json::array();
   Json known = Json::array();
-  for (const Json& p : result.at("parameters")) {
-    if (p.at("fitted").get<bool>()) {
+  for (const StoredParameter& p : parameters) {
+    if (p.fitted) {
       fitted.push_back(fitted_row(p));
     } else {
       known.push_back(known_row(p));
     }
   }
-  const Json& correlation = result.at("correlation");
   Json view;
   const std::string common = lift_common_reasons(fitted);
   view["common"] = common;
@@ -207,28 +209,27 @@ Json parameters_view(const Json& result) {
   view["fitted"] = std::move(fitted);
   view["has_known"] = !known.empty();
   view["known"] = std::move(known);
-  view["has_correlation"] = correlation.at("names").size() > 1;
+  view["has_correlation"] = correlation.names.size() > 1;
   view["correlation"] = correlation_rows(correlation);
   view["correlation_reading"] = correlation_reading(correlation);
   return view;
 }
 
-Json identifiability_view(const Json& result) {
-  std::vector<double> values;
-  for (const Json& value : result.at("singular_values"))
-    if (value.is_number()) values.push_back(value.get<double>());
+Json identifiability_view(const StoredFit& fit) {
+  std::vector<double> values = fit.singular_values;
+  std::erase_if(values, [](double value) { return std::isnan(value); });
   Json view;
   view["known"] = !values.empty();
   if (values.empty()) return view;
-  const long rank = count_at(result, "rank");
-  const auto all = static_cast<long>(values.size());
+  const int rank = fit.rank;
+  const auto all = static_cast<int>(values.size());
   if (rank < all) {
     view["reading"] = fmt::format(
         "The Jacobian has rank {} of {}: {} combination{} of the parameters can be changed without "
         "any effect on the records.",
         rank, all, all - rank, all - rank == 1 ? "" : "s");
   } else {
-    const std::vector<std::string> open = not_identifiable(result);
+    const std::vector<std::string> open = not_identifiable(fit);
     view["reading"] = fmt::format(
         "The Jacobian has full rank ({} of {}): every combination of the parameters has an effect "
         "on "

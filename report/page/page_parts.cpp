@@ -12,52 +12,56 @@
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
-Json shown_in(const Json& value, double si_per_unit, int digits) {
-  if (!value.is_number()) return {{"exact", ""}, {"text", "–"}};
-  return {{"exact", fmt::format("{}", value.get<double>())},
-          {"text", significant(value.get<double>() / si_per_unit, digits)}};
+namespace {
+
+/// A number with all its digits, and as people read it.
+Json exact_and(double value, std::string text) {
+  return {{"exact", fmt::format("{}", value)}, {"text", std::move(text)}};
 }
 
-Json shown_interval(const Json& pair, double si_per_unit) {
-  const bool known = pair.is_array() && pair.at(0).is_number() && pair.at(1).is_number();
+}  // namespace
+
+Json shown_in(const Number& number, double si_per_unit, int digits) {
+  if (!number.value) return {{"exact", ""}, {"text", "–"}};
+  return exact_and(*number.value, significant(*number.value / si_per_unit, digits));
+}
+
+Json shown_interval(const Interval& interval, double si_per_unit) {
   constexpr int kDigits = 5;
-  return {{"known", known},
-          {"low", shown_matched(known ? pair.at(0) : Json(), pair, si_per_unit, kDigits)},
-          {"high", shown_matched(known ? pair.at(1) : Json(), pair, si_per_unit, kDigits)}};
+  const auto& ends = interval.ends;
+  const auto end = [&](double Range::*side) {
+    return shown_matched(ends ? std::optional((*ends).*side) : std::nullopt, interval, si_per_unit,
+                         kDigits);
+  };
+  return {{"known", ends.has_value()}, {"low", end(&Range::low)}, {"high", end(&Range::high)}};
 }
 
-Json shown(const Json& value, std::string_view si_unit, int digits) {
-  if (!value.is_number()) return shown_in(value, 1.0, digits);
-  return {{"exact", fmt::format("{}", value.get<double>())},
-          {"text", readable(value.get<double>(), si_unit, digits)}};
+Json shown(const Number& number, std::string_view si_unit, int digits) {
+  if (!number.value) return shown_in(number, 1.0, digits);
+  return exact_and(*number.value, readable(*number.value, si_unit, digits));
 }
 
-Json shown_agreement(const Json& value) {
-  if (!value.is_number()) return shown_in(value, 1.0);
-  return {{"exact", fmt::format("{}", value.get<double>())},
-          {"text", agreement_text(value.get<double>())}};
+Json shown_agreement(const Number& number) {
+  if (!number.value) return shown_in(number, 1.0);
+  return exact_and(*number.value, agreement_text(*number.value));
 }
 
-Json shown_score(const std::string& metric, const Json& value) {
-  if (metric == "absolute_error_percent" || !value.is_number()) return shown_in(value, 1.0, 4);
-  const double v = value.get<double>();
+Json shown_score(const std::string& metric, const Number& number) {
+  if (metric == "absolute_error_percent" || !number.value) return shown_in(number, 1.0, 4);
+  const double v = *number.value;
   const double missing = std::abs(1.0 - v);
   const int decimals =
       missing > 0.0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(missing))) + 1, 3, 10) : 3;
-  return {{"exact", fmt::format("{}", v)}, {"text", fmt::format("{:.{}f}", v, decimals)}};
+  return exact_and(v, fmt::format("{:.{}f}", v, decimals));
 }
 
-Json shown_matched(const Json& value, const Json& interval, double si_per_unit, int digits) {
-  const bool known =
-      interval.is_array() && interval.at(0).is_number() && interval.at(1).is_number();
-  if (!value.is_number() || !known) return shown_in(value, si_per_unit, digits);
-  const double half = 0.5 * (interval.at(1).get<double>() - interval.at(0).get<double>());
-  return {{"exact", fmt::format("{}", value.get<double>())},
-          {"text", matched(value.get<double>() / si_per_unit, half / si_per_unit)}};
+Json shown_matched(const Number& number, const Interval& interval, double si_per_unit, int digits) {
+  if (!number.value || !interval.ends) return shown_in(number, si_per_unit, digits);
+  return exact_and(*number.value,
+                   matched(*number.value / si_per_unit, interval.half_width() / si_per_unit));
 }
 
-RowUnit row_unit(double value_si, const Json& parameter) {
-  const std::string si_unit = text_of(parameter, "unit");
+RowUnit row_unit(double value_si, std::string_view si_unit) {
   const ReadableUnit unit = readable_unit(value_si, si_unit);
   return {std::string(unit.name), unit.si};
 }
@@ -83,22 +87,29 @@ void add_reason(Json& headline, const std::string& text, const std::string& link
   headline["more"] = headline["more"].get<int>() + 1;
 }
 
-std::string anchor(const std::string& condition) { return "condition-" + condition; }
-
-Json badge(const Json& verdict) {
-  if (!verdict.is_string()) return {{"word", "not judged"}, {"mark", "○"}, {"class", "none"}};
-  const auto word = verdict.get<std::string>();
-  if (word == "PASS") return {{"word", word}, {"mark", "✓"}, {"class", "good"}};
-  if (word == "WARN") return {{"word", word}, {"mark", "!"}, {"class", "warn"}};
-  return {{"word", word}, {"mark", "✕"}, {"class", "bad"}};
+std::string grade_words(const std::optional<calib::Identifiability>& grade) {
+  if (grade == calib::Identifiability::not_identifiable) return "not identifiable";
+  return grade ? std::string(to_string(*grade)) : std::string();
 }
 
-std::string parameter_label(const Json& parameter) {
-  const std::string level = text_of(parameter, "level");
-  const std::string key = parameter.at("key").get<std::string>();
-  if (level.empty()) return key;
-  const bool leak = text_of(parameter, "scope") == "leak_level";
-  return fmt::format("{} ({} {})", key, leak ? "leak level" : "condition", level);
+bool is_doubtful(const std::optional<calib::Identifiability>& grade) {
+  return grade && grade != calib::Identifiability::identified;
+}
+
+std::string anchor(const std::string& condition) { return "condition-" + condition; }
+
+Json badge(const std::optional<calib::Verdict>& verdict) {
+  if (!verdict) return {{"word", "not judged"}, {"mark", "○"}, {"class", "none"}};
+  const std::string word(to_string(*verdict));
+  switch (*verdict) {
+    case calib::Verdict::pass:
+      return {{"word", word}, {"mark", "✓"}, {"class", "good"}};
+    case calib::Verdict::warn:
+      return {{"word", word}, {"mark", "!"}, {"class", "warn"}};
+    case calib::Verdict::fail:
+      break;
+  }
+  return {{"word", word}, {"mark", "✕"}, {"class", "bad"}};
 }
 
 Plot ranked_points(const std::string& title, const std::string& y_label,
@@ -118,24 +129,16 @@ Plot ranked_points(const std::string& title, const std::string& y_label,
   return plot;
 }
 
-void add_interval(Trace& intervals, double x, const Json& pair, double si_per_unit) {
-  if (!pair.is_array() || !pair.at(0).is_number() || !pair.at(1).is_number()) return;
+void add_interval(Trace& intervals, double x, const Interval& interval, double si_per_unit) {
+  if (!interval.ends) return;
   intervals.x.push_back(x);
-  intervals.y.push_back(pair.at(0).get<double>() / si_per_unit);
-  intervals.upper.push_back(pair.at(1).get<double>() / si_per_unit);
+  intervals.y.push_back(interval.ends->low / si_per_unit);
+  intervals.upper.push_back(interval.ends->high / si_per_unit);
 }
 
 std::string_view channel_unit(std::string_view channel) {
   const auto known = datasets::channel_from_key(channel);
   return known ? datasets::info(*known).unit : std::string_view("1");
-}
-
-Json channel_verdict(const Json& condition, const std::string& channel) {
-  if (!text_of(condition, "failure").empty()) return condition.at("verdict");
-  const auto verdicts = condition.find("channel_verdicts");
-  if (verdicts == condition.end()) return nullptr;
-  const auto found = verdicts->find(channel);
-  return found == verdicts->end() ? Json(nullptr) : *found;
 }
 
 }  // namespace rigcal::report

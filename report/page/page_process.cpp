@@ -7,44 +7,38 @@
 
 namespace rigcal::report {
 
-Json starts_view(const Json& result) {
+Json starts_view(const StoredFit& fit) {
   Json view;
-  const Json& starts = result.at("starts");
-  view["known"] = !starts.empty();
+  view["known"] = !fit.starts.empty();
   view["rows"] = Json::array();
-  const int best = result.at("best_start").get<int>();
   std::vector<double> costs;
   double least = HUGE_VAL;
-  for (const Json& start : starts) {
-    const auto final_cost = number_of(start, "final_cost");
-    const int number = start.at("number").get<int>();
-    view["rows"].push_back({{"number", fmt::format("{}", number)},
-                            {"best", number == best},
-                            {"status", text_of(start, "status")},
-                            {"initial_cost", shown_in(start.at("initial_cost"), 1.0, 6)},
-                            {"final_cost", shown_in(start.at("final_cost"), 1.0, 6)},
-                            {"iterations", fmt::format("{}", start.at("iterations").get<int>())},
-                            {"message", text_of(start, "message")}});
-    if (!final_cost || text_of(start, "status") == "failed") continue;
-    costs.push_back(*final_cost);
-    least = std::min(least, *final_cost);
+  for (const StoredStart& start : fit.starts) {
+    view["rows"].push_back({{"number", fmt::format("{}", start.number)},
+                            {"best", start.number == fit.best_start},
+                            {"status", to_string(start.status)},
+                            {"initial_cost", shown_in(start.initial_cost, 1.0, 6)},
+                            {"final_cost", shown_in(start.final_cost, 1.0, 6)},
+                            {"iterations", fmt::format("{}", start.iterations)},
+                            {"message", start.message}});
+    if (!start.final_cost || start.status == calib::FitStatus::failed) continue;
+    costs.push_back(*start.final_cost);
+    least = std::min(least, *start.final_cost);
   }
   std::sort(costs.begin(), costs.end());
-  const std::size_t all = starts.size();
   if (costs.empty()) {
     view["reading"] = "No start ended with a cost: there is no answer.";
-  } else if (all == 1) {
+  } else if (fit.starts.size() == 1) {
     view["reading"] = "One start alone: whether another minimum lies lower was not looked for.";
   } else {
-    view["reading"] = text_of(result, "agreement") + ".";
+    view["reading"] = fit.agreement + ".";
   }
-  const auto cost = number_of(result, "cost");
   constexpr double kSameCost = 1e-3;
-  if (cost && !costs.empty() && std::abs(*cost - least) > kSameCost * least) {
+  if (fit.cost && !costs.empty() && std::abs(*fit.cost - least) > kSameCost * least) {
     view["reading"] = fmt::format(
         "{} These costs are by the noise as it was taken before the last estimate of it; by that "
         "of the result the cost is {:.6g}.",
-        text_of(view, "reading"), *cost);
+        text_of(view, "reading"), *fit.cost);
   }
   view["waterfall"] = costs.size() > 1;
   if (costs.size() > 1) {
@@ -55,27 +49,27 @@ Json starts_view(const Json& result) {
   return view;
 }
 
-Json ledger_view(const Json& result) {
+Json ledger_view(const StoredFit& fit) {
   Json view;
   view["warnings"] = Json::array();
-  for (const Json& warning : result.at("warnings")) view["warnings"].push_back({{"text", warning}});
-  view["has_warnings"] = !view["warnings"].empty();
+  for (const std::string& warning : fit.warnings) view["warnings"].push_back({{"text", warning}});
+  view["has_warnings"] = !fit.warnings.empty();
   view["failures"] = Json::array();
-  for (const Json& failure : result.at("failures")) {
+  for (const StoredFailure& failure : fit.failures) {
     std::string values;
-    for (const auto& [name, value] : failure.at("parameters").items()) {
+    for (const auto& [name, value] : failure.parameters) {
       values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", name,
-                            value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "–");
+                            std::isnan(value) ? "–" : fmt::format("{:.6g}", value));
     }
-    view["failures"].push_back({{"condition", text_of(failure, "condition")},
-                                {"start", fmt::format("{}", failure.at("start").get<int>())},
-                                {"time", shown(failure.at("time_s"), "s", 5)},
-                                {"reason", text_of(failure, "reason")},
+    view["failures"].push_back({{"condition", failure.condition},
+                                {"start", fmt::format("{}", failure.start)},
+                                {"time", shown(failure.time_s, "s", 5)},
+                                {"reason", failure.reason},
                                 {"values", values}});
   }
-  view["has_failures"] = !view["failures"].empty();
-  view["failure_count"] = fmt::format("{}", result.at("failure_count").get<long>());
-  view["nothing"] = view["warnings"].empty() && view["failures"].empty();
+  view["has_failures"] = !fit.failures.empty();
+  view["failure_count"] = fmt::format("{}", fit.failure_count);
+  view["nothing"] = fit.warnings.empty() && fit.failures.empty();
   return view;
 }
 
@@ -100,19 +94,32 @@ Json provenance_view(const StoredProvenance& provenance, const std::string& name
   return view;
 }
 
-void add_making(const Json& result, Json& view) {
-  const auto add = [&](const char* fact, const char* key, int digits, const char* unit) {
-    if (const auto value = number_of(result, key)) {
-      view["facts"].push_back(
-          {{"name", fact}, {"value", fmt::format("{:.{}g}{}", *value, digits, unit)}});
-    }
-  };
-  add("Tolerance of the simulations", "simulation_tolerance", 3, "");
-  add("Residuals", "residual_count", 12, "");
-  add("Evaluations", "evaluations", 12, "");
-  add("Time", "wall_seconds", 3, " s");
-  add("Cost", "cost", 8, "");
-  add("Reduced chi-square", "reduced_chi_square", 5, "");
+namespace {
+
+void add_fact(Json& view, const char* fact, const std::optional<double>& value, int digits,
+              const char* unit = "") {
+  if (!value) return;
+  view["facts"].push_back(
+      {{"name", fact}, {"value", fmt::format("{:.{}g}{}", *value, digits, unit)}});
 }
+
+/// What a fit to records and one to published tables both tell.
+template <typename Fit>
+void add_effort(const Fit& fit, Json& view) {
+  add_fact(view, "Residuals", static_cast<double>(fit.residual_count), 12);
+  add_fact(view, "Evaluations", static_cast<double>(fit.evaluations), 12);
+  add_fact(view, "Time", fit.wall_seconds, 3, " s");
+  add_fact(view, "Cost", fit.cost, 8);
+}
+
+}  // namespace
+
+void add_making(const StoredFit& fit, Json& view) {
+  add_fact(view, "Tolerance of the simulations", fit.simulation_tolerance, 3);
+  add_effort(fit, view);
+  add_fact(view, "Reduced chi-square", fit.reduced_chi_square, 5);
+}
+
+void add_making(const StoredTablesFit& fit, Json& view) { add_effort(fit, view); }
 
 }  // namespace rigcal::report

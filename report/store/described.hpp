@@ -1,7 +1,7 @@
 #pragma once
 
 #include <array>
-#include <cctype>
+#include <cmath>
 #include <concepts>
 #include <cstdint>
 #include <limits>
@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -43,9 +44,26 @@ struct Omittable : std::optional<T> {
   using std::optional<T>::optional;
 };
 
+/// A member that results of earlier versions lack: the default of T then.
+template <typename T>
+struct Later : T {
+  using T::T;
+  using T::operator=;
+  Later() = default;
+  Later(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
+};
+
 /// Keys and values in their order.
 template <typename T>
 using Keyed = std::vector<std::pair<std::string, T>>;
+
+/// The value of a key; null where there is none.
+template <typename T>
+const T* find(const Keyed<T>& keyed, std::string_view key) {
+  for (const auto& [name, value] : keyed)
+    if (name == key) return &value;
+  return nullptr;
+}
 
 /// All values of an enumeration that results name by to_string(). A specialisation lists them.
 template <typename Enum>
@@ -62,6 +80,16 @@ inline constexpr bool is_omittable = false;
 template <typename T>
 inline constexpr bool is_omittable<Omittable<T>> = true;
 template <typename T>
+inline constexpr bool is_later = false;
+template <typename T>
+inline constexpr bool is_later<Later<T>> = true;
+template <typename T>
+struct LaterOf;
+template <typename T>
+struct LaterOf<Later<T>> {
+  using Type = T;
+};
+template <typename T>
 inline constexpr bool is_vector = false;
 template <typename T>
 inline constexpr bool is_vector<std::vector<T>> = true;
@@ -73,6 +101,9 @@ template <typename T>
 inline constexpr bool is_keyed = false;
 template <typename T>
 inline constexpr bool is_keyed<Keyed<T>> = true;
+
+/// Largest number of things that a result counts: sums of some hundred of them are whole numbers.
+inline constexpr long kMostCounted = 1'000'000'000;
 
 struct Anything {
   template <typename T>
@@ -92,11 +123,22 @@ inline std::string key_of(const char* member) {
 
 }  // namespace described
 
+/// What JSON can hold of a number: nothing where it is not finite.
+inline std::optional<double> finite(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+inline std::optional<double> finite(const std::optional<double>& value) {
+  return value ? finite(*value) : std::nullopt;
+}
+
 /// A value as JSON. Numbers that are not finite become null: JSON knows neither NaN nor infinity.
 template <typename T>
 Json json_of(const T& value) {
   using namespace described;
-  if constexpr (std::same_as<T, Json>) {
+  if constexpr (is_later<T>) {
+    return json_of<typename LaterOf<T>::Type>(value);
+  } else if constexpr (std::same_as<T, Json>) {
     return value;
   } else if constexpr (std::floating_point<T>) {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
@@ -134,10 +176,16 @@ Json json_of(const T& value) {
 template <typename T>
 void read_into(const JsonNode& node, T& value) {
   using namespace described;
-  if constexpr (std::same_as<T, Json>) {
+  if constexpr (is_later<T>) {
+    read_into<typename LaterOf<T>::Type>(node, value);
+  } else if constexpr (std::same_as<T, Json>) {
     value = node.json();
   } else if constexpr (std::same_as<T, bool>) {
     value = node.boolean();
+  } else if constexpr (std::signed_integral<T>) {
+    value = node.integer<T>();
+    if (value < 0 || value > kMostCounted)
+      node.fail(fmt::format("a whole number from 0 to {}", kMostCounted));
   } else if constexpr (std::integral<T>) {
     value = node.integer<T>();
   } else if constexpr (std::floating_point<T>) {
@@ -153,11 +201,17 @@ void read_into(const JsonNode& node, T& value) {
     read_into(ends[1], value.high);
   } else if constexpr (is_optional<T> || is_omittable<T>) {
     value.reset();
+    if constexpr (is_omittable<T>) {
+      // Null is a value of one that may be null.
+      if constexpr (is_optional<typename T::value_type>) value.emplace();
+    }
     if (!node.is_null()) read_into(node, value.emplace());
   } else if constexpr (is_keyed<T>) {
     value.clear();
     for (const auto& [key, member] : node.members())
       read_into(member, value.emplace_back(key, typename T::value_type::second_type{}).second);
+  } else if constexpr (std::same_as<T, std::vector<double>>) {
+    value = node.reals();
   } else if constexpr (is_vector<T>) {
     value.clear();
     for (const JsonNode& item : node.items()) {
@@ -173,8 +227,8 @@ void read_into(const JsonNode& node, T& value) {
     static_assert(Struct<T>);
     T::describe(value, [&node]<typename M>(const char* name, M& member) {
       const std::string key = key_of(name);
-      if constexpr (is_omittable<M>) {
-        member.reset();
+      if constexpr (is_omittable<M> || is_later<M> || std::same_as<M, Json>) {
+        member = M();
         if (!node.has(key)) return;
       }
       read_into(node[key], member);
@@ -186,12 +240,14 @@ void read_into(const JsonNode& node, T& value) {
 template <typename T>
 Json schema_of() {
   using namespace described;
-  if constexpr (std::same_as<T, Json>) {
+  if constexpr (is_later<T>) {
+    return schema_of<typename LaterOf<T>::Type>();
+  } else if constexpr (std::same_as<T, Json>) {
     return Json::object();
   } else if constexpr (std::same_as<T, bool>) {
     return {{"type", "boolean"}};
   } else if constexpr (std::integral<T>) {
-    return {{"type", "integer"}};
+    return {{"type", "integer"}, {"minimum", 0}};
   } else if constexpr (std::floating_point<T>) {
     return {{"type", {"number", "null"}}};
   } else if constexpr (std::same_as<T, std::string>) {
@@ -231,7 +287,8 @@ Json schema_of() {
     T::describe(sample, [&]<typename M>(const char* name, const M& /*member*/) {
       const std::string key = key_of(name);
       properties[key] = schema_of<M>();
-      if constexpr (!is_omittable<M>) required.push_back(key);
+      if constexpr (!is_omittable<M> && !is_later<M> && !std::same_as<M, Json>)
+        required.push_back(key);
     });
     return {{"type", "object"},
             {"properties", std::move(properties)},

@@ -17,9 +17,6 @@ namespace rigcal::report {
 /// Keeps the order in which keys are put in.
 using Json = nlohmann::ordered_json;
 
-inline constexpr const char* kFitSchema = "rigcal.fit/1";
-inline constexpr const char* kValidationSchema = "rigcal.validation/1";
-
 /// A number, or null where it is not finite: JSON knows neither NaN nor infinity.
 Json number(double value);
 Json number(const std::optional<double>& value);
@@ -29,12 +26,11 @@ Json numbers(const std::vector<double>& values);
 /// `correlation` of a result: names of the estimates and the matrix, shape (names)^2.
 Json correlation_json(const std::vector<std::string>& names, const Eigen::MatrixXd& correlation);
 
-/// fit.json or validation.json as docs/command-line.md describes them; `status` comes first.
-Json result_json(const Result& result);
-
 /// Text of a JSON file: two blanks of indentation, final newline, numbers that read back to the
 /// same bits. Bytes that are not UTF-8 are replaced.
 std::string json_text(const Json& json);
+/// The same on one line.
+std::string json_line(const Json& json);
 
 /// A record as `check` and `average` tell of it: sampling, repeats, noise of each channel.
 Json record_json(const datasets::Condition& condition, const datasets::Record& record);

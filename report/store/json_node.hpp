@@ -5,6 +5,7 @@
 #include <array>
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -53,13 +54,17 @@ class JsonNode {
     return result;
   }
 
-  /// Members that are numbers; null stands for one that is not finite, and is left out.
-  std::vector<std::pair<std::string, double>> numbers() const {
-    if (!json_.is_object()) fail("an object");
-    std::vector<std::pair<std::string, double>> result;
-    for (const auto& [key, value] : json_.items()) {
-      const JsonNode member(value, file_, path_ + "." + key, kind_);
-      if (!member.is_null()) result.emplace_back(key, member.real());
+  /// A list of numbers; null stands for one that is not finite.
+  std::vector<double> reals() const {
+    if (!json_.is_array()) fail("a list");
+    std::vector<double> result;
+    result.reserve(json_.size());
+    for (std::size_t i = 0; i < json_.size(); ++i) {
+      const Json& item = json_[i];
+      if (!item.is_number() && !item.is_null())
+        JsonNode(item, file_, fmt::format("{}[{}]", path_, i), kind_).fail("a number");
+      result.push_back(item.is_null() ? std::numeric_limits<double>::quiet_NaN()
+                                      : item.get<double>());
     }
     return result;
   }

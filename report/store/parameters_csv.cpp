@@ -3,44 +3,41 @@
 #include <fmt/format.h>
 
 #include "report/store/csv_fields.hpp"
-#include "report/store/json_fields.hpp"
 
 namespace rigcal::report {
 namespace {
 
-std::string yes_or_no(const Json& value) { return value.get<bool>() ? "1" : "0"; }
+std::string yes_or_no(bool value) { return value ? "1" : "0"; }
 
-std::string end_of(const Json& pair, std::size_t end) {
-  return pair.is_array() && pair[end].is_number() ? csv_number(pair[end].get<double>())
-                                                  : std::string();
-}
-
-std::string row_of(const Json& p) {
+std::string row_of(const StoredParameter& p) {
   std::vector<std::string> fields;
-  for (const char* key : {"name", "key", "symbol", "unit", "scope", "level"})
-    fields.push_back(csv_text(text_of(p, key)));
-  fields.push_back(yes_or_no(p.at("fitted")));
-  fields.push_back(yes_or_no(p.at("nuisance")));
-  for (const char* key :
-       {"start", "lower", "upper", "value", "standard_error", "robust_standard_error"})
-    fields.push_back(csv_number(number_of(p, key)));
-  for (const std::size_t end : {0U, 1U}) fields.push_back(end_of(p.at("ci95"), end));
-  fields.push_back(yes_or_no(p.at("at_bound")));
-  fields.push_back(text_of(p, "identifiability"));
-  fields.push_back(csv_text(text_of(p, "reason")));
+  for (const std::string& text :
+       {p.name, p.key, p.symbol, p.unit, std::string(to_string(p.scope)), p.level.value_or("")})
+    fields.push_back(csv_text(text));
+  fields.push_back(yes_or_no(p.fitted));
+  fields.push_back(yes_or_no(p.nuisance));
+  for (const auto& number :
+       {p.start, p.lower, p.upper, p.value, p.standard_error, p.robust_standard_error})
+    fields.push_back(csv_number(number));
+  fields.push_back(p.ci95 ? csv_number(p.ci95->low) : std::string());
+  fields.push_back(p.ci95 ? csv_number(p.ci95->high) : std::string());
+  fields.push_back(yes_or_no(p.at_bound));
+  fields.push_back(p.identifiability ? std::string(to_string(*p.identifiability)) : std::string());
+  fields.push_back(csv_text(p.reason));
   return csv_row(fields);
 }
 
 }  // namespace
 
-std::string parameters_csv(const Json& result) {
+std::string parameters_csv(calib::FitStatus status, const std::string& message,
+                           const std::vector<StoredParameter>& parameters) {
   std::string text;
-  if (const std::string status = text_of(result, "status"); status != "converged")
-    text += csv_comment(fmt::format("status: {}: {}", status, text_of(result, "message")));
+  if (status != calib::FitStatus::converged)
+    text += csv_comment(fmt::format("status: {}: {}", to_string(status), message));
   text += csv_row({"name", "key", "symbol", "unit", "scope", "level", "fitted", "nuisance", "start",
                    "lower", "upper", "value", "standard_error", "robust_standard_error", "ci95_low",
                    "ci95_high", "at_bound", "identifiability", "reason"});
-  for (const Json& parameter : result.at("parameters")) text += row_of(parameter);
+  for (const StoredParameter& parameter : parameters) text += row_of(parameter);
   return text;
 }
 

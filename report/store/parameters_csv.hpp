@@ -1,13 +1,15 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "report/store/json.hpp"
+#include "report/store/stored_fit.hpp"
 
 namespace rigcal::report {
 
-/// parameters.csv of a fit.json or validation.json: one row per parameter, in `unit`. As the other
-/// tables of csv.hpp.
-std::string parameters_csv(const Json& result);
+/// parameters.csv beside a fit.json or validation.json: one row per parameter, in `unit`. As the
+/// other tables of csv.hpp.
+std::string parameters_csv(calib::FitStatus status, const std::string& message,
+                           const std::vector<StoredParameter>& parameters);
 
 }  // namespace rigcal::report

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/error.hpp"
 #include "report/store/json.hpp"
 #include "report/store/json_node.hpp"
 #include "report/store/read_json.hpp"
+#include "report/store/stored_fit.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -16,59 +18,44 @@ using datasets::Scope;
 
 constexpr const char* kTruthSchema = "rigcal.truth/1";
 
-Validity read_validity(const JsonNode& node) {
+Validity validity_of(const StoredValidity& stored) {
   Validity validity;
-  validity.frequency_hz = node["frequency_hz"].range();
-  const JsonNode amplitude_m = node["amplitude_m"];
-  validity.amplitude = amplitude_m.is_null() ? node["amplitude_v"].range() : amplitude_m.range();
-  validity.supply_pressure_pa = node["supply_pressure_pa"].range();
-  validity.leakage_coefficient = node["leakage_coefficient"].range();
-  for (const JsonNode& level : node["leak_levels"].items()) {
-    validity.leak_levels.push_back(level.string());
-  }
+  validity.frequency_hz = stored.frequency_hz;
+  validity.amplitude = stored.amplitude_m ? stored.amplitude_m : stored.amplitude_v;
+  validity.supply_pressure_pa = stored.supply_pressure_pa;
+  validity.leakage_coefficient = stored.leakage_coefficient;
+  validity.leak_levels = stored.leak_levels;
   return validity;
 }
 
-/// Standard error of an entry of `parameters`: the larger of the two; empty where there is none.
-std::optional<double> standard_error(const JsonNode& entry) {
-  std::optional<double> largest;
-  for (const char* key : {"standard_error", "robust_standard_error"}) {
-    const JsonNode error = entry[key];
-    if (!error.is_null()) largest = std::max(largest.value_or(0.0), error.real());
-  }
-  return largest;
-}
-
-double undetermined_error(const JsonNode& entry) {
+/// Of a parameter that the fit could not determine: its whole interval counts, or its bounds, else
+/// what it is unsure of would be left out.
+double undetermined_error(const StoredParameter& p, const JsonNode& node) {
   std::optional<std::pair<double, double>> ci95;
-  if (const auto range = entry["ci95"].range()) ci95.emplace(range->low, range->high);
-  return calib::undetermined_sd(ci95, entry["lower"].real(), entry["upper"].real());
+  if (p.ci95) ci95.emplace(p.ci95->low, p.ci95->high);
+  if (!p.lower) node["lower"].fail("a number");
+  if (!p.upper) node["upper"].fail("a number");
+  return calib::undetermined_sd(ci95, *p.lower, *p.upper);
 }
 
-/// Parameters of the rig with their covariance. One that the fit could not determine has no error:
-/// it counts with its whole interval, or its bounds, else what it is unsure of would be left out.
-void read_covariance(const JsonNode& root, model::PlantKind plant, EarlierFit& fit) {
-  const auto names = root["correlation"]["names"].items();
-  const auto rows = root["correlation"]["matrix"].items();
+/// Parameters of the rig with their covariance.
+void read_covariance(const StoredFit& stored, const JsonNode& root, model::PlantKind plant,
+                     EarlierFit& fit) {
+  const std::vector<std::string>& names = stored.correlation.names;
+  const auto& rows = stored.correlation.matrix;
+  const std::vector<JsonNode> nodes = root["parameters"].items();
   std::vector<std::optional<std::size_t>> places;  // in the matrix
   std::vector<double> errors;
-  for (const JsonNode& entry : root["parameters"].items()) {
-    if (!entry["fitted"].boolean() || entry["nuisance"].boolean()) continue;
-    if (one_of(entry["scope"], std::array{Scope::rig, Scope::leak_level, Scope::condition}) !=
-        Scope::rig)
-      continue;
-    const std::string name = entry["name"].string();
-    const auto place = std::find_if(names.begin(), names.end(),
-                                    [&](const JsonNode& each) { return each.string() == name; });
-    const auto error = standard_error(entry);
-    fit.indices.push_back(parameter_row(entry["name"], plant));
-    if (error && place != names.end()) {
-      places.emplace_back(static_cast<std::size_t>(place - names.begin()));
-      errors.push_back(*error);
-    } else {
-      places.emplace_back(std::nullopt);
-      errors.push_back(undetermined_error(entry));
-    }
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const StoredParameter& p = stored.parameters[i];
+    if (!p.fitted || p.nuisance || p.scope != Scope::rig) continue;
+    fit.indices.push_back(parameter_row(nodes[i]["name"], plant));
+    const auto place = std::find(names.begin(), names.end(), p.name);
+    const auto error = error_of(p);
+    const bool determined = error && place != names.end();
+    places.push_back(determined ? std::optional(static_cast<std::size_t>(place - names.begin()))
+                                : std::nullopt);
+    errors.push_back(determined ? *error : undetermined_error(p, nodes[i]));
   }
   const auto n = static_cast<Eigen::Index>(places.size());
   fit.covariance = Eigen::MatrixXd::Zero(n, n);
@@ -76,19 +63,30 @@ void read_covariance(const JsonNode& root, model::PlantKind plant, EarlierFit& f
     const auto at = static_cast<Eigen::Index>(i);
     fit.covariance(at, at) = errors[i] * errors[i];
     if (!places[i]) continue;
-    if (*places[i] >= rows.size()) root["correlation"]["matrix"].fail("one row per name");
-    const auto row = rows[*places[i]].items();
+    const JsonNode matrix = root["correlation"]["matrix"];
+    if (*places[i] >= rows.size()) matrix.fail("one row per name");
+    const std::vector<double>& row = rows[*places[i]];
     for (std::size_t j = 0; j < places.size(); ++j) {
       if (!places[j]) continue;
-      if (*places[j] >= row.size()) rows[*places[i]].fail("one number per name");
-      fit.covariance(at, static_cast<Eigen::Index>(j)) =
-          row[*places[j]].real() * errors[i] * errors[j];
+      const double correlation = *places[j] < row.size() ? row[*places[j]] : std::nan("");
+      if (std::isnan(correlation)) matrix.items()[*places[i]].fail("one number per name");
+      fit.covariance(at, static_cast<Eigen::Index>(j)) = correlation * errors[i] * errors[j];
     }
   }
 }
 
-/// What a fit of before there were assessments does not have.
-calib::Aspect no_assessment() {
+calib::Aspect aspect_of(const StoredAspect& stored) {
+  calib::Aspect aspect;
+  aspect.state = stored.state;
+  for (const StoredReason& reason : stored.reasons)
+    aspect.reasons.push_back(
+        {reason.state, reason.code, reason.subject.value_or(""), reason.numbers, reason.words});
+  return aspect;
+}
+
+/// @param member  of the assessment, which a fit of before there were any does not have
+calib::Aspect judged(const StoredFit& stored, StoredAspect StoredAssessment::*member) {
+  if (stored.assessment) return aspect_of((*stored.assessment).*member);
   calib::Aspect aspect;
   aspect.reasons.push_back({calib::AspectState::not_assessed,
                             "no_assessment",
@@ -98,37 +96,29 @@ calib::Aspect no_assessment() {
   return aspect;
 }
 
-calib::Aspect read_aspect(const JsonNode& node) {
-  using calib::AspectState;
-  const std::array states{AspectState::pass, AspectState::reservation, AspectState::fail,
-                          AspectState::not_assessed};
-  calib::Aspect aspect;
-  aspect.state = one_of(node["state"], states);
-  for (const JsonNode& entry : node["reasons"].items()) {
-    calib::Reason& reason = aspect.reasons.emplace_back();
-    reason.state = one_of(entry["state"], states);
-    reason.code = entry["code"].string();
-    if (!entry["subject"].is_null()) reason.subject = entry["subject"].string();
-    reason.words = entry["words"].string();
-    reason.numbers = entry["numbers"].numbers();
+/// Values of the fit, and known ones of the rig.
+void read_values(const StoredFit& stored, const JsonNode& root, model::PlantKind plant,
+                 EarlierFit& fit) {
+  const std::vector<JsonNode> nodes = root["parameters"].items();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const StoredParameter& p = stored.parameters[i];
+    FittedValue value;
+    value.index = parameter_row(nodes[i]["name"], plant);
+    value.scope = p.scope;
+    if (p.scope != Scope::rig) {
+      if (!p.level) nodes[i]["level"].fail("a text");
+      value.level = *p.level;
+    }
+    // A nuisance parameter belongs to the records of its fit.
+    if (p.nuisance || (!p.fitted && !p.value)) continue;
+    if (!p.value) nodes[i]["value"].fail("a number");
+    value.value = *p.value;
+    if (p.fitted) {
+      fit.values.push_back(std::move(value));
+    } else if (value.scope == Scope::rig) {
+      fit.known.push_back(std::move(value));
+    }
   }
-  return aspect;
-}
-
-void read_origin(const Json& json, const JsonNode& root, EarlierFit& fit) {
-  using datasets::Use;
-  for (const JsonNode& entry : root["conditions"].items()) {
-    fit.conditions.emplace_back(
-        entry["id"].string(),
-        one_of(entry["use"], std::array{Use::fit, Use::validate, Use::diagnose, Use::ignore}));
-  }
-  for (const JsonNode& input : root["provenance"]["inputs"].items())
-    fit.input_hashes.push_back(input["sha256"].string());
-  const auto judged = [&](const char* aspect) {
-    return json.contains("assessment") ? read_aspect(root["assessment"][aspect]) : no_assessment();
-  };
-  fit.adequacy = judged("adequacy");
-  fit.parameters = judged("parameters");
 }
 
 }  // namespace
@@ -143,35 +133,25 @@ EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
   if (root["schema"].string() != kFitSchema) {
     root["schema"].fail(fmt::format("\"{}\"", kFitSchema));
   }
-  using calib::FitStatus;
-  EarlierFit result;
-  result.status = one_of(root["status"],
-                         std::array{FitStatus::converged, FitStatus::stopped, FitStatus::failed});
-  result.message = root["message"].string();
-  if (result.status == FitStatus::failed) {
+  StoredFit stored;
+  read_into(root, stored);
+  if (stored.status == calib::FitStatus::failed) {
     throw InputError({name}, fmt::format("this fit failed ({}), its values mean nothing; expected "
                                          "one that converged",
-                                         result.message));
+                                         stored.message));
   }
-  for (const JsonNode& entry : root["parameters"].items()) {
-    FittedValue value;
-    value.index = parameter_row(entry["name"], plant);
-    value.scope =
-        one_of(entry["scope"], std::array{Scope::rig, Scope::leak_level, Scope::condition});
-    if (value.scope != Scope::rig) value.level = entry["level"].string();
-    const bool fitted = entry["fitted"].boolean();
-    // A nuisance parameter belongs to the records of its fit.
-    if (entry["nuisance"].boolean() || (!fitted && entry["value"].is_null())) continue;
-    value.value = entry["value"].real();
-    if (fitted) {
-      result.values.push_back(std::move(value));
-    } else if (value.scope == Scope::rig) {
-      result.known.push_back(std::move(value));
-    }
-  }
-  result.validity = read_validity(root["validity"]);
-  read_covariance(root, plant, result);
-  read_origin(json, root, result);
+  EarlierFit result;
+  result.status = stored.status;
+  result.message = stored.message;
+  read_values(stored, root, plant, result);
+  result.validity = validity_of(stored.validity);
+  read_covariance(stored, root, plant, result);
+  for (const StoredCondition& condition : stored.conditions)
+    result.conditions.emplace_back(condition.id, condition.use);
+  for (const InputFile& input : stored.provenance.inputs)
+    result.input_hashes.push_back(input.sha256);
+  result.adequacy = judged(stored, &StoredAssessment::adequacy);
+  result.parameters = judged(stored, &StoredAssessment::parameters);
   return result;
 }
 

@@ -31,9 +31,8 @@ Json parsed(const ReadFile& read, const std::string& where, const std::string& n
 
 /// The id of a condition, by which its file is found: whoever made the result, that is no way
 /// elsewhere.
-std::string checked_id(const Json& entry, const char* key, const std::string& file) {
-  const std::string id = text_of(entry, key);
-  if (datasets::is_condition_id(id)) return id;
+void require_id(const std::string& id, const char* key, const std::string& file) {
+  if (datasets::is_condition_id(id)) return;
   throw InputError({file}, fmt::format("key '{}' of a condition: found \"{}\", expected {}", key,
                                        id.substr(0, 40), datasets::condition_id_rule()));
 }
@@ -61,24 +60,25 @@ Json load_json(const ReadFile& read, const std::string& where, const std::string
                   has_schema ? "\"schema\": " + json["schema"].dump() : "no schema", expected));
 }
 
-Calibration load_calibration(const ReadFile& read, const std::string& where, int threads) {
+std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read,
+                                                            const std::string& where, int threads) {
   Calibration stored;
   const bool has_fit = read("fit.json").has_value();
   const bool both = has_fit && read("validation.json").has_value();
   const bool is_fit =
-      both ? text_of(parsed(read, where, "residual_tests.json"), "of") == "rigcal.fit/1" : has_fit;
+      both ? text_of(parsed(read, where, "residual_tests.json"), "of") == kFitSchema : has_fit;
   stored.file = is_fit ? "fit.json" : "validation.json";
-  stored.result = load_json(read, where, stored.file);
-  stored.of_tables =
-      stored.result.is_object() && text_of(stored.result, "of") == "published tables";
-  if (stored.of_tables) return stored;
-  const ReadFile own = files_of_run(read, stored.result, where, stored.file);
-  stored.curves = parsed(own, where, "residual_tests.json");
-  const Json& conditions = stored.result.at("conditions");
+  const Json json = load_json(read, where, stored.file);
+  if (is_fit && is_of_tables(json)) return as<StoredTablesFit>(json, where, stored.file);
+  stored.result = as<StoredFit>(json, where, stored.file);
+  const ReadFile own = files_of_run(read, stored.result.provenance, where, stored.file);
+  stored.curves = load<StoredCurves>(own, where, "residual_tests.json");
+  const std::vector<StoredCondition>& conditions = stored.result.conditions;
+  for (const StoredCondition& condition : conditions)
+    require_id(condition.id, "id", path_in(where, stored.file));
   stored.series.resize(conditions.size());
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    const std::string id = checked_id(conditions.at(i), "id", path_in(where, stored.file));
-    const std::string name = "residuals/" + id + ".csv";
+    const std::string name = "residuals/" + conditions[i].id + ".csv";
     if (const auto text = own(name)) stored.series[i] = parse_table(*text, path_in(where, name));
   });
   return stored;
@@ -100,7 +100,8 @@ ParityFiles load_parity(const ReadFile& read, const std::string& where) {
   stored.parity = load_json(read, where, "parity.json");
   const ReadFile own = files_of_run(read, stored.parity, where, "parity.json");
   for (const Json& record : stored.parity.at("records")) {
-    const std::string condition = checked_id(record, "condition", path_in(where, "parity.json"));
+    const std::string condition = text_of(record, "condition");
+    require_id(condition, "condition", path_in(where, "parity.json"));
     if (stored.series.contains(condition)) continue;
     const std::string name = "parity/" + condition + ".csv";
     if (const auto series = own(name))

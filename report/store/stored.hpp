@@ -7,9 +7,12 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
+#include "report/store/stored_fit.hpp"
 #include "report/store/stored_leak_table.hpp"
+#include "report/store/stored_tables_fit.hpp"
 #include "report/store/table.hpp"
 
 // The files of a result folder, read back. All throw InputError where a file is missing, or is no
@@ -28,16 +31,17 @@ ReadFile files_in(const std::filesystem::path& folder);
 /// A fit or validation.
 struct Calibration {
   std::string file;  ///< fit.json or validation.json
-  Json result;
-  bool of_tables = false;     ///< made from published tables: it has no records
-  Json curves;                ///< residual_tests.json
+  StoredFit result;
+  StoredCurves curves;
   std::vector<Table> series;  ///< residuals/, shape (conditions)
 };
 
-/// Where a fit and a validation lie in one folder, the one to which residual_tests.json belongs.
+/// Where a fit and a validation lie in one folder, the one to which residual_tests.json belongs; a
+/// fit to published tables has nothing beside it.
 ///
 /// @param threads  read the series
-Calibration load_calibration(const ReadFile& read, const std::string& where, int threads);
+std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read,
+                                                            const std::string& where, int threads);
 
 /// A leak table, and the series of its features by level.
 struct LeakTableFiles {
@@ -56,13 +60,20 @@ ParityFiles load_parity(const ReadFile& read, const std::string& where);
 /// A result in JSON, whose schema is that of the name of its file.
 Json load_json(const ReadFile& read, const std::string& where, const std::string& name);
 
-/// The same as its type.
+/// JSON as its type.
+///
+/// @param name  of the file in the folder `where`, for messages
 template <typename Stored>
-Stored load(const ReadFile& read, const std::string& where, const std::string& name) {
-  const Json json = load_json(read, where, name);
+Stored as(const Json& json, const std::string& where, const std::string& name) {
   Stored value;
   read_into(JsonNode(json, (std::filesystem::path(where) / name).string(), "", name), value);
   return value;
+}
+
+/// A result as its type.
+template <typename Stored>
+Stored load(const ReadFile& read, const std::string& where, const std::string& name) {
+  return as<Stored>(load_json(read, where, name), where, name);
 }
 
 /// A text as part of the name of a file: letters, digits, ".", "-", and "_" for all else.

@@ -1,8 +1,26 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
+
+#include "report/comparison/comparison.hpp"
+#include "report/store/stored.hpp"
 
 namespace rigcal::test {
+
+/// A residual_tests.json without curves.
+inline constexpr const char* kNoCurves =
+    R"({"status": "converged", "schema": "rigcal.residual_tests/1", "of": "rigcal.fit/1",
+        "conditions": {}})";
+
+/// A result that is compared, in JSON.
+struct ComparedJson {
+  std::string name;
+  std::filesystem::path file;
+  nlohmann::ordered_json result;
+
+  operator report::Compared() const { return report::compared_of(result, file, name); }
+};
 
 /// A small result, as fit.json holds it.
 inline nlohmann::ordered_json stored_result() {

@@ -8,12 +8,15 @@
 using Catch::Contains;
 using Catch::WithinAbs;
 using Catch::WithinRel;
-using rigcal::report::Compared;
 using rigcal::report::Json;
-using rigcal::report::models_json;
 using rigcal::test::stored_result;
+using Compared = rigcal::test::ComparedJson;
 
 namespace {
+
+Json models_json(const std::vector<rigcal::report::Compared>& results) {
+  return json_of(compared_models(results));
+}
 
 /// A fit of the mass to 1000 residuals of one record.
 Compared mass_alone(const std::string& name, double cost) {

@@ -10,16 +10,31 @@
 
 using Catch::Contains;
 using Catch::WithinRel;
-using rigcal::report::Compared;
-using rigcal::report::comparison_headline;
-using rigcal::report::comparison_json;
-using rigcal::report::comparison_text;
 using rigcal::report::Json;
 using rigcal::report::Provenance;
+using rigcal::report::StoredComparison;
 using rigcal::report::text_width;
 using rigcal::test::stored_result;
+using Compared = rigcal::test::ComparedJson;
 
 namespace {
+
+Json comparison_json(const std::vector<Compared>& results, const Provenance& provenance) {
+  return json_of(rigcal::report::compared({results.begin(), results.end()}, provenance));
+}
+
+/// comparison.json as it is read back.
+StoredComparison read_back(const Json& json) {
+  return rigcal::report::as<StoredComparison>(json, "", "comparison.json");
+}
+
+std::string comparison_text(const Json& json, const rigcal::report::Style& style) {
+  return rigcal::report::comparison_text(read_back(json), style);
+}
+
+Json comparison_headline(const Json& json) {
+  return rigcal::report::comparison_headline(read_back(json));
+}
 
 /// A fit with this mass and leak, of records of its own.
 Compared compared_fit(const std::string& name, double mass_kg, double leak,
@@ -302,6 +317,9 @@ TEST_CASE("comparison: fits to published tables, which have no records", "[repor
     fit.result["provenance"]["inputs"] = Json::array();
     fit.result["residuals"] = {{{"of", number}, {"weight", 1.0}, {"log_ratio", 0.0}}};
     fit.result.erase("synthetic");
+    fit.result["left_out"] = Json::array();
+    fit.result["rms"] = 0.01;
+    fit.result["iterations"] = 3;
     return fit;
   };
   Json json = comparison_json({tables_fit("a", 85.0, "C"), tables_fit("b", 90.0, "C")}, {});

@@ -19,7 +19,7 @@ const std::string kNasty = "</script><script>alert(1)</script> \"q\" 'a' & \n\xc
 std::string page(const Json& json, const std::string& file = "fit.json", int threads = 2) {
   const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
     if (path == file) return json.dump();
-    if (path == "residual_tests.json") return R"({"of": "rigcal.fit/1", "conditions": {}})";
+    if (path == "residual_tests.json") return rigcal::test::kNoCurves;
     if (path == "residuals/sine.csv") {
       return "time_s,measured_position_m,simulated_position_m,residual_position_m,sd_position_m,"
              "in_window,reference_m,servo_flow_m3_per_s,leakage_flow_m3_per_s\n"
@@ -192,21 +192,22 @@ TEST_CASE("page: says at its top what cannot be trusted", "[report]") {
     CHECK_THAT(page(json), Contains("Significant lack of fit."));
   }
   SECTION("a residual that follows the input") {
-    Json& tests = json["conditions"][0]["residual_tests"]["position"];
-    tests = Json::object();
-    for (const char* key : {"autocorrelation", "periodogram", "normality", "drift"})
-      tests[key] = nullptr;
-    Json& test = tests["cross_correlation"];
-    test = {{"passed", false}, {"peak", -0.8}, {"verdict", "explained by the input"}};
-    const std::string failed = page(json);
+    using rigcal::metrics::TestOutcome;
+    StoredResidualTests tests;
+    const auto page_of = [&](TestOutcome outcome, const char* words) {
+      tests.cross_correlation.emplace();
+      tests.cross_correlation->outcome = outcome;
+      tests.cross_correlation->verdict = words;
+      json["conditions"][0]["residual_tests"]["position"] = json_of(tests);
+      return page(json);
+    };
+    const std::string failed = page_of(TestOutcome::failed, "explained by the input");
     CHECK_THAT(failed, Contains("<span class=\"tag warn\" role=\"img\" aria-label=\"failed\">!"));
-    test["passed"] = nullptr;
-    test["verdict"] = "cannot be judged: effective sample size 3";
-    const std::string open = page(json);
+    const std::string open =
+        page_of(TestOutcome::not_judged, "cannot be judged: effective sample size 3");
     CHECK_THAT(open, Contains("effective sample size 3"));
     CHECK_THAT(open, Contains("aria-label=\"cannot be judged\">○") && !Contains("tag good\">✓"));
-    test["passed"] = true;
-    CHECK_THAT(page(json),
+    CHECK_THAT(page_of(TestOutcome::passed, "not correlated"),
                Contains("<span class=\"tag good\" role=\"img\" aria-label=\"passed\">✓"));
   }
   SECTION("outside the limits") {
@@ -317,7 +318,7 @@ TEST_CASE("page: what a fit holds beyond is drawn, what it lacks is left out", "
 TEST_CASE("page: a result that cannot be read is named beside those that can", "[report]") {
   const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
     if (path == "fit.json") return stored_result().dump();
-    if (path == "residual_tests.json") return R"({"of": "rigcal.fit/1", "conditions": {}})";
+    if (path == "residual_tests.json") return rigcal::test::kNoCurves;
     if (path == "leak_table.json") return R"({"schema": "rigcal.leak_table/1"})";
     return std::nullopt;
   };
@@ -362,7 +363,7 @@ TEST_CASE("page: 24 conditions stay below 8 MB, however long they are", "[report
   }
   const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
     if (path == "fit.json") return json.dump();
-    if (path == "residual_tests.json") return "{}";
+    if (path == "residual_tests.json") return rigcal::test::kNoCurves;
     if (path.parent_path() == "residuals") return csv;
     return std::nullopt;
   };

@@ -111,7 +111,7 @@ TEST_CASE("described: the schema has what must be there and of which kind", "[re
         R"(["count","value","class","maybe","range","parts","limits","pair"])");
   const Json& properties = schema.at("properties");
   CHECK(properties.at("amplitude_m").dump() == R"({"type":["number","null"]})");
-  CHECK(properties.at("count").dump() == R"({"type":"integer"})");
+  CHECK(properties.at("count").dump() == R"({"type":"integer","minimum":0})");
   CHECK(properties.at("range").at("type").dump() == R"(["array","null"])");
   CHECK(properties.at("parts").at("items").at("properties").at("colour").dump() ==
         R"({"enum":["red","green"]})");

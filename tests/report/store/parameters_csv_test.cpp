@@ -5,7 +5,16 @@
 #include "tests/report/stored_fixture.hpp"
 
 using rigcal::report::Json;
-using rigcal::report::parameters_csv;
+using rigcal::report::StoredFit;
+
+namespace {
+
+std::string parameters_csv(const Json& json) {
+  const auto fit = rigcal::report::as<StoredFit>(json, "folder", "fit.json");
+  return rigcal::report::parameters_csv(fit.status, fit.message, fit.parameters);
+}
+
+}  // namespace
 
 TEST_CASE("parameters_csv: a row per parameter, numbers with all their bits", "[report]") {
   Json json = rigcal::test::stored_result();

@@ -32,7 +32,7 @@ struct StoredFiles {
 
 TEST_CASE("stored: the id of a condition is no way to other folders", "[report]") {
   StoredFiles files;
-  files.json["residual_tests.json"] = {{"of", "rigcal.fit/1"}};
+  files.json["residual_tests.json"] = Json::parse(rigcal::test::kNoCurves);
   files.json["fit.json"] = rigcal::test::stored_result();
   load_calibration(files.reader(), "folder", 1);
   CHECK(std::count(files.others.begin(), files.others.end(), "residuals/sine.csv") == 1);
@@ -49,11 +49,13 @@ TEST_CASE("stored: the id of a condition is no way to other folders", "[report]"
 TEST_CASE("stored: the files of another run are refused", "[report]") {
   StoredFiles files;
   Json& fit = files.json["fit.json"] = rigcal::test::stored_result();
-  Json& curves = files.json["residual_tests.json"] = {{"of", "rigcal.fit/1"}};
-  name_files({{"residual_tests.json", curves.dump()}}, fit);
+  Json& curves = files.json["residual_tests.json"] = Json::parse(rigcal::test::kNoCurves);
+  StoredProvenance provenance;
+  name_files({{"residual_tests.json", curves.dump()}}, provenance);
+  fit["provenance"]["files"] = json_of(provenance)["files"];
   CHECK(fit["provenance"]["files"][0]["path"] == "residual_tests.json");
   CHECK_NOTHROW(load_calibration(files.reader(), "folder", 1));
-  curves["conditions"] = nullptr;
+  curves["of"] = "rigcal.validation/1";
   CHECK_THROWS_WITH(load_calibration(files.reader(), "folder", 1),
                     Contains("folder/residual_tests.json") &&
                         Contains("is not the file that fit.json was written with"));

@@ -1,4 +1,4 @@
-#include "report/store/residual_tests_json.hpp"
+#include "report/store/stored_residual_tests.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -9,9 +9,12 @@
 using Catch::Contains;
 using rigcal::metrics::residual_tests;
 using rigcal::report::Json;
-using rigcal::report::residual_tests_json;
 
 namespace {
+
+Json residual_tests_json(const rigcal::metrics::ResidualTests& tests, std::string_view unit) {
+  return json_of(rigcal::report::stored(tests, unit));
+}
 
 std::vector<double> white(std::size_t n, unsigned seed) {
   std::mt19937_64 engine(seed);
@@ -27,7 +30,7 @@ std::string words(const Json& json, const char* test) {
 
 }  // namespace
 
-TEST_CASE("residual_tests_json: white noise passes, in the words of the field", "[report]") {
+TEST_CASE("stored residual tests: white noise passes, in the words of the field", "[report]") {
   const Json json = residual_tests_json(residual_tests(white(1000, 7), white(1000, 8), 0.01), "m");
   for (const char* test :
        {"autocorrelation", "cross_correlation", "periodogram", "normality", "drift"}) {
@@ -41,7 +44,7 @@ TEST_CASE("residual_tests_json: white noise passes, in the words of the field", 
   CHECK(words(json, "drift") == "no significant offset or trend");
 }
 
-TEST_CASE("residual_tests_json: what cannot be judged is neither passed nor failed", "[report]") {
+TEST_CASE("stored residual tests: what cannot be judged is neither passed nor failed", "[report]") {
   std::vector<double> slow = white(2000, 3);
   for (std::size_t i = 0; i < slow.size(); ++i)
     slow[i] = 0.01 * slow[i] + std::sin(std::numbers::pi * static_cast<double>(i) / 2000.0);
@@ -60,7 +63,7 @@ TEST_CASE("residual_tests_json: what cannot be judged is neither passed nor fail
                       std::to_string(static_cast<int>(tests.effective_samples)) + " of 2000"));
 }
 
-TEST_CASE("residual_tests_json: the share that the input explains", "[report]") {
+TEST_CASE("stored residual tests: the share that the input explains", "[report]") {
   const std::vector<double> input = white(4000, 5);
   std::vector<double> residual = white(4000, 6);
   for (std::size_t i = 0; i < residual.size(); ++i) residual[i] += input[i];
@@ -73,7 +76,7 @@ TEST_CASE("residual_tests_json: the share that the input explains", "[report]") 
                       " % of the residual variance is linearly explained by the input"));
 }
 
-TEST_CASE("residual_tests_json: to which side a residual is skewed, and its tails", "[report]") {
+TEST_CASE("stored residual tests: to which side a residual is skewed, and its tails", "[report]") {
   std::vector<double> right = white(2000, 9);
   for (double& each : right) each = std::exp(0.8 * each);
   std::vector<double> left = right;
@@ -89,7 +92,7 @@ TEST_CASE("residual_tests_json: to which side a residual is skewed, and its tail
   CHECK_THAT(of(light), Contains("light tails") && !Contains("heavy") && !Contains("skewed"));
 }
 
-TEST_CASE("residual_tests_json: a trend is told over the whole record", "[report]") {
+TEST_CASE("stored residual tests: a trend is told over the whole record", "[report]") {
   rigcal::metrics::ResidualTests tests;
   tests.samples = 2000;
   tests.sample_interval_s = 0.01;
@@ -100,7 +103,7 @@ TEST_CASE("residual_tests_json: a trend is told over the whole record", "[report
              Contains("offset 1.5 mm") && Contains("trend 4 mm over the record"));
 }
 
-TEST_CASE("residual_tests_json: the curve of the cross-correlation lies about lag zero",
+TEST_CASE("stored residual tests: the curve of the cross-correlation lies about lag zero",
           "[report]") {
   const std::vector<double> input = white(1000, 14);
   std::vector<double> residual = white(1000, 15);
@@ -111,7 +114,7 @@ TEST_CASE("residual_tests_json: the curve of the cross-correlation lies about la
   const rigcal::datasets::Campaign campaign;
   const std::vector<rigcal::datasets::Record> records;
   const rigcal::report::Provenance provenance;
-  const Json json = Json::parse(rigcal::report::residual_curves_text(
+  const Json json = json_of(rigcal::report::stored_curves(
       {rigcal::report::ResultKind::fit, campaign, records, fit, provenance}));
   const Json& curve = json["conditions"]["sine"]["position"]["cross_correlation"];
   const auto values = curve["values"].get<std::vector<double>>();

@@ -1,11 +1,10 @@
-#include "report/store/whole_result.hpp"
+#include "report/store/whole_fit.hpp"
 
 #include <algorithm>
 
 #include "common/error.hpp"
 #include "common/file.hpp"
-#include "report/store/read_json.hpp"
-#include "report/store/stored_provenance.hpp"
+#include "report/store/stored.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -27,18 +26,16 @@ bool files_stand(const std::filesystem::path& folder, const StoredProvenance& pr
 
 }  // namespace
 
-std::optional<Json> whole_result(const std::filesystem::path& folder, const std::string& name,
-                                 const Provenance& provenance) {
-  const std::filesystem::path file = folder / name;
+std::optional<StoredFit> whole_fit(const std::filesystem::path& folder,
+                                   const Provenance& provenance) {
+  const std::filesystem::path file = folder / "fit.json";
   if (!std::filesystem::exists(file)) return std::nullopt;
   try {
-    Json result = read_json(file, "a result");
-    const JsonNode root(result, file.string(), "", name);
-    const std::string status = root["status"].string();
-    StoredProvenance made;
-    read_into(root["provenance"], made);
-    const bool ended = status == "converged" || status == "failed";
-    if (ended && same_making(made, stored(provenance)) && files_stand(folder, made)) return result;
+    const auto fit = load<StoredFit>(files_in(folder), folder.string(), "fit.json");
+    const bool ended = fit.status != calib::FitStatus::stopped;
+    if (ended && same_making(fit.provenance, stored(provenance)) &&
+        files_stand(folder, fit.provenance))
+      return fit;
   } catch (const InputError&) {
     // What cannot be read is made anew.
   }
