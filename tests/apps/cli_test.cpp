@@ -1,11 +1,13 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <csignal>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "tests/apps/cli_fixture.hpp"
+#include "tests/report/stored_fixture.hpp"
 
 using namespace rigcal::test;
 using Catch::Contains;
@@ -209,6 +211,13 @@ struct BadFit {
   std::vector<std::string> message;
 };
 
+/// A fit.json that one thing is wrong with.
+std::string edited(const std::function<void(json&)>& edit) {
+  json fit = json::parse(stored_result().dump());
+  edit(fit);
+  return fit.dump();
+}
+
 const std::vector<BadFit> kBadFits{
     {"not JSON", "{\n  \"schema\": oops\n}\n", {"fit.json:2:", "not JSON"}},
     {"a list", "[]", {"fit.json", "object"}},
@@ -218,19 +227,19 @@ const std::vector<BadFit> kBadFits{
      R"({"schema": "rigcal.fit/1", "status": "good", "message": ""})",
      {"status", "good", "converged"}},
     {"failed",
-     R"({"schema": "rigcal.fit/1", "status": "failed", "message": "no start"})",
+     edited([](json& fit) {
+       fit["status"] = "failed";
+       fit["message"] = "no start";
+     }),
      {"failed", "no start"}},
     {"no parameters",
-     R"({"schema": "rigcal.fit/1", "status": "converged", "message": ""})",
+     edited([](json& fit) { fit.erase("parameters"); }),
      {"parameters", "missing"}},
     {"unknown parameter",
-     R"({"schema": "rigcal.fit/1", "status": "converged", "message": "",
-         "parameters": [{"name": "mass_lb"}]})",
+     edited([](json& fit) { fit["parameters"][0]["name"] = "mass_lb"; }),
      {"parameters[0].name", "mass_lb", "mass_kg"}},
     {"value that is a text",
-     R"({"schema": "rigcal.fit/1", "status": "converged", "message": "",
-         "parameters": [{"name": "mass_kg", "scope": "rig", "level": null, "fitted": true,
-                         "nuisance": false, "value": "60"}]})",
+     edited([](json& fit) { fit["parameters"][0]["value"] = "60"; }),
      {"parameters[0].value", "60", "a number"}},
 };
 
