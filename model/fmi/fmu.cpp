@@ -2,6 +2,7 @@
 // returned as fmi2Error.
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <exception>
 #include <memory>
@@ -154,7 +155,12 @@ fmi2Status FMI2(fmi2Reset)(fmi2Component c) {
 fmi2Status FMI2(fmi2GetReal)(fmi2Component c, const fmi2ValueReference references[],
                              std::size_t count, fmi2Real values[]) {
   return call(c, "fmi2GetReal", [&](FmuInstance& instance) {
-    for (std::size_t i = 0; i < count; ++i) values[i] = instance.real(references[i]);
+    for (std::size_t i = 0; i < count; ++i) {
+      values[i] = instance.real(references[i]);
+      if (!std::isfinite(values[i]))
+        throw std::runtime_error("the value of reference " + std::to_string(references[i]) +
+                                 " is not finite");
+    }
   });
 }
 

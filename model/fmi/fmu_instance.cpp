@@ -12,6 +12,13 @@ namespace rigcal::model {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// A tick this close, in periods, is now: times that an importer adds up are rounded.
+constexpr double kSamePart = 1e-6;
+
+/// What times are rounded by.
+double rounding_s(double time_s) {
+  return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(time_s);
+}
 
 const char* words(Phase phase) {
   switch (phase) {
@@ -120,15 +127,18 @@ double FmuInstance::real(unsigned reference) {
     throw std::runtime_error("states and outputs are there from initialization mode on");
   } else {
     refresh();
-    const auto states = static_cast<unsigned>(state_.x.size());
+    const std::size_t states = state_.x.size();
     std::vector<double> x = state_.x;
     // An importer of co-simulation sees what the controller does with the inputs of this instant.
-    if (state_.phase == Phase::stepping && tick_is_due()) equations_->tick(x, 0.0);
-    if (reference >= kStateReference && reference < kStateReference + states)
-      return x[reference - kStateReference];
-    if (reference >= kDerivativeReference && reference < kDerivativeReference + states)
+    if (state_.phase == Phase::stepping && tick_is_due(state_, state_.time_s))
+      equations_->tick(x, 0.0);
+    const auto is_in = [reference](unsigned first, std::size_t count) {
+      return reference >= first && reference < first + count;
+    };
+    if (is_in(kStateReference, states)) return x[reference - kStateReference];
+    if (is_in(kDerivativeReference, states))
       return equations_->derivatives(x)[reference - kDerivativeReference];
-    if (reference >= kOutputReference && reference < kOutputReference + kAllOutputs.size())
+    if (is_in(kOutputReference, kAllOutputs.size()))
       return equations_->output(kAllOutputs[reference - kOutputReference], x);
   }
   throw std::runtime_error("no variable has the value reference " + std::to_string(reference));
@@ -140,7 +150,7 @@ void FmuInstance::set_real(unsigned reference, double value) {
     require_phase({Phase::instantiated, Phase::initialization, Phase::event, Phase::continuous,
                    Phase::stepping});
     require_finite(value, what);
-    input(reference) = {value, 0.0};
+    input(reference).value = value;
     stale_ = true;
     return;
   }
@@ -215,15 +225,25 @@ std::vector<double> FmuInstance::nominals() {
 bool FmuInstance::new_discrete_states() {
   require_phase({Phase::event});
   refresh();
-  if (!tick_is_due()) return false;
+  if (!tick_is_due(state_, state_.time_s)) return false;
   equations_->tick(state_.x, 0.0);
   ++state_.ticks;
   return true;
 }
 
-double FmuInstance::next_tick_s() const {
+double FmuInstance::next_tick_s() const { return next_tick_s(state_); }
+
+double FmuInstance::next_tick_s(const InstanceState& state) const {
   if (!equations_->layout().sampled()) return kInfinity;
-  return state_.start_s + static_cast<double>(state_.ticks) * state_.values["sample_time"];
+  return state.start_s + static_cast<double>(state.ticks) * state.values["sample_time"];
+}
+
+double FmuInstance::slack_s(const InstanceState& state, double time_s) const {
+  return kSamePart * state.values["sample_time"] + rounding_s(time_s);
+}
+
+bool FmuInstance::tick_is_due(const InstanceState& state, double time_s) const {
+  return next_tick_s(state) <= time_s + slack_s(state, time_s);
 }
 
 void FmuInstance::step(double time_s, double step_s) {
@@ -233,26 +253,20 @@ void FmuInstance::step(double time_s, double step_s) {
   if (!(step_s > 0.0))
     throw std::runtime_error("communicationStepSize: found " + digits(step_s) +
                              ", expected one above 0");
-  if (std::abs(time_s - state_.time_s) > 1e-6 * step_s + 1e-9 * std::max(1.0, std::abs(time_s)))
+  if (std::abs(time_s - state_.time_s) > 1e-3 * step_s + rounding_s(time_s))
     throw std::runtime_error("currentCommunicationPoint: found " + digits(time_s) +
                              " s, expected " + digits(state_.time_s) +
                              " s, where the last step ended");
   InstanceState after = state_;
   equations_->set(after.values, after.inputs, step_s);
-  double t = 0.0;
-  while (t < step_s) {
-    double until = step_s;
-    if (equations_->layout().sampled()) {
-      const double period_s = after.values["sample_time"];
-      const auto tick = [&] {
-        return after.start_s + static_cast<double>(after.ticks) * period_s - time_s;
-      };
-      if (tick() <= t || same_instant(time_s + tick(), time_s + t)) {
-        equations_->tick(after.x, t);
-        ++after.ticks;
-      }
-      if (!same_instant(time_s + tick(), time_s + step_s)) until = std::min(step_s, tick());
+  for (double t = 0.0; t < step_s;) {
+    while (tick_is_due(after, time_s + t)) {
+      equations_->tick(after.x, t);
+      ++after.ticks;
     }
+    // A tick at the end of the step waits for the inputs that hold from then on.
+    const double tick_s = next_tick_s(after) - time_s;
+    const double until = tick_s < step_s - slack_s(after, time_s) ? tick_s : step_s;
     equations_->advance(after.x, after.memory, t, until, after.tolerance);
     t = until;
   }
@@ -300,15 +314,6 @@ Ramp& FmuInstance::input(unsigned reference) {
       break;
   }
   throw std::runtime_error("no input has the value reference " + std::to_string(reference));
-}
-
-bool FmuInstance::same_instant(double a, double b) const {
-  return std::abs(a - b) <= 1e-9 * std::max({1e-3, std::abs(a), std::abs(b)});
-}
-
-bool FmuInstance::tick_is_due() const {
-  const double next = next_tick_s();
-  return next <= state_.time_s || same_instant(next, state_.time_s);
 }
 
 void FmuInstance::refresh() {

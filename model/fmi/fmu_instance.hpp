@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <vector>
@@ -73,8 +74,10 @@ class FmuInstance {
   void require_phase(std::initializer_list<Phase> allowed) const;
   void require_size(std::size_t count, std::size_t expected) const;
   Ramp& input(unsigned reference);
-  bool same_instant(double a, double b) const;
-  bool tick_is_due() const;
+  double next_tick_s(const InstanceState& state) const;
+  /// Within how much of a time a tick is at that time.
+  double slack_s(const InstanceState& state, double time_s) const;
+  bool tick_is_due(const InstanceState& state, double time_s) const;
   /// Equations and states after a change of parameters or inputs, before something is computed.
   void refresh();
 

@@ -16,6 +16,18 @@ extern "C" const char rigcal_fmu_library_end[];
 namespace rigcal::report {
 namespace {
 
+// Where an importer looks for the library. FMI 2.0 names those of Intel's processors; of others,
+// that of FMI 3.0.
+#if defined(__x86_64__)
+constexpr const char* kPlatform = "linux64";
+#elif defined(__i386__)
+constexpr const char* kPlatform = "linux32";
+#elif defined(__aarch64__)
+constexpr const char* kPlatform = "aarch64-linux";
+#else
+constexpr const char* kPlatform = "other-linux";
+#endif
+
 std::vector<std::string> files_to_compile() {
   std::vector<std::string> names;
   for (const auto& [name, content] : fmu_sources()) {
@@ -52,7 +64,8 @@ std::vector<FmuFile> fmu_files(FmuRequest request) {
                   request.identifier, fmt::join(sources, " \\\n  "));
   std::vector<FmuFile> files{
       {"documentation/index.html", fmu_documentation(request, variables, compile)}};
-  files.push_back({"binaries/linux64/" + request.identifier + ".so", std::string(fmu_library())});
+  files.push_back({fmt::format("binaries/{}/", kPlatform) + request.identifier + ".so",
+                   std::string(fmu_library())});
   for (const auto& [name, content] : fmu_sources())
     files.push_back({"sources/" + std::string(name), std::string(content)});
   const auto add_described = [&](std::vector<FmuFile>& to) {
