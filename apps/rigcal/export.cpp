@@ -47,6 +47,8 @@ Run add_export(CLI::App& verb) {
                   "Leak level, start and duration as in this condition");
   verb.add_option("--level", options->level,
                   "Leak level whose values are exported (default: the only one)");
+  verb.add_flag("--without-delay", options->without_delay,
+                "Leave transport_delay out, which an FMU cannot have");
   return [options](const Invocation&) { return run_export(*options); };
 }
 

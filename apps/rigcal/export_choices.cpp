@@ -32,6 +32,9 @@ std::vector<std::string> leak_levels(const Campaign& campaign,
     if (std::find(levels.begin(), levels.end(), level) == levels.end()) levels.push_back(level);
   };
   for (const auto& [level, overrides] : campaign.leak_levels) add(level);
+  for (const Condition& condition : campaign.conditions) {
+    if (condition.leak_level) add(*condition.leak_level);
+  }
   if (earlier) {
     for (const datasets::FittedValue& value : earlier->values) {
       if (value.scope == Scope::leak_level) add(value.level);
@@ -162,16 +165,26 @@ void take_sensors_off(ParameterValues& values) {
   }
 }
 
-void refuse_what_cannot_be_exported(const Campaign& campaign, ParameterValues& values) {
+/// Leaves the delay out where that was asked for, and refuses it else.
+void take_delay_off(const ExportRequest& options, const Campaign& campaign, ParameterValues& values,
+                    std::vector<std::string>& warnings) {
   const double delay_s = values["transport_delay"];
-  if (delay_s != 0.0)
+  const char* drive =
+      campaign.rig.controller == model::ControllerKind::pid ? "reference" : "command";
+  if (delay_s != 0.0 && !options.without_delay)
     throw InputError(
         {campaign.file.string()},
         fmt::format("transport_delay is {:g} s, but the inputs of an FMU act at once: expected "
-                    "--set transport_delay=\"0 s\", and the delay in the model that imports it",
-                    delay_s));
+                    "--without-delay, and that delay of the {} in the model that imports it",
+                    delay_s, drive));
+  if (delay_s != 0.0)
+    warnings.push_back(
+        fmt::format("transport_delay is left out: the {} has to be delayed by {} s "
+                    "in the model that imports it",
+                    drive, delay_s));
   const auto index =
       static_cast<std::size_t>(model::parameter_index(values.plant, "transport_delay"));
+  values.value[index] = 0.0;
   values.given[index] = false;
 }
 
@@ -272,15 +285,15 @@ ExportChoice choose_export(const ExportRequest& options) {
       fmu.step_s = (fmu.stop_s - fmu.start_s) / static_cast<double>(task.time_s.size() - 1);
     if (task.record) records.push_back(std::move(*task.record));
   }
-  refuse_what_cannot_be_exported(campaign, values);
+  take_delay_off(options, campaign, values, choice.warnings);
   take_sensors_off(values);
   fmu.rig.values = values;
   require_simulable(campaign, fmu.rig);
 
   choice.inputs = report::hash_inputs(campaign, records, more_inputs);
   fmu.name = campaign.name;
-  fmu.identifier = report::fmu_identifier(
-      options.level ? campaign.name + "_" + *options.level : campaign.name);
+  fmu.identifier =
+      report::fmu_identifier(options.level ? campaign.name + "_" + *options.level : campaign.name);
   auto& origin = fmu.origin;
   origin.emplace_back("rig", campaign.name);
   if (options.condition) origin.emplace_back("condition", condition->id);

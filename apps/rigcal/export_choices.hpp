@@ -16,6 +16,7 @@ struct ExportRequest {
   std::filesystem::path fit;
   std::optional<std::string> condition;
   std::optional<std::string> level;
+  bool without_delay = false;
 };
 
 /// A rig that is ready to be written, and the files that it was made from.

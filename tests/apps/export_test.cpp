@@ -15,18 +15,18 @@ namespace rigcal::test {
 namespace {
 
 using Catch::Contains;
-using Columns = std::map<std::string, std::vector<double>>;
+using SimulatedColumns = std::map<std::string, std::vector<double>>;
 using Drive = std::function<double(double)>;
 
 /// Both simulations are this exact at each step; what is compared is a hundred times coarser.
 constexpr double kTolerance = 1e-9;
 
-const Edits kNoRecords{
+const Edits kGeneratedRuns{
     {"repeats = [\"records/sine_*.csv\"]", "duration = \"0.6 s\"\nsample_rate = \"200 Hz\""},
     {"repeats = [\"records/square_*.csv\"]", "duration = \"0.6 s\"\nsample_rate = \"200 Hz\""},
     {"[acceptance]", "[simulation]\ntolerance = 1e-9\n[acceptance]"}};
 
-const Edits kTwoChamberRuns{
+const Edits kTwoChamberGeneratedRuns{
     {"repeats = [\"records/square_*.csv\"]",
      "duration = \"0.6 s\"\nsample_rate = \"200 Hz\"\n[[condition]]\nid = \"sine\"\nwaveform = "
      "\"sine\"\nfrequency = \"2 Hz\"\namplitude = \"1 V\"\nuse = \"fit\"\nduration = \"0.6 "
@@ -41,12 +41,12 @@ Drive sine(double amplitude) {
   return [amplitude](double t) { return amplitude * std::sin(4.0 * std::numbers::pi * t); };
 }
 
-Columns simulated(const CommandFolder& folder, const std::string& condition) {
+SimulatedColumns simulated(const CommandFolder& folder, const std::string& condition) {
   const Outcome outcome =
       folder.run({"simulate", "campaign.toml", "--condition", condition, "--out", "simulated"});
   CAPTURE(outcome.err);
   REQUIRE(outcome.exit_code == 0);
-  Columns columns;
+  SimulatedColumns columns;
   std::istringstream csv(folder.read("simulated/" + condition + ".csv"));
   std::string line;
   std::getline(csv, line);
@@ -80,7 +80,7 @@ Fmu exported(const CommandFolder& folder, CommandFolder::Arguments more = {}) {
 }
 
 /// Names of the outputs by those of the columns that `simulate` writes.
-std::map<std::string, std::string> outputs_of(const Fmu& fmu, const Columns& columns) {
+std::map<std::string, std::string> outputs_of(const Fmu& fmu, const SimulatedColumns& columns) {
   std::map<std::string, std::string> outputs;
   for (const auto& [name, variable] : fmu.variables) {
     if (variable.causality != "output") continue;
@@ -101,7 +101,7 @@ double peak_of(const std::vector<double>& values) {
 /// Every output at every sample, over the peak of its column: to a millionth. Leakage is a root of
 /// the pressure, whose slope at zero makes ten of them of one.
 void require_same(FmuRun& run, const std::map<std::string, std::string>& outputs,
-                  const Columns& columns, std::size_t sample) {
+                  const SimulatedColumns& columns, std::size_t sample) {
   for (const auto& [name, column] : outputs) {
     const std::vector<double>& values = columns.at(column);
     const double tolerance = name == "leakage_flow" ? 1e-5 : 1e-6;
@@ -114,7 +114,7 @@ void require_same(FmuRun& run, const std::map<std::string, std::string>& outputs
 /// Co-simulation with inputs that go straight from one communication point to the next: many enough
 /// that a sine of 2 Hz is off by (2 pi f h)^2 / 8 = 2e-7 of its amplitude.
 void require_co_simulation(const Fmu& fmu, const FmuLibrary& library, const std::string& input,
-                           const Drive& drive, bool jumps, const Columns& columns) {
+                           const Drive& drive, bool jumps, const SimulatedColumns& columns) {
   FmuRun run(fmu, library, fmi2CoSimulation);
   REQUIRE(run.component != nullptr);
   run.initialize(0.0, kTolerance, {{input, drive(0.0)}});
@@ -139,7 +139,7 @@ void require_co_simulation(const Fmu& fmu, const FmuLibrary& library, const std:
 }
 
 void require_model_exchange(const Fmu& fmu, const FmuLibrary& library, const std::string& input,
-                            const Drive& drive, bool jumps, const Columns& columns) {
+                            const Drive& drive, bool jumps, const SimulatedColumns& columns) {
   FmuRun run(fmu, library, fmi2ModelExchange);
   REQUIRE(run.component != nullptr);
   run.initialize(0.0, kTolerance, {{input, drive(0.0)}});
@@ -170,7 +170,7 @@ void require_both(const CommandFolder& folder, const std::string& input,
   const FmuLibrary library(fmu.library());
   for (const auto& [condition, drive] : drives) {
     CAPTURE(condition);
-    const Columns columns = simulated(folder, condition);
+    const SimulatedColumns columns = simulated(folder, condition);
     const bool jumps = condition == "square";
     require_co_simulation(fmu, library, input, drive, jumps, columns);
     require_model_exchange(fmu, library, input, drive, jumps, columns);
@@ -181,20 +181,20 @@ void require_both(const CommandFolder& folder, const std::string& input,
 
 TEST_CASE("export: a closed loop with a leak runs as simulate has it", "[apps]") {
   const CommandFolder folder;
-  folder.write("campaign.toml", edited(kCampaign, kNoRecords));
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
   require_both(folder, "reference", {{"sine", sine(0.005)}, {"square", square(0.004)}});
 }
 
 TEST_CASE("export: two chambers in open loop run as simulate has them", "[apps]") {
   const CommandFolder folder;
-  folder.write("campaign.toml", edited(kTwoChamber, kTwoChamberRuns));
+  folder.write("campaign.toml", edited(kTwoChamber, kTwoChamberGeneratedRuns));
   require_both(folder, "command", {{"sine", sine(1.0)}, {"square", square(1.0)}});
 }
 
 TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
   const CommandFolder folder;
   SECTION("load pressure") {
-    Edits edits = kNoRecords;
+    Edits edits = kGeneratedRuns;
     edits.push_back({"leakage_coefficient = 0.3",
                      "leakage_coefficient = 0.3\nlaminar_leakage = \"1e-13 m3/(s "
                      "Pa)\"\ncoulomb_friction = \"40 N\"\nstribeck_friction = \"20 "
@@ -209,7 +209,7 @@ TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
     require_both(folder, "reference", {{"sine", sine(0.005)}, {"square", square(0.004)}});
   }
   SECTION("two chambers") {
-    Edits edits = kTwoChamberRuns;
+    Edits edits = kTwoChamberGeneratedRuns;
     edits.push_back(
         {"stroke = \"200 mm\"",
          "stroke = \"40 mm\"\ngravity = \"9.81 m/s2\"\nair_fraction = 0.01\nvalve_time_constant = "
@@ -223,9 +223,36 @@ TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
   }
 }
 
+TEST_CASE("export: a rig starts where its record does, without the sensor's offset", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder, {{"mass = \"60 kg\"", "mass = \"60 kg\"\nposition_offset = \"2 mm\""},
+                              {"[recording.channels]",
+                               "[recording]\ninitial = \"record\"\n[recording.channels]"}})
+              .exit_code == 0);
+  folder.write(
+      "campaign.toml",
+      edited(folder.read("twin/campaign.toml"),
+             {{"[recording.channels]", "[simulation]\ntolerance = 1e-9\n[recording.channels]"}}));
+  std::filesystem::rename(folder.work() / "twin" / "records", folder.work() / "records");
+  const SimulatedColumns columns = simulated(folder, "square");
+  const Fmu fmu = exported(folder, {"--condition", "square"});
+  const FmuLibrary library(fmu.library());
+  FmuRun run(fmu, library, fmi2CoSimulation);
+  run.initialize(0.0, kTolerance, {{"reference", 0.004}});
+  const auto& times = columns.at("time_s");
+  const auto& readings = columns.at("position_m");
+  CHECK(std::abs(readings.front()) > 1e-4);
+  for (std::size_t i = 0; i < 50; ++i) {
+    REQUIRE(run.get("position") + 0.002 == Approx(readings[i]).margin(1e-6 * 0.004).epsilon(0));
+    run.require(run.step(times[i], times[i + 1] - times[i]));
+  }
+  CHECK_THAT(text_of(fmu.folder() / "modelDescription.xml"), !Contains("position_offset"));
+  CHECK(std::stod(fmu.variables.at("initial_position").start) + 0.002 == Approx(readings.front()));
+}
+
 TEST_CASE("export: a sampled controller ticks as in simulate", "[apps]") {
   const CommandFolder folder;
-  Edits edits = kNoRecords;
+  Edits edits = kGeneratedRuns;
   edits.push_back({"kp = \"1000 V/m\"",
                    "kp = \"400 V/m\"\nki = \"500 V/(m s)\"\nkd = \"1 V s/m\"\n"
                    "derivative_filter = \"300 rad/s\"\noutput_limit = \"1.5 V\"\nsample_time = "
@@ -236,7 +263,7 @@ TEST_CASE("export: a sampled controller ticks as in simulate", "[apps]") {
 
 TEST_CASE("export: steps of any length lead to the same end", "[apps]") {
   const CommandFolder folder;
-  Edits edits = kNoRecords;
+  Edits edits = kGeneratedRuns;
   edits.push_back({"kp = \"1000 V/m\"", "kp = \"400 V/m\"\nsample_time = \"7 ms\""});
   folder.write("campaign.toml", edited(kCampaign, edits));
   const Fmu fmu = exported(folder);
@@ -260,7 +287,7 @@ TEST_CASE("export: steps of any length lead to the same end", "[apps]") {
 
 TEST_CASE("export: parameters and inputs of an FMU act as those of a campaign", "[apps]") {
   const CommandFolder folder;
-  folder.write("campaign.toml", edited(kCampaign, kNoRecords));
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
   const Fmu fmu = exported(folder);
   const FmuLibrary library(fmu.library());
   const auto position = [&](const Fmu& from, const std::map<std::string, double>& values) {
@@ -293,7 +320,7 @@ TEST_CASE("export: parameters and inputs of an FMU act as those of a campaign", 
 
 TEST_CASE("export: instances are apart, and go back to what they were", "[apps]") {
   const CommandFolder folder;
-  folder.write("campaign.toml", edited(kCampaign, kNoRecords));
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
   const Fmu fmu = exported(folder);
   const FmuLibrary library(fmu.library());
   FmuRun one(fmu, library, fmi2CoSimulation);
@@ -321,7 +348,7 @@ TEST_CASE("export: instances are apart, and go back to what they were", "[apps]"
 
 TEST_CASE("export: an FMU says in words what it refuses", "[apps]") {
   const CommandFolder folder;
-  folder.write("campaign.toml", edited(kCampaign, kNoRecords));
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
   const Fmu fmu = exported(folder);
   const FmuLibrary library(fmu.library());
   const double nan = std::nan("");
@@ -366,7 +393,7 @@ TEST_CASE("export: an FMU says in words what it refuses", "[apps]") {
 
 TEST_CASE("export: the sources compile with a compiler alone, to the same model", "[apps]") {
   const CommandFolder folder;
-  folder.write("campaign.toml", edited(kCampaign, kNoRecords));
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
   const Fmu fmu = exported(folder);
   std::string files;
   for (const auto& [tag, node] : fmu.description().get_child("CoSimulation.SourceFiles"))
@@ -378,14 +405,14 @@ TEST_CASE("export: the sources compile with a compiler alone, to the same model"
                               library_file.string() + "'" + files;
   REQUIRE(std::system(command.c_str()) == 0);
   const FmuLibrary library(library_file);
-  const Columns columns = simulated(folder, "square");
+  const SimulatedColumns columns = simulated(folder, "square");
   require_co_simulation(fmu, library, "reference", square(0.004), true, columns);
   require_model_exchange(fmu, library, "reference", square(0.004), true, columns);
 }
 
 TEST_CASE("export: the model description keeps the rules of the standard", "[apps]") {
   const CommandFolder folder;
-  folder.write("campaign.toml", edited(kCampaign, kNoRecords));
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
   const Fmu fmu = exported(folder, {"--condition", "sine"});
   const auto& root = fmu.description();
   CHECK(root.get<std::string>("<xmlattr>.fmiVersion") == "2.0");
@@ -433,7 +460,7 @@ TEST_CASE("export: the model description keeps the rules of the standard", "[app
 
 TEST_CASE("export: the same campaign gives the same bytes, another one another GUID", "[apps]") {
   const CommandFolder folder;
-  folder.write("campaign.toml", edited(kCampaign, kNoRecords));
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
   for (const char* out : {"one", "two"})
     REQUIRE(folder.run({"export", "fmu", "campaign.toml", "--out", out}).exit_code == 0);
   CHECK(folder.read("one/small_rig.fmu") == folder.read("two/small_rig.fmu"));
@@ -488,7 +515,7 @@ TEST_CASE("export: a fit gives the values of its leak level", "[apps]") {
 
 TEST_CASE("export: bad input", "[apps]") {
   const CommandFolder folder;
-  folder.write("campaign.toml", edited(kCampaign, kNoRecords));
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
   const Outcome format = folder.run({"export", "fmx", "campaign.toml"});
   CHECK(format.exit_code == 2);
   CHECK_THAT(format.err, Contains("unknown format 'fmx'") && Contains("known: fmu"));
@@ -500,6 +527,11 @@ TEST_CASE("export: bad input", "[apps]") {
   CHECK(delay.exit_code == 2);
   CHECK_THAT(delay.err,
              Contains("transport_delay is 0.004 s, but the inputs of an FMU act at once"));
+  const Outcome without = folder.run({"export", "fmu", "campaign.toml", "--set",
+                                      "transport_delay=4 ms", "--without-delay", "--out", "late"});
+  CHECK(without.exit_code == 0);
+  CHECK_THAT(without.out, Contains("transport_delay is left out: the reference has to be delayed "
+                                   "by 0.004 s"));
   folder.write("file", "");
   const Outcome out = folder.run({"export", "fmu", "campaign.toml", "--out", "file/out"});
   CHECK(out.exit_code == 5);

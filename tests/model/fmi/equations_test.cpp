@@ -3,17 +3,11 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/support/paper_rig.hpp"
+#include "tests/model/rig.hpp"
 
 using namespace rigcal::model;
 
 namespace {
-
-ParameterValues paper_rig() {
-  auto values = ParameterValues::defaults(PlantKind::load_pressure);
-  for (const auto& [key, value] : rigcal::test::kPaperRig) values.set(key, value);
-  return values;
-}
 
 ExportedRig rig_with(const std::vector<std::string>& keys) {
   ExportedRig rig;

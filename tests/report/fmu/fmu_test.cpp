@@ -4,19 +4,9 @@
 
 #include "report/fmu/built_in.hpp"
 #include "report/fmu/zip.hpp"
-#include "tests/support/paper_rig.hpp"
+#include "tests/model/rig.hpp"
 
 using namespace rigcal;
-
-namespace {
-
-model::ParameterValues paper_rig() {
-  auto values = model::ParameterValues::defaults(model::PlantKind::load_pressure);
-  for (const auto& [key, value] : rigcal::test::kPaperRig) values.set(key, value);
-  return values;
-}
-
-}  // namespace
 
 TEST_CASE("fmu: an identifier is one of C", "[report]") {
   CHECK(report::fmu_identifier("shake table") == "shake_table");
@@ -27,7 +17,7 @@ TEST_CASE("fmu: an identifier is one of C", "[report]") {
 
 TEST_CASE("fmu: names cannot end an element of the description", "[report]") {
   report::FmuRequest request;
-  request.rig.values = paper_rig();
+  request.rig.values = model::paper_rig();
   request.name = "a \"rig\" <b> & 'c'";
   request.identifier = "rig";
   request.origin = {{"rig", request.name}};
