@@ -1,4 +1,5 @@
 # Writes files into a C++ source as raw strings: cmake -DOUT=... "-DFILES=name=path;..." -P embed.cmake
+# With -DMAP=function -DHEADER=file the function that the header declares gives them all, by name.
 cmake_minimum_required(VERSION 3.25)
 set(rows "")
 foreach(entry IN LISTS FILES)
@@ -10,6 +11,21 @@ foreach(entry IN LISTS FILES)
   file(READ "${CMAKE_MATCH_2}" content)
   string(APPEND rows "    {\"${name}\", R\"rigcal_asset(${content})rigcal_asset\"},\n")
 endforeach()
+if(MAP)
+  file(WRITE "${OUT}" "#include \"${HEADER}\"
+
+namespace rigcal::report {
+
+const std::map<std::string_view, std::string_view>& ${MAP}() {
+  static const std::map<std::string_view, std::string_view> kFiles{
+${rows}  };
+  return kFiles;
+}
+
+}  // namespace rigcal::report
+")
+  return()
+endif()
 file(WRITE "${OUT}" "#include \"report/page/assets.hpp\"
 
 #include <map>

@@ -55,6 +55,8 @@ constexpr std::array kVerbs{
             rigcal::app::add_parity},
     VerbRow{"plan", "What each record, and each planned one, tells about each parameter",
             rigcal::app::add_plan},
+    VerbRow{"export", "Write the calibrated rig for other simulators: an FMU",
+            rigcal::app::add_export},
     VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},
     VerbRow{"init", "Draft a campaign file from recordings", rigcal::app::add_init},
     VerbRow{"batch", "Fit every rig beneath a folder; one overview", rigcal::app::add_batch, true},

@@ -4,14 +4,11 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/simulation_task.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "calib/problem/initial_state.hpp"
 #include "common/parallel.hpp"
-#include "common/suggest.hpp"
-#include "datasets/prepare/load_record.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/folder.hpp"
 
@@ -27,16 +24,6 @@ struct SimulateRequest {
   std::vector<std::string> conditions;
 };
 
-/// A condition with all that its simulation needs.
-struct Task {
-  const Condition* condition = nullptr;
-  model::Rig rig;
-  model::ParameterValues values;
-  model::SimulationInputs inputs;
-  std::vector<double> time_s;
-  std::optional<Record> record;
-};
-
 std::vector<const Condition*> wanted(const Campaign& campaign,
                                      const std::vector<std::string>& ids) {
   std::vector<const Condition*> result;
@@ -46,13 +33,8 @@ std::vector<const Condition*> wanted(const Campaign& campaign,
     }
     return result;
   }
-  std::vector<std::string> known;
-  for (const Condition& condition : campaign.conditions) known.push_back(condition.id);
   for (const std::string& id : ids) {
-    const Condition* condition = campaign.find(id);
-    if (condition == nullptr) {
-      throw UsageError("--condition: " + unknown_name_message("condition", id, known));
-    }
+    const Condition* condition = &chosen_condition(campaign, id);
     if (std::find(result.begin(), result.end(), condition) == result.end()) {
       result.push_back(condition);
     }
@@ -60,32 +42,7 @@ std::vector<const Condition*> wanted(const Campaign& campaign,
   return result;
 }
 
-Task prepare(const Campaign& campaign, const Condition& condition) {
-  Task task;
-  task.condition = &condition;
-  task.rig = campaign.rig;
-  task.values = datasets::values_in(campaign, condition);
-  const bool generated = condition.waveform != datasets::Waveform::recorded &&
-                         condition.duration_s && condition.sample_rate_hz;
-  if (!generated && condition.has_record()) {
-    task.record = datasets::load_record(campaign, condition);
-    const calib::InitialPlan plan =
-        calib::plan_initial_state(campaign, condition, *task.record, task.values);
-    task.rig.initial = plan.state;
-    for (const auto& [index, value] : plan.known) task.values.set(index, value);
-  } else if (condition.waveform == datasets::Waveform::recorded) {
-    throw InputError(condition.where,
-                     fmt::format("condition \"{}\": the waveform is \"recorded\", but there is no "
-                                 "record; expected repeats or averaged",
-                                 condition.id));
-  }
-  const Record* record = task.record ? &*task.record : nullptr;
-  task.time_s = datasets::sample_times(condition, record);
-  task.inputs = datasets::inputs_of(campaign, condition, task.values, record);
-  return task;
-}
-
-std::string file_of(const Task& task, const model::Simulation& simulation) {
+std::string file_of(const SimulationTask& task, const model::Simulation& simulation) {
   std::vector<double> reference_m;
   if (task.rig.controller == model::ControllerKind::pid) {
     for (const double t : task.time_s) reference_m.push_back(task.inputs.drive.value(t));
@@ -93,7 +50,7 @@ std::string file_of(const Task& task, const model::Simulation& simulation) {
   return report::simulation_csv(task.time_s, reference_m, model::kAllOutputs, simulation);
 }
 
-std::string line_of(const Task& task, const model::Simulation& simulation) {
+std::string line_of(const SimulationTask& task, const model::Simulation& simulation) {
   if (simulation.ok()) {
     return fmt::format("{}: {} samples, {} steps\n", task.condition->id, task.time_s.size(),
                        simulation.steps);
@@ -102,7 +59,7 @@ std::string line_of(const Task& task, const model::Simulation& simulation) {
                      simulation.failed_at_s, simulation.reason);
 }
 
-report::Json json_of(const Task& task, const model::Simulation& simulation) {
+report::Json json_of(const SimulationTask& task, const model::Simulation& simulation) {
   report::Json json;
   json["condition"] = task.condition->id;
   json["status"] = std::string(to_string(simulation.status));
@@ -116,10 +73,11 @@ report::Json json_of(const Task& task, const model::Simulation& simulation) {
 
 ExitCode run_simulate(const SimulateRequest& options) {
   const Campaign campaign = load(options.common);
-  std::vector<Task> tasks;
+  std::vector<SimulationTask> tasks;
   std::vector<Record> records;
   for (const Condition* condition : wanted(campaign, options.conditions)) {
-    tasks.push_back(prepare(campaign, *condition));
+    tasks.push_back(
+        simulation_task(campaign, *condition, datasets::values_in(campaign, *condition)));
     if (tasks.back().record) records.push_back(*tasks.back().record);
   }
   const report::HeldFolder held(options.common.out);
@@ -130,7 +88,7 @@ ExitCode run_simulate(const SimulateRequest& options) {
   settings.max_seconds = campaign.simulation.max_seconds;
   std::vector<model::Simulation> simulations(tasks.size());
   parallel_for(tasks.size(), options.common.threads, [&](std::size_t i) {
-    const Task& task = tasks[i];
+    const SimulationTask& task = tasks[i];
     simulations[i] = model::simulate(task.rig, task.values, {}, task.inputs, task.time_s,
                                      model::kAllOutputs, settings);
   });

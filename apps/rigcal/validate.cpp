@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 
+#include "apps/rigcal/earlier_fit.hpp"
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/outcome.hpp"
@@ -26,34 +27,13 @@ struct ValidateRequest {
   bool strict = false;
 };
 
-/// Known values of the rig that were others when the fit was made.
-std::vector<std::string> changed_values(const Campaign& campaign,
-                                        const report::EarlierFit& earlier) {
-  const auto table = model::parameter_table(campaign.rig.plant);
-  std::vector<std::string> warnings;
-  for (const datasets::FittedValue& known : earlier.known) {
-    const datasets::ParameterSetting* setting = campaign.setting(known.index);
-    if (setting == nullptr || setting->fit || setting->value == known.value) continue;
-    const model::ParameterSpec& spec = table[static_cast<std::size_t>(known.index)];
-    warnings.push_back(fmt::format("{} is {:g} {} here, but was {:g} {} in the fit", spec.key,
-                                   setting->value, spec.unit, known.value, spec.unit));
-  }
-  return warnings;
-}
-
 std::vector<std::string> warnings_of(const Campaign& campaign,
                                      const std::vector<datasets::Record>& records,
                                      const calib::Fit& fit, const report::EarlierFit& earlier) {
-  std::vector<std::string> warnings;
-  if (earlier.status == calib::FitStatus::stopped) {
-    warnings.push_back("the fit was stopped before it converged: " + earlier.message);
-  }
-  const auto add = [&](const std::vector<std::string>& more) {
-    warnings.insert(warnings.end(), more.begin(), more.end());
-  };
-  add(changed_values(campaign, earlier));
-  add(report::outside(report::coverage(campaign, records, fit, {Use::fit, Use::validate}),
-                      earlier.validity));
+  std::vector<std::string> warnings = doubts_about(earlier, campaign);
+  const auto outside = report::outside(
+      report::coverage(campaign, records, fit, {Use::fit, Use::validate}), earlier.validity);
+  warnings.insert(warnings.end(), outside.begin(), outside.end());
   return warnings;
 }
 

@@ -39,5 +39,6 @@ Run add_batch(CLI::App& verb);
 Run add_compare(CLI::App& verb);
 Run add_report(CLI::App& verb);
 Run add_params(CLI::App& verb);
+Run add_export(CLI::App& verb);
 
 }  // namespace rigcal::app

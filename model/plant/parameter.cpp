@@ -1,7 +1,5 @@
 #include "model/plant/parameter.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <stdexcept>
@@ -40,7 +38,7 @@ const PlantRow& row_of(PlantKind plant) { return kPlants[static_cast<std::size_t
 
 int checked_index(PlantKind plant, std::string_view key) {
   const int index = parameter_index(plant, key);
-  if (index < 0) throw std::invalid_argument(fmt::format("unknown parameter '{}'", key));
+  if (index < 0) throw std::invalid_argument("unknown parameter '" + std::string(key) + "'");
   return index;
 }
 

@@ -58,16 +58,6 @@ double value_in(const Campaign& campaign, const Condition& condition, const cali
 /// How far a range may leave what is covered before it matters, as a share of the bound it leaves.
 constexpr double kSlack = 0.1;
 
-/// "5 mm", "0.1 to 10 Hz": both ends in the unit of the upper one.
-std::string in_words(const Range& range, std::string_view unit) {
-  const ReadableUnit readable = readable_unit(range.high, unit);
-  const auto number = [&](double value) { return fmt::format("{:.4g}", value / readable.si); };
-  const std::string low = number(range.low);
-  const std::string high = number(range.high);
-  const std::string suffix = readable.name.empty() ? "" : fmt::format(" {}", readable.name);
-  return low == high ? high + suffix : fmt::format("{} to {}{}", low, high, suffix);
-}
-
 void compare(std::vector<std::string>& result, std::string_view what, std::string_view unit,
              const std::optional<Range>& asked, const std::optional<Range>& covered) {
   if (!asked || !covered) return;
@@ -79,6 +69,15 @@ void compare(std::vector<std::string>& result, std::string_view what, std::strin
 }
 
 }  // namespace
+
+std::string in_words(const Range& range, std::string_view unit) {
+  const ReadableUnit readable = readable_unit(range.high, unit);
+  const auto number = [&](double value) { return fmt::format("{:.4g}", value / readable.si); };
+  const std::string low = number(range.low);
+  const std::string high = number(range.high);
+  const std::string suffix = readable.name.empty() ? "" : fmt::format(" {}", readable.name);
+  return low == high ? high + suffix : fmt::format("{} to {}{}", low, high, suffix);
+}
 
 Validity coverage(const Campaign& campaign, const std::vector<Record>& records,
                   const calib::Fit& fit, const std::vector<datasets::Use>& uses) {

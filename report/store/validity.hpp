@@ -17,6 +17,11 @@ struct Range {
   bool operator==(const Range&) const = default;
 };
 
+/// "5 mm", "0.1 to 10 Hz": both ends in the unit that suits the upper one.
+///
+/// @param unit  SI
+std::string in_words(const Range& range, std::string_view unit);
+
 /// What the conditions of a fit cover; a range is empty where no condition tells it.
 struct Validity {
   std::optional<Range> frequency_hz;

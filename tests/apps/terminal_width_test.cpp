@@ -52,6 +52,7 @@ TEST_CASE("rigcal: every verb fits on 80 columns", "[apps]") {
            {"diagnose", campaign, "--fit", "fit/fit.json", "--out", "diagnosis"},
            {"parity", campaign, "--fit", "fit/fit.json", "--out", "parity"},
            {"plan", campaign, "--fit", "fit/fit.json", "--out", "plan"},
+           {"export", "fmu", campaign, "--fit", "fit/fit.json", "--out", "export"},
            {"leak-table", campaign, "--signals", "sine@2Hz@5mm,square@1Hz@4mm", "--targets", "5,10",
             "--out", "table"},
            {"batch", "twin", "--out", "batch"},

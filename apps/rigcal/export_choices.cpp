@@ -1,0 +1,314 @@
+#include "apps/rigcal/export_choices.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "apps/rigcal/earlier_fit.hpp"
+#include "apps/rigcal/simulation_task.hpp"
+#include "calib/problem/known_values.hpp"
+#include "calib/problem/parameter_map.hpp"
+#include "common/suggest.hpp"
+#include "report/store/json_node.hpp"
+#include "report/store/read_json.hpp"
+
+namespace rigcal::app {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+using datasets::Scope;
+using model::ParameterValues;
+
+/// Leak levels that the campaign or the fit knows.
+std::vector<std::string> leak_levels(const Campaign& campaign,
+                                     const std::optional<report::EarlierFit>& earlier) {
+  std::vector<std::string> levels;
+  const auto add = [&levels](const std::string& level) {
+    if (std::find(levels.begin(), levels.end(), level) == levels.end()) levels.push_back(level);
+  };
+  for (const auto& [level, overrides] : campaign.leak_levels) add(level);
+  for (const Condition& condition : campaign.conditions) {
+    if (condition.leak_level) add(*condition.leak_level);
+  }
+  if (earlier) {
+    for (const datasets::FittedValue& value : earlier->values) {
+      if (value.scope == Scope::leak_level) add(value.level);
+    }
+  }
+  return levels;
+}
+
+/// The leak level that --level asks for, or the only one there is; none where the rig has none.
+std::optional<std::string> chosen_level(const ExportRequest& options,
+                                        const std::vector<std::string>& levels) {
+  if (options.level) {
+    if (std::find(levels.begin(), levels.end(), *options.level) == levels.end())
+      throw UsageError("--level: " + unknown_name_message("leak level", *options.level, levels));
+    return options.level;
+  }
+  if (levels.size() > 1)
+    throw UsageError(
+        fmt::format("the rig has {} leak levels: expected --level with one of {}, or --condition",
+                    levels.size(), fmt::join(levels, ", ")));
+  if (levels.empty()) return std::nullopt;
+  return levels.front();
+}
+
+/// Refuses what the fit does not have for a leak level, by the options that can help.
+void require_values_of_level(const ExportRequest& options, const Campaign& campaign,
+                             const Condition& condition, const report::EarlierFit& earlier) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  for (const datasets::FittedValue& value : earlier.values) {
+    if (value.scope == Scope::rig || calib::known_in(campaign, condition, value.index)) continue;
+    const std::string_view key = table[static_cast<std::size_t>(value.index)].key;
+    if (value.scope == Scope::condition)
+      throw UsageError(fmt::format("{}: the fit has a {} for each condition: expected --condition",
+                                   options.fit.string(), key));
+    std::vector<std::string> levels;
+    for (const datasets::FittedValue& other : earlier.values) {
+      if (other.index == value.index) levels.push_back(other.level);
+    }
+    const std::string level = condition.leak_level.value_or("");
+    if (std::find(levels.begin(), levels.end(), level) == levels.end())
+      throw UsageError(fmt::format(
+          "--level {}: {} has no {} for it, only for {}: expected one of these, or a known value "
+          "in [leak_level.\"...\"]",
+          level, options.fit.string(), key, fmt::join(levels, ", ")));
+  }
+}
+
+/// Values that --set gives go over those of a fit.
+void set_over_fit(const ExportRequest& options, const Campaign& campaign,
+                  const Condition& condition, ParameterValues& values) {
+  for (const std::string& assignment : options.common.set) {
+    const std::string key = assignment.substr(0, assignment.find('='));
+    const int index = model::parameter_index(campaign.rig.plant, key);
+    if (!calib::known_in(campaign, condition, index))
+      values.set(index, campaign.setting(index)->value);
+  }
+}
+
+ParameterValues values_of(const ExportRequest& options, const Campaign& campaign,
+                          const Condition& condition,
+                          const std::optional<report::EarlierFit>& earlier) {
+  ParameterValues values = earlier ? calib::values_with(campaign, condition, earlier->values)
+                                   : datasets::values_in(campaign, condition);
+  set_over_fit(options, campaign, condition, values);
+  if (const auto missing = values.missing(); !missing.empty())
+    throw InputError({campaign.file.string()},
+                     fmt::format("no value of {} holds for the whole rig: expected --condition "
+                                 "with a condition that has them",
+                                 fmt::join(missing, ", ")));
+  return values;
+}
+
+/// What is exported although nothing has estimated it.
+void warn_of_start_values(const Campaign& campaign, const Condition& condition,
+                          const std::optional<report::EarlierFit>& earlier,
+                          std::vector<std::string>& warnings) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  std::vector<std::string_view> starts;
+  std::vector<std::string_view> of_records;
+  for (const datasets::ParameterSetting& setting : campaign.parameters) {
+    const model::ParameterSpec& spec = table[static_cast<std::size_t>(setting.index)];
+    if (!setting.fit || spec.kind == model::ParameterKind::sensor ||
+        calib::known_in(campaign, condition, setting.index))
+      continue;
+    if (setting.nuisance) {
+      of_records.push_back(spec.key);
+    } else if (!earlier) {
+      starts.push_back(spec.key);
+    }
+  }
+  if (!starts.empty())
+    warnings.push_back(
+        fmt::format("not calibrated: {} are where a fit starts; --fit fit.json gives its values",
+                    fmt::join(starts, ", ")));
+  if (!of_records.empty())
+    warnings.push_back(
+        fmt::format("{} belong to each record: the campaign's own values are exported",
+                    fmt::join(of_records, ", ")));
+}
+
+/// Takes the sensors off: what they would read at the start becomes what is.
+void take_sensors_off(ParameterValues& values) {
+  struct Reading {
+    const char* initial;
+    const char* gain;
+    const char* offset;
+  };
+  constexpr std::array kReadings{
+      Reading{"initial_position", "position_gain", "position_offset"},
+      Reading{"initial_load_pressure", "load_pressure_gain", "load_pressure_offset"},
+      Reading{"initial_pressure_a", "pressure_a_gain", "pressure_a_offset"},
+      Reading{"initial_pressure_b", "pressure_b_gain", "pressure_b_offset"}};
+  for (const Reading& reading : kReadings) {
+    if (model::parameter_index(values.plant, reading.initial) < 0) continue;
+    const bool position = std::string_view(reading.initial) == "initial_position";
+    if (!position && !values.is_given(reading.initial)) continue;
+    values.set(reading.initial,
+               (values[reading.initial] - values[reading.offset]) / values[reading.gain]);
+  }
+  const auto defaults = ParameterValues::defaults(values.plant);
+  const auto table = model::parameter_table(values.plant);
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const bool sensor = table[i].kind == model::ParameterKind::sensor;
+    const bool no_limit = table[i].key == "output_limit" && !std::isfinite(values.value[i]);
+    if (!sensor && !no_limit) continue;
+    values.value[i] = defaults.value[i];
+    values.given[i] = false;
+  }
+}
+
+/// Leaves the delay out where that was asked for, and refuses it else.
+void take_delay_off(const ExportRequest& options, const Campaign& campaign, ParameterValues& values,
+                    std::vector<std::string>& warnings) {
+  const double delay_s = values["transport_delay"];
+  const char* drive =
+      campaign.rig.controller == model::ControllerKind::pid ? "reference" : "command";
+  if (delay_s != 0.0 && !options.without_delay)
+    throw InputError(
+        {campaign.file.string()},
+        fmt::format("transport_delay is {:g} s, but the inputs of an FMU act at once: expected "
+                    "--without-delay, and that delay of the {} in the model that imports it",
+                    delay_s, drive));
+  if (delay_s != 0.0)
+    warnings.push_back(
+        fmt::format("transport_delay is left out: the {} has to be delayed by {} s "
+                    "in the model that imports it",
+                    drive, delay_s));
+  const auto index =
+      static_cast<std::size_t>(model::parameter_index(values.plant, "transport_delay"));
+  values.value[index] = 0.0;
+  values.given[index] = false;
+}
+
+/// Refuses values that the model does not take, in its words.
+void require_simulable(const Campaign& campaign, const model::ExportedRig& rig) {
+  const std::array times_s{0.0};
+  const std::array outputs{model::Output::position};
+  const auto run = model::simulate(rig.rig, rig.values, {}, {}, times_s, outputs);
+  if (!run.ok()) throw InputError({campaign.file.string()}, run.reason);
+}
+
+/// Inputs that were recorded start from their first sample; what follows is the importer's.
+void start_from_record(const SimulationTask& task, ParameterValues& values,
+                       std::vector<std::string>& warnings) {
+  std::vector<std::string_view> recorded;
+  const auto take = [&](const std::optional<model::Signal>& signal, std::string_view key,
+                        double beside) {
+    if (!signal) return;
+    values.set(key, beside + signal->value(task.time_s.front()));
+    recorded.push_back(key);
+  };
+  take(task.inputs.external_force_n, "external_force", values["external_force"]);
+  take(task.inputs.supply_pressure_pa, "supply_pressure", 0.0);
+  if (model::parameter_index(values.plant, "tank_pressure") >= 0)
+    take(task.inputs.tank_pressure_pa, "tank_pressure", 0.0);
+  if (!recorded.empty())
+    warnings.push_back(fmt::format(
+        "recorded in this condition: {}; the first sample is exported as start value of the input",
+        fmt::join(recorded, ", ")));
+}
+
+/// A name without the folders that differ from machine to machine, and the first digits of its
+/// hash.
+std::string name_and_hash(const report::InputFile& file) {
+  return fmt::format("{}, SHA-256 {}", std::filesystem::path(file.path).filename().string(),
+                     file.sha256);
+}
+
+std::string verdict_of(const std::filesystem::path& fit) {
+  const report::Json json = report::read_json(fit, "the fit.json of an earlier fit");
+  const report::JsonNode verdict = report::JsonNode(json, fit.string(), "", "fit.json")["verdict"];
+  return verdict.is_null() ? "none" : verdict.string();
+}
+
+void tell_validity(const report::Validity& validity,
+                   std::vector<std::pair<std::string, std::string>>& origin) {
+  const auto add = [&origin](const char* label, const std::optional<report::Range>& range,
+                             std::string_view unit) {
+    if (range) origin.emplace_back(label, report::in_words(*range, unit));
+  };
+  add("fitted at frequencies of", validity.frequency_hz, "Hz");
+  add("fitted at amplitudes of", validity.amplitude, validity.amplitude_unit);
+  add("fitted at supply pressures of", validity.supply_pressure_pa, "Pa");
+  add("fitted at leakage coefficients of", validity.leakage_coefficient, "1");
+  if (!validity.leak_levels.empty())
+    origin.emplace_back("fitted at leak levels",
+                        fmt::format("{}", fmt::join(validity.leak_levels, ", ")));
+}
+
+}  // namespace
+
+ExportChoice choose_export(const ExportRequest& options) {
+  if (options.condition && options.level)
+    throw UsageError("found --condition and --level, expected one of them");
+  const Campaign campaign = load(options.common);
+  std::optional<report::EarlierFit> earlier;
+  std::vector<std::filesystem::path> more_inputs;
+  ExportChoice choice;
+  if (!options.fit.empty()) {
+    earlier = report::read_fit(options.fit, campaign.rig.plant);
+    more_inputs.push_back(options.fit);
+    choice.warnings = doubts_about(*earlier, campaign);
+  }
+  Condition of_level;
+  const Condition* condition = &of_level;
+  if (options.condition) {
+    condition = &chosen_condition(campaign, *options.condition);
+  } else {
+    of_level.where = {campaign.file.string()};
+    of_level.leak_level = chosen_level(options, leak_levels(campaign, earlier));
+    if (earlier) require_values_of_level(options, campaign, of_level, *earlier);
+  }
+  ParameterValues values = values_of(options, campaign, *condition, earlier);
+  warn_of_start_values(campaign, *condition, earlier, choice.warnings);
+
+  report::FmuRequest& fmu = choice.fmu;
+  fmu.rig.rig = campaign.rig;
+  fmu.rig.tolerance = campaign.simulation.tolerance.value_or(fmu.rig.tolerance);
+  std::vector<datasets::Record> records;
+  if (options.condition) {
+    SimulationTask task = simulation_task(campaign, *condition, values);
+    fmu.rig.rig = task.rig;
+    values = task.values;
+    start_from_record(task, values, choice.warnings);
+    fmu.start_s = task.time_s.front();
+    fmu.stop_s = task.time_s.back();
+    if (task.time_s.size() > 1)
+      fmu.step_s = (fmu.stop_s - fmu.start_s) / static_cast<double>(task.time_s.size() - 1);
+    if (task.record) records.push_back(std::move(*task.record));
+  }
+  take_delay_off(options, campaign, values, choice.warnings);
+  take_sensors_off(values);
+  fmu.rig.values = values;
+  require_simulable(campaign, fmu.rig);
+
+  choice.inputs = report::hash_inputs(campaign, records, more_inputs);
+  fmu.name = campaign.name;
+  fmu.identifier =
+      report::fmu_identifier(options.level ? campaign.name + "_" + *options.level : campaign.name);
+  auto& origin = fmu.origin;
+  origin.emplace_back("rig", campaign.name);
+  if (options.condition) origin.emplace_back("condition", condition->id);
+  if (condition->leak_level) origin.emplace_back("leak level", *condition->leak_level);
+  origin.emplace_back("values from", options.fit.empty() ? "the campaign file" : "a fit");
+  if (earlier) {
+    origin.emplace_back("verdict of the fit", verdict_of(options.fit));
+    tell_validity(earlier->validity, origin);
+  }
+  for (const std::string& assignment : options.common.set)
+    origin.emplace_back("set for the export", assignment);
+  for (const report::InputFile& file : choice.inputs)
+    origin.emplace_back("made from", name_and_hash(file));
+  for (const std::string& warning : choice.warnings) origin.emplace_back("warning", warning);
+  return choice;
+}
+
+}  // namespace rigcal::app

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/rigcal/options.hpp"
+#include "report/fmu/fmu.hpp"
+
+namespace rigcal::app {
+
+struct ExportRequest {
+  CampaignOptions common;
+  std::string format;
+  std::filesystem::path fit;
+  std::optional<std::string> condition;
+  std::optional<std::string> level;
+  bool without_delay = false;
+};
+
+/// A rig that is ready to be written, and the files that it was made from.
+struct ExportChoice {
+  report::FmuRequest fmu;
+  std::vector<report::InputFile> inputs;
+  std::vector<std::string> warnings;
+};
+
+/// The rig of a campaign with the values that hold at the chosen condition or leak level: those of
+/// the fit over the campaign's, those of --set over both.
+///
+/// @throws UsageError, InputError  nothing says which leak level; a value is missing; the rig has a
+///                                 term that an FMU cannot have
+ExportChoice choose_export(const ExportRequest& options);
+
+}  // namespace rigcal::app

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "model/fmi/exported_rig.hpp"
+#include "model/plant/layout.hpp"
+
+namespace rigcal::model {
+
+/// An input over one step: a straight line from its value at the begin.
+struct Ramp {
+  double value = 0.0;
+  double slope_per_s = 0.0;
+};
+
+/// What acts on a rig from outside; the tank pressure where its plant has one.
+struct RigInputs {
+  Ramp drive;  ///< reference [m], or command of the valve [V]
+  Ramp external_force_n;
+  Ramp supply_pressure_pa;
+  Ramp tank_pressure_pa;
+};
+
+/// What co-simulation keeps from step to step beside the states.
+struct StepMemory {
+  double planned_step_s = 0.0;  ///< 0: none yet
+  std::vector<double> peak;     ///< shape (states): largest size of each so far
+};
+
+/// The equations of a rig, whatever its plant and number of states. Time counts from the begin of
+/// a step.
+class Equations {
+ public:
+  virtual ~Equations() = default;
+
+  virtual const Layout& layout() const = 0;
+
+  /// What holds from now on. `length_s` is how long the slopes of the inputs do; > 0.
+  virtual void set(const ParameterValues& values, const RigInputs& inputs, double length_s) = 0;
+
+  virtual std::vector<double> initial() const = 0;
+  virtual std::vector<double> derivatives(std::span<const double> x) const = 0;
+  virtual double output(Output output, std::span<const double> x) const = 0;
+
+  /// Quantities that change sign where a derivative changes its slope: limits, edges of the valve,
+  /// end stops.
+  virtual std::vector<double> indicators(std::span<const double> x) const = 0;
+
+  /// The sampled controller's tick.
+  virtual void tick(std::span<double> x, double time_s) const = 0;
+
+  /// The states from one time of the step to another.
+  ///
+  /// @param tolerance  local error per step over the running peak of each state
+  /// @throws std::runtime_error  the step size vanishes, or states are not finite any more
+  virtual void advance(std::vector<double>& x, StepMemory& memory, double from_s, double to_s,
+                       double tolerance) const = 0;
+};
+
+std::unique_ptr<Equations> make_equations(const ExportedRig& rig);
+
+/// A state as other simulators are told of it.
+struct StateDescription {
+  std::string name;     ///< that of the output where it is one
+  std::string unit;     ///< SI, as in a ParameterSpec
+  std::string meaning;  ///< one line
+  double nominal;       ///< typical size; an importer's absolute tolerance rests on it
+};
+
+/// The states in the order of a layout.
+std::vector<StateDescription> describe_states(const ExportedRig& rig, const Layout& layout);
+
+}  // namespace rigcal::model

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "model/simulate.hpp"
+
+namespace rigcal::model {
+
+/// A rig as it is handed to other simulators: what an FMU reads from its resources.
+struct ExportedRig {
+  std::string guid;  ///< of the model description that belongs to it
+  Rig rig;
+  ParameterValues values = ParameterValues::defaults(PlantKind::load_pressure);
+  double tolerance = 1e-6;  ///< of co-simulation, where the importer states none
+};
+
+/// Table indices of the parameters that an importer may change, in the order of the table: those of
+/// the plant, and the terms and controller gains that the rig has. Not what are inputs of the FMU,
+/// nor sensors, which stand beside the rig.
+std::vector<int> exported_parameters(const ExportedRig& rig);
+
+/// Whether a parameter may be changed while the rig runs; not where it starts from, nor how often
+/// its controller samples.
+bool is_tunable(const ParameterSpec& spec);
+
+/// Inputs of an FMU beside its drive, with the parameter that each replaces.
+bool is_input(const ParameterSpec& spec);
+
+/// Name of the file in the resources of an FMU.
+inline constexpr const char* kRigFile = "rig.txt";
+
+/// The lines of that file; read_exported_rig() gives the same bits back.
+std::string exported_rig_text(const ExportedRig& rig);
+
+/// @throws std::runtime_error  file, line, what was found and what was expected
+ExportedRig read_exported_rig(const std::filesystem::path& file);
+
+}  // namespace rigcal::model

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "model/fmi/equations.hpp"
+
+namespace rigcal::model {
+
+/// What an importer may do with an instance, in the words of the standard.
+enum class Phase {
+  instantiated,
+  initialization,
+  event,       ///< of model exchange
+  continuous,  ///< likewise
+  stepping,    ///< of co-simulation
+  terminated,
+};
+
+/// All that changes while an instance lives; a copy is what fmi2GetFMUstate hands out.
+struct InstanceState {
+  Phase phase = Phase::instantiated;
+  ParameterValues values;
+  RigInputs inputs;
+  double tolerance = 1e-6;
+  double start_s = 0.0;
+  double time_s = 0.0;
+  long ticks = 0;  ///< of a sampled controller, so far
+  std::vector<double> x;
+  StepMemory memory;
+};
+
+/// One instance of an FMU, for either interface. Every method throws std::runtime_error, in words,
+/// where an importer asks for what is not to be had; the instance is then as it was.
+class FmuInstance {
+ public:
+  /// @param guid  that of the importer's model description
+  FmuInstance(const std::filesystem::path& resources, const std::string& guid, bool exchange);
+
+  void set_up(double start_s, const double* tolerance);
+  void enter_initialization();
+  void exit_initialization();
+  void enter_event_mode();
+  void enter_continuous_mode();
+  void terminate();
+  void reset();
+
+  double real(unsigned reference);
+  void set_real(unsigned reference, double value);
+  void set_input_derivative(unsigned reference, int order, double value);
+
+  void set_time(double time_s);
+  void set_states(const double* x, std::size_t count);
+  const std::vector<double>& states();
+  std::vector<double> derivatives();
+  std::vector<double> indicators();
+  std::vector<double> nominals();
+
+  /// Takes the controller's tick, if it is due; whether it was.
+  bool new_discrete_states();
+  /// When the next tick is due; infinity if there is none.
+  double next_tick_s() const;
+
+  /// Co-simulation over one step.
+  void step(double time_s, double step_s);
+
+  const InstanceState& state() const { return state_; }
+  void restore(const InstanceState& state);
+
+ private:
+  void require_phase(std::initializer_list<Phase> allowed) const;
+  void require_size(std::size_t count, std::size_t expected) const;
+  Ramp& input(unsigned reference);
+  double next_tick_s(const InstanceState& state) const;
+  /// Within how much of a time a tick is at that time.
+  double slack_s(const InstanceState& state, double time_s) const;
+  bool tick_is_due(const InstanceState& state, double time_s) const;
+  /// Equations and states after a change of parameters or inputs, before something is computed.
+  void refresh();
+
+  ExportedRig rig_;
+  bool exchange_;
+  std::unique_ptr<Equations> equations_;
+  std::vector<int> parameters_;
+  InstanceState state_;
+  bool stale_ = true;  ///< equations_ have not seen the present parameters and inputs
+};
+
+}  // namespace rigcal::model

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "model/plant/controller.hpp"
+#include "model/plant/load_pressure.hpp"
+#include "model/plant/two_chamber.hpp"
+
+namespace rigcal::model {
+
+// Where the right-hand side of a rig has kinks, told by quantities that change sign there.
+
+/// @param spool_v  valve signal after its dynamics
+/// @param dx       derivative at x
+template <std::size_t N>
+void plant_indicators(const LoadPressurePlant::Coefficients<double>& p, const PresentTerms& terms,
+                      const std::array<double, N>& /*x*/, const std::array<double, N>& /*dx*/,
+                      double spool_v, std::vector<double>& indicators) {
+  if (!terms.spool_shape) {
+    indicators.push_back(spool_v);
+    return;
+  }
+  indicators.push_back(spool_v + p.valve_offset_v - p.valve_dead_band_v);
+  indicators.push_back(spool_v + p.valve_offset_v + p.valve_dead_band_v);
+}
+
+template <std::size_t N>
+void plant_indicators(const TwoChamberPlant::Coefficients<double>& p, const PresentTerms& terms,
+                      const std::array<double, N>& x, const std::array<double, N>& dx,
+                      double spool_v, std::vector<double>& indicators) {
+  using Plant = TwoChamberPlant;
+  const double out_v = spool_v + p.valve_offset_v;
+  if (!terms.null_opening) {  // else edges open smoothly
+    indicators.push_back(out_v - p.valve_dead_band_v - p.overlap_supply_to_a_v);
+    indicators.push_back(-out_v - p.valve_dead_band_v - p.overlap_a_to_tank_v);
+    indicators.push_back(-out_v - p.valve_dead_band_v - p.overlap_supply_to_b_v);
+    indicators.push_back(out_v - p.valve_dead_band_v - p.overlap_b_to_tank_v);
+  }
+  const double extended_m = x[Plant::position] - Plant::retracted_stop(p, terms);
+  indicators.push_back(extended_m);
+  indicators.push_back(p.stroke_m - extended_m);
+  if (terms.hoses < 0) return;  // else each yields in the direction in which its pressure goes
+  indicators.push_back(dx[Plant::pressure_a]);
+  indicators.push_back(dx[Plant::pressure_b]);
+}
+
+/// Limits of the controller's output and of the spool's rate.
+///
+/// @param error_m    reference minus position
+/// @param command_v  what the valve is told
+template <typename P, std::size_t N>
+void loop_indicators(const P& p, const Layout& layout, const std::array<double, N>& x,
+                     double error_m, double command_v, std::vector<double>& indicators) {
+  if (layout.pid && !layout.sampled() && std::isfinite(p.output_limit_v)) {
+    const double wanted_v = controller_output(error_m, x, p, layout).wanted;
+    indicators.push_back(p.output_limit_v - wanted_v);
+    indicators.push_back(p.output_limit_v + wanted_v);
+  }
+  if (!layout.terms.valve_rate_limit || layout.valve_order == 0) return;
+  const auto spool = static_cast<std::size_t>(layout.valve);
+  const double rate =
+      layout.valve_order == 1 ? (command_v - x[spool]) / p.valve_time_constant_s : x[spool + 1];
+  indicators.push_back(p.valve_rate_limit_v_per_s - rate);
+  indicators.push_back(p.valve_rate_limit_v_per_s + rate);
+}
+
+}  // namespace rigcal::model

@@ -1,0 +1,16 @@
+#pragma once
+
+// Value references of an FMU: the numbers by which an importer names a variable. A model
+// description and what reads it agree by these.
+
+namespace rigcal::model {
+
+inline constexpr unsigned kInputReference = 0;         ///< in the order of RigInputs
+inline constexpr unsigned kStateReference = 100;       ///< in the order of Layout
+inline constexpr unsigned kDerivativeReference = 200;  ///< likewise
+inline constexpr unsigned kOutputReference = 300;      ///< in the order of Output
+inline constexpr unsigned kParameterReference = 1000;  ///< row of the plant's parameter table
+
+inline constexpr unsigned kInputCount = 4;
+
+}  // namespace rigcal::model

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <map>
+#include <string_view>
+
+namespace rigcal::report {
+
+// What every FMU holds, built into the program.
+
+/// The sources by their paths within sources/, sorted.
+const std::map<std::string_view, std::string_view>& fmu_sources();
+
+/// The shared library that is made of them.
+std::string_view fmu_library();
+
+}  // namespace rigcal::report

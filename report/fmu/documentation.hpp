@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/fmu/fmu.hpp"
+#include "report/fmu/variables.hpp"
+
+namespace rigcal::report {
+
+/// documentation/index.html: where the values come from, what the variables are, and how to compile
+/// the sources.
+///
+/// @param compile  the command
+std::string fmu_documentation(const FmuRequest& request, const std::vector<FmuVariable>& variables,
+                              const std::string& compile);
+
+}  // namespace rigcal::report

@@ -1,0 +1,56 @@
+#include "report/fmu/units.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+namespace rigcal::report {
+namespace {
+
+// clang-format off
+constexpr std::array kBaseUnits{
+    //         unit        kg   m   s   A rad
+    BaseUnits{"1",          0,  0,  0,  0, 0},
+    BaseUnits{"1/s",        0,  0, -1,  0, 0},
+    BaseUnits{"kg",         1,  0,  0,  0, 0},
+    BaseUnits{"m",          0,  1,  0,  0, 0},
+    BaseUnits{"s",          0,  0,  1,  0, 0},
+    BaseUnits{"m2",         0,  2,  0,  0, 0},
+    BaseUnits{"m3",         0,  3,  0,  0, 0},
+    BaseUnits{"m/s",        0,  1, -1,  0, 0},
+    BaseUnits{"m/s2",       0,  1, -2,  0, 0},
+    BaseUnits{"m3/s",       0,  3, -1,  0, 0},
+    BaseUnits{"N",          1,  1, -2,  0, 0},
+    BaseUnits{"N/m",        1,  0, -2,  0, 0},
+    BaseUnits{"N s/m",      1,  0, -1,  0, 0},
+    BaseUnits{"Pa",         1, -1, -2,  0, 0},
+    BaseUnits{"Pa/s",       1, -1, -3,  0, 0},
+    BaseUnits{"Pa s/m3",    1, -4, -1,  0, 0},
+    BaseUnits{"m3/Pa",     -1,  4,  2,  0, 0},
+    BaseUnits{"m3/(s Pa)", -1,  4,  1,  0, 0},
+    BaseUnits{"kg/m3",      1, -3,  0,  0, 0},
+    BaseUnits{"rad/s",      0,  0, -1,  0, 1},
+    BaseUnits{"s/m",        0, -1,  1,  0, 0},
+    BaseUnits{"V",          1,  2, -3, -1, 0},
+    BaseUnits{"V/s",        1,  2, -4, -1, 0},
+    BaseUnits{"V/s2",       1,  2, -5, -1, 0},
+    BaseUnits{"V/m",        1,  1, -3, -1, 0},
+    BaseUnits{"V/(m s)",    1,  1, -4, -1, 0},
+    BaseUnits{"V s/m",      1,  1, -2, -1, 0},
+    BaseUnits{"m/V",       -1, -1,  3,  1, 0},
+};
+// clang-format on
+
+}  // namespace
+
+const BaseUnits& base_units(std::string_view unit) {
+  const auto found = std::find_if(kBaseUnits.begin(), kBaseUnits.end(),
+                                  [unit](const BaseUnits& row) { return row.unit == unit; });
+  if (found == kBaseUnits.end())
+    throw std::invalid_argument(fmt::format("base_units: no row for '{}'", unit));
+  return *found;
+}
+
+}  // namespace rigcal::report

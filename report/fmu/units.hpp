@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string_view>
+
+namespace rigcal::report {
+
+/// A unit of the model as products of powers of SI base units.
+struct BaseUnits {
+  std::string_view unit;  ///< as in a ParameterSpec
+  int kg = 0;
+  int m = 0;
+  int s = 0;
+  int A = 0;
+  int rad = 0;
+};
+
+/// @throws std::invalid_argument  the table has no such unit
+const BaseUnits& base_units(std::string_view unit);
+
+}  // namespace rigcal::report

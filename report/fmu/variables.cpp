@@ -1,0 +1,156 @@
+#include "report/fmu/variables.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "model/fmi/references.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using model::ExportedRig;
+using model::Layout;
+using model::Output;
+using model::ParameterSpec;
+
+struct OutputRow {
+  Output output;
+  const char* name;
+  const char* unit;
+  const char* meaning;
+};
+constexpr std::array kOutputs{
+    OutputRow{Output::position, "position", "m", "position of the piston"},
+    OutputRow{Output::velocity, "velocity", "m/s", "velocity of the piston"},
+    OutputRow{Output::load_pressure, "load_pressure", "Pa", "pressure of chamber A less that of B"},
+    OutputRow{Output::pressure_a, "pressure_a", "Pa", "pressure of chamber A"},
+    OutputRow{Output::pressure_b, "pressure_b", "Pa", "pressure of chamber B"},
+    OutputRow{Output::force, "force", "N", "what a load cell in the rod reads"},
+    OutputRow{Output::command, "command", "V", "what the valve is told"},
+    OutputRow{Output::spool, "spool", "m", "travel of the valve's spool"},
+    OutputRow{Output::servo_flow, "servo_flow", "m3/s", "flow of the servo valve to the load"},
+    OutputRow{Output::leakage_flow, "leakage_flow", "m3/s", "internal leakage across the piston"},
+    OutputRow{Output::work_flow, "work_flow", "m3/s", "flow that moves the piston"},
+};
+static_assert(kOutputs.size() == model::kAllOutputs.size(), "every output has a row");
+
+FmuVariable input(unsigned number, const char* name, const char* unit, const char* meaning,
+                  double start) {
+  FmuVariable variable;
+  variable.name = name;
+  variable.reference = model::kInputReference + number;
+  variable.causality = Causality::input;
+  variable.unit = unit;
+  variable.meaning = meaning;
+  variable.start = start;
+  return variable;
+}
+
+void add_inputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
+  if (rig.rig.controller == model::ControllerKind::pid) {
+    variables.push_back(input(0, "reference", "m", "where the piston is to be", 0.0));
+  } else {
+    variables.push_back(input(0, "command", "V", "what the valve is told", 0.0));
+  }
+  variables.push_back(input(1, "external_force", "N", "load against positive travel",
+                            rig.values["external_force"]));
+  variables.push_back(
+      input(2, "supply_pressure", "Pa", "supply above tank", rig.values["supply_pressure"]));
+  if (model::parameter_index(rig.rig.plant, "tank_pressure") >= 0)
+    variables.push_back(input(3, "tank_pressure", "Pa", "pressure at the valve's tank port",
+                              rig.values["tank_pressure"]));
+}
+
+/// Whether the sampled controller's tick sets a state.
+bool of_sampled_loop(const Layout& layout, std::size_t state) {
+  const int i = static_cast<int>(state);
+  return layout.sampled() && (i == layout.held || i == layout.integral || i == layout.filter);
+}
+
+void add_states(const ExportedRig& rig, const Layout& layout, std::vector<FmuVariable>& variables) {
+  const auto states = model::describe_states(rig, layout);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    FmuVariable variable;
+    variable.name = states[i].name;
+    variable.reference = model::kStateReference + static_cast<unsigned>(i);
+    // The first states are the plant's, which are outputs too.
+    if (static_cast<int>(i) < layout.plant_states) variable.causality = Causality::output;
+    variable.unit = states[i].unit;
+    variable.meaning = states[i].meaning;
+    variable.nominal = states[i].nominal;
+    variable.is_state = true;
+    variable.changes_at_ticks = of_sampled_loop(layout, i);
+    variables.push_back(variable);
+  }
+}
+
+void add_outputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
+  for (const OutputRow& row : kOutputs) {
+    if (row.output == Output::command && rig.rig.controller == model::ControllerKind::none)
+      continue;  // it is the input
+    const bool is_state = std::any_of(variables.begin(), variables.end(),
+                                      [&](const auto& each) { return each.name == row.name; });
+    if (is_state) continue;
+    FmuVariable variable;
+    variable.name = row.name;
+    variable.reference = model::kOutputReference + static_cast<unsigned>(row.output);
+    variable.causality = Causality::output;
+    variable.unit = row.unit;
+    variable.meaning = row.meaning;
+    variables.push_back(variable);
+  }
+}
+
+std::string rate_unit(const std::string& unit) {
+  if (unit == "m/s") return "m/s2";
+  if (unit == "V/s") return "V/s2";
+  return unit + "/s";
+}
+
+void add_derivatives(std::vector<FmuVariable>& variables) {
+  const std::size_t before = variables.size();
+  unsigned state = 0;
+  for (std::size_t i = 0; i < before; ++i) {
+    if (!variables[i].is_state) continue;
+    FmuVariable variable;
+    variable.name = "der(" + variables[i].name + ")";
+    variable.reference = model::kDerivativeReference + state++;
+    variable.unit = rate_unit(variables[i].unit);
+    variable.meaning = "rate of " + variables[i].name;
+    variable.derivative_of = i + 1;
+    variables.push_back(variable);
+  }
+}
+
+void add_parameters(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
+  const auto table = model::parameter_table(rig.rig.plant);
+  for (const int index : model::exported_parameters(rig)) {
+    const ParameterSpec& spec = table[static_cast<std::size_t>(index)];
+    FmuVariable variable;
+    variable.name = spec.key;
+    variable.reference = model::kParameterReference + static_cast<unsigned>(index);
+    variable.causality = Causality::parameter;
+    variable.tunable = model::is_tunable(spec);
+    variable.unit = spec.unit;
+    variable.meaning = spec.meaning;
+    variable.start = rig.values.value[static_cast<std::size_t>(index)];
+    if (std::isfinite(spec.lower)) variable.lower = spec.lower;
+    if (std::isfinite(spec.upper)) variable.upper = spec.upper;
+    variables.push_back(variable);
+  }
+}
+
+}  // namespace
+
+std::vector<FmuVariable> fmu_variables(const ExportedRig& rig, const Layout& layout) {
+  std::vector<FmuVariable> variables;
+  add_inputs(rig, variables);
+  add_states(rig, layout, variables);
+  add_outputs(rig, variables);
+  add_derivatives(variables);
+  add_parameters(rig, variables);
+  return variables;
+}
+
+}  // namespace rigcal::report

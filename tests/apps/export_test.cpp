@@ -1,0 +1,543 @@
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <map>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include "tests/apps/cli_fixture.hpp"
+#include "tests/apps/two_chamber_fixture.hpp"
+#include "tests/support/fmu.hpp"
+
+namespace rigcal::test {
+namespace {
+
+using Catch::Contains;
+using SimulatedColumns = std::map<std::string, std::vector<double>>;
+using Drive = std::function<double(double)>;
+
+/// Both simulations are this exact at each step; what is compared is a hundred times coarser.
+constexpr double kTolerance = 1e-9;
+
+const Edits kGeneratedRuns{
+    {"repeats = [\"records/sine_*.csv\"]", "duration = \"0.6 s\"\nsample_rate = \"200 Hz\""},
+    {"repeats = [\"records/square_*.csv\"]", "duration = \"0.6 s\"\nsample_rate = \"200 Hz\""},
+    {"[acceptance]", "[simulation]\ntolerance = 1e-9\n[acceptance]"}};
+
+const Edits kTwoChamberGeneratedRuns{
+    {"repeats = [\"records/square_*.csv\"]",
+     "duration = \"0.6 s\"\nsample_rate = \"200 Hz\"\n[[condition]]\nid = \"sine\"\nwaveform = "
+     "\"sine\"\nfrequency = \"2 Hz\"\namplitude = \"1 V\"\nuse = \"fit\"\nduration = \"0.6 "
+     "s\"\nsample_rate = \"200 Hz\""},
+    {"[recording.channels]", "[simulation]\ntolerance = 1e-9\n[recording.channels]"}};
+
+/// The condition "square" of either campaign: 1 Hz, so that its edges are at half seconds.
+Drive square(double amplitude) {
+  return [amplitude](double t) { return std::fmod(t + 1e-9, 1.0) < 0.5 ? amplitude : -amplitude; };
+}
+Drive sine(double amplitude) {
+  return [amplitude](double t) { return amplitude * std::sin(4.0 * std::numbers::pi * t); };
+}
+
+SimulatedColumns simulated(const CommandFolder& folder, const std::string& condition) {
+  const Outcome outcome =
+      folder.run({"simulate", "campaign.toml", "--condition", condition, "--out", "simulated"});
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  SimulatedColumns columns;
+  std::istringstream csv(folder.read("simulated/" + condition + ".csv"));
+  std::string line;
+  std::getline(csv, line);
+  std::vector<std::string> names;
+  std::istringstream head(line);
+  for (std::string name; std::getline(head, name, ',');) names.push_back(name);
+  while (std::getline(csv, line)) {
+    std::istringstream cells(line);
+    std::string cell;
+    for (const std::string& name : names) {
+      std::getline(cells, cell, ',');
+      columns[name].push_back(std::strtod(cell.c_str(), nullptr));
+    }
+  }
+  return columns;
+}
+
+/// Exports the campaign of a folder and unpacks it.
+Fmu exported(const CommandFolder& folder, CommandFolder::Arguments more = {}) {
+  CommandFolder::Arguments arguments{"export", "fmu", "campaign.toml", "--out", "fmu"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  const Outcome outcome = folder.run(arguments);
+  CAPTURE(outcome.err);
+  REQUIRE(outcome.exit_code == 0);
+  for (const auto& entry : std::filesystem::directory_iterator(folder.work() / "fmu")) {
+    const auto to = folder.work() / "unpacked" / entry.path().stem();
+    unzip(entry.path(), to);
+    return Fmu(to);
+  }
+  throw std::runtime_error("nothing was exported");
+}
+
+/// Names of the outputs by those of the columns that `simulate` writes.
+std::map<std::string, std::string> outputs_of(const Fmu& fmu, const SimulatedColumns& columns) {
+  std::map<std::string, std::string> outputs;
+  for (const auto& [name, variable] : fmu.variables) {
+    if (variable.causality != "output") continue;
+    for (const auto& [column, values] : columns) {
+      if (column.rfind(name + "_", 0) == 0 && column.size() - name.size() < 12)
+        outputs[name] = column;
+    }
+  }
+  return outputs;
+}
+
+double peak_of(const std::vector<double>& values) {
+  double peak = 0.0;
+  for (const double value : values) peak = std::max(peak, std::abs(value));
+  return peak;
+}
+
+/// Every output at every sample, over the peak of its column: to a millionth. Leakage is a root of
+/// the pressure, whose slope at zero makes ten of them of one.
+void require_same(FmuRun& run, const std::map<std::string, std::string>& outputs,
+                  const SimulatedColumns& columns, std::size_t sample) {
+  for (const auto& [name, column] : outputs) {
+    const std::vector<double>& values = columns.at(column);
+    const double tolerance = name == "leakage_flow" ? 1e-5 : 1e-6;
+    INFO(name << " at sample " << sample << ", off by "
+              << (run.get(name) - values[sample]) / peak_of(values) << " of its peak");
+    REQUIRE(run.get(name) == Approx(values[sample]).margin(tolerance * peak_of(values)).epsilon(0));
+  }
+}
+
+/// Co-simulation with inputs that go straight from one communication point to the next: many enough
+/// that a sine of 2 Hz is off by (2 pi f h)^2 / 8 = 2e-7 of its amplitude.
+void require_co_simulation(const Fmu& fmu, const FmuLibrary& library, const std::string& input,
+                           const Drive& drive, bool jumps, const SimulatedColumns& columns) {
+  FmuRun run(fmu, library, fmi2CoSimulation);
+  REQUIRE(run.component != nullptr);
+  run.initialize(0.0, kTolerance, {{input, drive(0.0)}});
+  const auto outputs = outputs_of(fmu, columns);
+  REQUIRE(outputs.size() >= 10);
+  const auto& times = columns.at("time_s");
+  REQUIRE(times.size() == 121);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    run.require(run.set(input, drive(times[i])));
+    require_same(run, outputs, columns, i);
+    if (i + 1 == times.size()) break;
+    const int parts = jumps ? 1 : 50;
+    const double h = (times[i + 1] - times[i]) / parts;
+    for (int k = 0; k < parts; ++k) {
+      const double t = times[i] + k * h;
+      run.require(run.set(input, drive(t)));
+      if (!jumps) run.require(run.set_slope(input, (drive(t + h) - drive(t)) / h));
+      run.require(run.step(t, h));
+    }
+  }
+  CHECK(run.messages().empty());
+}
+
+void require_model_exchange(const Fmu& fmu, const FmuLibrary& library, const std::string& input,
+                            const Drive& drive, bool jumps, const SimulatedColumns& columns) {
+  FmuRun run(fmu, library, fmi2ModelExchange);
+  REQUIRE(run.component != nullptr);
+  run.initialize(0.0, kTolerance, {{input, drive(0.0)}});
+  ExchangeRun exchange(run);
+  const auto outputs = outputs_of(fmu, columns);
+  const auto& times = columns.at("time_s");
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    run.require(run.set(input, drive(times[i])));
+    const auto& info = exchange.info();
+    if (info.nextEventTimeDefined != fmi2False && times[i] > info.nextEventTime - 1e-9)
+      exchange.event();
+    require_same(run, outputs, columns, i);
+    if (i + 1 == times.size()) break;
+    const double held = drive(times[i]);
+    exchange.advance(times[i], times[i + 1], 400,
+                     [&](double t) { run.require(run.set(input, jumps ? held : drive(t))); });
+  }
+  std::vector<double> indicators(fmu.indicators());
+  run.require(RIGCAL_FMI2(library, fmi2GetEventIndicators)(run.component, indicators.data(),
+                                                           indicators.size()));
+  CHECK(run.messages().empty());
+}
+
+/// Every condition with its drive, by either interface.
+void require_both(const CommandFolder& folder, const std::string& input,
+                  const std::map<std::string, Drive>& drives) {
+  const Fmu fmu = exported(folder);
+  const FmuLibrary library(fmu.library());
+  for (const auto& [condition, drive] : drives) {
+    CAPTURE(condition);
+    const SimulatedColumns columns = simulated(folder, condition);
+    const bool jumps = condition == "square";
+    require_co_simulation(fmu, library, input, drive, jumps, columns);
+    require_model_exchange(fmu, library, input, drive, jumps, columns);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("export: a closed loop with a leak runs as simulate has it", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
+  require_both(folder, "reference", {{"sine", sine(0.005)}, {"square", square(0.004)}});
+}
+
+TEST_CASE("export: two chambers in open loop run as simulate has them", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kTwoChamber, kTwoChamberGeneratedRuns));
+  require_both(folder, "command", {{"sine", sine(1.0)}, {"square", square(1.0)}});
+}
+
+TEST_CASE("export: every term that an FMU can have is in it", "[apps]") {
+  const CommandFolder folder;
+  SECTION("load pressure") {
+    Edits edits = kGeneratedRuns;
+    edits.push_back({"leakage_coefficient = 0.3",
+                     "leakage_coefficient = 0.3\nlaminar_leakage = \"1e-13 m3/(s "
+                     "Pa)\"\ncoulomb_friction = \"40 N\"\nstribeck_friction = \"20 "
+                     "N\"\nexternal_force = \"100 N\"\nvalve_frequency = \"400 "
+                     "rad/s\"\nvalve_damping_ratio = 0.9\nvalve_rate_limit = \"200 "
+                     "V/s\"\nvalve_offset = \"20 mV\"\nvalve_dead_band = \"50 "
+                     "mV\"\nvalve_null_leakage = \"1e-13 m3/(s Pa)\""});
+    edits.push_back({"kp = \"1000 V/m\"",
+                     "kp = \"400 V/m\"\nki = \"500 V/(m s)\"\nkd = \"1 V s/m\"\n"
+                     "derivative_filter = \"300 rad/s\"\noutput_limit = \"1.5 V\""});
+    folder.write("campaign.toml", edited(kCampaign, edits));
+    require_both(folder, "reference", {{"sine", sine(0.005)}, {"square", square(0.004)}});
+  }
+  SECTION("two chambers") {
+    Edits edits = kTwoChamberGeneratedRuns;
+    edits.push_back(
+        {"stroke = \"200 mm\"",
+         "stroke = \"40 mm\"\ngravity = \"9.81 m/s2\"\nair_fraction = 0.01\nvalve_time_constant = "
+         "\"3 ms\"\nvalve_null_opening = \"20 mV\"\nvalve_line_opening = \"3 "
+         "V\"\nexternal_leakage_a = \"1e-13 m3/(s Pa)\"\nsupply_resistance = \"1e10 Pa "
+         "s/m3\"\nsupply_capacity = \"1e-12 m3/Pa\"\nhose_capacity_a = \"1e-13 "
+         "m3/Pa\"\nhose_yield = \"5 bar\"\nstop_stiffness = \"1e6 N/m\"\nstop_damping = \"1 "
+         "s/m\""});
+    folder.write("campaign.toml", edited(kTwoChamber, edits));
+    require_both(folder, "command", {{"sine", sine(1.0)}, {"square", square(1.0)}});
+  }
+}
+
+TEST_CASE("export: a rig starts where its record does, without the sensor's offset", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder, {{"mass = \"60 kg\"", "mass = \"60 kg\"\nposition_offset = \"2 mm\""},
+                              {"[recording.channels]",
+                               "[recording]\ninitial = \"record\"\n[recording.channels]"}})
+              .exit_code == 0);
+  folder.write(
+      "campaign.toml",
+      edited(folder.read("twin/campaign.toml"),
+             {{"[recording.channels]", "[simulation]\ntolerance = 1e-9\n[recording.channels]"}}));
+  std::filesystem::rename(folder.work() / "twin" / "records", folder.work() / "records");
+  const SimulatedColumns columns = simulated(folder, "square");
+  const Fmu fmu = exported(folder, {"--condition", "square"});
+  const FmuLibrary library(fmu.library());
+  FmuRun run(fmu, library, fmi2CoSimulation);
+  run.initialize(0.0, kTolerance, {{"reference", 0.004}});
+  const auto& times = columns.at("time_s");
+  const auto& readings = columns.at("position_m");
+  CHECK(std::abs(readings.front()) > 1e-4);
+  for (std::size_t i = 0; i < 50; ++i) {
+    REQUIRE(run.get("position") + 0.002 == Approx(readings[i]).margin(1e-6 * 0.004).epsilon(0));
+    run.require(run.step(times[i], times[i + 1] - times[i]));
+  }
+  CHECK_THAT(text_of(fmu.folder() / "modelDescription.xml"), !Contains("position_offset"));
+  CHECK(std::stod(fmu.variables.at("initial_position").start) + 0.002 == Approx(readings.front()));
+}
+
+TEST_CASE("export: a sampled controller ticks as in simulate", "[apps]") {
+  const CommandFolder folder;
+  Edits edits = kGeneratedRuns;
+  edits.push_back({"kp = \"1000 V/m\"",
+                   "kp = \"400 V/m\"\nki = \"500 V/(m s)\"\nkd = \"1 V s/m\"\n"
+                   "derivative_filter = \"300 rad/s\"\noutput_limit = \"1.5 V\"\nsample_time = "
+                   "\"5 ms\""});
+  folder.write("campaign.toml", edited(kCampaign, edits));
+  require_both(folder, "reference", {{"sine", sine(0.005)}, {"square", square(0.004)}});
+}
+
+TEST_CASE("export: steps of any length lead to the same end", "[apps]") {
+  const CommandFolder folder;
+  Edits edits = kGeneratedRuns;
+  edits.push_back({"kp = \"1000 V/m\"", "kp = \"400 V/m\"\nsample_time = \"7 ms\""});
+  folder.write("campaign.toml", edited(kCampaign, edits));
+  const Fmu fmu = exported(folder);
+  const FmuLibrary library(fmu.library());
+  const auto end_of = [&](const std::vector<double>& lengths) {
+    FmuRun run(fmu, library, fmi2CoSimulation);
+    run.initialize(10.0, kTolerance, {{"reference", 0.004}});
+    double t = 10.0;
+    for (std::size_t i = 0; t < 10.3 - 1e-9; ++i) {
+      const double h = std::min(lengths[i % lengths.size()], 10.3 - t);
+      run.require(run.step(t, h));
+      t += h;
+    }
+    return run.get("position");
+  };
+  const double whole = end_of({0.3});
+  CHECK(whole == Approx(0.004).epsilon(0.2));
+  CHECK(end_of({0.001}) == Approx(whole).epsilon(1e-6));
+  CHECK(end_of({0.02, 0.003, 0.0005}) == Approx(whole).epsilon(1e-6));
+}
+
+TEST_CASE("export: parameters and inputs of an FMU act as those of a campaign", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
+  const Fmu fmu = exported(folder);
+  const FmuLibrary library(fmu.library());
+  const auto position = [&](const Fmu& from, const std::map<std::string, double>& values) {
+    FmuRun run(from, library, fmi2CoSimulation);
+    run.initialize(0.0, kTolerance, {{"reference", 0.004}});
+    for (const auto& [name, value] : values) run.require(run.set(name, value));
+    run.require(run.step(0.0, 0.1));
+    return run.get("position");
+  };
+  const double as_is = position(fmu, {});
+  struct Change {
+    std::string name;
+    double value;
+    std::string set;
+  };
+  for (const Change& change : {Change{"mass", 600.0, "mass=600 kg"},
+                               Change{"leakage_coefficient", 3.0, "leakage_coefficient=3"},
+                               Change{"supply_pressure", 3e6, "supply_pressure=3 MPa"},
+                               Change{"external_force", 1500.0, "external_force=1500 N"}}) {
+    CAPTURE(change.name);
+    const double changed = position(fmu, {{change.name, change.value}});
+    CHECK(std::abs(changed - as_is) > 1e-5 * std::abs(as_is));
+    const Outcome outcome = folder.run(
+        {"export", "fmu", "campaign.toml", "--set", change.set, "--out", "set/" + change.name});
+    REQUIRE(outcome.exit_code == 0);
+    unzip(folder.work() / "set" / change.name / "small_rig.fmu", folder.work() / change.name);
+    CHECK(position(Fmu(folder.work() / change.name), {}) == Approx(changed).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("export: instances are apart, and go back to what they were", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
+  const Fmu fmu = exported(folder);
+  const FmuLibrary library(fmu.library());
+  FmuRun one(fmu, library, fmi2CoSimulation);
+  FmuRun other(fmu, library, fmi2CoSimulation);
+  one.initialize(0.0, kTolerance, {{"reference", 0.004}});
+  other.initialize(0.0, kTolerance, {{"reference", -0.004}});
+  one.require(one.step(0.0, 0.01));
+  other.require(other.step(0.0, 0.01));
+  CHECK(one.get("position") == -other.get("position"));
+  fmi2FMUstate state = nullptr;
+  one.require(RIGCAL_FMI2(library, fmi2GetFMUstate)(one.component, &state));
+  one.require(one.step(0.01, 0.02));
+  const double later = one.get("position");
+  one.require(RIGCAL_FMI2(library, fmi2SetFMUstate)(one.component, state));
+  CHECK(one.get("position") == -other.get("position"));
+  one.require(one.step(0.01, 0.02));
+  CHECK(one.get("position") == later);
+  one.require(RIGCAL_FMI2(library, fmi2FreeFMUstate)(one.component, &state));
+  CHECK(state == nullptr);
+  one.require(RIGCAL_FMI2(library, fmi2Reset)(one.component));
+  one.initialize(0.0, kTolerance, {{"reference", 0.004}});
+  one.require(one.step(0.0, 0.01));
+  CHECK(one.get("position") == -other.get("position"));
+}
+
+TEST_CASE("export: an FMU says in words what it refuses", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
+  const Fmu fmu = exported(folder);
+  const FmuLibrary library(fmu.library());
+  const double nan = std::nan("");
+  FmuRun stranger(fmu, library, fmi2CoSimulation, "{another}");
+  CHECK(stranger.component == nullptr);
+  CHECK_THAT(stranger.messages(), Contains("the GUID is {another}, expected " + fmu.guid()));
+  FmuRun run(fmu, library, fmi2CoSimulation);
+  CHECK(run.step(0.0, 0.01) == fmi2Error);
+  CHECK_THAT(run.messages(), Contains("fmi2DoStep: the instance is instantiated, expected "));
+  CHECK(run.set("mass", 1e9) == fmi2Error);
+  CHECK_THAT(run.messages(), Contains("mass: found 1e+09, expected 0.001 to 1000000 kg"));
+  run.initialize(0.0, 1e-6);
+  CHECK(run.set("reference", nan) == fmi2Error);
+  CHECK_THAT(run.messages(), Contains("found nan, expected a finite number"));
+  CHECK(run.set("position", 1.0) == fmi2Error);
+  CHECK_THAT(run.messages(), Contains("no input or parameter has it"));
+  CHECK(run.step(0.5, 0.01) == fmi2Error);
+  CHECK_THAT(run.messages(), Contains("currentCommunicationPoint: found 0.5 s, expected 0 s"));
+  CHECK(run.step(0.0, 0.0) == fmi2Error);
+  CHECK_THAT(run.messages(), Contains("communicationStepSize: found 0, expected one above 0"));
+  const fmi2ValueReference unknown = 99;
+  double value = 0.0;
+  CHECK(RIGCAL_FMI2(library, fmi2GetReal)(run.component, &unknown, 1, &value) == fmi2Error);
+  CHECK_THAT(run.messages(), Contains("no variable has the value reference 99"));
+  CHECK(run.step(0.0, 0.01) == fmi2OK);
+
+  FmuRun exchange(fmu, library, fmi2ModelExchange);
+  exchange.initialize(0.0, 1e-6);
+  CHECK(exchange.step(0.0, 0.01) == fmi2Error);
+  const std::vector<double> states(7, nan);
+  const auto set_states = RIGCAL_FMI2(library, fmi2SetContinuousStates);
+  CHECK(set_states(exchange.component, states.data(), 7) == fmi2Error);
+  CHECK_THAT(exchange.messages(), Contains("found room for 7 numbers, expected 3"));
+  CHECK(set_states(exchange.component, states.data(), 3) == fmi2Error);
+  CHECK_THAT(exchange.messages(), Contains("state 0: found nan"));
+
+  std::ofstream(fmu.folder() / "resources" / "rig.txt", std::ios::app) << "parameter mass much\n";
+  FmuRun damaged(fmu, library, fmi2CoSimulation);
+  CHECK(damaged.component == nullptr);
+  CHECK_THAT(damaged.messages(), Contains("found much, expected a number"));
+}
+
+TEST_CASE("export: the sources compile with a compiler alone, to the same model", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
+  const Fmu fmu = exported(folder);
+  std::string files;
+  for (const auto& [tag, node] : fmu.description().get_child("CoSimulation.SourceFiles"))
+    files += " " + node.get<std::string>("<xmlattr>.name");
+  const auto library_file = folder.work() / "compiled.so";
+  const std::string command = "cd '" + (fmu.folder() / "sources").string() +
+                              "' && c++ -std=c++20 -Wall -Wextra -Werror -Wno-maybe-uninitialized "
+                              "-fPIC -shared -I. -o '" +
+                              library_file.string() + "'" + files;
+  REQUIRE(std::system(command.c_str()) == 0);
+  const FmuLibrary library(library_file);
+  const SimulatedColumns columns = simulated(folder, "square");
+  require_co_simulation(fmu, library, "reference", square(0.004), true, columns);
+  require_model_exchange(fmu, library, "reference", square(0.004), true, columns);
+}
+
+TEST_CASE("export: the model description keeps the rules of the standard", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
+  const Fmu fmu = exported(folder, {"--condition", "sine"});
+  const auto& root = fmu.description();
+  CHECK(root.get<std::string>("<xmlattr>.fmiVersion") == "2.0");
+  CHECK(root.get<std::string>("ModelExchange.<xmlattr>.modelIdentifier") == fmu.identifier());
+  CHECK(root.get<double>("DefaultExperiment.<xmlattr>.stopTime") == 0.6);
+  CHECK(root.get<double>("DefaultExperiment.<xmlattr>.stepSize") == Approx(0.005));
+
+  std::set<std::string> units;
+  for (const auto& [tag, unit] : root.get_child("UnitDefinitions"))
+    CHECK(units.insert(unit.get<std::string>("<xmlattr>.name")).second);
+  std::set<unsigned> references;
+  std::map<std::size_t, Variable> by_index;
+  for (const auto& [name, variable] : fmu.variables) {
+    CAPTURE(name);
+    CHECK(units.count(variable.unit) == 1);
+    CHECK(references.insert(variable.reference).second);
+    by_index[variable.index] = variable;
+    const bool has_start = variable.causality == "input" || variable.causality == "parameter";
+    CHECK(variable.start.empty() != has_start);
+    const bool constant = variable.causality == "parameter";
+    CHECK((variable.variability == "continuous") != constant);
+  }
+  const auto listed = [&](const char* list) {
+    std::vector<std::size_t> indices;
+    for (const auto& [tag, unknown] : root.get_child(std::string("ModelStructure.") + list))
+      indices.push_back(unknown.get<std::size_t>("<xmlattr>.index"));
+    CHECK(std::is_sorted(indices.begin(), indices.end()));
+    return std::set<std::size_t>(indices.begin(), indices.end());
+  };
+  const auto outputs = listed("Outputs");
+  const auto derivatives = listed("Derivatives");
+  std::set<std::size_t> initial = outputs;
+  for (const auto& [index, variable] : by_index) {
+    CHECK(outputs.count(index) == (variable.causality == "output" ? 1 : 0));
+    CHECK(derivatives.count(index) == (variable.derivative > 0 ? 1 : 0));
+    if (variable.derivative == 0) continue;
+    CHECK(by_index.count(variable.derivative) == 1);
+    initial.insert(index);
+    initial.insert(variable.derivative);
+  }
+  CHECK(listed("InitialUnknowns") == initial);
+  CHECK(derivatives.size() == 3);
+  CHECK_THAT(text_of(fmu.folder() / "resources" / "rig.txt"), Contains("guid " + fmu.guid()));
+}
+
+TEST_CASE("export: the same campaign gives the same bytes, another one another GUID", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
+  for (const char* out : {"one", "two"})
+    REQUIRE(folder.run({"export", "fmu", "campaign.toml", "--out", out}).exit_code == 0);
+  CHECK(folder.read("one/small_rig.fmu") == folder.read("two/small_rig.fmu"));
+  const std::string guid = exported(folder).guid();
+  CHECK(exported(folder, {"--set", "mass=61 kg"}).guid() != guid);
+}
+
+TEST_CASE("export: a fit gives the values of its leak level", "[apps]") {
+  const CommandFolder folder;
+  const Edits by_level{
+      {"leakage_coefficient = 0.3",
+       "leakage_coefficient = { start = 0.3, lower = 0.01, upper = 3, fit = true, scope = "
+       "\"leak_level\" }"},
+      {"[leak_level.\"none\"]", "[leak_level.\"none\"]\n[leak_level.\"big\"]"}};
+  REQUIRE(write_twin(folder, by_level).exit_code == 0);
+  const Outcome fitted = folder.run({"fit", "twin/campaign.toml", "--out", "fit", "--quiet"});
+  CAPTURE(fitted.err);
+  REQUIRE(fitted.exit_code <= 1);
+  const CommandFolder::Arguments common{
+      "export", "fmu", "twin/campaign.toml", "--fit", "fit/fit.json", "--out", "fmu"};
+  const auto run = [&](const CommandFolder::Arguments& more) {
+    CommandFolder::Arguments arguments = common;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return folder.run(arguments);
+  };
+  const Outcome of_level = run({"--level", "none"});
+  CAPTURE(of_level.err);
+  REQUIRE(of_level.exit_code == 0);
+  CHECK_THAT(of_level.out, Contains("leak level: none") && !Contains("warning"));
+  unzip(folder.work() / "fmu" / "small_rig_synthetic_none.fmu", folder.work() / "unpacked");
+  const Fmu fmu(folder.work() / "unpacked");
+  CHECK(std::stod(fmu.variables.at("damping").start) == Approx(1000.0).epsilon(0.05));
+  CHECK(std::stod(fmu.variables.at("valve_gain").start) == Approx(3e-5).epsilon(0.05));
+  CHECK_THAT(folder.read("unpacked/documentation/index.html"),
+             Contains("verdict of the fit") && Contains("fit.json, SHA-256 ") &&
+                 Contains("fitted at frequencies of"));
+
+  const Outcome set = run({"--level", "none", "--set", "damping=700 N s/m", "--json"});
+  REQUIRE(set.exit_code == 0);
+  unzip(folder.work() / "fmu" / "small_rig_synthetic_none.fmu", folder.work() / "set");
+  CHECK(Fmu(folder.work() / "set").variables.at("damping").start == "700");
+
+  CHECK_THAT(run({}).err, Contains("2 leak levels: expected --level with one of big, none"));
+  const Outcome without = run({"--level", "big"});
+  CHECK(without.exit_code == 2);
+  CHECK_THAT(without.err, Contains("fit.json has no leakage_coefficient for it, only for none"));
+  const Outcome unknown = run({"--level", "nine"});
+  CHECK(unknown.exit_code == 2);
+  CHECK_THAT(unknown.err, Contains("--level: unknown leak level 'nine'"));
+  CHECK(run({"--level", "none", "--condition", "sine"}).exit_code == 2);
+}
+
+TEST_CASE("export: bad input", "[apps]") {
+  const CommandFolder folder;
+  folder.write("campaign.toml", edited(kCampaign, kGeneratedRuns));
+  const Outcome format = folder.run({"export", "fmx", "campaign.toml"});
+  CHECK(format.exit_code == 2);
+  CHECK_THAT(format.err, Contains("unknown format 'fmx'") && Contains("known: fmu"));
+  const Outcome condition = folder.run({"export", "fmu", "campaign.toml", "--condition", "sin"});
+  CHECK(condition.exit_code == 2);
+  CHECK_THAT(condition.err, Contains("unknown condition 'sin'; did you mean 'sine'?"));
+  const Outcome delay = folder.run(
+      {"export", "fmu", "campaign.toml", "--set", "transport_delay=4 ms", "--out", "out"});
+  CHECK(delay.exit_code == 2);
+  CHECK_THAT(delay.err,
+             Contains("transport_delay is 0.004 s, but the inputs of an FMU act at once"));
+  const Outcome without = folder.run({"export", "fmu", "campaign.toml", "--set",
+                                      "transport_delay=4 ms", "--without-delay", "--out", "late"});
+  CHECK(without.exit_code == 0);
+  CHECK_THAT(without.out, Contains("transport_delay is left out: the reference has to be delayed "
+                                   "by 0.004 s"));
+  folder.write("file", "");
+  const Outcome out = folder.run({"export", "fmu", "campaign.toml", "--out", "file/out"});
+  CHECK(out.exit_code == 5);
+  CHECK(!folder.has("out"));
+  const Outcome start = folder.run({"export", "fmu", "campaign.toml", "--out", "out"});
+  CHECK_THAT(start.out, Contains("warning: not calibrated: damping, valve_gain"));
+}
+
+}  // namespace rigcal::test

@@ -1,0 +1,90 @@
+#include "model/fmi/equations.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/model/rig.hpp"
+
+using namespace rigcal::model;
+
+namespace {
+
+ExportedRig rig_with(const std::vector<std::string>& keys) {
+  ExportedRig rig;
+  rig.values = paper_rig();
+  for (const std::string& key : keys) rig.values.set(key, 1.0);
+  return rig;
+}
+
+std::vector<std::string> names(const ExportedRig& rig) {
+  std::vector<std::string> names;
+  for (const StateDescription& state : describe_states(rig, make_equations(rig)->layout()))
+    names.push_back(state.name);
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("equations: every state has a name and a size", "[model]") {
+  const ExportedRig rig = rig_with(
+      {"valve_frequency", "valve_damping_ratio", "ki", "kd", "derivative_filter", "sample_time"});
+  const std::vector<std::string> all = names(rig);
+  CHECK(all == std::vector<std::string>{"position", "velocity", "load_pressure", "valve_signal",
+                                        "valve_signal_rate", "controller_integral",
+                                        "controller_filtered_error", "controller_held_output"});
+  for (const StateDescription& state : describe_states(rig, make_equations(rig)->layout()))
+    CHECK(state.nominal > 0.0);
+}
+
+TEST_CASE("equations: an indicator is zero where the controller reaches its limit", "[model]") {
+  ExportedRig rig = rig_with({});
+  rig.values.set("kp", 100.0);
+  rig.values.set("output_limit", 2.0);
+  const auto equations = make_equations(rig);
+  const auto indicators_at = [&](double reference_m) {
+    RigInputs inputs;
+    inputs.drive.value = reference_m;
+    inputs.supply_pressure_pa.value = 6e6;
+    equations->set(rig.values, inputs, 1.0);
+    return equations->indicators(std::vector<double>(3, 0.0));
+  };
+  const auto inside = indicators_at(0.019);
+  const auto outside = indicators_at(0.021);
+  REQUIRE(inside.size() == 3);  // the sign of the spool, and both limits
+  CHECK(inside[0] == Approx(1.9));
+  CHECK(inside[1] == Approx(0.1));
+  CHECK(outside[1] == Approx(-0.1));
+  CHECK(outside[2] == Approx(4.1));
+}
+
+TEST_CASE("equations: a ramp of the input is followed, not held", "[model]") {
+  // An open valve, no leak: the piston goes as fast as the oil comes, so a ramp of the command for
+  // one second moves it by half of what its end value would.
+  ExportedRig rig = rig_with({});
+  rig.rig.controller = ControllerKind::none;
+  rig.values.set("leakage_coefficient", 0.0);
+  const auto equations = make_equations(rig);
+  const auto travel = [&](const Ramp& command) {
+    RigInputs inputs;
+    inputs.drive = command;
+    inputs.supply_pressure_pa.value = rig.values["supply_pressure"];
+    equations->set(rig.values, inputs, 1.0);
+    std::vector<double> x = equations->initial();
+    StepMemory memory;
+    equations->advance(x, memory, 0.0, 1.0, 1e-8);
+    return x[0];
+  };
+  CHECK(travel({0.0, 0.01}) == Approx(0.5 * travel({0.01, 0.0})).epsilon(0.02));
+}
+
+TEST_CASE("equations: states that leave the numbers are an error", "[model]") {
+  const ExportedRig rig = rig_with({});
+  const auto equations = make_equations(rig);
+  RigInputs inputs;
+  inputs.supply_pressure_pa.value = 6e6;
+  equations->set(rig.values, inputs, 1.0);
+  std::vector<double> x{0.0, 1e300, 0.0};
+  StepMemory memory;
+  CHECK_THROWS_WITH(equations->advance(x, memory, 0.0, 1.0, 1e-6),
+                    Catch::Contains("the solver fails at steps of"));
+}
