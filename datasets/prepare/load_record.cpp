@@ -13,8 +13,7 @@
 #include "datasets/prepare/average.hpp"
 #include "datasets/prepare/condition_repeats.hpp"
 #include "datasets/prepare/moving_windows.hpp"
-#include "datasets/read/load_csv.hpp"
-#include "datasets/read/load_mat.hpp"
+#include "datasets/read/record_reader.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -34,18 +33,14 @@ AverageOptions options_of(const Campaign& campaign, const Condition& condition) 
   throw InputError(condition.where, fmt::format("condition \"{}\": {}", condition.id, message));
 }
 
-/// Columns of a CSV or MAT file, the time first; what is doubtful about the file goes to the
+/// Columns of a file of any format, the time first; what is doubtful about the file goes to the
 /// repeat.
 std::vector<std::vector<double>> read_columns(const Campaign& campaign,
                                               const std::filesystem::path& path,
                                               std::vector<std::string> names, Repeat& repeat) {
-  if (is_mat_file(path)) return load_mat(path, {std::move(names), campaign.time_column});
-  CsvRequest request;
-  request.separator = campaign.separator;
-  request.time_column = campaign.time_column;
-  request.columns = std::move(names);
-  CsvTable table = load_csv(path, request);
-  if (!table.cut_short.empty()) repeat.warnings.push_back(table.cut_short);
+  RecordTable table =
+      record_reader(path).load(path, {std::move(names), campaign.time_column, campaign.separator});
+  if (!table.warning.empty()) repeat.warnings.push_back(table.warning);
   return std::move(table.columns);
 }
 

@@ -329,4 +329,19 @@ std::vector<std::string> csv_full_header(const std::filesystem::path& path, char
   return names;
 }
 
+std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path) {
+  std::vector<RecordColumn> columns;
+  for (std::string& name : csv_full_header(path)) columns.push_back({std::move(name), {}});
+  return columns;
+}
+
+RecordTable load_csv_record(const std::filesystem::path& path, const RecordRequest& request) {
+  CsvRequest wanted;
+  wanted.columns = request.columns;
+  wanted.separator = request.separator;
+  wanted.time_column = request.time_column;
+  CsvTable table = load_csv(path, wanted);
+  return {std::move(table.columns), std::move(table.cut_short)};
+}
+
 }  // namespace rigcal::datasets
