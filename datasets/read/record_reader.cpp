@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "datasets/read/load_csv.hpp"
+#include "datasets/read/load_hdf5.hpp"
 #include "datasets/read/load_mat.hpp"
 #include "datasets/read/mat_columns.hpp"
 
@@ -16,6 +17,8 @@ namespace {
 /// One row per format; a file belongs to the first row whose sniff says so.
 constexpr std::array kReaders{
     RecordReader{"MAT", ".mat", is_mat_file, mat_record_columns, load_mat_record, kHowToSaveMat},
+    RecordReader{"HDF5", ".h5 .hdf5", is_hdf5_file, hdf5_record_columns, load_hdf5_record,
+                 kHowToSaveHdf5},
     RecordReader{"CSV", ".csv", [](const FileStart&) { return true; }, csv_record_columns,
                  load_csv_record, "expected a header line"},
 };
