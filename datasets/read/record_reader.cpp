@@ -9,6 +9,7 @@
 #include "datasets/read/load_csv.hpp"
 #include "datasets/read/load_hdf5.hpp"
 #include "datasets/read/load_mat.hpp"
+#include "datasets/read/load_xlsx.hpp"
 #include "datasets/read/mat_columns.hpp"
 
 namespace rigcal::datasets {
@@ -19,6 +20,8 @@ constexpr std::array kReaders{
     RecordReader{"MAT", ".mat", is_mat_file, mat_record_columns, load_mat_record, kHowToSaveMat},
     RecordReader{"HDF5", ".h5 .hdf5", is_hdf5_file, hdf5_record_columns, load_hdf5_record,
                  kHowToSaveHdf5},
+    RecordReader{"Excel", ".xlsx .xlsm", is_xlsx_file, xlsx_record_columns, load_xlsx_record,
+                 kHowToSaveXlsx},
     RecordReader{"CSV", ".csv", [](const FileStart&) { return true; }, csv_record_columns,
                  load_csv_record, "expected a header line"},
 };
