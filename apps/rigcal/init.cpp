@@ -82,7 +82,9 @@ ExitCode run_init(const InitRequest& options) {
 
 Run add_init(CLI::App& verb) {
   const auto options = std::make_shared<InitRequest>();
-  verb.add_option("FILE", options->files, "Recordings, CSV or MAT, or folders of them")->required();
+  verb.add_option("FILE", options->files,
+                  "Recordings (" + datasets::record_format_names() + "), or folders of them")
+      ->required();
   verb.add_option("--out", options->out, "Folder of the draft")
       ->check(not_empty())
       ->capture_default_str();

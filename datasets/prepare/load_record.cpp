@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <stdexcept>
 
@@ -42,6 +43,20 @@ std::vector<std::vector<double>> read_columns(const Campaign& campaign,
       record_reader(path).load(path, {std::move(names), campaign.time_column, campaign.separator});
   if (!table.warning.empty()) repeat.warnings.push_back(table.warning);
   return std::move(table.columns);
+}
+
+/// Sums of squares stay finite. A damaged number may be as large as a double can be.
+void require_measurable(const RepeatSource& source, const std::string& column,
+                        const std::vector<double>& values) {
+  constexpr double kLargest = 1e100;
+  const auto bad = std::find_if(values.begin(), values.end(),
+                                [](double value) { return !(std::abs(value) <= kLargest); });
+  if (bad != values.end())
+    throw InputError(
+        {source.path.string()},
+        fmt::format("number {} of '{}' is {:g} in SI units, which nothing can measure; "
+                    "expected at most {:g}",
+                    bad - values.begin() + 1, column, *bad, kLargest));
 }
 
 /// What drives the rig at each sample of the record.
@@ -114,12 +129,14 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
   repeat.source = source.label;
   auto columns = read_columns(campaign, source.path, std::move(names), repeat);
 
-  const auto converted = [&](std::size_t column, const UnitConversion& to_si) {
+  const auto converted = [&](std::size_t column, const std::string& name,
+                             const UnitConversion& to_si) {
     std::vector<double> values = std::move(columns[column]);
     std::transform(values.begin(), values.end(), values.begin(), to_si);
+    require_measurable(source, name, values);
     return values;
   };
-  repeat.time_s = converted(0, campaign.time_to_s);
+  repeat.time_s = converted(0, campaign.time_column, campaign.time_to_s);
   std::size_t column = 1;
   std::size_t minus = 1 + source.columns.size();
   for (const auto& [channel, name] : source.columns) {
@@ -128,7 +145,7 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
       std::transform(columns[column].begin(), columns[column].end(), taken_off.begin(),
                      columns[column].begin(), std::minus<>());
     }
-    repeat.values[channel] = converted(column++, campaign.channels.at(channel).to_si);
+    repeat.values[channel] = converted(column++, name, campaign.channels.at(channel).to_si);
   }
   return repeat;
 }
