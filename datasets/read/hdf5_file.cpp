@@ -129,6 +129,84 @@ std::vector<double> exact(const std::vector<Number>& numbers, const std::string&
   return values;
 }
 
+// ---- Numbers -------------------------------------------------------------------------------
+
+std::size_t dims_of_dataset(const Hdf5Series& series) {
+  return series.dims.size() - series.cell_dims;
+}
+
+/// Which numbers of a selection are wanted: cells of `width` numbers follow each other, and of
+/// all these first, first + stride, ...
+struct CellChoice {
+  std::size_t cells = 1;
+  std::size_t width = 1;
+  std::size_t first = 0;
+  std::size_t stride = 1;
+  std::size_t wanted = 1;
+};
+
+CellChoice choice_of(const Hdf5Series& series, const Hdf5Line& line) {
+  CellChoice choice;
+  const std::size_t own_dims = dims_of_dataset(series);
+  for (std::size_t k = series.dims.size(); k-- > own_dims;) {
+    if (k == line.along)
+      choice.stride = choice.width;
+    else
+      choice.first += line.fixed[k] * choice.width;
+    choice.width *= series.dims[k];
+  }
+  if (series.dims.empty()) return choice;
+  choice.wanted = series.dims[line.along];
+  if (line.along < own_dims) {
+    choice.cells = choice.wanted;
+    choice.stride = choice.width;
+  }
+  return choice;
+}
+
+/// Selects, in the file, the cells along the line.
+bool select_cells(hid_t space, const Hdf5Series& series, const Hdf5Line& line) {
+  const std::size_t own_dims = dims_of_dataset(series);
+  if (own_dims == 0) return true;
+  std::vector<hsize_t> start(line.fixed.begin(),
+                             line.fixed.begin() + static_cast<std::ptrdiff_t>(own_dims));
+  std::vector<hsize_t> count(own_dims, 1);
+  if (line.along < own_dims) {
+    start[line.along] = 0;
+    count[line.along] = series.dims[line.along];
+  }
+  return H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) >=
+         0;
+}
+
+/// The type of the numbers in the file.
+Hdf5Id number_type(hid_t dataset, const Hdf5Series& series) {
+  Hdf5Id type(H5Dget_type(dataset), H5Tclose);
+  if (!series.member.empty()) {
+    const int index = H5Tget_member_index(type.get(), series.member.c_str());
+    if (index < 0) return {};
+    type = Hdf5Id(H5Tget_member_type(type.get(), static_cast<unsigned>(index)), H5Tclose);
+  }
+  while (H5Tget_class(type.get()) == H5T_ARRAY) type = Hdf5Id(H5Tget_super(type.get()), H5Tclose);
+  return type;
+}
+
+/// What a cell of the series is to be converted to: numbers of a native type, in an array or in a
+/// table of one member where they stand so in the file.
+Hdf5Id type_in_memory(const Hdf5Series& series, hid_t native, std::size_t bytes) {
+  const std::vector<hsize_t> shape(
+      series.dims.begin() + static_cast<std::ptrdiff_t>(dims_of_dataset(series)),
+      series.dims.end());
+  Hdf5Id type(shape.empty()
+                  ? H5Tcopy(native)
+                  : H5Tarray_create2(native, static_cast<unsigned>(shape.size()), shape.data()),
+              H5Tclose);
+  if (series.member.empty()) return type;
+  Hdf5Id table(H5Tcreate(H5T_COMPOUND, bytes), H5Tclose);
+  H5Tinsert(table.get(), series.member.c_str(), 0, type.get());
+  return table;
+}
+
 }  // namespace
 
 std::size_t Hdf5Series::element_count() const {
@@ -262,70 +340,27 @@ std::vector<double> Hdf5File::numbers(const Hdf5Series& series, const Hdf5Line& 
   const Hdf5Id dataset(H5Dopen2(file_.get(), series.dataset.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset) damaged();
   require_readable(dataset.get(), column);
-
-  // In the file: the dataset's own dimensions.
-  const std::size_t own_dims = series.dims.size() - series.cell_dims;
-  const Hdf5Id space(H5Dget_space(dataset.get()), H5Sclose);
-  std::vector<hsize_t> start(line.fixed.begin(), line.fixed.begin() + static_cast<long>(own_dims));
-  std::vector<hsize_t> count(own_dims, 1);
-  if (line.along < own_dims) {
-    start[line.along] = 0;
-    count[line.along] = series.dims[line.along];
-  }
-  if (own_dims > 0 && H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr,
-                                          count.data(), nullptr) < 0)
-    damaged();
-  const std::size_t cells = line.along < own_dims ? series.dims[line.along] : 1;
-
-  // In a cell: the numbers that belong together, of which one or all are wanted.
-  std::size_t width = 1;
-  std::size_t first = 0;
-  std::size_t stride = 1;
-  for (std::size_t k = series.dims.size(); k-- > own_dims;) {
-    if (k == line.along)
-      stride = width;
-    else
-      first += line.fixed[k] * width;
-    width *= series.dims[k];
-  }
-  const std::size_t wanted = series.dims.empty() ? 1 : series.dims[line.along];
-  if (line.along < own_dims || series.dims.empty()) stride = width;
-  if (width > kMostValues / std::max<std::size_t>(cells, 1))
+  const CellChoice choice = choice_of(series, line);
+  if (choice.width > kMostValues / std::max<std::size_t>(choice.cells, 1))
     fail(fmt::format("'{}' stands in arrays of {} numbers each, {} of them: more than {} in all",
-                     column, width, cells, kMostValues));
-
-  Hdf5Id type(H5Dget_type(dataset.get()), H5Tclose);
-  if (!series.member.empty()) {
-    const int index = H5Tget_member_index(type.get(), series.member.c_str());
-    if (index < 0) damaged();
-    type = Hdf5Id(H5Tget_member_type(type.get(), static_cast<unsigned>(index)), H5Tclose);
-  }
-  while (H5Tget_class(type.get()) == H5T_ARRAY) type = Hdf5Id(H5Tget_super(type.get()), H5Tclose);
+                     column, choice.width, choice.cells, kMostValues));
+  const Hdf5Id space(H5Dget_space(dataset.get()), H5Sclose);
+  const Hdf5Id type = number_type(dataset.get(), series);
+  if (!type || !select_cells(space.get(), series, line)) damaged();
   const bool is_float = H5Tget_class(type.get()) == H5T_FLOAT;
   const bool is_signed = !is_float && H5Tget_sign(type.get()) == H5T_SGN_2;
 
   const auto read = [&](auto zero, hid_t native) {
     using Number = decltype(zero);
-    std::vector<Number> raw(cells * width);
-    const std::vector<hsize_t> shape([&] {
-      return std::vector<hsize_t>(series.dims.begin() + static_cast<long>(own_dims),
-                                  series.dims.end());
-    }());
-    Hdf5Id memory(H5Tcopy(native), H5Tclose);
-    if (!shape.empty())
-      memory = Hdf5Id(H5Tarray_create2(native, static_cast<unsigned>(shape.size()), shape.data()),
-                      H5Tclose);
-    if (!series.member.empty()) {
-      Hdf5Id table(H5Tcreate(H5T_COMPOUND, width * sizeof(Number)), H5Tclose);
-      H5Tinsert(table.get(), series.member.c_str(), 0, memory.get());
-      memory = std::move(table);
-    }
-    const auto rows = static_cast<hsize_t>(cells);
+    std::vector<Number> raw(choice.cells * choice.width);
+    const Hdf5Id memory = type_in_memory(series, native, choice.width * sizeof(Number));
+    const auto rows = static_cast<hsize_t>(choice.cells);
     const Hdf5Id plain(H5Screate_simple(1, &rows, nullptr), H5Sclose);
     if (H5Dread(dataset.get(), memory.get(), plain.get(), space.get(), H5P_DEFAULT, raw.data()) < 0)
       damaged();
-    std::vector<Number> chosen(wanted);
-    for (std::size_t i = 0; i < wanted; ++i) chosen[i] = raw[first + i * stride];
+    std::vector<Number> chosen(choice.wanted);
+    for (std::size_t i = 0; i < choice.wanted; ++i)
+      chosen[i] = raw[choice.first + i * choice.stride];
     return exact(chosen, name_, column);
   };
   if (is_float) return read(double{}, H5T_NATIVE_DOUBLE);
