@@ -244,7 +244,7 @@ void Hdf5File::list_group(hid_t group, const std::string& path, std::vector<hadd
     if (++objects_ > kMostObjects)
       fail(fmt::format("holds more than {} groups and datasets", kMostObjects));
     if (!is_printable(name)) continue;
-    const std::string own = path + "/" + name;
+    const std::string own = fmt::format("{}/{}", path, name);
     const Hdf5Id object(H5Oopen(group, name.c_str(), H5P_DEFAULT), H5Oclose);
     if (!object)
       fail(fmt::format("is damaged at '{}' (HDF5: {}); copy or save it again", own, hdf5_reason()));
