@@ -12,7 +12,9 @@ install(DIRECTORY common model metrics datasets calib diagnosis report
   PATTERN campaign_parameters.hpp EXCLUDE
   PATTERN campaign_sections.hpp EXCLUDE
   PATTERN byte_stream.hpp EXCLUDE
-  PATTERN mat_*.hpp EXCLUDE)
+  PATTERN hdf5_*.hpp EXCLUDE
+  PATTERN mat_*.hpp EXCLUDE
+  PATTERN xlsx_*.hpp EXCLUDE)
 install(EXPORT rigcal NAMESPACE rigcal:: FILE rigcalTargets.cmake DESTINATION ${config} COMPONENT development)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/rigcalConfig.cmake.in
   ${PROJECT_BINARY_DIR}/rigcalConfig.cmake INSTALL_DESTINATION ${config})

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -11,6 +10,7 @@
 #include "apps/rigcal/verb.hpp"
 #include "common/file.hpp"
 #include "datasets/draft/draft_campaign.hpp"
+#include "datasets/read/record_reader.hpp"
 #include "report/store/folder.hpp"
 
 namespace rigcal::app {
@@ -29,30 +29,24 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-bool is_recording(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension == ".csv" || extension == ".mat";
-}
-
 /// A folder stands for the recordings in it, in the order of their names.
 std::vector<std::filesystem::path> with_folders_opened(
     const std::vector<std::filesystem::path>& paths) {
   std::vector<std::filesystem::path> files;
   for (const auto& path : paths) {
     if (!std::filesystem::is_directory(path)) {
-      require_regular_file(path, "a recording (CSV or MAT)");
+      require_regular_file(path, fmt::format("a recording ({})", datasets::record_format_names()));
       files.push_back(path);
       continue;
     }
     const std::size_t before = files.size();
     for (const auto& entry : std::filesystem::directory_iterator(path)) {
-      if (entry.is_regular_file() && is_recording(entry.path())) files.push_back(entry.path());
+      if (entry.is_regular_file() && datasets::has_record_name(entry.path()))
+        files.push_back(entry.path());
     }
     if (files.size() == before) {
-      throw UsageError(fmt::format(
-          "{}: this folder holds no .csv or .mat file; expected recordings", path.string()));
+      throw UsageError(fmt::format("{}: this folder holds no {} file; expected recordings",
+                                   path.string(), datasets::record_extensions()));
     }
     std::sort(files.begin() + static_cast<std::ptrdiff_t>(before), files.end());
   }
@@ -88,7 +82,9 @@ ExitCode run_init(const InitRequest& options) {
 
 Run add_init(CLI::App& verb) {
   const auto options = std::make_shared<InitRequest>();
-  verb.add_option("FILE", options->files, "Recordings, CSV or MAT, or folders of them")->required();
+  verb.add_option("FILE", options->files,
+                  "Recordings (" + datasets::record_format_names() + "), or folders of them")
+      ->required();
   verb.add_option("--out", options->out, "Folder of the draft")
       ->check(not_empty())
       ->capture_default_str();

@@ -82,9 +82,10 @@ void assign(ColumnGuess& guess, const std::string& word) {
 }  // namespace
 
 ColumnGuess guess_column(const std::string& name) {
-  // Of "log.signals(2).values" the last field tells, if any.
-  const std::size_t dot = name.rfind('.');
-  const auto parts = parts_of(dot == std::string::npos ? name : name.substr(dot + 1));
+  // Of "/run1/x", "Sheet1!x" and "log.signals(2).values" what stands last tells.
+  std::string own = name.starts_with('/') ? name.substr(name.rfind('/') + 1) : name;
+  for (const char before : {'!', '.'}) own = own.substr(own.rfind(before) + 1);
+  const auto parts = parts_of(own);
   ColumnGuess guess;
   std::vector<std::string> words;
   for (std::size_t i = 0; i < parts.size(); ++i) {

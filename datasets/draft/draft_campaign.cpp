@@ -16,9 +16,7 @@
 #include "datasets/draft/column_guess.hpp"
 #include "datasets/draft/start_motion.hpp"
 #include "datasets/draft/waveform_guess.hpp"
-#include "datasets/read/load_csv.hpp"
-#include "datasets/read/load_mat.hpp"
-#include "datasets/read/mat_columns.hpp"
+#include "datasets/read/record_reader.hpp"
 #include "model/plant/parameter.hpp"
 
 namespace rigcal::datasets {
@@ -38,17 +36,9 @@ Numbered split_number(const std::string& text) {
   return {text.substr(0, at), text.substr(at)};
 }
 
-std::vector<std::string> column_names(const fs::path& file) {
-  return is_mat_file(file) ? mat_columns(file) : csv_full_header(file);
-}
-
 std::vector<std::vector<double>> read(const fs::path& file, const std::string& time,
                                       const std::string& column) {
-  if (is_mat_file(file)) return load_mat(file, {{time, column}, time});
-  CsvRequest request;
-  request.columns = {time, column};
-  request.time_column = time;
-  return load_csv(file, request).columns;
+  return record_reader(file).load(file, {{time, column}, time}).columns;
 }
 
 // ---- Columns -------------------------------------------------------------------------------
@@ -66,38 +56,52 @@ struct FileColumns {
   std::string time_unit;
   std::vector<ChannelColumns> channels;
   std::vector<std::string> unknown;
-  /// Rows below the time of an array of Simulink's "To File", which has no names for them.
+  /// Lines of a matrix behind its time, which have no names: rows of an array of Simulink's "To
+  /// File", or columns.
   std::vector<std::string> rows;
   std::string lacks;  ///< why the file is no recording, in words; empty if it is one
 };
 
-/// Simulink's block "To File" with the format "Array" saves one matrix: time in its first row, the
-/// signals in the others. The first matrix of the file that has such a time; empty if none has.
-std::vector<std::string> to_file_rows(const fs::path& file, const std::vector<std::string>& names) {
-  constexpr std::string_view kFirst = "(1,:)";
-  for (const std::string& name : names) {
-    if (!name.ends_with(kFirst)) continue;
-    const std::string stem = name.substr(0, name.size() - kFirst.size() + 1);  // "ans("
-    std::vector<std::string> rows;
-    for (const std::string& other : names)
-      if (other.starts_with(stem)) rows.push_back(other);
-    if (rows.size() < 2) continue;
+/// Rows or columns of the first matrix of the file whose first one is a time: Simulink's block "To
+/// File" with the format "Array" saves such rows, and arrays of HDF5 are mostly columns. Empty if
+/// there is no such matrix.
+std::vector<std::string> timed_lines(const fs::path& file,
+                                     const std::vector<RecordColumn>& columns) {
+  const auto matrix_of = [](const std::string& name) { return name.substr(0, name.rfind('(')); };
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    const std::string& first = columns[i].name;
+    if (!columns[i].is_matrix_line || !(first.ends_with("(1,:)") || first.ends_with("(:,1)")))
+      continue;
+    std::vector<std::string> lines;
+    for (std::size_t k = i; k < columns.size() && columns[k].is_matrix_line; ++k)
+      if (matrix_of(columns[k].name) == matrix_of(first)) lines.push_back(columns[k].name);
+    if (lines.size() < 2) continue;
     try {
-      read(file, rows[0], rows[1]);
-      return rows;
+      read(file, lines[0], lines[1]);
+      return lines;
     } catch (const InputError&) {
-      continue;  // its first row is no time
+      continue;  // its first line is no time
     }
   }
   return {};
 }
 
-/// A file without names that tell a time: an array of "To File", or why it is no recording.
-void without_time(const fs::path& file, const std::vector<std::string>& names, FileColumns& found) {
-  if (is_mat_file(file)) found.rows = to_file_rows(file, names);
+std::string names_text(const std::vector<RecordColumn>& columns) {
+  std::vector<std::string_view> names;
+  for (const RecordColumn& column : columns) names.push_back(column.name);
+  return fmt::format("{}", fmt::join(names, ", "));
+}
+
+/// A file without names that tell a time: a matrix with a time, or why it is no recording.
+void without_time(const fs::path& file, const std::vector<RecordColumn>& columns,
+                  FileColumns& found) {
+  found.rows = timed_lines(file, columns);
   if (!found.rows.empty()) {
     found.time = found.rows.front();
-    found.time_unit = "s";  // Simulink knows no other
+    const auto time = std::find_if(columns.begin(), columns.end(), [&](const RecordColumn& each) {
+      return each.name == found.time;
+    });
+    found.time_unit = time->unit.empty() ? "s" : time->unit;  // Simulink knows no other
     found.rows.erase(found.rows.begin());
     std::erase_if(found.unknown, [&](const std::string& name) {
       return name == found.time ||
@@ -105,28 +109,32 @@ void without_time(const fs::path& file, const std::vector<std::string>& names, F
     });
     return;
   }
-  found.lacks = names.empty()
-                    ? fmt::format("it holds no vector or matrix of numbers; {}", kHowToSaveMat)
-                    : fmt::format("no column looks like a time (t, time, ...); the columns are {}",
-                                  fmt::join(names, ", "));
+  found.lacks =
+      columns.empty()
+          ? fmt::format("it holds no vector or matrix of numbers; {}", record_reader(file).if_empty)
+          : fmt::format("no column looks like a time (t, time, ...); the columns are {}",
+                        names_text(columns));
 }
 
 FileColumns columns_of(const fs::path& file) {
-  const auto names = column_names(file);
+  const std::vector<RecordColumn> columns = record_reader(file).columns(file);
   std::map<std::string, std::vector<std::string>> numbers;  // by stem
-  for (const std::string& name : names) {
-    const Numbered numbered = split_number(name);
+  for (const RecordColumn& column : columns) {
+    const Numbered numbered = split_number(column.name);
     if (!numbered.number.empty()) numbers[numbered.stem].push_back(numbered.number);
   }
   FileColumns found;
-  for (const std::string& name : names) {
+  for (const RecordColumn& column : columns) {
+    const std::string& name = column.name;
     const Numbered numbered = split_number(name);
     const bool several = !numbered.number.empty() && numbers[numbered.stem].size() > 1;
     // "p1", "p2" are two pressures, not two repeats.
     const bool own_word = guess_column(name).channel && !guess_column(numbered.stem).channel;
     const bool repeated = several && !own_word;
     const std::string shown = repeated ? numbered.stem : name;
-    const ColumnGuess guess = guess_column(shown);
+    ColumnGuess guess = guess_column(shown);
+    if (!column.unit.empty()) guess.unit = column.unit;
+    if (column.is_time) guess = {true, {}, guess.unit};
     if (guess.is_time && found.time.empty()) {
       found.time = name;
       found.time_unit = guess.unit;
@@ -142,12 +150,12 @@ FileColumns columns_of(const fs::path& file) {
     }
   }
   if (found.time.empty()) {
-    without_time(file, names, found);
+    without_time(file, columns, found);
   } else if (found.channels.empty()) {
     found.lacks = fmt::format(
         "no column looks like a channel (reference, command, position, "
         "pressure_a, ...); the columns are {}",
-        fmt::join(names, ", "));
+        names_text(columns));
   }
   return found;
 }
@@ -214,19 +222,24 @@ std::string channels_text(const FileColumns& columns) {
   return text;
 }
 
-/// The rows of a "To File" array with their ranges, by which the user knows them again.
+/// Lines without names, with their ranges, by which the user knows them again.
 std::string rows_text(const fs::path& file, const FileColumns& columns) {
   if (columns.rows.empty()) return {};
-  std::string text =
-      "# An array of Simulink's \"To File\": time in its first row, and nothing names the others.\n"
-      "# Give each channel its row and unit, reference = { ... } too if one drives a controller:\n";
+  std::string text = columns.time.ends_with("(1,:)")
+                         ? "# An array of Simulink's \"To File\": time in its first row, and "
+                           "nothing names the others.\n"
+                           "# Give each channel its row"
+                         : "# A matrix with a time in its first column, and nothing names the "
+                           "others.\n# Give each channel its column";
+  text += " and unit, reference = { ... } too if one drives a controller:\n";
   for (const std::string& row : columns.rows) {
     const auto values = read(file, columns.time, row).at(1);
     const auto [low, high] = std::minmax_element(values.begin(), values.end());
     text += fmt::format("# {}: {:.6g} to {:.6g}\n", row, *low, *high);
   }
   return text + fmt::format("position = {{ column = {0}, unit = {0} }}{1}\n", toml_quoted(kBlank),
-                            comment("one of these rows"));
+                            comment(columns.time.ends_with("(1,:)") ? "one of these rows"
+                                                                    : "one of these columns"));
 }
 
 /// Optional terms that a cylinder with both chambers mostly has.

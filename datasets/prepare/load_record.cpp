@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <stdexcept>
 
@@ -13,8 +14,7 @@
 #include "datasets/prepare/average.hpp"
 #include "datasets/prepare/condition_repeats.hpp"
 #include "datasets/prepare/moving_windows.hpp"
-#include "datasets/read/load_csv.hpp"
-#include "datasets/read/load_mat.hpp"
+#include "datasets/read/record_reader.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -34,19 +34,29 @@ AverageOptions options_of(const Campaign& campaign, const Condition& condition) 
   throw InputError(condition.where, fmt::format("condition \"{}\": {}", condition.id, message));
 }
 
-/// Columns of a CSV or MAT file, the time first; what is doubtful about the file goes to the
+/// Columns of a file of any format, the time first; what is doubtful about the file goes to the
 /// repeat.
 std::vector<std::vector<double>> read_columns(const Campaign& campaign,
                                               const std::filesystem::path& path,
                                               std::vector<std::string> names, Repeat& repeat) {
-  if (is_mat_file(path)) return load_mat(path, {std::move(names), campaign.time_column});
-  CsvRequest request;
-  request.separator = campaign.separator;
-  request.time_column = campaign.time_column;
-  request.columns = std::move(names);
-  CsvTable table = load_csv(path, request);
-  if (!table.cut_short.empty()) repeat.warnings.push_back(table.cut_short);
+  RecordTable table =
+      record_reader(path).load(path, {std::move(names), campaign.time_column, campaign.separator});
+  if (!table.warning.empty()) repeat.warnings.push_back(table.warning);
   return std::move(table.columns);
+}
+
+/// Sums of squares stay finite. A damaged number may be as large as a double can be.
+void require_measurable(const RepeatSource& source, const std::string& column,
+                        const std::vector<double>& values) {
+  constexpr double kLargest = 1e100;
+  const auto bad = std::find_if(values.begin(), values.end(),
+                                [](double value) { return !(std::abs(value) <= kLargest); });
+  if (bad != values.end())
+    throw InputError(
+        {source.path.string()},
+        fmt::format("number {} of '{}' is {:g} in SI units, which nothing can measure; "
+                    "expected at most {:g}",
+                    bad - values.begin() + 1, column, *bad, kLargest));
 }
 
 /// What drives the rig at each sample of the record.
@@ -119,12 +129,14 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
   repeat.source = source.label;
   auto columns = read_columns(campaign, source.path, std::move(names), repeat);
 
-  const auto converted = [&](std::size_t column, const UnitConversion& to_si) {
+  const auto converted = [&](std::size_t column, const std::string& name,
+                             const UnitConversion& to_si) {
     std::vector<double> values = std::move(columns[column]);
     std::transform(values.begin(), values.end(), values.begin(), to_si);
+    require_measurable(source, name, values);
     return values;
   };
-  repeat.time_s = converted(0, campaign.time_to_s);
+  repeat.time_s = converted(0, campaign.time_column, campaign.time_to_s);
   std::size_t column = 1;
   std::size_t minus = 1 + source.columns.size();
   for (const auto& [channel, name] : source.columns) {
@@ -133,7 +145,7 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
       std::transform(columns[column].begin(), columns[column].end(), taken_off.begin(),
                      columns[column].begin(), std::minus<>());
     }
-    repeat.values[channel] = converted(column++, campaign.channels.at(channel).to_si);
+    repeat.values[channel] = converted(column++, name, campaign.channels.at(channel).to_si);
   }
   return repeat;
 }

@@ -124,6 +124,36 @@ std::vector<CsvName> header_names(std::string_view header, char separator) {
   return names;
 }
 
+CsvName header_name(std::string_view field) {
+  const std::string_view full = trimmed(field);
+  return {std::string(full), without_unit(full)};
+}
+
+std::vector<std::string> short_names(const std::vector<CsvName>& names) {
+  std::vector<std::string> result;
+  for (const CsvName& name : names) {
+    const bool is_unique = std::count_if(names.begin(), names.end(), [&](const CsvName& other) {
+                             return other.plain == name.plain;
+                           }) == 1;
+    result.push_back(is_unique ? name.plain : name.full);
+  }
+  return result;
+}
+
+std::optional<FoundColumn> find_column(const std::vector<CsvName>& names,
+                                       const std::string& wanted) {
+  for (const auto member : {&CsvName::full, &CsvName::plain}) {
+    const auto is_wanted = [&](const CsvName& name) { return name.*member == wanted; };
+    const auto first = std::find_if(names.begin(), names.end(), is_wanted);
+    if (first == names.end()) continue;
+    FoundColumn found{static_cast<std::size_t>(first - names.begin()), std::nullopt};
+    const auto second = std::find_if(first + 1, names.end(), is_wanted);
+    if (second != names.end()) found.second = static_cast<std::size_t>(second - names.begin());
+    return found;
+  }
+  return std::nullopt;
+}
+
 std::optional<double> csv_number(std::string_view text, bool decimal_comma) {
   std::array<char, 64> pointed{};
   if (decimal_comma && text.find(',') != std::string_view::npos) {

@@ -35,6 +35,21 @@ struct CsvName {
   std::string plain;  ///< "x"
 };
 
+/// Of a field of a header.
+CsvName header_name(std::string_view field);
+
+/// Names by which columns can be asked for: without unit where that tells them apart.
+std::vector<std::string> short_names(const std::vector<CsvName>& names);
+
+/// The column of this name, with its unit or without; `second` is another of the same name, for
+/// which it is not clear which is meant.
+struct FoundColumn {
+  std::size_t index = 0;
+  std::optional<std::size_t> second;
+};
+std::optional<FoundColumn> find_column(const std::vector<CsvName>& names,
+                                       const std::string& wanted);
+
 /// The separator a header was written with: tab, else ';', else ','.
 char find_separator(std::string_view header);
 

@@ -79,34 +79,16 @@ Header read_header(CsvLines& lines, const std::string& file, char separator) {
   return header;
 }
 
-bool plain_name_is_unique(const Header& header, const std::string& plain) {
-  return std::count_if(header.names.begin(), header.names.end(),
-                       [&plain](const CsvName& name) { return name.plain == plain; }) == 1;
-}
-
-/// Names by which columns can be asked for: without unit where that tells them apart.
-std::vector<std::string> short_names(const Header& header) {
-  std::vector<std::string> names;
-  for (const CsvName& name : header.names)
-    names.push_back(plain_name_is_unique(header, name.plain) ? name.plain : name.full);
-  return names;
-}
-
 /// Index of the column of this name, with its unit or without.
 std::size_t find_column(const Header& header, const std::string& wanted) {
   const Location where{header.file, header.line};
-  for (const auto member : {&CsvName::full, &CsvName::plain}) {
-    const auto is_wanted = [&](const CsvName& name) { return name.*member == wanted; };
-    const auto first = std::find_if(header.names.begin(), header.names.end(), is_wanted);
-    if (first == header.names.end()) continue;
-    const auto second = std::find_if(first + 1, header.names.end(), is_wanted);
-    if (second != header.names.end())
+  if (const auto found = find_column(header.names, wanted)) {
+    if (found->second)
       throw InputError(where, fmt::format("columns {} and {} are both named '{}'; expected one",
-                                          first - header.names.begin() + 1,
-                                          second - header.names.begin() + 1, wanted));
-    return static_cast<std::size_t>(first - header.names.begin());
+                                          found->index + 1, *found->second + 1, wanted));
+    return found->index;
   }
-  std::string message = unknown_name_message("column", wanted, short_names(header));
+  std::string message = unknown_name_message("column", wanted, short_names(header.names));
   if (header.names.size() == 1)
     message += fmt::format(
         "; the separator was taken for {}, expected one of ',', ';' or tab "
@@ -318,7 +300,7 @@ CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) 
 
 std::vector<std::string> csv_header(const std::filesystem::path& path, char separator) {
   CsvLines lines(path, CsvRequest{}.max_bytes);
-  return short_names(read_header(lines, path.string(), separator));
+  return short_names(read_header(lines, path.string(), separator).names);
 }
 
 std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator) {
@@ -327,6 +309,21 @@ std::vector<std::string> csv_full_header(const std::filesystem::path& path, char
   for (const CsvName& name : read_header(lines, path.string(), separator).names)
     names.push_back(name.full);
   return names;
+}
+
+std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path) {
+  std::vector<RecordColumn> columns;
+  for (std::string& name : csv_full_header(path)) columns.push_back({std::move(name), {}});
+  return columns;
+}
+
+RecordTable load_csv_record(const std::filesystem::path& path, const RecordRequest& request) {
+  CsvRequest wanted;
+  wanted.columns = request.columns;
+  wanted.separator = request.separator;
+  wanted.time_column = request.time_column;
+  CsvTable table = load_csv(path, wanted);
+  return {std::move(table.columns), std::move(table.cut_short)};
 }
 
 }  // namespace rigcal::datasets

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "datasets/read/record_table.hpp"
+
 namespace rigcal::datasets {
 
 /// Which columns of a file are wanted, and how its text is laid out.
@@ -48,5 +50,9 @@ std::vector<std::string> csv_header(const std::filesystem::path& path, char sepa
 ///
 /// @throws InputError  as load_csv
 std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator = 0);
+
+/// As the table of readers asks for them (record_reader.hpp).
+std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path);
+RecordTable load_csv_record(const std::filesystem::path& path, const RecordRequest& request);
 
 }  // namespace rigcal::datasets

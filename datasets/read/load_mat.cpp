@@ -3,16 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cstring>
 #include <fstream>
-#include <new>
 #include <stdexcept>
-#include <string_view>
+#include <utility>
 
-#include "common/confined.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "datasets/read/confined_read.hpp"
 #include "datasets/read/mat_columns.hpp"
 #include "datasets/read/mat_hdf5.hpp"
 #include "datasets/read/mat_level5.hpp"
@@ -50,69 +47,7 @@ bool is_hdf5(const std::filesystem::path& path) {
                    "and save it with -v7)");
 }
 
-// ---- Out of the confined process -----------------------------------------------------------
-
-constexpr char kDone = 'd';
-constexpr char kRefused = 'r';
-
-/// What `read` makes of the file, as text, in a process of its own.
-template <typename Read>
-std::string read_confined(const std::filesystem::path& path, Read read) {
-  const std::string name = path.string();
-  const auto work = [&]() -> std::string {
-    try {
-      Hdf5Source source(path);
-      return kDone + read(source);
-    } catch (const InputError& error) {
-      return kRefused + std::string(error.what()).substr(name.size() + 2);
-    } catch (const std::bad_alloc&) {
-      return kRefused + std::string("needs more memory than a MAT file may");
-    }
-  };
-  std::string text;
-  try {
-    text = run_confined(work, {});
-  } catch (const ConfinedFailure& failure) {
-    throw InputError({name}, fmt::format("cannot be read by HDF5 ({}): the file is damaged; copy "
-                                         "or save it again, or save it with -v7",
-                                         failure.what()));
-  }
-  if (text.empty() || text.front() != kDone)
-    throw InputError({name}, text.empty() ? "cannot be read by HDF5" : text.substr(1));
-  return text.substr(1);
-}
-
-std::string packed(const Table& table) {
-  std::string text;
-  for (const std::vector<double>& column : table)
-    text.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(double));
-  return text;
-}
-
-Table unpacked(const std::string& text, std::size_t columns) {
-  const std::size_t rows = columns == 0 ? 0 : text.size() / sizeof(double) / columns;
-  Table table(columns, std::vector<double>(rows));
-  for (std::size_t i = 0; i < columns && rows > 0; ++i)
-    std::memcpy(table[i].data(), text.data() + i * rows * sizeof(double), rows * sizeof(double));
-  return table;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += name + '\0';
-  return text;
-}
-
-std::vector<std::string> split_at_nul(std::string_view text) {
-  std::vector<std::string> names;
-  for (std::size_t end = text.find('\0'); end != std::string_view::npos; end = text.find('\0')) {
-    names.emplace_back(text.substr(0, end));
-    text.remove_prefix(end + 1);
-  }
-  return names;
-}
-
-// --------------------------------------------------------------------------------------------
+constexpr ConfinedReader kHdf5{"HDF5", "a MAT file", "copy or save it again, or save it with -v7"};
 
 /// Columns of the same length.
 Table read_columns(MatSource& source, const std::vector<std::string>& columns) {
@@ -134,19 +69,17 @@ Table read_table(const std::filesystem::path& path, const std::vector<std::strin
     Level5Source source(path);
     return read_columns(source, columns);
   }
-  const auto read = [&](MatSource& source) { return packed(read_columns(source, columns)); };
-  return unpacked(read_confined(path, read), columns.size());
+  return load_confined(path, kHdf5, columns.size(), [&] {
+    Hdf5Source source(path);
+    return read_columns(source, columns);
+  });
 }
 
 }  // namespace
 
-bool is_mat_file(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".mat") return true;
-  const std::string signature = signature_of(path);
-  return signature == "MATLAB 5.0" || signature == "MATLAB 7.3";
+bool is_mat_file(const FileStart& start) {
+  return start.extension == ".mat" || start.bytes.starts_with("MATLAB 5.0") ||
+         start.bytes.starts_with("MATLAB 7.3");
 }
 
 Table load_mat(const std::filesystem::path& path, const MatRequest& request) {
@@ -167,9 +100,26 @@ Table load_mat(const std::filesystem::path& path, const MatRequest& request) {
 }
 
 std::vector<std::string> mat_columns(const std::filesystem::path& path) {
-  if (!is_hdf5(path)) return list_mat_columns(Level5Source(path));
-  const auto read = [](const MatSource& source) { return joined(list_mat_columns(source)); };
-  return split_at_nul(read_confined(path, read));
+  std::vector<std::string> names;
+  for (RecordColumn& column : mat_record_columns(path)) names.push_back(std::move(column.name));
+  return names;
+}
+
+std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path) {
+  const auto described = [](const MatSource& source) {
+    std::vector<RecordColumn> columns;
+    for (std::string& name : list_mat_columns(source)) {
+      const bool is_row = name.ends_with(",:)");
+      columns.push_back({std::move(name), {}, false, is_row});
+    }
+    return columns;
+  };
+  if (!is_hdf5(path)) return described(Level5Source(path));
+  return list_confined(path, kHdf5, [&] { return described(Hdf5Source(path)); });
+}
+
+RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request) {
+  return {load_mat(path, {request.columns, request.time_column}), {}};
 }
 
 }  // namespace rigcal::datasets

@@ -4,10 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "datasets/read/record_table.hpp"
+
 namespace rigcal::datasets {
 
 /// Whether a file is to be read as a MAT file: by its name (.mat) or its first bytes.
-bool is_mat_file(const std::filesystem::path& path);
+bool is_mat_file(const FileStart& start);
 
 /// Which columns of a MAT file are wanted.
 struct MatRequest {
@@ -38,5 +40,9 @@ std::vector<std::vector<double>> load_mat(const std::filesystem::path& path,
 ///
 /// @throws InputError  as load_mat
 std::vector<std::string> mat_columns(const std::filesystem::path& path);
+
+/// As the table of readers asks for them (record_reader.hpp).
+std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path);
+RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request);
 
 }  // namespace rigcal::datasets

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "datasets/read/mat_array.hpp"
@@ -9,7 +10,7 @@
 namespace rigcal::datasets {
 
 /// How to save what only MATLAB can read, in words.
-inline constexpr const char* kHowToSaveMat =
+inline constexpr std::string_view kHowToSaveMat =
     "of a timeseries save its numbers: t = ts.Time; x = squeeze(ts.Data); save file.mat t x; or "
     "log to a \"Structure With Time\"";
 

@@ -9,25 +9,13 @@
 #include <type_traits>
 
 #include "common/error.hpp"
+#include "datasets/read/hdf5_error.hpp"
 
 namespace rigcal::datasets {
 namespace {
 
 constexpr std::size_t kMostHdf5Arrays = 200'000;
 constexpr int kDeepestHdf5Struct = 32;
-
-/// Why HDF5 cannot open a file: the outermost entry of its error stack.
-std::string hdf5_reason() {
-  std::string reason = "no reason given";
-  H5Ewalk2(
-      H5E_DEFAULT, H5E_WALK_UPWARD,
-      [](unsigned depth, const H5E_error2_t* error, void* text) -> herr_t {
-        if (depth == 0 && error->desc != nullptr) *static_cast<std::string*>(text) = error->desc;
-        return 0;
-      },
-      &reason);
-  return reason;
-}
 
 MatKind kind_of_class(matio_classes type) {
   if (type >= MAT_C_DOUBLE && type <= MAT_C_UINT64) return MatKind::number;

@@ -70,6 +70,17 @@ TEST_CASE("load_record: a second column is taken off the first before units", "[
   CHECK_THAT(load_at(0), WithinRel(9e5 + 10.0, 1e-12));
 }
 
+TEST_CASE("load_record: a number that nothing can measure is refused", "[datasets]") {
+  const TemporaryFolder files;
+  files.write("a.csv", "t,x\n0,1\n10,-1e300\n20,4\n");
+  CHECK_THROWS_WITH(load_record(campaign_in(files), condition_of("a", "a.csv")),
+                    Contains("a.csv: number 2 of 'x' is -1e+297 in SI units") &&
+                        Contains("expected at most 1e+100"));
+  files.write("b.csv", "t,x\n0,1\n10,2\n1e300,4\n");
+  CHECK_THROWS_WITH(load_record(campaign_in(files), condition_of("b", "b.csv")),
+                    Contains("b.csv: number 3 of 't'"));
+}
+
 TEST_CASE("load_record: columns become SI channels, repeats a mean", "[datasets]") {
   const TemporaryFolder files;
   files.write("a_1.csv", "t,x,other\n0,1,a\n10,2,b\n20,4,c\n");

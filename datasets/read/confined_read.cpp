@@ -1,0 +1,104 @@
+#include "datasets/read/confined_read.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <string>
+#include <utility>
+
+#include "common/confined.hpp"
+#include "common/error.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+using Table = std::vector<std::vector<double>>;
+
+constexpr char kDone = 'd';
+constexpr char kRefused = 'r';
+
+/// The text that `read` returns there.
+std::string read_confined(const std::filesystem::path& path, const ConfinedReader& reader,
+                          const std::function<std::string()>& read) {
+  const std::string name = path.string();
+  const auto work = [&]() -> std::string {
+    try {
+      return kDone + read();
+    } catch (const InputError& error) {
+      return kRefused + std::string(error.what()).substr(name.size() + 2);
+    } catch (const std::bad_alloc&) {
+      return kRefused + fmt::format("needs more memory than {} may", reader.format);
+    }
+  };
+  std::string text;
+  try {
+    text = run_confined(work, {});
+  } catch (const ConfinedFailure& failure) {
+    throw InputError({name}, fmt::format("cannot be read by {} ({}): the file is damaged; {}",
+                                         reader.library, failure.what(), reader.advice));
+  }
+  if (text.empty()) throw InputError({name}, fmt::format("cannot be read by {}", reader.library));
+  if (text.front() != kDone) throw InputError({name}, text.substr(1));
+  return text.substr(1);
+}
+
+std::string packed(const Table& table) {
+  std::string text;
+  if (!table.empty()) text.reserve(table.size() * table.front().size() * sizeof(double));
+  for (const std::vector<double>& column : table)
+    text.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(double));
+  return text;
+}
+
+Table unpacked(const std::string& text, std::size_t columns) {
+  const std::size_t rows = columns == 0 ? 0 : text.size() / sizeof(double) / columns;
+  Table table(columns, std::vector<double>(rows));
+  for (std::size_t i = 0; i < columns && rows > 0; ++i)
+    std::memcpy(table[i].data(), text.data() + i * rows * sizeof(double), rows * sizeof(double));
+  return table;
+}
+
+/// Texts that end with a NUL each: name, unit, and what the format says of the column.
+std::string joined(const std::vector<RecordColumn>& columns) {
+  std::string text;
+  for (const RecordColumn& column : columns) {
+    text += column.name + '\0' + column.unit + '\0';
+    text += std::string(column.is_time ? "t" : "") + (column.is_matrix_line ? "r" : "") + '\0';
+  }
+  return text;
+}
+
+std::vector<RecordColumn> split(std::string_view text) {
+  const auto next = [&] {
+    const std::size_t end = std::min(text.find('\0'), text.size());
+    std::string part(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    return part;
+  };
+  std::vector<RecordColumn> columns;
+  while (!text.empty()) {
+    RecordColumn column{next(), next()};
+    const std::string marks = next();
+    column.is_time = marks.find('t') != std::string::npos;
+    column.is_matrix_line = marks.find('r') != std::string::npos;
+    columns.push_back(std::move(column));
+  }
+  return columns;
+}
+
+}  // namespace
+
+Table load_confined(const std::filesystem::path& path, const ConfinedReader& reader,
+                    std::size_t columns, const std::function<Table()>& read) {
+  return unpacked(read_confined(path, reader, [&] { return packed(read()); }), columns);
+}
+
+std::vector<RecordColumn> list_confined(const std::filesystem::path& path,
+                                        const ConfinedReader& reader,
+                                        const std::function<std::vector<RecordColumn>()>& list) {
+  return split(read_confined(path, reader, [&] { return joined(list()); }));
+}
+
+}  // namespace rigcal::datasets

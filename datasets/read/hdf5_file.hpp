@@ -1,0 +1,101 @@
+#pragma once
+
+#include <hdf5.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace rigcal::datasets {
+
+/// An identifier of HDF5, closed when it goes.
+class Hdf5Id {
+ public:
+  Hdf5Id() = default;
+  Hdf5Id(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
+  Hdf5Id(Hdf5Id&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Hdf5Id& operator=(Hdf5Id&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  Hdf5Id(const Hdf5Id&) = delete;
+  Hdf5Id& operator=(const Hdf5Id&) = delete;
+  ~Hdf5Id() {
+    if (id_ >= 0) close_(id_);
+  }
+  explicit operator bool() const { return id_ >= 0; }
+  hid_t get() const { return id_; }
+
+ private:
+  hid_t id_ = -1;
+  herr_t (*close_)(hid_t) = nullptr;
+};
+
+/// A dataset, or a member of one that is a table.
+struct Hdf5Series {
+  std::string path;     ///< "/run1/position"; "/run1/table.position" of a member
+  std::string dataset;  ///< "/run1/table"
+  std::string member;   ///< "position"; empty if the dataset is no table
+  /// Shape, in the order that h5dump and h5py print: that of the dataset, and behind it that of the
+  /// arrays in its cells, if these are arrays.
+  std::vector<std::size_t> dims;
+  std::size_t cell_dims = 0;       ///< how many of `dims` are those of the cells
+  std::string kind;                ///< what it is, if no numbers: "a text"; else empty
+  std::vector<std::string> units;  ///< one for all, one per line of the last dimension, or none
+
+  /// Readers make sure that it does not overflow.
+  std::size_t element_count() const;
+};
+
+/// Samples at equal distances, as an attribute tells them: "/run1/position@wf_increment".
+struct Hdf5Clock {
+  std::string path;
+  std::string series;  ///< whose samples it counts; empty: the attribute is that of a group
+  double start_s = 0.0;
+  double step_s = 0.0;  ///< 0: `rate_hz` is given
+  double rate_hz = 0.0;
+};
+
+/// Elements along one dimension of a series; the others have the index `fixed`.
+struct Hdf5Line {
+  std::size_t along = 0;
+  std::vector<std::size_t> fixed;
+};
+
+/// Reads HDF5 files. The library can crash, or run for ever, on a single damaged byte: only to be
+/// used by run_confined(), and by one thread of a process.
+///
+/// Links are followed if they are hard ones: no other file is opened.
+class Hdf5File {
+ public:
+  /// @throws InputError  HDF5 cannot open it; more than 200 000 objects
+  explicit Hdf5File(const std::filesystem::path& path);
+
+  const std::string& name() const { return name_; }
+  const std::vector<Hdf5Series>& series() const { return series_; }
+  const std::vector<Hdf5Clock>& clocks() const { return clocks_; }
+
+  /// Numbers of a series whose kind is empty.
+  /// @throws InputError  damaged, never written, packed by an unknown filter, kept in another file,
+  ///                     or an integer that a double cannot hold
+  std::vector<double> numbers(const Hdf5Series& series, const Hdf5Line& line,
+                              const std::string& column) const;
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const;
+  void list_group(hid_t group, const std::string& path, std::vector<haddr_t>& above);
+  void list_dataset(hid_t dataset, const std::string& path);
+  void list_clocks(hid_t object, const std::string& path, bool is_group);
+  void require_readable(hid_t dataset, const std::string& column) const;
+
+  std::string name_;
+  Hdf5Id file_;
+  std::size_t objects_ = 0;
+  std::vector<Hdf5Series> series_;
+  std::vector<Hdf5Clock> clocks_;
+};
+
+}  // namespace rigcal::datasets

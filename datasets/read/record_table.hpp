@@ -1,0 +1,48 @@
+#pragma once
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace rigcal::datasets {
+
+/// How a file begins, by which its format is known.
+struct FileStart {
+  std::string extension;  ///< in lower case, with its dot
+  std::string bytes;      ///< the first 4096; fewer of a shorter file
+};
+
+/// A column that a file offers.
+struct RecordColumn {
+  std::string name;      ///< as a campaign file asks for it
+  std::string unit;      ///< as the file tells it apart from the name; empty if it does not
+  bool is_time = false;  ///< the format itself says so
+  /// A row or column of a matrix, which has no name of its own; the first may be the time.
+  bool is_matrix_line = false;
+
+  bool operator==(const RecordColumn&) const = default;
+};
+
+/// Which columns of a file are wanted.
+struct RecordRequest {
+  std::vector<std::string> columns;  ///< in the order of the result
+  std::string time_column;           ///< among `columns`; checked to increase; may be empty
+  char separator = 0;                ///< of the columns of a text; 0: found by itself
+};
+
+/// @throws std::invalid_argument  the time column is not among the columns
+inline void require_time_column(const RecordRequest& request) {
+  const auto& columns = request.columns;
+  if (!request.time_column.empty() &&
+      std::find(columns.begin(), columns.end(), request.time_column) == columns.end())
+    throw std::invalid_argument("the time column '" + request.time_column +
+                                "' is not among the columns");
+}
+
+struct RecordTable {
+  std::vector<std::vector<double>> columns;  ///< one per wanted name, of the same length
+  std::string warning;                       ///< what is doubtful about the file; mostly empty
+};
+
+}  // namespace rigcal::datasets

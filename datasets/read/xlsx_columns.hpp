@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "datasets/read/record_table.hpp"
+
+namespace rigcal::datasets {
+
+/// What load_xlsx.hpp promises, in this process.
+///
+/// @throws InputError
+std::vector<RecordColumn> list_xlsx_columns(const std::filesystem::path& path);
+std::vector<std::vector<double>> read_xlsx_columns(const std::filesystem::path& path,
+                                                   const RecordRequest& request);
+
+}  // namespace rigcal::datasets

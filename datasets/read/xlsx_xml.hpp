@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "datasets/read/xlsx_archive.hpp"
+
+namespace rigcal::datasets {
+
+/// Attributes of an element. Names are without their namespace, which Excel and others abbreviate
+/// differently.
+class XmlAttributes {
+ public:
+  explicit XmlAttributes(const char** pairs) : pairs_(pairs) {}
+  std::optional<std::string_view> find(std::string_view name) const;
+  /// Empty if there is none.
+  std::string_view text(std::string_view name) const { return find(name).value_or(""); }
+
+ private:
+  const char** pairs_;
+};
+
+/// What is to be done with the elements of a part, in their order.
+class XmlHandler {
+ public:
+  XmlHandler() = default;
+  XmlHandler(const XmlHandler&) = delete;
+  XmlHandler& operator=(const XmlHandler&) = delete;
+  virtual ~XmlHandler() = default;
+
+  virtual void start(std::string_view element, const XmlAttributes& attributes) = 0;
+  virtual void end(std::string_view /*element*/) {}
+  virtual void text(std::string_view /*text*/) {}
+  /// The rest of the part is not wanted.
+  virtual bool is_done() const { return false; }
+};
+
+/// Reads a part of a workbook as XML, by Expat.
+///
+/// @throws InputError  as XlsxArchive::read; no XML, or XML with a document type, which may define
+///                     entities without end and is none of a workbook
+void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t most_bytes,
+              XmlHandler& handler);
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,35 @@
+#include <cmath>
+#include <string>
+
+#include "common/error.hpp"
+#include "datasets/read/xlsx_columns.hpp"
+#include "tests/datasets/xlsx_fixture.hpp"
+#include "tests/fuzz/fuzz.hpp"
+
+using namespace rigcal;
+using namespace rigcal::datasets;
+
+/// Every column of a workbook whose sheet is this XML is read as finite numbers, as many in each,
+/// or is refused. (Archives are for libzip, which its makers fuzz; a changed byte in one is mostly
+/// a wrong checksum.)
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const auto file = fuzz::scratch_folder() / "record.xlsx";
+  test::write_zip(file, test::xlsx_parts({{"Log", std::string(fuzz::text_of_bytes(data, size))}}),
+                  false);
+  try {
+    for (const RecordColumn& column : list_xlsx_columns(file)) {
+      for (const bool is_time : {false, true}) {
+        try {
+          const auto table =
+              read_xlsx_columns(file, {{column.name}, is_time ? column.name : std::string()});
+          fuzz::require(table.size() == 1 && !table.front().empty(), "one column of numbers");
+          for (const double value : table.front())
+            fuzz::require(std::isfinite(value), "finite numbers");
+        } catch (const InputError&) {
+        }
+      }
+    }
+  } catch (const InputError&) {
+  }
+  return 0;
+}
