@@ -32,7 +32,8 @@ constexpr std::array kInks{
     Ink{"measured", 0x000000, 1.2, {}}, Ink{"model", 0xd55e00, 1.6, {}},
     Ink{"residual", 0x0072b2, 1.2, {}}, Ink{"reference", 0x777777, 1.2, {4, 2}},
     Ink{"servo", 0x009e73, 1.2, {}},    Ink{"leak", 0xb04a88, 1.6, {}},
-    Ink{"axis", 0x000000, 1.2, {}},
+    Ink{"axis", 0x000000, 1.2, {}},     Ink{"sparse", 0xa6cee3, 1.2, {}},
+    Ink{"medium", 0x4a9bc9, 1.2, {}},   Ink{"dense", 0x00507f, 1.2, {}},
 };
 constexpr Ink kOther{"", 0x444444, 1.2, {}};
 
@@ -105,6 +106,15 @@ class PdfPage {
     }
   }
 
+  void cells(const Shape& shape, const Ink& ink) {
+    if (shape.points.empty()) return;
+    set_ink(ink);
+    for (const Point& point : shape.points)
+      HPDF_Page_Rectangle(page_, real(point.x - 0.5 * shape.side), up(point.y + 0.5 * shape.side),
+                          real(shape.side), real(shape.side));
+    HPDF_Page_Fill(page_);
+  }
+
   void text(const Shape& shape, const Ink& ink) {
     set_ink(ink);
     const float width = HPDF_Page_TextWidth(page_, shape.text.c_str());
@@ -171,6 +181,9 @@ std::string pdf(const Plot& plot) {
         break;
       case Shape::Kind::dots:
         page.dots(shape, ink);
+        break;
+      case Shape::Kind::cells:
+        page.cells(shape, ink);
         break;
       case Shape::Kind::text:
         page.text(shape, ink);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "report/figure/time_plots.hpp"
+#include "report/page/page_agreement_figures.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
@@ -60,6 +61,10 @@ std::vector<Figure> condition_figures(const Json& condition, const Table& series
   if (series.columns.empty() || series.columns.front().empty()) return figures;
   for (const TimePlot& plot : time_plots(series))
     figures.push_back({plot.name, picture(plot, series, text_of(condition, "id"))});
+  for (ChannelAgreement& channel :
+       channel_agreements(text_of(condition, "id"), periodic_frequency(condition), series)) {
+    for (Figure& figure : channel.figures) figures.push_back(std::move(figure));
+  }
   return figures;
 }
 
@@ -117,6 +122,8 @@ Json condition_view(const Json& condition, const Table& series, const Json& curv
   }
   // A condition that was scored has a series; without it the page would only look complete.
   view["lost"] = view["has_scores"].get<bool>() && !view["has_plots"].get<bool>();
+  view["agreement"] = agreement_view(id, periodic_frequency(condition), series);
+  view["has_agreement"] = !view["agreement"].empty();
   view["tests"] = tests_view(condition, curves);
   view["has_tests"] = !view["tests"].empty();
   return view;
