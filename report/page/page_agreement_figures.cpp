@@ -18,6 +18,8 @@ namespace {
 
 /// Fewer make neither a histogram nor a spectrum.
 constexpr std::size_t kLeastSamples = 64;
+/// Of a periodic drive; where they do not divide a period, one has a sample fewer than another.
+constexpr double kLeastPerPeriod = 10.0;
 
 struct Drive {
   const char* column;
@@ -89,6 +91,58 @@ void set_gain_unit(ResponseCurves& curves, std::string_view output_unit,
 
 struct Response {
   std::optional<ResponseCurves> curves;
+  std::string words;
+};
+
+Response response_of(std::optional<double> frequency_hz, const Table& series,
+                     const datasets::ChannelInfo& about, const std::vector<double>& measured,
+                     const std::vector<double>& simulated) {
+  const auto* time_s = series.find("time_s");
+  const Drive* drive = nullptr;
+  const std::vector<double>* input = nullptr;
+  for (const Drive& each : kDrives) {
+    if (const auto* values = series.find(each.column)) {
+      drive = &each;
+      input = values;
+      break;
+    }
+  }
+  if (time_s == nullptr || input == nullptr) return {{}, "Gain and phase: no drive is stored."};
+  const Stretch part = counted_stretch(time_s->size(), series.find("in_window"));
+  const auto cut = [&](const std::vector<double>& values) {
+    return std::span(values).subspan(part.begin, part.size);
+  };
+  if (part.size < kLeastSamples) return {{}, "Gain and phase: too few samples."};
+  if (!all_finite(cut(*input)) || !all_finite(cut(measured)) || !all_finite(cut(simulated)))
+    return {{}, "Gain and phase: not told of signals with gaps."};
+  ResponseCurves curves;
+  curves.of = fmt::format("{} over {}", spaced_name(std::string(about.key)), drive->name);
+  set_gain_unit(curves, about.unit, drive->unit, largest_size(cut(measured)),
+                largest_size(cut(*input)));
+  const auto step = equal_steps(cut(*time_s));
+  if (!step) return {{}, "Gain and phase: the samples are not equidistant."};
+  if (frequency_hz) {
+    const double per_period = 1.0 / (*frequency_hz * *step);
+    if (static_cast<double>(part.size) < per_period || per_period < kLeastPerPeriod)
+      return {{},
+              fmt::format("Gain and phase: less than a period, or fewer than {} samples in one.",
+                          kLeastPerPeriod)};
+    curves.record =
+        metrics::periodic_response(cut(*time_s), cut(*input), cut(measured), *frequency_hz);
+    curves.model =
+        metrics::periodic_response(cut(*time_s), cut(*input), cut(simulated), *frequency_hz);
+  } else {
+    curves.record = metrics::broadband_response(*step, cut(*input), cut(measured));
+    curves.model = metrics::broadband_response(*step, cut(*input), cut(simulated));
+  }
+  const std::size_t estimated = curves.record.size();
+  curves = coherent(curves);
+  if (curves.record.empty())
+    return {{},
+            fmt::format("Gain and phase of {}: no frequency has a coherence of {:g} or more.",
+                        curves.of, metrics::kLeastCoherence)};
+  const bool scatter = std::any_of(curves.record.begin(), curves.record.end(),
+                                   [](const auto& point) { return point.interval.has_value(); });
   const std::string where =
       frequency_hz && estimated == 1 ? "at the fundamental of the drive"
       : frequency_hz

@@ -60,7 +60,7 @@ TEST_CASE("channel_agreements: says why there is no gain and phase", "[report]")
     return channels[0].response;
   };
   CHECK_THAT(response(table, 0.1), Contains("less than a period"));
-  CHECK_THAT(response(table, 90.0), Contains("fewer than 9 samples"));
+  CHECK_THAT(response(table, 90.0), Contains("fewer than 10 samples"));
   Table without = table;
   without.names.pop_back();
   without.columns.pop_back();
@@ -71,6 +71,7 @@ TEST_CASE("channel_agreements: says why there is no gain and phase", "[report]")
   Table uneven = table;
   for (std::size_t i = 500; i < uneven.columns[0].size(); ++i) uneven.columns[0][i] += 0.5;
   CHECK_THAT(response(uneven, std::nullopt), Contains("not equidistant"));
+  CHECK_THAT(response(uneven, 2.0), Contains("not equidistant"));
 }
 
 TEST_CASE("channel_agreements: none of a few samples, or of no model", "[report]") {
