@@ -9,7 +9,9 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "report/comparison/comparison.hpp"
+#include "report/comparison/comparison_curves.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/result_files.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -36,9 +38,11 @@ ExitCode run_compare(const CompareOptions& options, const Invocation& invocation
   provenance.command = invocation.command;
   for (const report::Compared& each : results)
     provenance.inputs.push_back({each.file.string(), sha256_of_file(each.file)});
-  const report::Json json = report::comparison_json(results, provenance);
+  report::Json json = report::comparison_json(results, provenance);
+  std::vector<report::ResultFile> files = report::comparison_curves(results);
+  report::name_files(files, json);
   const std::string text = report::comparison_text(json, terminal_style());
-  std::vector<report::ResultFile> files{{"comparison.json", report::json_text(json)}};
+  files.push_back({"comparison.json", report::json_text(json)});
   add_page(options.out, hardware_threads(), files);
   report::write_results(options.out, files, provenance.inputs);
   print(options.print,

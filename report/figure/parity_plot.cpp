@@ -89,11 +89,11 @@ Plot parity_plot(const std::string& title, std::span<const double> measured,
   for (const auto& [at, count] : counts) fullest = std::max(fullest, count);
 
   const ResidualMoments moments = residual_moments(measured, simulated);
-  constexpr double kNormal95 = 1.96;
+  constexpr double kOfNormal95 = 1.96;
   plot.traces.push_back(diagonal(range, 0.0, "measured", "model = measured"));
   for (const double side : {-1.0, 1.0})
     plot.traces.push_back(
-        diagonal(range, (-moments.mean + side * kNormal95 * moments.sd) / si, "reference", {}));
+        diagonal(range, (-moments.mean + side * kOfNormal95 * moments.sd) / si, "reference", {}));
   double from = 0.0;
   for (const auto& [share, style] : kShades) {
     Trace shade = empty_trace(Trace::Kind::cells, style);

@@ -43,12 +43,28 @@ const Ink& ink_of(const std::string& style) {
   return found == kInks.end() ? kOther : *found;
 }
 
+/// Lets readers find and copy the text. Its codes are UTF-16; the map by which a reader is to know
+/// that, libharu (2.3) writes with the operators of a map to glyphs, which readers refuse. In place
+/// and of the same length, because the table at the end of the file counts its bytes.
+void make_searchable(std::string& document) {
+  const std::size_t begin = document.find("1 beginnotdefrange");
+  constexpr std::string_view kEnd = "endcidrange";
+  const std::size_t end = document.find(kEnd, begin);
+  std::string map = "1 beginbfrange\r\n<0000> <FFFF> <0000>\r\nendbfrange";
+  if (begin == std::string::npos || end == std::string::npos ||
+      end + kEnd.size() - begin < map.size())
+    throw std::runtime_error("PDF: this version of libharu maps characters in another way");
+  map.resize(end + kEnd.size() - begin, ' ');
+  document.replace(begin, map.size(), map);
+}
+
 /// A document of one page, and the first error that the library tells of.
 class PdfPage {
  public:
   PdfPage(double width, double height) : height_(height) {
     if (!document_) throw std::runtime_error("PDF: out of memory");
-    HPDF_SetCompressionMode(document_.get(), HPDF_COMP_ALL);
+    // Metadata are the CMap alone, which make_searchable() reads.
+    HPDF_SetCompressionMode(document_.get(), HPDF_COMP_TEXT | HPDF_COMP_IMAGE);
     page_ = HPDF_AddPage(document_.get());
     HPDF_Page_SetWidth(page_, real(width));
     HPDF_Page_SetHeight(page_, real(height));
@@ -190,7 +206,9 @@ std::string pdf(const Plot& plot) {
         break;
     }
   }
-  return page.bytes();
+  std::string document = page.bytes();
+  make_searchable(document);
+  return document;
 }
 
 }  // namespace rigcal::report

@@ -11,6 +11,7 @@
 #include "report/figure/histogram_plot.hpp"
 #include "report/figure/parity_plot.hpp"
 #include "report/figure/response_plot.hpp"
+#include "report/figure/time_plots.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -87,6 +88,19 @@ void set_gain_unit(ResponseCurves& curves, std::string_view output_unit,
   const ReadableUnit under = readable_unit(drive_size, drive_unit);
   curves.unit = fmt::format("{}/{}", over.name, under.name);
   curves.si_per_unit = over.si / under.si;
+}
+
+std::string coverage_words(const std::vector<double>& residual, const std::vector<double>& sd) {
+  std::size_t within = 0;
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    if (!std::isfinite(residual[i]) || !std::isfinite(sd[i])) continue;
+    ++all;
+    if (std::abs(residual[i]) <= kNormal95 * sd[i]) ++within;
+  }
+  if (all == 0) return {};
+  return fmt::format("{:.1f} % of them lie within the 95 % band of prediction.",
+                     100.0 * static_cast<double>(within) / static_cast<double>(all));
 }
 
 struct Response {
@@ -190,11 +204,13 @@ std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
          histogram_plot(
              fmt::format("residual of {} of {}, histogram and normal density", words, condition), e,
              name_of(rest), rest.si)});
+    const auto* sd = series.find(fmt::format("prediction_sd_{}", about.name));
     found.residual = fmt::format(
         "Residual of {} over {} samples: mean {}, standard deviation {}; dashed beside the line of "
         "equality: 95 % limits of agreement.",
         words, moments.samples, readable(moments.mean, about.unit, 3),
         readable(moments.sd, about.unit, 3));
+    if (sd != nullptr) found.residual += " " + coverage_words(e, counted(*sd, window));
     Response response = response_of(frequency_hz, series, about, *measured, *simulated);
     if (response.curves) {
       found.figures.push_back({found.channel + "_gain", gain_plot(condition, *response.curves)});

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "report/figure/time_plots.hpp"
 #include "report/page/page_agreement_figures.hpp"
 #include "report/page/page_parts.hpp"
@@ -106,6 +108,21 @@ Json condition_view(const Json& condition, const Table& series, const Json& curv
       entry["sd"] = plot.sd != nullptr
                         ? Json(data.add(*plot.sd, *plot.lines.front().values, plot.si))
                         : Json(nullptr);
+      entry["prediction"] = nullptr;
+      if (plot.prediction_sd != nullptr) {
+        const auto& middle =
+            plot.prediction_middle != nullptr ? *plot.prediction_middle : *plot.prediction_sd;
+        const auto line = std::find_if(plot.lines.begin(), plot.lines.end(), [&](const auto& each) {
+          return each.values == plot.prediction_middle;
+        });
+        entry["prediction"] = {
+            {"sd", data.add(*plot.prediction_sd, middle, plot.si)},
+            {"middle",
+             line == plot.lines.end()
+                 ? Json(nullptr)
+                 : entry["lines"][static_cast<std::size_t>(line - plot.lines.begin())]["column"]},
+            {"factor", kNormal95}};
+      }
       plots.push_back(std::move(entry));
       view["plots"].push_back({{"name", plot.name},
                                {"title", plot.title},
@@ -126,6 +143,10 @@ Json condition_view(const Json& condition, const Table& series, const Json& curv
   view["has_agreement"] = !view["agreement"].empty();
   view["tests"] = tests_view(condition, curves);
   view["has_tests"] = !view["tests"].empty();
+  view["has_curves"] = view["has_plots"].get<bool>() || view["has_tests"].get<bool>();
+  const std::size_t plots = view["plots"].size();
+  view["curves"] =
+      fmt::format("Curves and residual tests ({} plot{} over time)", plots, plots == 1 ? "" : "s");
   return view;
 }
 

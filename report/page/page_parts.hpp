@@ -43,6 +43,9 @@ struct RowUnit {
 /// That of a parameter's value and of others like it.
 RowUnit row_unit(double value_si, const Json& parameter);
 
+/// Longer lists are folded on a screen.
+inline constexpr std::size_t kFew = 8;
+
 /// Id of a condition's section.
 std::string anchor(const std::string& condition);
 /// {"word": "PASS", "mark": "✓", "class": "good"} of a verdict; null: not judged.

@@ -31,6 +31,8 @@ Json starts_view(const Json& result) {
   }
   std::sort(costs.begin(), costs.end());
   const std::size_t all = starts.size();
+  view["count"] = fmt::format("{}", all);
+  view["few"] = all <= kFew;
   if (costs.empty()) {
     view["reading"] = "No start ended with a cost: there is no answer.";
   } else if (all == 1) {
@@ -60,6 +62,8 @@ Json ledger_view(const Json& result) {
   view["warnings"] = Json::array();
   for (const Json& warning : result.at("warnings")) view["warnings"].push_back({{"text", warning}});
   view["has_warnings"] = !view["warnings"].empty();
+  view["warning_count"] = fmt::format("{}", view["warnings"].size());
+  view["few_warnings"] = view["warnings"].size() <= kFew;
   view["failures"] = Json::array();
   for (const Json& failure : result.at("failures")) {
     std::string values;

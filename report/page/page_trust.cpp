@@ -101,6 +101,7 @@ Json lack_of_fit_view(const Json& lack) {
                                             ? "cannot be judged: " + text_of(test, "reason")
                                             : text_of(test, "outcome")}});
   }
+  view["row_count"] = fmt::format("{}", view["rows"].size());
   view["known"] = lack.is_object();
   view["has_rows"] = !view["rows"].empty();
   return view;
