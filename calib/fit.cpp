@@ -26,6 +26,7 @@
 #include "calib/trust/information.hpp"
 #include "calib/trust/interval_advice.hpp"
 #include "calib/trust/lack_of_fit.hpp"
+#include "calib/trust/prediction_band.hpp"
 #include "calib/trust/profile.hpp"
 #include "calib/trust/symmetry.hpp"
 #include "datasets/checks/record_warnings.hpp"
@@ -420,9 +421,12 @@ void warn_of_start(const Campaign& campaign, const std::vector<const Condition*>
 }
 
 /// Scores conditions at known values, nuisance parameters estimated anew.
+///
+/// @param spread  of the values, for bands of prediction; null: none
 Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
              const std::vector<const Condition*>& conditions,
-             const std::vector<FittedValue>* values, const FitOptions& options, Budget& budget) {
+             const std::vector<FittedValue>* values, const FitOptions& options, Budget& budget,
+             const EstimateSpread* spread = nullptr) {
   Fit fit;
   warn_of_start(campaign, conditions, records, fit);
   Problem problem = make_problem(campaign, records, conditions, true, values);
@@ -451,6 +455,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
     return fit;
   }
   fit.conditions = score_conditions(problem, z, options.threads);
+  if (spread != nullptr) add_prediction_sd(problem, z, *spread, options.threads, fit.conditions);
   if (problem.map.unknowns().empty() &&
       std::all_of(fit.conditions.begin(), fit.conditions.end(),
                   [](const ConditionScore& score) { return !score.failure.empty(); })) {
@@ -525,6 +530,11 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
   const Solved solved = solve_from_starts(problem, evaluator, options, result);
   if (solved.optimum.ok) {
     result.conditions = score_conditions(problem, solved.optimum.z, options.threads);
+    std::optional<EstimateSpread> spread;
+    if (result.status == FitStatus::converged) {
+      spread = estimate_spread(problem, solved.optimum.z, solved.spread);
+      add_prediction_sd(problem, solved.optimum.z, *spread, options.threads, result.conditions);
+    }
     budget.count(evaluator.counters().evaluations);
     // Before what may take hours, so that a stop there changes no score.
     std::optional<Fit> validation;
@@ -532,7 +542,8 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
       const auto values = values_of(result.parameters);
       FitOptions quiet = options;
       quiet.progress = nullptr;
-      validation = score_at(campaign, records, validated, &values, quiet, budget);
+      validation = score_at(campaign, records, validated, &values, quiet, budget,
+                            spread ? &*spread : nullptr);
     }
     if (result.status == FitStatus::stopped) result.stopped_in = StoppedIn::starts;
     if (result.status == FitStatus::converged && validation)

@@ -3,23 +3,29 @@
 #include <memory>
 
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/checks/short_records.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/json.hpp"
+#include "report/store/result_files.hpp"
+#include "report/store/stored_provenance.hpp"
 #include "report/text/repeatability_text.hpp"
 
 namespace rigcal::app {
 namespace {
 
-ExitCode run_average(const CampaignOptions& options) {
+ExitCode run_average(const CampaignOptions& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options);
   const report::HeldFolder held(options.out);
   std::vector<datasets::Record> records;
   std::vector<report::ResultFile> files;
   report::Json json;
+  json["schema"] = "rigcal.average/1";
   json["campaign"] = campaign.name;
+  json["synthetic"] = campaign.synthetic;
   json["records"] = report::Json::array();
   for (const datasets::Condition& condition : campaign.conditions) {
     if (!condition.has_record() || condition.use == datasets::Use::ignore) continue;
@@ -39,10 +45,18 @@ ExitCode run_average(const CampaignOptions& options) {
                      "no condition has a record to average; expected repeats or averaged");
   }
   files.push_back({"repeatability.csv", report::repeatability_csv(records)});
-  report::write_results(options.out, files, report::hash_inputs(campaign, records));
+  const report::Provenance provenance{invocation.command, 1, recorded(options),
+                                      report::hash_inputs(campaign, records)};
+  json["provenance"] = report::json_of(report::stored(provenance));
+  report::name_files(files, json);
+  files.push_back({"average.json", report::json_text(json)});
+  add_page(options.out, options.threads, files);
+  report::write_results(options.out, files, provenance.inputs);
   std::string text = report::repeatability_text(campaign, records, terminal_style());
-  text += fmt::format("files: {} {}\n", (options.out / "repeatability.csv").string(),
-                      (options.out / "averaged" / "").string());
+  text +=
+      fmt::format("files: {} {} {} {}\n", (options.out / "average.json").string(),
+                  (options.out / "repeatability.csv").string(),
+                  (options.out / "averaged" / "").string(), (options.out / "report.html").string());
   print(options.print, text, json);
   return ExitCode::done;
 }
@@ -52,7 +66,7 @@ ExitCode run_average(const CampaignOptions& options) {
 Run add_average(CLI::App& verb) {
   const auto options = std::make_shared<CampaignOptions>();
   add_campaign_options(verb, *options);
-  return [options](const Invocation&) { return run_average(*options); };
+  return [options](const Invocation& invocation) { return run_average(*options, invocation); };
 }
 
 }  // namespace rigcal::app

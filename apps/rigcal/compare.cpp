@@ -9,8 +9,10 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "report/comparison/comparison.hpp"
+#include "report/comparison/comparison_curves.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
+#include "report/store/result_files.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -37,10 +39,12 @@ ExitCode run_compare(const CompareOptions& options, const Invocation& invocation
   provenance.command = invocation.command;
   for (const report::Compared& each : results)
     provenance.inputs.push_back({each.file.string(), sha256_of_file(each.file)});
-  const report::StoredComparison comparison = report::compared(results, provenance);
+  report::StoredComparison comparison = report::compared(results, provenance);
+  std::vector<report::ResultFile> files = report::comparison_curves(results);
+  report::name_files(files, comparison.provenance);
   const std::string text = report::comparison_text(comparison, terminal_style());
   const report::Json json = report::json_of(comparison);
-  std::vector<report::ResultFile> files{{"comparison.json", report::json_text(json)}};
+  files.push_back({"comparison.json", report::json_text(json)});
   add_page(options.out, hardware_threads(), files);
   report::write_results(options.out, files, provenance.inputs);
   print(options.print,

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "report/store/folder.hpp"
@@ -40,11 +41,13 @@ ExitCode run_plan(const PlanRequest& options, const Invocation& invocation) {
   const calib::Plan plan =
       calib::plan(campaign, records, earlier ? &earlier->values : nullptr, options.common.threads);
   const report::Json json = report::plan_json(campaign, plan, provenance);
-  report::write_results(options.common.out, {{"plan.json", report::json_text(json)}},
-                        provenance.inputs);
+  std::vector<report::ResultFile> files{{"plan.json", report::json_text(json)}};
+  add_page(options.common.out, options.common.threads, files);
+  report::write_results(options.common.out, files, provenance.inputs);
   print(options.common.print,
         report::plan_text(campaign, plan, terminal_style().columns) +
-            fmt::format("files: {}\n", (options.common.out / "plan.json").string()),
+            fmt::format("files: {} {}\n", (options.common.out / "plan.json").string(),
+                        (options.common.out / "report.html").string()),
         json);
   return ExitCode::done;
 }

@@ -60,6 +60,9 @@ struct ConditionScore {
   std::vector<double> time_s;
   /// measured mean and simulated value per output channel, whole record
   std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
+  /// Standard deviation of a measurement about the simulated value, whole record, SI: uncertainty
+  /// of the estimates and noise of the record. Absent where the estimates' uncertainty is not known.
+  std::map<datasets::Channel, std::vector<double>> prediction_sd;
   std::vector<double> drive;  ///< reference [m] or command [V] at time_s
   /// Simulated flows at time_s [m3/s]; empty if it could not be simulated.
   std::vector<double> servo_flow_m3_per_s, leakage_flow_m3_per_s;

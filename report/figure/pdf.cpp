@@ -32,7 +32,8 @@ constexpr std::array kInks{
     Ink{"measured", 0x000000, 1.2, {}}, Ink{"model", 0xd55e00, 1.6, {}},
     Ink{"residual", 0x0072b2, 1.2, {}}, Ink{"reference", 0x777777, 1.2, {4, 2}},
     Ink{"servo", 0x009e73, 1.2, {}},    Ink{"leak", 0xb04a88, 1.6, {}},
-    Ink{"axis", 0x000000, 1.2, {}},
+    Ink{"axis", 0x000000, 1.2, {}},     Ink{"sparse", 0xa6cee3, 1.2, {}},
+    Ink{"medium", 0x4a9bc9, 1.2, {}},   Ink{"dense", 0x00507f, 1.2, {}},
 };
 constexpr Ink kOther{"", 0x444444, 1.2, {}};
 
@@ -42,12 +43,28 @@ const Ink& ink_of(const std::string& style) {
   return found == kInks.end() ? kOther : *found;
 }
 
+/// Lets readers find and copy the text. Its codes are UTF-16; the map by which a reader is to know
+/// that, libharu (2.3) writes with the operators of a map to glyphs, which readers refuse. In place
+/// and of the same length, because the table at the end of the file counts its bytes.
+void make_searchable(std::string& document) {
+  const std::size_t begin = document.find("1 beginnotdefrange");
+  constexpr std::string_view kEnd = "endcidrange";
+  const std::size_t end = document.find(kEnd, begin);
+  std::string map = "1 beginbfrange\r\n<0000> <FFFF> <0000>\r\nendbfrange";
+  if (begin == std::string::npos || end == std::string::npos ||
+      end + kEnd.size() - begin < map.size())
+    throw std::runtime_error("PDF: this version of libharu maps characters in another way");
+  map.resize(end + kEnd.size() - begin, ' ');
+  document.replace(begin, map.size(), map);
+}
+
 /// A document of one page, and the first error that the library tells of.
 class PdfPage {
  public:
   PdfPage(double width, double height) : height_(height) {
     if (!document_) throw std::runtime_error("PDF: out of memory");
-    HPDF_SetCompressionMode(document_.get(), HPDF_COMP_ALL);
+    // Metadata are the CMap alone, which make_searchable() reads.
+    HPDF_SetCompressionMode(document_.get(), HPDF_COMP_TEXT | HPDF_COMP_IMAGE);
     page_ = HPDF_AddPage(document_.get());
     HPDF_Page_SetWidth(page_, real(width));
     HPDF_Page_SetHeight(page_, real(height));
@@ -103,6 +120,15 @@ class PdfPage {
       HPDF_Page_Circle(page_, real(point.x), up(point.y), real(kDotRadius));
       HPDF_Page_Fill(page_);
     }
+  }
+
+  void cells(const Shape& shape, const Ink& ink) {
+    if (shape.points.empty()) return;
+    set_ink(ink);
+    for (const Point& point : shape.points)
+      HPDF_Page_Rectangle(page_, real(point.x - 0.5 * shape.side), up(point.y + 0.5 * shape.side),
+                          real(shape.side), real(shape.side));
+    HPDF_Page_Fill(page_);
   }
 
   void text(const Shape& shape, const Ink& ink) {
@@ -172,12 +198,17 @@ std::string pdf(const Plot& plot) {
       case Shape::Kind::dots:
         page.dots(shape, ink);
         break;
+      case Shape::Kind::cells:
+        page.cells(shape, ink);
+        break;
       case Shape::Kind::text:
         page.text(shape, ink);
         break;
     }
   }
-  return page.bytes();
+  std::string document = page.bytes();
+  make_searchable(document);
+  return document;
 }
 
 }  // namespace rigcal::report

@@ -147,6 +147,13 @@ Shape point_trace(const Trace& trace, const Axis& x, const Axis& y) {
   return shape;
 }
 
+Shape cell_trace(const Trace& trace, const Axis& x, const Axis& y) {
+  Shape shape = point_trace(trace, x, y);
+  shape.kind = Shape::Kind::cells;
+  shape.side = x.pixel(trace.cell) - x.pixel(0.0);
+  return shape;
+}
+
 Shape bar_trace(const Trace& trace, const Axis& x, const Axis& y) {
   Shape shape = line_shape(trace.style, {});
   for (std::size_t i = 0; i < trace.x.size(); ++i) {
@@ -189,6 +196,8 @@ Shape trace_shape(const Trace& trace, const Axis& x, const Axis& y) {
       return band_trace(trace, x, y);
     case Trace::Kind::intervals:
       return interval_trace(trace, x, y);
+    case Trace::Kind::cells:
+      return cell_trace(trace, x, y);
     case Trace::Kind::line:
       break;
   }
@@ -270,13 +279,20 @@ std::vector<Shape> plot_scene(const Plot& plot) {
   }
   widen(y, plot.levels, any_y);
   x.whole = plot.whole_x;
-  if (x.whole) {
-    x.low -= 0.5;
-    x.high += 0.5;
+  if (plot.same_axes) {
+    x.low = y.low = std::min(x.low, y.low);
+    x.high = y.high = std::max(x.high, y.high);
+    leave_room(x, 0.03);
+    leave_room(y, 0.03);
   } else {
-    leave_room(x, 0.0);
+    if (x.whole) {
+      x.low -= 0.5;
+      x.high += 0.5;
+    } else {
+      leave_room(x, 0.0);
+    }
+    leave_room(y, 0.06);
   }
-  leave_room(y, 0.06);
   x.start = plot.bare ? 0.0 : kLeft;
   x.length = plot.bare ? plot.width : plot.width - kLeft - kRight;
   y.start = plot.bare ? plot.height : plot.height - kBottom;

@@ -14,13 +14,14 @@ struct Point {
 
 /// A piece of a picture, in its pixels from the upper left corner.
 struct Shape {
-  enum class Kind { line, area, dots, text };
+  enum class Kind { line, area, dots, cells, text };
   enum class Anchor { start, middle, end };
   Kind kind = Kind::line;
   std::string style;  ///< class of the style sheet
   std::vector<Point> points;
   std::string text;  ///< at the first point
   Anchor anchor = Anchor::start;
+  double side = 0.0;  ///< of cells: squares about the points
 };
 
 /// What a plot consists of, the lowest first: grid, ticks and labels, levels, traces, legend.

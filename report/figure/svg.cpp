@@ -25,6 +25,15 @@ void put_path(std::string& out, const Shape& shape, const char* css, const char*
   out += end;
 }
 
+void put_cells(std::string& out, const Shape& shape) {
+  out += fmt::format("<path class=\"cells {}\" d=\"", shape.style);
+  for (const Point& point : shape.points) {
+    out += fmt::format("M{:.1f} {:.1f}h{:.1f}v{:.1f}h-{:.1f}z", point.x - 0.5 * shape.side,
+                       point.y - 0.5 * shape.side, shape.side, shape.side, shape.side);
+  }
+  out += "\"/>";
+}
+
 void put_text(std::string& out, const Shape& shape) {
   const char* anchor = shape.anchor == Shape::Anchor::middle ? " text-anchor=\"middle\""
                        : shape.anchor == Shape::Anchor::end  ? " text-anchor=\"end\""
@@ -56,6 +65,9 @@ std::string svg(const Plot& plot, const std::string& style_sheet) {
           out += fmt::format("<circle class=\"point {}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>",
                              shape.style, point.x, point.y, kDotRadius);
         }
+        break;
+      case Shape::Kind::cells:
+        put_cells(out, shape);
         break;
       case Shape::Kind::text:
         put_text(out, shape);

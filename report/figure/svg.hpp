@@ -8,13 +8,14 @@ namespace rigcal::report {
 
 /// What a picture shows, in the units that its axes name.
 struct Trace {
-  enum class Kind { line, points, bars, band, intervals };
+  enum class Kind { line, points, bars, band, intervals, cells };
   std::string name;   ///< in the legend; none if empty
   std::string style;  ///< class of the style sheet: "measured", "model", "residual", ...
   Kind kind = Kind::line;
   std::vector<double> x;
   std::vector<double> y;      ///< NaN: a gap
   std::vector<double> upper;  ///< of a band or of intervals; `y` is the lower edge
+  double cell = 0.0;          ///< of cells: side of the squares about the points
 };
 
 /// A trace that has no points yet.
@@ -34,8 +35,9 @@ struct Plot {
   double height = 200.0;
   bool log_x = false;
   bool log_y = false;
-  bool bare = false;     ///< traces alone, from edge to edge: one of many small pictures
-  bool whole_x = false;  ///< x counts: ticks at whole numbers, room beside the first and last
+  bool bare = false;       ///< traces alone, from edge to edge: one of many small pictures
+  bool whole_x = false;    ///< x counts: ticks at whole numbers, room beside the first and last
+  bool same_axes = false;  ///< one range for both axes
   std::vector<Trace> traces;
   std::vector<double> levels;  ///< dashed horizontal lines, in units of y
 };

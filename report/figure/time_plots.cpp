@@ -63,6 +63,9 @@ std::vector<TimePlot> time_plots(const Table& table) {
       const auto* reference = table.find("reference_m");
       if (has_numbers(reference)) both.lines.push_back({"reference", "reference", reference});
     }
+    both.prediction_sd = simulated != nullptr ? column("prediction_sd") : nullptr;
+    both.prediction_middle = simulated;
+    const auto* prediction_sd = both.prediction_sd;
     set_unit(both, about.unit);
     plots.push_back(std::move(both));
     if (const auto* residual = column("residual")) {
@@ -72,6 +75,7 @@ std::vector<TimePlot> time_plots(const Table& table) {
       std::replace(rest.title.begin(), rest.title.end(), '_', ' ');
       rest.height = 150.0;
       rest.lines.push_back({"residual", "residual", residual});
+      rest.prediction_sd = prediction_sd;
       set_unit(rest, about.unit);
       plots.push_back(std::move(rest));
     }
@@ -100,6 +104,38 @@ std::vector<TimePlot> time_plots(const Table& table) {
   return plots;
 }
 
+namespace {
+
+/// A band varies slowly where it does not follow a signal.
+constexpr std::size_t kBandPoints = 300;
+
+Trace prediction_band(const TimePlot& plot, const std::vector<double>& time_s) {
+  Trace band = empty_trace(Trace::Kind::band, "model", "95 % prediction");
+  const bool follows = plot.prediction_middle != nullptr;
+  const Buckets thin = buckets(time_s.size(), follows ? kStaticPoints : kBandPoints);
+  band.x = thinned_times(time_s, thin);
+  const std::vector<double> sd =
+      follows ? thinned_where(*plot.prediction_sd, *plot.prediction_middle, thin)
+              : thinned(*plot.prediction_sd, thin);
+  const std::vector<double> middle =
+      follows ? thinned(*plot.prediction_middle, thin) : std::vector<double>(sd.size(), 0.0);
+  for (std::size_t i = 0; i < sd.size(); ++i) {
+    band.y.push_back((middle[i] - kNormal95 * sd[i]) / plot.si);
+    band.upper.push_back((middle[i] + kNormal95 * sd[i]) / plot.si);
+  }
+  return band;
+}
+
+/// A band that follows a curve is drawn only where it is wider than the line; the script of the
+/// page shows it to whoever zooms in.
+bool shows_band(const TimePlot& plot) {
+  constexpr double kLeastShare = 0.01;
+  return plot.prediction_middle == nullptr ||
+         kNormal95 * largest(*plot.prediction_sd) > kLeastShare * largest(*plot.prediction_middle);
+}
+
+}  // namespace
+
 Plot picture(const TimePlot& plot, const Table& table, const std::string& condition) {
   const std::vector<double>& time_s = table.columns.front();
   const Buckets thin = buckets(time_s.size(), kStaticPoints);
@@ -117,8 +153,10 @@ Plot picture(const TimePlot& plot, const Table& table, const std::string& condit
     trace.y = scaled(thinned(*line.values, thin), plot.si);
     result.traces.push_back(std::move(trace));
   }
-  // What is measured lies on top; the band beneath all.
+  // What is measured lies on top; the bands beneath all.
   std::reverse(result.traces.begin(), result.traces.end());
+  if (plot.prediction_sd != nullptr && shows_band(plot))
+    result.traces.insert(result.traces.begin(), prediction_band(plot, time_s));
   if (plot.sd != nullptr) {
     Trace band;
     band.kind = Trace::Kind::band;

@@ -18,6 +18,9 @@ struct TimeLine {
   const std::vector<double>* values = nullptr;
 };
 
+/// Half of a 95 % band in standard deviations.
+inline constexpr double kNormal95 = 1.96;
+
 /// One set of axes over time.
 struct TimePlot {
   std::string name, title, unit;
@@ -25,6 +28,10 @@ struct TimePlot {
   double height = 200.0;
   std::vector<TimeLine> lines;
   const std::vector<double>* sd = nullptr;  ///< band around the first line
+  /// Standard deviation of a prediction: a band of 1.96 of it around the model, or around zero
+  /// where the plot is of the residual.
+  const std::vector<double>* prediction_sd = nullptr;
+  const std::vector<double>* prediction_middle = nullptr;  ///< null: zero
 };
 
 /// What there is to be drawn: per channel the signals and the residual, flows, the valve command.

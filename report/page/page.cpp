@@ -7,10 +7,15 @@
 
 #include "common/error.hpp"
 #include "common/parallel.hpp"
+#include "datasets/campaign/condition_id.hpp"
 #include "report/figure/pdf.hpp"
 #include "report/page/assets.hpp"
+#include "report/page/page_average.hpp"
+#include "report/page/page_overlay.hpp"
 #include "report/page/page_parts.hpp"
+#include "report/page/page_plan.hpp"
 #include "report/page/render.hpp"
+#include "report/store/result_files.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -39,6 +44,7 @@ Json condition_views(const Calibration& stored, int threads) {
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
     sections[i] = condition_view(conditions[i], stored.series[i],
                                  find(stored.curves.conditions, conditions[i].id), points);
+    sections[i]["open"] = i == 0 || conditions.size() <= kFew;
   });
   return sections;
 }
@@ -98,6 +104,7 @@ Part calibration_part(const Calibration& stored, int threads) {
   part.view["matrix"] = matrix_view(fit);
   part.view["has_matrix"] = !part.view["matrix"].empty();
   part.view["groups"] = groups_view(fit);
+  part.view["group_count"] = fmt::format("{}", part.view["groups"].size());
   part.view["has_conditions"] = !fit.conditions.empty();
   part.view["conditions"] = condition_views(stored, threads);
   part.view["identifiability"] = identifiability_view(fit);
@@ -161,6 +168,28 @@ Part parity_part(const ReadFile& read, const std::string& where) {
   return part;
 }
 
+/// The overlaid curves of a comparison, by condition in the order of its scores.
+std::vector<std::pair<std::string, Table>> curves_of(const ReadFile& read, const std::string& where,
+                                                     const StoredComparison& comparison) {
+  const ReadFile own = files_of_run(read, comparison.provenance, where, "comparison.json");
+  std::vector<std::pair<std::string, Table>> curves;
+  for (const StoredComparedCondition& condition : comparison.conditions) {
+    const std::string& id = condition.id;
+    const auto same = [&](const auto& each) { return each.first == id; };
+    if (!datasets::is_condition_id(id) || std::any_of(curves.begin(), curves.end(), same)) continue;
+    const std::string name = "overlay/" + id + ".csv";
+    if (const auto text = own(name))
+      curves.emplace_back(id, parse_table(*text, (fs::path(where) / name).string()));
+  }
+  return curves;
+}
+
+std::vector<std::string> names_of_results(const StoredComparison& comparison) {
+  std::vector<std::string> names;
+  for (const StoredComparedResult& result : comparison.results) names.push_back(result.name);
+  return names;
+}
+
 Part comparison_part(const ReadFile& read, const std::string& where) {
   const StoredComparison comparison = load_comparison(read, where);
   Part part;
@@ -173,11 +202,16 @@ Part comparison_part(const ReadFile& read, const std::string& where) {
   }
   part.headline = comparison_headline(comparison);
   part.view["comparison"] = comparison_view(comparison);
+  Json& overlays = part.view["comparison"]["overlays"] =
+      overlays_view(curves_of(read, where, comparison), names_of_results(comparison));
+  const bool has_overlays = !overlays.empty();
+  part.view["comparison"]["has_overlays"] = has_overlays;
   part.provenance = provenance_view(comparison.provenance, part.name, "comparison.json");
   part.nav = {{"results", "Results"}, {"estimates", "Parameters"}, {"models", "Models"}};
   if (part.view["comparison"].at("has_trends").get<bool>()) part.nav.push_back({"trends", "Trend"});
   if (part.view["comparison"].at("has_conditions").get<bool>())
     part.nav.push_back({"scores", "Scores"});
+  if (has_overlays) part.nav.push_back({"curves", "Curves"});
   part.nav.push_back({"records", "Records"});
   return part;
 }
@@ -194,6 +228,35 @@ Part batch_part(const ReadFile& read, const std::string& where) {
   part.view["batch"] = batch_view(batch);
   part.provenance = provenance_view(batch.provenance, part.name, "batch.json");
   part.nav = {{"rigs", "Rigs"}, {"rig-trends", "Trends"}};
+  return part;
+}
+
+Part average_part(const ReadFile& read, const std::string& where) {
+  const AverageFiles stored = load_average(read, where);
+  Part part;
+  part.section = "average";
+  part.link = "repeatability";
+  part.name = "Repeatability";
+  part.campaign = text_of(stored.average, "campaign");
+  part.synthetic = stored.average.at("synthetic").get<bool>();
+  part.headline = average_headline(stored.average);
+  part.view["average"] = average_view(stored);
+  part.provenance =
+      provenance_view(provenance_of(stored.average, "average.json"), part.name, "average.json");
+  part.nav = {{"repeatability", "Repeatability"}, {"means", "Means"}};
+  return part;
+}
+
+Part plan_part(const ReadFile& read, const std::string& where) {
+  const Json plan = load_json(read, where, "plan.json");
+  Part part;
+  part.section = part.link = "plan";
+  part.name = "Plan";
+  part.campaign = text_of(plan, "campaign");
+  part.headline = plan_headline(plan);
+  part.view["plan"] = plan_view(plan);
+  part.provenance = provenance_view(provenance_of(plan, "plan.json"), part.name, "plan.json");
+  part.nav = {{"plan", "Plan"}};
   return part;
 }
 
@@ -222,11 +285,15 @@ Parts parts_of(const ReadFile& read, const std::string& where, int threads) {
   add(has("parity.json"), [&] { return parity_part(read, where); });
   add(has("comparison.json"), [&] { return comparison_part(read, where); });
   add(has("batch.json"), [&] { return batch_part(read, where); });
+  add(has("average.json"), [&] { return average_part(read, where); });
+  add(has("plan.json"), [&] { return plan_part(read, where); });
   if (!parts.drawn.empty()) return parts;
   if (first) std::rethrow_exception(first);
-  throw InputError({where},
-                   "found neither fit.json nor validation.json, leak_table.json, diagnosis.json, "
-                   "parity.json, comparison.json or batch.json; expected a result folder");
+  throw InputError(
+      {where},
+      "found neither fit.json nor validation.json, leak_table.json, diagnosis.json, "
+      "parity.json, comparison.json, batch.json, average.json or plan.json; expected a result "
+      "folder");
 }
 
 /// The first part speaks for the page; the others say beside it what they found.
@@ -278,8 +345,8 @@ Json page_view(Parts parts) {
 
 std::string result_page(const ReadFile& read, const std::string& where, int threads) {
   std::vector<Partial> sections;
-  for (const std::string name :
-       {"calibration", "leak_table", "diagnosis", "parity", "comparison", "batch"})
+  for (const std::string name : {"calibration", "leak_table", "diagnosis", "parity", "comparison",
+                                 "batch", "average", "plan"})
     sections.push_back({"section_" + name, asset(name + ".html")});
   return render(asset("report.html"), page_view(parts_of(read, where, threads)), sections);
 }
@@ -304,7 +371,19 @@ std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& rea
     if (has("leak_table.json")) add(leak_table_figures(load_leak_table(read, where)));
     if (has("diagnosis.json")) add(diagnosis_figures(load_json(read, where, "diagnosis.json")));
     if (has("parity.json")) add(parity_figures(load_parity(read, where)));
-    if (has("comparison.json")) add(comparison_figures(load_comparison(read, where)));
+    if (has("comparison.json")) {
+      const StoredComparison comparison = load_comparison(read, where);
+      add(comparison_figures(comparison));
+      for (const auto& [condition, table] : curves_of(read, where, comparison))
+        add(overlay_figures(condition, table, names_of_results(comparison)), "overlay_");
+    }
+    if (has("average.json")) {
+      const AverageFiles stored = load_average(read, where);
+      for (std::size_t i = 0; i < stored.series.size(); ++i)
+        add(average_figures(text_of(stored.average.at("records").at(i), "condition"),
+                            stored.series[i]));
+    }
+    if (has("plan.json")) add(plan_figures(load_json(read, where, "plan.json")));
     if (has("batch.json")) add(batch_figures(load<StoredBatch>(read, where, "batch.json")));
   });
   std::vector<std::pair<fs::path, std::string>> files;

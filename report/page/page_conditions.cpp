@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "report/figure/time_plots.hpp"
+#include "report/page/page_agreement_figures.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
@@ -65,6 +68,10 @@ std::vector<Figure> condition_figures(const StoredCondition& condition, const Ta
   if (series.columns.empty() || series.columns.front().empty()) return figures;
   for (const TimePlot& plot : time_plots(series))
     figures.push_back({plot.name, picture(plot, series, condition.id)});
+  for (ChannelAgreement& channel :
+       channel_agreements(condition.id, periodic_frequency(condition), series)) {
+    for (Figure& figure : channel.figures) figures.push_back(std::move(figure));
+  }
   return figures;
 }
 
@@ -103,6 +110,21 @@ Json condition_view(const StoredCondition& condition, const Table& series,
       entry["sd"] = plot.sd != nullptr
                         ? Json(data.add(*plot.sd, *plot.lines.front().values, plot.si))
                         : Json(nullptr);
+      entry["prediction"] = nullptr;
+      if (plot.prediction_sd != nullptr) {
+        const auto& middle =
+            plot.prediction_middle != nullptr ? *plot.prediction_middle : *plot.prediction_sd;
+        const auto line = std::find_if(plot.lines.begin(), plot.lines.end(), [&](const auto& each) {
+          return each.values == plot.prediction_middle;
+        });
+        entry["prediction"] = {
+            {"sd", data.add(*plot.prediction_sd, middle, plot.si)},
+            {"middle",
+             line == plot.lines.end()
+                 ? Json(nullptr)
+                 : entry["lines"][static_cast<std::size_t>(line - plot.lines.begin())]["column"]},
+            {"factor", kNormal95}};
+      }
       plots.push_back(std::move(entry));
       view["plots"].push_back({{"name", plot.name},
                                {"title", plot.title},
@@ -119,8 +141,14 @@ Json condition_view(const StoredCondition& condition, const Table& series,
   }
   // A condition that was scored has a series; without it the page would only look complete.
   view["lost"] = view["has_scores"].get<bool>() && !view["has_plots"].get<bool>();
+  view["agreement"] = agreement_view(id, periodic_frequency(condition), series);
+  view["has_agreement"] = !view["agreement"].empty();
   view["tests"] = tests_view(condition, curves);
   view["has_tests"] = !view["tests"].empty();
+  view["has_curves"] = view["has_plots"].get<bool>() || view["has_tests"].get<bool>();
+  const std::size_t plots = view["plots"].size();
+  view["curves"] =
+      fmt::format("Curves and residual tests ({} plot{} over time)", plots, plots == 1 ? "" : "s");
   return view;
 }
 

@@ -208,6 +208,7 @@ Json parameters_view(const std::vector<StoredParameter>& parameters,
   view["has_fitted"] = !fitted.empty();
   view["fitted"] = std::move(fitted);
   view["has_known"] = !known.empty();
+  view["known_count"] = fmt::format("{}", known.size());
   view["known"] = std::move(known);
   view["has_correlation"] = correlation.names.size() > 1;
   view["correlation"] = correlation_rows(correlation);

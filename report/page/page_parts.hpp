@@ -78,6 +78,9 @@ std::string grade_words(const std::optional<calib::Identifiability>& grade);
 /// Estimated, but not well.
 bool is_doubtful(const std::optional<calib::Identifiability>& grade);
 
+/// Longer lists are folded on a screen.
+inline constexpr std::size_t kFew = 8;
+
 /// Id of a condition's section.
 std::string anchor(const std::string& condition);
 /// {"word": "PASS", "mark": "✓", "class": "good"} of a verdict; nothing: not judged.

@@ -26,6 +26,8 @@ Json starts_view(const StoredFit& fit) {
     least = std::min(least, *start.final_cost);
   }
   std::sort(costs.begin(), costs.end());
+  view["count"] = fmt::format("{}", fit.starts.size());
+  view["few"] = fit.starts.size() <= kFew;
   if (costs.empty()) {
     view["reading"] = "No start ended with a cost: there is no answer.";
   } else if (fit.starts.size() == 1) {
@@ -54,6 +56,8 @@ Json ledger_view(const StoredFit& fit) {
   view["warnings"] = Json::array();
   for (const std::string& warning : fit.warnings) view["warnings"].push_back({{"text", warning}});
   view["has_warnings"] = !fit.warnings.empty();
+  view["warning_count"] = fmt::format("{}", fit.warnings.size());
+  view["few_warnings"] = fit.warnings.size() <= kFew;
   view["failures"] = Json::array();
   for (const StoredFailure& failure : fit.failures) {
     std::string values;

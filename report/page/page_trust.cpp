@@ -95,6 +95,7 @@ Json lack_of_fit_view(const StoredFit& fit) {
   view["rows"] = lack_of_fit_rows(lack);
   view["known"] = fit.lack_of_fit.has_value() && fit.status != calib::FitStatus::failed;
   view["has_rows"] = !lack.tests.empty();
+  view["row_count"] = fmt::format("{}", lack.tests.size());
   return view;
 }
 

@@ -116,15 +116,20 @@
       const series = [{label: "time", value: (_, v) => v == null ? "–" : digits(v) + " s"}];
       const values = [this.time];
       const bands = [];
-      if (plot.sd != null) {
-        const mean = this.column(plot.lines[0].column);
-        const sd = this.column(plot.sd);
+      /** `middle` plus and minus `half`; `names` of its upper and lower edge in the legend. */
+      const addBand = (middle, half, names, fill) => {
+        bands.push({series: [series.length, series.length + 1], fill});
         for (const sign of [1, -1]) {
-          series.push({label: sign > 0 ? "+ sd" : "- sd", stroke: "transparent", points: {show: false}, value: (_, v) => digits(v)});
-          values.push(mean.map((m, i) => m == null || sd[i] == null ? null : m + sign * sd[i]));
+          series.push({label: names[sign > 0 ? 0 : 1], stroke: "transparent", points: {show: false}, value: (_, v) => digits(v)});
+          values.push(half.map((h, i) => h == null || (middle && middle[i] == null) ? null : (middle ? middle[i] : 0) + sign * h));
         }
-        bands.push({series: [1, 2], fill: css("--measured") + "38"});
+      };
+      if (plot.prediction != null) {
+        const {sd, middle, factor} = plot.prediction;
+        addBand(middle == null ? null : this.column(middle), this.column(sd).map((s) => s == null ? null : factor * s),
+                ["prediction, upper", "prediction, lower"], css("--model") + "30");
       }
+      if (plot.sd != null) addBand(this.column(plot.lines[0].column), this.column(plot.sd), ["+ sd", "- sd"], css("--measured") + "38");
       // The last is drawn on top: what was measured.
       for (const line of [...plot.lines].reverse()) {
         series.push({
@@ -189,6 +194,13 @@
 
   const groups = [...document.querySelectorAll("article.condition")].filter((a) => a.querySelector("script.series")).map((a) => new Group(a));
   const owner = new Map(groups.flatMap((group) => group.figures.map((figure) => [figure, group])));
+  /** A link to a condition, or to what is within, opens what hides it. */
+  const reveal = () => {
+    const target = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    target?.querySelector(":scope > details.curves")?.setAttribute("open", "");
+  };
+  addEventListener("hashchange", reveal);
+  reveal();
   const seen = new IntersectionObserver((entries) => {
     for (const {isIntersecting, target} of entries) {
       if (!isIntersecting) continue;

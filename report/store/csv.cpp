@@ -108,6 +108,8 @@ std::string residuals_csv(const Result& result, const calib::ConditionScore& sco
     for (const char* what : {"measured", "simulated", "residual", "sd"}) {
       titles.push_back(fmt::format("{}_{}", what, info(channel).name));
     }
+    if (score.prediction_sd.contains(channel))
+      titles.push_back(fmt::format("prediction_sd_{}", info(channel).name));
   }
   const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
   titles.insert(titles.end(), {"in_window", closed_loop ? "reference_m" : "command_v",
@@ -128,6 +130,8 @@ std::string residuals_csv(const Result& result, const calib::ConditionScore& sco
       fields.push_back(csv_number(s));
       fields.push_back(csv_number(y - s));
       fields.push_back(csv_number(at(*sd++, i)));
+      const auto band = score.prediction_sd.find(channel);
+      if (band != score.prediction_sd.end()) fields.push_back(csv_number(at(band->second, i)));
     }
     fields.emplace_back(score.in_window.empty() || score.in_window[i] ? "1" : "0");
     fields.push_back(csv_number(at(score.drive, i)));

@@ -425,9 +425,22 @@ TEST_CASE("average: mean, sd and count, and the repeatability", "[apps]") {
   write_campaign(folder);
   const Outcome outcome = folder.run({"average", "campaign.toml", "--out", "out"});
   CHECK(outcome.exit_code == 0);
-  CHECK(files_in(folder, "out/") == std::set<std::string>{"out/averaged/sine.csv",
-                                                          "out/averaged/square.csv",
-                                                          "out/repeatability.csv"});
+  CHECK(files_in(folder, "out/") ==
+        std::set<std::string>{"out/average.json", "out/averaged/sine.csv",
+                              "out/averaged/square.csv", "out/repeatability.csv",
+                              "out/report.html"});
+  const json average = json::parse(folder.read("out/average.json"));
+  CHECK(average["schema"] == "rigcal.average/1");
+  CHECK(average["records"].size() == 2);
+  const std::string page = folder.read("out/report.html");
+  CHECK_THAT(page, Contains("id=\"repeatability\"") && Contains("mean and standard deviation"));
+  CHECK(folder.run({"report", "out"}).exit_code == 0);
+  CHECK(folder.read("out/report.html") == page);
+  // A mean that was changed since is not taken for that of the result.
+  folder.write("out/averaged/sine.csv", "time_s\n0\n");
+  const Outcome changed = folder.run({"report", "out"});
+  CHECK(changed.exit_code == 2);
+  CHECK_THAT(changed.err, Contains("averaged/sine.csv") && Contains("was changed"));
   CHECK_THAT(folder.read("out/averaged/sine.csv"),
              StartsWith("time_s,") && Contains("position_m_mean,position_m_sd,position_m_count"));
   CHECK_THAT(folder.read("out/repeatability.csv"),

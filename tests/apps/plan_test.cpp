@@ -35,6 +35,11 @@ use = "fit"
   for (const auto& parameter : json["parameters"])
     CHECK(parameter["sd_all"].get<double>() < parameter["sd_recorded"].get<double>());
   CHECK_THAT(outcome.out, Contains("planned_10Hz alone (planned)"));
+  const std::string page = folder.read("out/report.html");
+  CHECK_THAT(page, Contains("id=\"plan\"") && Contains("planned_10Hz (planned)") &&
+                       Contains("share of the precision of all records"));
+  CHECK(folder.run({"report", "out"}).exit_code == 0);
+  CHECK(folder.read("out/report.html") == page);
 }
 
 }  // namespace rigcal::test

@@ -140,6 +140,39 @@ def check_paper(page):
     check(not lost, f"in tables, but not on paper: {lost}")
 
 
+def check_narrow(page):
+    """On a phone every estimate stands with its interval and its grade, and nothing has to be scrolled to."""
+    page.size(400)
+    page.wait_for("innerWidth === 400", "400 px")
+    rows = page.run("""[...document.querySelectorAll('.parameters tbody tr:not(.note)')].map(row => {
+      const label = name => row.querySelector(`td[data-label="${name}"]`);
+      return ['Value', '95 % interval', 'Identified?'].map(name => {
+        const box = label(name).getBoundingClientRect();
+        return [box.width > 0 && box.height > 0 && box.left >= 0 && box.right <= 400, label(name).innerText.trim()];
+      });
+    })""")
+    check(rows, "estimates")
+    for row in rows:
+        check(all(there and text for there, text in row), f"at 400 px: {row}")
+    hidden = page.run("[...document.querySelectorAll('.parameters')].filter(t => t.closest('.scroll').scrollWidth > "
+                      "t.closest('.scroll').clientWidth).length")
+    check(hidden == 0, "nothing of the parameters is beside the screen")
+    page.size(1280)
+
+
+def check_agreement(page, channels):
+    """The folded figures: parity, histogram and, of a sine and a square, gain and phase."""
+    page.run("document.querySelectorAll('details.agreement').forEach(d => { d.open = true; })")
+    titles = page.run("[...document.querySelectorAll('details.agreement svg title')].map(t => t.textContent)")
+    for what in ("model against measured", "histogram and normal density", "gain of ", "phase of "):
+        count = sum(what in title for title in titles)
+        check(count == channels, f"{what}: {count} of {channels} figures")
+    drawn = page.run("[...document.querySelectorAll('details.agreement svg')].every(s => "
+                     "s.getBoundingClientRect().width > 200 && s.querySelectorAll('path').length > 3)")
+    check(drawn, "every figure is drawn")
+    page.run("document.querySelectorAll('details.agreement').forEach(d => { d.open = false; })")
+
+
 def check_printed(page, folder, words):
     """The printed page holds these words, whatever the screen shows."""
     if shutil.which("pdftotext") is None:
@@ -214,8 +247,13 @@ def check_good(binary, work):
         check_numbers(page, result)
         check_cells(page)
         check_zoom(page)
+        check_agreement(page, sum(len(c["metrics"]) for c in result["conditions"]))
+        check_narrow(page)
         check_widths(page)
-        check_printed(page, work, ["PASS", "Known values", "What the residual tells", "How each number is computed"])
+        # What is folded on a screen is open on paper, and its text can be found.
+        page.run("document.querySelectorAll('details').forEach(d => { d.open = false; })")
+        check_printed(page, work, ["PASS", "Known values", "Residual tests", "How each number is computed",
+                                   "model = measured", "measured [mm]", "95 % prediction", "phase [°]"])
         check_quiet(page, path)
 
 
@@ -294,6 +332,37 @@ def check_models(page, compared):
     return stored
 
 
+def check_average(binary, work):
+    """The repeats: numbers of average.json, a picture of every mean, on every width and on paper."""
+    check(rigcal(binary, work, "average", "twin/campaign.toml", "--out", "mean") == 0, "average")
+    path = work / "mean" / "report.html"
+    records = json.loads((work / "mean" / "average.json").read_text())["records"]
+    with Browser() as page:
+        page.open(path)
+        check_sections(page, ["verdict", "repeatability", "means", "provenance", "formulas"])
+        shown = [float(v) for v in values(page, ".repeatability data.sd")]
+        stored = [c["pooled_sd"] for r in records for name, c in r["channels"].items() if name != "reference"]
+        check(shown == stored, f"scatter of the repeats: {shown}, {stored}")
+        check(page.run("document.querySelectorAll('#means figure svg').length") >= 2 * len(stored), "pictures")
+        check_widths(page)
+        check_printed(page, work, ["Floor of rho2", "sd of repeats", "offset [ms]"])
+        check_quiet(page, path)
+
+
+def check_plan(binary, work):
+    """What each record tells: numbers of plan.json."""
+    check(rigcal(binary, work, "plan", "twin/campaign.toml", "--out", "planned") == 0, "plan")
+    path = work / "planned" / "report.html"
+    plan = json.loads((work / "planned" / "plan.json").read_text())
+    with Browser() as page:
+        page.open(path)
+        check_sections(page, ["verdict", "plan", "provenance", "formulas"])
+        shown = [float(v) for v in values(page, "data.planned")]
+        check(shown == [p["sd_all"] for p in plan["parameters"]], f"standard deviations: {shown}")
+        check_widths(page)
+        check_quiet(page, path)
+
+
 def check_model_choice(binary, work):
     """Two fits to the same records, of which one contains the other."""
     check(rigcal(binary, work, "fit", "twin/campaign.toml", "--free", "valve_gain", "--out", "smaller") in (0, 1),
@@ -316,7 +385,7 @@ def check_comparison(binary, work):
     compared = json.loads((work / "both" / "comparison.json").read_text())
     with Browser() as page:
         page.open(path)
-        check_sections(page, ["verdict", "results", "estimates", "models", "scores", "records", "provenance",
+        check_sections(page, ["verdict", "results", "estimates", "models", "scores", "curves", "records", "provenance",
                               "formulas"])
         shown = {float(v) for v in values(page, ".estimates data.value")}
         for parameter in compared["parameters"]:
@@ -324,6 +393,9 @@ def check_comparison(binary, work):
                 if estimate and estimate["fitted"]:
                     check(estimate["value"] in shown, f"{parameter['key']} is shown")
         check_models(page, compared)
+        check(page.run("document.querySelectorAll('#curves svg .measured').length") >= 1, "what was measured")
+        check(page.run("document.querySelectorAll('#curves svg path.model.line').length") >= 1, "the first model")
+        check(page.run("document.querySelectorAll('#curves svg path.residual.line').length") >= 1, "the second model")
         check_widths(page)
         check_quiet(page, path)
     shutil.copy(work / "found" / "diagnosis.json", work / "good")
@@ -431,6 +503,8 @@ def main():
         check_diagnosis(binary, work)
         check_comparison(binary, work)
         check_model_choice(binary, work)
+        check_average(binary, work)
+        check_plan(binary, work)
         check_names(binary, work)
         check_utfsm(binary, work, sources)
         check_festo(binary, work, sources)

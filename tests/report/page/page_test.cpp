@@ -315,6 +315,62 @@ TEST_CASE("page: what a fit holds beyond is drawn, what it lacks is left out", "
   CHECK_THAT(page(json), Contains("residuals/lost.csv is missing or holds no rows"));
 }
 
+TEST_CASE("page: long lists are folded, with their number", "[report]") {
+  const auto opened = [](const std::string& html, const std::string& element) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = html.find(element, at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  const std::string open = "<details class=\"curves\" open>";
+  const std::string closed = "<details class=\"curves\">";
+  Json json = stored_result();
+  CHECK(opened(page(json), open) == 1);
+  const Json condition = json["conditions"][0];
+  for (int i = 1; i < 9; ++i) {
+    json["conditions"].push_back(condition);
+    json["conditions"].back()["id"] = "sine";  // whose series there is
+    json["warnings"].push_back("doubtful");
+  }
+  CHECK_THAT(page(json), Contains("<details open>\n    <summary>Warnings (8)</summary>"));
+  json["warnings"].push_back("doubtful");
+  const std::string html = page(json);
+  CHECK(opened(html, open) == 1);  // the first
+  CHECK(opened(html, closed) == 8);
+  CHECK_THAT(html, Contains("<details>\n    <summary>Warnings (9)</summary>"));
+  CHECK_THAT(html, Contains("Known values (1)"));
+}
+
+TEST_CASE("page: an estimate is told with its interval and grade on a narrow screen", "[report]") {
+  const std::string html = page(stored_result());
+  CHECK_THAT(html, Contains("<table class=\"parameters stack\">"));
+  for (const char* label : {"Value", "95 % interval", "Identified?"})
+    CHECK_THAT(html, Contains(std::string("data-label=\"") + label + "\""));
+}
+
+TEST_CASE("page: the band of prediction lies around model and residual", "[report]") {
+  const auto drawn = [](const std::string& titles, const std::string& fields) {
+    const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
+      if (path == "fit.json") return stored_result().dump();
+      if (path == "residual_tests.json") return rigcal::test::kNoCurves;
+      if (path != "residuals/sine.csv") return std::nullopt;
+      std::string csv = "time_s,measured_position_m,simulated_position_m,residual_position_m" +
+                        titles + ",in_window,reference_m\n";
+      for (int i = 0; i < 100; ++i)
+        csv += std::to_string(0.01 * i) + (i % 3 == 0 ? ",0.001" : ",0.0012") + ",0.0011,-0.0001" +
+               fields + ",1,0.001\n";
+      return csv;
+    };
+    return result_page(read, "folder", 1);
+  };
+  const std::string with = drawn(",prediction_sd_position_m", ",0.0002");
+  CHECK_THAT(with, Contains("95 % prediction") && Contains("class=\"band model\""));
+  CHECK_THAT(with, Contains(R"("factor":1.96)"));
+  CHECK_THAT(with, Contains("of them lie within the 95 % band of prediction"));
+  const std::string without = drawn("", "");
+  CHECK_THAT(without, !Contains("95 % prediction") && !Contains("band of prediction"));
+  CHECK_THAT(without, Contains(R"("prediction":null)"));
+}
+
 TEST_CASE("page: a result that cannot be read is named beside those that can", "[report]") {
   const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
     if (path == "fit.json") return stored_result().dump();

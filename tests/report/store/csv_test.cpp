@@ -76,6 +76,17 @@ TEST_CASE("residuals_csv: a single repeat has no scatter, a record without windo
                                   "1,3,3,0,,1,9,0.375,0\n");
 }
 
+TEST_CASE("residuals_csv: the prediction's standard deviation where it is known", "[report]") {
+  ThreeSamples result;
+  result.fit.conditions[0].prediction_sd[Channel::position] = {0.25, 0.5, 0.75};
+  CHECK(result.residuals() ==
+        "time_s,measured_position_m,simulated_position_m,residual_position_m,sd_position_m,"
+        "prediction_sd_position_m,in_window,reference_m,servo_flow_m3_per_s,leakage_flow_m3_per_s\n"
+        "0,2,1.5,0.5,0.01,0.25,1,7,0.125,0.0625\n"
+        "0.5,2.5,2.75,-0.25,0.02,0.5,1,8,0.25,0.03125\n"
+        "1,3,3,0,0.03,0.75,0,9,0.375,0\n");
+}
+
 TEST_CASE("residuals_csv: a fit that did not converge says so first", "[report]") {
   ThreeSamples result;
   result.fit.status = calib::FitStatus::stopped;

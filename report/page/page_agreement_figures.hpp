@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/page/page_parts.hpp"
+#include "report/store/table.hpp"
+
+namespace rigcal::report {
+
+/// The figures of one channel of a condition that show how model and record agree: parity,
+/// histogram of the residual and, where the signals tell them, gain and phase over frequency.
+struct ChannelAgreement {
+  std::string channel;
+  std::vector<Figure> figures;
+  std::string residual;  ///< mean and standard deviation of the residual in words
+  std::string response;  ///< what the gain and phase are of, or why there are none
+};
+
+/// @param condition     its id
+/// @param frequency_hz  of a periodic drive; nothing for any other
+/// @param series        residuals/<condition>.csv
+std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
+                                                 std::optional<double> frequency_hz,
+                                                 const Table& series);
+
+/// Frequency of a condition's drive where it is periodic, from its entry in fit.json.
+std::optional<double> periodic_frequency(const StoredCondition& condition);
+
+/// For the template: an entry for each channel.
+Json agreement_view(const std::string& condition, std::optional<double> frequency_hz,
+                    const Table& series);
+
+}  // namespace rigcal::report

@@ -1,0 +1,158 @@
+#include "calib/trust/prediction_band.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <stdexcept>
+
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using datasets::Channel;
+
+namespace {
+
+/// Two unknowns, and a condition that only predicts.
+Twin predicting_twin() {
+  Twin twin;
+  twin.free("valve_gain", 4e-5, 1e-5, 2e-4);
+  twin.free("bulk_modulus", 8e8, 1e8, 3e9);
+  twin.add("fitted", datasets::Waveform::square, 2.0, 0.01);
+  twin.add("predicted", datasets::Waveform::sine, 3.0, 0.01, {}, datasets::Use::validate);
+  return twin;
+}
+
+const ConditionScore& score_of(const Fit& fit, const std::string& id) {
+  for (const ConditionScore& each : fit.conditions)
+    if (each.id == id) return each;
+  throw std::runtime_error("no condition " + id);
+}
+
+const std::vector<double>& band_of(const Fit& fit, const std::string& id) {
+  return score_of(fit, id).prediction_sd.at(Channel::position);
+}
+
+/// What the estimates alone add to the band, root mean square over the record.
+double from_estimates(const Fit& fit, const std::string& id, double noise_sd) {
+  double sum = 0.0;
+  for (const double sd : band_of(fit, id)) sum += sd * sd - noise_sd * noise_sd;
+  return std::sqrt(sum / static_cast<double>(band_of(fit, id).size()));
+}
+
+}  // namespace
+
+TEST_CASE("prediction_sd: estimates and noise add up as variances", "[calib]") {
+  Eigen::MatrixXd gradient(2, 2);
+  gradient << 3.0, 0.0, 1.0, 1.0;
+  Eigen::MatrixXd root(2, 2);  // standard deviations 1 and 2, correlation -1
+  root << 1.0, 0.0, -2.0, 0.0;
+  const auto sd = prediction_sd(gradient, root, 4.0);
+  REQUIRE(sd.size() == 2);
+  CHECK_THAT(sd[0], WithinAbs(5.0, 1e-12));
+  CHECK_THAT(sd[1], WithinAbs(std::sqrt(1.0 + 16.0), 1e-12));
+  CHECK(prediction_sd(Eigen::MatrixXd(3, 0), Eigen::MatrixXd(0, 0), 4.0) ==
+        std::vector<double>{4.0, 4.0, 4.0});
+}
+
+TEST_CASE("prediction band: holds 95 % of the samples of fitted and new records", "[calib]") {
+  const Twin twin = predicting_twin();
+  for (const char* id : {"fitted", "predicted"}) {
+    int within = 0;
+    int all = 0;
+    for (unsigned seed = 1; seed <= 4; ++seed) {
+      const Fit found = fit(twin.campaign, twin.records(500, 500.0, seed), FitOptions());
+      REQUIRE(found.status == FitStatus::converged);
+      const auto& [measured, simulated] = score_of(found, id).series.at(Channel::position);
+      for (std::size_t i = 0; i < measured.size(); ++i) {
+        within += std::abs(measured[i] - simulated[i]) <= 1.96 * band_of(found, id)[i] ? 1 : 0;
+        ++all;
+      }
+    }
+    CAPTURE(id);
+    // 2000 samples: the binomial standard deviation is 0.5 %.
+    CHECK_THAT(100.0 * within / all, WithinAbs(95.0, 2.0));
+  }
+}
+
+TEST_CASE("prediction band: without noise it holds the truth 95 times in a hundred", "[calib]") {
+  const Twin twin = predicting_twin();
+  Twin quiet = predicting_twin();
+  quiet.noise_sd_m = 0.0;
+  const auto truth = quiet.records(250, 500.0, 1);
+  constexpr std::size_t kSample = 180;  // on a flank of the second period
+  constexpr unsigned kFits = 60;
+  int within = 0;
+  for (unsigned seed = 1; seed <= kFits; ++seed) {
+    const Fit found = fit(twin.campaign, twin.records(250, 500.0, seed), FitOptions());
+    REQUIRE(found.status == FitStatus::converged);
+    const double sd = band_of(found, "predicted")[kSample];
+    const double estimates = std::sqrt(sd * sd - twin.noise_sd_m * twin.noise_sd_m);
+    const double simulated =
+        score_of(found, "predicted").series.at(Channel::position).second[kSample];
+    within += std::abs(simulated - truth[1].channels.at(Channel::position).mean[kSample]) <=
+                      1.96 * estimates
+                  ? 1
+                  : 0;
+  }
+  // 57 expected; the binomial standard deviation is 1.7.
+  CHECK(within >= 52);
+}
+
+TEST_CASE("prediction band: grows with the covariance of the estimates", "[calib]") {
+  Twin twin = predicting_twin();
+  const Fit once = fit(twin.campaign, twin.records(500, 500.0, 1), FitOptions());
+  const double before = from_estimates(once, "predicted", twin.noise_sd_m);
+  CHECK(before > 0.0);
+  twin.noise_sd_m *= 3.0;
+  const Fit noisier = fit(twin.campaign, twin.records(500, 500.0, 1), FitOptions());
+  CHECK_THAT(from_estimates(noisier, "predicted", twin.noise_sd_m), WithinRel(3.0 * before, 0.3));
+  // A known value takes its part away.
+  Twin known_gain = predicting_twin();
+  known_gain.setting("bulk_modulus").fit = false;
+  known_gain.setting("bulk_modulus").value = 689e6;
+  const Fit fewer = fit(known_gain.campaign, known_gain.records(500, 500.0, 1), FitOptions());
+  CHECK(from_estimates(fewer, "predicted", known_gain.noise_sd_m) < before);
+}
+
+TEST_CASE("prediction band: an estimate of another leak level does not count", "[calib]") {
+  Twin twin;
+  auto& leak = twin.free("leakage_coefficient", 0.2, 0.0, 2.0, datasets::Scope::leak_level);
+  leak.nuisance = false;
+  twin.level_leakage = {{"small", 0.1}, {"large", 0.4}};
+  twin.add("small", datasets::Waveform::square, 2.0, 0.01, "small");
+  twin.add("large", datasets::Waveform::square, 2.0, 0.01, "large");
+  const auto records = twin.records(250, 500.0, 2);
+  const Problem problem = problem_of(twin, records);
+  const std::vector<double> z(2, 0.2);
+  EstimateSpread spread;
+  spread.estimates = {{Twin::index("leakage_coefficient"), datasets::Scope::leak_level, "small"},
+                      {Twin::index("leakage_coefficient"), datasets::Scope::leak_level, "large"}};
+  spread.root = Eigen::MatrixXd::Zero(2, 2);
+  spread.root(1, 1) = 0.1;  // of the large one alone
+  std::vector<ConditionScore> scores(2);
+  for (std::size_t i = 0; i < 2; ++i) scores[i].time_s = records[i].time_s;
+  add_prediction_sd(problem, z, spread, 1, scores);
+  const auto widest = [&](std::size_t i) {
+    const auto& sd = scores[i].prediction_sd.at(Channel::position);
+    return *std::max_element(sd.begin(), sd.end());
+  };
+  CHECK_THAT(widest(0), WithinRel(twin.noise_sd_m, 1e-12));
+  CHECK(widest(1) > 1.01 * twin.noise_sd_m);
+}
+
+TEST_CASE("prediction band: none of what was not scored or could not be simulated", "[calib]") {
+  const Twin twin = predicting_twin();
+  const auto records = twin.records(250, 500.0, 2);
+  const Problem problem = problem_of(twin, records);
+  std::vector<ConditionScore> scores(2);
+  scores[0].failure = "too many steps";
+  scores[1].not_scored = "stopped";
+  add_prediction_sd(problem, problem.start(), {}, 1, scores);
+  CHECK(scores[0].prediction_sd.empty());
+  CHECK(scores[1].prediction_sd.empty());
+}
+
+}  // namespace rigcal::calib
