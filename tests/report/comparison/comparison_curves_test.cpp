@@ -86,7 +86,7 @@ TEST_CASE("comparison_curves: of conditions that two results have simulated", "[
   CHECK(files[0].path == "overlay/sine.csv");
   CHECK_THAT(files[0].content, Contains("time_s,measured_position_m,simulated_position_m_1,"));
   SECTION("one was not simulated") {
-    results[1].result["conditions"][0]["failure"] = "too many steps";
+    results[1].result.conditions[0].failure = "too many steps";
     CHECK(comparison_curves(results).empty());
   }
   SECTION("one has no residuals") {
@@ -94,7 +94,7 @@ TEST_CASE("comparison_curves: of conditions that two results have simulated", "[
     CHECK(comparison_curves(results).empty());
   }
   SECTION("one has a name that leads elsewhere") {
-    results[1].result["conditions"][0]["id"] = "../sine";
+    results[1].result.conditions[0].id = "../sine";
     CHECK_THROWS_WITH(comparison_curves(results), Contains("../sine") && Contains("fit.json"));
   }
   SECTION("one is no table") {
