@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
-#include "calib/problem/problem.hpp"
+#include "calib/problem/evaluation.hpp"
 #include "calib/problem/r_factor.hpp"
+#include "calib/problem/scaled_svd.hpp"
 #include "calib/search/search.hpp"
 #include "diagnosis/phase_clusters.hpp"
 #include "diagnosis/residual_rms.hpp"
@@ -73,54 +75,32 @@ int column_of(const std::vector<int>& list, int index) {
   return found == list.end() ? -1 : static_cast<int>(found - list.begin());
 }
 
-Linear linearise(const calib::ProblemCondition& condition, const model::Simulation& run,
-                 std::size_t unknowns) {
-  const auto rows = static_cast<Eigen::Index>(condition.rows.size());
+Linear linearise(const calib::Problem& problem, const model::Simulation& run) {
+  const calib::ProblemCondition& condition = problem.conditions.front();
+  const auto samples = static_cast<Eigen::Index>(condition.rows.size());
   const auto channels = static_cast<Eigen::Index>(condition.channels.size());
-  const Eigen::MatrixXd& any = run.sensitivities.front();
-  const auto own = static_cast<Eigen::Index>(unknowns);
-  Linear linear;
-  linear.jacobian.resize(rows * channels, own);
-  linear.rig_jacobian.resize(rows * channels, any.cols() - own);
-  linear.residual.resize(rows * channels);
-  for (Eigen::Index k = 0; k < channels; ++k) {
-    const calib::ProblemChannel& channel = condition.channels[static_cast<std::size_t>(k)];
-    const Eigen::MatrixXd& sensitivity = run.sensitivities[static_cast<std::size_t>(k)];
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const auto sample = static_cast<Eigen::Index>(condition.rows[static_cast<std::size_t>(i)]);
-      const Eigen::Index row = k * rows + i;
-      linear.jacobian.row(row) = sensitivity.row(sample).head(own) / channel.sd;
-      linear.residual(row) =
-          (run.outputs(sample, k) - channel.measured[static_cast<std::size_t>(i)]) / channel.sd;
-      if (any.cols() == own) continue;  // no parameter of the rig has an error
-      linear.rig_jacobian.row(row) = sensitivity.row(sample).tail(any.cols() - own) / channel.sd;
-    }
+  const auto own = static_cast<Eigen::Index>(condition.free.size());
+  const Eigen::Index all = run.sensitivities.front().cols();
+  Eigen::MatrixXd rows(samples * channels, all + 1);
+  double square_sum = 0.0;
+  for (std::size_t k = 0; k < condition.channels.size(); ++k) {
+    rows.middleRows(static_cast<Eigen::Index>(k) * samples, samples) =
+        calib::weighted_rows(condition, k, {0, condition.rows.size(), 0}, run,
+                             Eigen::VectorXd::Ones(all), problem.campaign->fit, square_sum);
   }
-  return linear;
+  return {rows.leftCols(own), rows.middleCols(own, all - own), rows.col(all), {}, {}};
 }
 
-/// What the R factor of [J r] (calib/problem/r_factor.hpp) tells of the unknowns of J.
-struct Solved {
-  Eigen::MatrixXd root;  ///< inverse of J's part of R: root root^T is the inverse of J^T J
-  Eigen::VectorXd step;  ///< to the least squares; not finite where a column of J is nothing
-};
-
-Solved least_squares(const Linear& linear) {
+/// The R factor of the samples and priors, whose singular values tell what the unknowns are.
+calib::Linearisation with_priors(const Linear& linear) {
   const Eigen::Index p = linear.jacobian.cols();
   const Eigen::Index samples = linear.jacobian.rows();
   Eigen::MatrixXd rows(samples + p, p + 1);
-  rows.topLeftCorner(samples, p) = linear.jacobian;
-  rows.col(p).head(samples) = linear.residual;
-  rows.bottomLeftCorner(p, p) = linear.prior_weight.asDiagonal();
-  rows.col(p).tail(p) = linear.prior_residual;
+  rows << linear.jacobian, linear.residual,  //
+      Eigen::MatrixXd(linear.prior_weight.asDiagonal()), linear.prior_residual;
   calib::RFactor r_factor(p + 1);
   r_factor.add(std::move(rows));
-  const Eigen::MatrixXd& r = r_factor.get();
-  Solved solved{Eigen::MatrixXd::Identity(p, p), {}};
-  const auto upper = r.topLeftCorner(p, p).triangularView<Eigen::Upper>();
-  for (auto column : solved.root.colwise()) upper.solveInPlace(column);
-  solved.step = -solved.root * r.col(p).head(p);
-  return solved;
+  return {r_factor.get().leftCols(p), r_factor.get().col(p)};
 }
 
 /// Record minus simulated position at the samples that count [m].
@@ -164,14 +144,17 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
     fit.failure = in_words(run.ok() ? healthy : run);
     return;
   }
-  Linear linear = linearise(condition, run, condition.free.size());
+  Linear linear = linearise(problem, run);
   set_priors(problem, values, linear);
   const auto leak = static_cast<Eigen::Index>(column_of(condition.free, leak_row));
-  const auto [root, step] = least_squares(linear);
-  if (!step.allFinite()) {
+  const calib::Linearisation system = with_priors(linear);
+  const calib::ScaledSvd svd(system.jacobian, std::numeric_limits<double>::epsilon());
+  if (svd.rank() < system.jacobian.cols()) {
     fit.failure = "nothing that was recorded responds to a leak";
     return;
   }
+  const Eigen::VectorXd step = svd.step(system.residual);
+  const Eigen::MatrixXd root = svd.root();
   fit.coefficient = values[kLeak] + step(leak);
   const Eigen::MatrixXd bread = root.lazyProduct(root.transpose());
   const Eigen::VectorXd left = linear.residual + linear.jacobian * step;
@@ -204,8 +187,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
   if (!rig_columns.empty()) {
     // What the rig's parameters change without a leak too is in the healthy reference already.
     Eigen::MatrixXd rig_jacobian = linear.rig_jacobian;
-    if (reference > 0)
-      rig_jacobian -= linearise(condition, healthy, condition.free.size()).rig_jacobian;
+    if (reference > 0) rig_jacobian -= linearise(problem, healthy).rig_jacobian;
     const Eigen::VectorXd weight = linear.jacobian * bread.col(leak);
     fit.rig_moves(rig_columns) = -(rig_jacobian.transpose() * weight);
     fit.rig_se = std::sqrt(std::max(0.0, fit.rig_moves.dot(rig.covariance * fit.rig_moves)));

@@ -16,8 +16,9 @@ using datasets::Scope;
 /// Logarithmic where the bounds span more than this ratio.
 constexpr double kLogarithmicRatio = 10.0;
 
-bool is_logarithmic(const Unknown& unknown) {
-  return unknown.lower > 0.0 && unknown.upper > kLogarithmicRatio * unknown.lower;
+UnitInterval interval_of(const Unknown& unknown) {
+  const bool logarithmic = unknown.lower > 0.0 && unknown.upper > kLogarithmicRatio * unknown.lower;
+  return {unknown.lower, unknown.upper, logarithmic};
 }
 
 bool contains(const datasets::Overrides& overrides, int index) {
@@ -49,6 +50,22 @@ void check(const Unknown& unknown, std::string_view key, const Location& where) 
 }
 
 }  // namespace
+
+double UnitInterval::value(double z) const {
+  const double value = logarithmic ? std::exp(std::log(lower) + z * std::log(upper / lower))
+                                   : lower + z * (upper - lower);
+  return std::clamp(value, lower, upper);  // rounding must not leave the hard limits
+}
+
+double UnitInterval::place(double value) const {
+  const double z = logarithmic ? std::log(value / lower) / std::log(upper / lower)
+                               : (value - lower) / (upper - lower);
+  return std::clamp(z, 0.0, 1.0);
+}
+
+double UnitInterval::slope(double z) const {
+  return logarithmic ? value(z) * std::log(upper / lower) : upper - lower;
+}
 
 std::string parameter_name(const model::ParameterSpec& spec, datasets::Scope scope,
                            const std::string& level) {
@@ -130,24 +147,15 @@ ParameterMap::ParameterMap(const Campaign& campaign,
 }
 
 double ParameterMap::to_physical(int unknown, double z) const {
-  const Unknown& u = unknowns_[static_cast<std::size_t>(unknown)];
-  const double value = is_logarithmic(u)
-                           ? std::exp(std::log(u.lower) + z * std::log(u.upper / u.lower))
-                           : u.lower + z * (u.upper - u.lower);
-  return std::clamp(value, u.lower, u.upper);  // rounding must not leave the hard limits
+  return interval_of(unknowns_[static_cast<std::size_t>(unknown)]).value(z);
 }
 
 double ParameterMap::to_unit(int unknown, double value) const {
-  const Unknown& u = unknowns_[static_cast<std::size_t>(unknown)];
-  const double z = is_logarithmic(u) ? std::log(value / u.lower) / std::log(u.upper / u.lower)
-                                     : (value - u.lower) / (u.upper - u.lower);
-  return std::clamp(z, 0.0, 1.0);
+  return interval_of(unknowns_[static_cast<std::size_t>(unknown)]).place(value);
 }
 
 double ParameterMap::slope(int unknown, double z) const {
-  const Unknown& u = unknowns_[static_cast<std::size_t>(unknown)];
-  return is_logarithmic(u) ? to_physical(unknown, z) * std::log(u.upper / u.lower)
-                           : u.upper - u.lower;
+  return interval_of(unknowns_[static_cast<std::size_t>(unknown)]).slope(z);
 }
 
 }  // namespace rigcal::calib

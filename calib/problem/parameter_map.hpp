@@ -8,6 +8,18 @@
 
 namespace rigcal::calib {
 
+/// A value between its bounds as a coordinate z in [0, 1], linear in it or in its logarithm.
+struct UnitInterval {
+  double lower = 0.0;
+  double upper = 1.0;
+  bool logarithmic = false;
+
+  double value(double z) const;
+  double place(double value) const;
+  /// d value / d z
+  double slope(double z) const;
+};
+
 /// One unknown of the fit: a parameter of the rig, of one leak level, or of one condition.
 struct Unknown {
   int index = 0;  ///< row of the plant's parameter table

@@ -1,9 +1,9 @@
 #include "calib/search/multiple_shooting.hpp"
 
-#include <ceres/iteration_callback.h>
+#include <ceres/cost_function.h>
+#include <ceres/evaluation_callback.h>
 #include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
-#include <ceres/solver.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +14,7 @@
 
 #include "calib/problem/initial_state.hpp"
 #include "calib/problem/r_factor.hpp"
+#include "calib/search/ceres_watch.hpp"
 #include "calib/search/prior_cost.hpp"
 #include "common/parallel.hpp"
 
@@ -353,41 +354,10 @@ class JumpCost final : public ceres::CostFunction {
   double weight_;
 };
 
-/// Tells of each iteration and ends a stage on a signal or at a limit.
-class StageWatcher final : public ceres::IterationCallback {
- public:
-  StageWatcher(const Pieces& pieces, const Iterations& iterations)
-      : pieces_(pieces), iterations_(iterations) {}
-
-  ceres::CallbackReturnType operator()(const ceres::IterationSummary& summary) override {
-    made_ = summary.iteration;
-    try {
-      iterations_.tell(made_, summary.cost,
-                       summary.cost > 0.0 ? summary.cost_change / summary.cost : 0.0,
-                       summary.cumulative_time_in_seconds);
-    } catch (...) {
-      error_ = std::current_exception();
-    }
-    const bool stop = error_ != nullptr || pieces_.aborted();
-    return stop ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
-  }
-
-  int made() const { return made_; }
-  void rethrow() const {
-    if (error_) std::rethrow_exception(error_);
-  }
-
- private:
-  const Pieces& pieces_;
-  const Iterations& iterations_;
-  int made_ = 0;
-  std::exception_ptr error_;
-};
-
 /// One stage, from where the unknowns and nodes of `pieces` are to where it leaves them.
 /// @return  false if not even its start could be simulated
 bool stage(const Problem& problem, Pieces& pieces, std::size_t number, int iterations,
-           StageWatcher& watcher) {
+           CeresWatch& watch) {
   pieces.PrepareForEvaluation(true, true);
   if (!pieces.ok()) return false;
   ceres::Problem::Options problem_options;
@@ -430,16 +400,13 @@ bool stage(const Problem& problem, Pieces& pieces, std::size_t number, int itera
     system.AddResidualBlock(new JumpCost(pieces, i, sizes, kJumps[number]), nullptr, blocks);
   }
 
-  ceres::Solver::Options settings;
+  ceres::Solver::Options settings = quiet_settings();
   settings.linear_solver_type = reduced <= kMostDense ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   settings.linear_solver_ordering = ordering;
-  settings.num_threads = 1;  // more would add up in another order; pieces run in parallel
-  settings.logging_type = ceres::SILENT;
-  settings.minimizer_progress_to_stdout = false;
   settings.max_num_iterations = iterations;
   settings.initial_trust_region_radius = kTrustRadii[number];
   settings.function_tolerance = kStageChange[number];
-  settings.callbacks.push_back(&watcher);
+  settings.callbacks.push_back(&watch);
   ceres::Solver::Summary summary;
   ceres::Solve(settings, &system, &summary);
   return summary.IsSolutionUsable();
@@ -456,15 +423,20 @@ ShootingResult multiple_shooting(const Problem& problem, Evaluator& evaluator,
   result.largest_gap = std::numeric_limits<double>::infinity();
   if (!pieces.begin_at(result.z, interval_s)) return result;
   const int end = iterations.used() + most;
+  const std::function<bool(const DescentStep&)> enough = [&](const DescentStep& step) {
+    iterations.tell(step.number, step.cost, step.relative_change, step.seconds);
+    return pieces.aborted();
+  };
   for (std::size_t k = 0; k < kStages; ++k) {
     const int left = (end - iterations.used()) / static_cast<int>(kStages - k);
     pieces.set_tolerance(k + 1 < kStages ? problem.coarse_tolerance() : problem.tolerance);
-    StageWatcher watcher(pieces, iterations);
-    const bool usable = stage(problem, pieces, k, left, watcher);
+    std::exception_ptr error;
+    CeresWatch watch(enough, error);
+    const bool usable = stage(problem, pieces, k, left, watch);
     pieces.rethrow();
-    watcher.rethrow();
-    iterations.add(watcher.made());
-    result.iterations += watcher.made();
+    if (error) std::rethrow_exception(error);
+    iterations.add(watch.made());
+    result.iterations += watch.made();
     if (!usable || pieces.aborted()) break;
     result.z.assign(pieces.z().begin(), pieces.z().end());
     pieces.PrepareForEvaluation(true, true);  // the last trial may not be where it ended

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/problem/svd.hpp"
+#include "calib/problem/scaled_svd.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -25,39 +25,37 @@ double rank_threshold(double simulation_tolerance) {
 bool OptimumCheck::stationary() const { return relative_offset <= kStationary; }
 bool OptimumCheck::nearly_stationary() const { return relative_offset <= kNearlyStationary; }
 
-OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation) {
-  const Linearisation system = linearise(problem, evaluation);
+std::vector<bool> active_bounds(const Linearisation& system, std::span<const double> z) {
   const Eigen::VectorXd gradient = system.jacobian.transpose() * system.residual;
-  OptimumCheck check;
-  std::vector<Eigen::Index> free;
-  for (std::size_t j = 0; j < evaluation.z.size(); ++j) {
-    const auto column = static_cast<Eigen::Index>(j);
-    const BoundSide side = bound_side(evaluation.z[j]);
-    const bool outward = (side == BoundSide::lower && gradient(column) > 0.0) ||
-                         (side == BoundSide::upper && gradient(column) < 0.0);
-    check.side.push_back(side);
-    check.active_bound.push_back(outward);
-    if (!outward && system.jacobian.col(column).norm() > 0.0) free.push_back(column);
+  std::vector<bool> active;
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const double slope = gradient(static_cast<Eigen::Index>(j));
+    const BoundSide side = bound_side(z[j]);
+    active.push_back((side == BoundSide::lower && slope > 0.0) ||
+                     (side == BoundSide::upper && slope < 0.0));
   }
-  if (free.empty()) return check;
+  return active;
+}
 
-  Eigen::MatrixXd scaled = system.jacobian(Eigen::all, free);
-  const Eigen::VectorXd norms = scaled.colwise().norm();
-  scaled.array().rowwise() /= norms.transpose().array();
-  Svd svd(scaled, Eigen::ComputeThinU);
-  svd.setThreshold(rank_threshold(problem.tolerance));
-  const Eigen::Index rank = svd.rank();
-  const Eigen::VectorXd explained = svd.matrixU().leftCols(rank).transpose() * system.residual;
+OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation) {
+  Linearisation system = linearise(problem, evaluation);
+  OptimumCheck check;
+  check.active_bound = active_bounds(system, evaluation.z);
+  for (std::size_t j = 0; j < evaluation.z.size(); ++j) {
+    check.side.push_back(bound_side(evaluation.z[j]));
+    if (check.active_bound[j]) system.jacobian.col(static_cast<Eigen::Index>(j)).setZero();
+  }
+  const ScaledSvd svd(system.jacobian, rank_threshold(problem.tolerance));
+  check.step = svd.step(system.residual);
+  const auto rank = static_cast<double>(svd.rank());
+  const double explained = svd.explained(system.residual).squaredNorm();
+  const double all = system.residual.squaredNorm();
   const double residuals = evaluation.share * static_cast<double>(problem.residual_count());
-  const double freedom = std::max(1.0, residuals - static_cast<double>(rank));
-  const double unexplained =
-      std::sqrt(std::max(0.0, system.residual.squaredNorm() - explained.squaredNorm()));
+  const double freedom = std::max(1.0, residuals - rank);
+  const double unexplained = std::sqrt(std::max(0.0, all - explained));
   const double noise = std::max(problem.least_noise(), unexplained / std::sqrt(freedom));
-  const double offset =
-      explained.norm() / std::sqrt(static_cast<double>(std::max<Eigen::Index>(rank, 1)));
-  check.relative_offset = offset / noise;
-  if (const double all = system.residual.squaredNorm(); all > 0.0)
-    check.reducible = explained.squaredNorm() / all;
+  check.relative_offset = std::sqrt(explained / std::max(rank, 1.0)) / noise;
+  if (all > 0.0) check.reducible = explained / all;
   return check;
 }
 

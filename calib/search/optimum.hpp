@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "calib/problem/evaluation.hpp"
@@ -17,10 +18,14 @@ BoundSide bound_side(double z);
 /// which the data do not determine: the derivatives themselves are no better (ErrorNorm).
 double rank_threshold(double simulation_tolerance);
 
+/// Unknowns at a bound where the cost falls only towards the outside.
+std::vector<bool> active_bounds(const Linearisation& system, std::span<const double> z);
+
 /// Whether a point is a minimum in the box, judged by our own measure and not by the optimiser's.
 struct OptimumCheck {
   std::vector<BoundSide> side;     ///< per unknown
-  std::vector<bool> active_bound;  ///< at a bound, and the cost falls only towards the outside
+  std::vector<bool> active_bound;  ///< as active_bounds()
+  Eigen::VectorXd step;            ///< of Gauss and Newton, in the unit box; 0 at an active bound
   /// Length of the Gauss-Newton step in standard errors, root mean square over the free directions
   /// (relative offset of Bates and Watts, Technometrics 23, 1981). 0.01: the step that is left is a
   /// hundredth of what the noise leaves uncertain.

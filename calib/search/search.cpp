@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "calib/problem/svd.hpp"
 #include "calib/search/multiple_shooting.hpp"
 
 namespace rigcal::calib {
@@ -17,27 +16,11 @@ constexpr double kFullStepEnd = 0.003;
 /// Growth of the mean square residual beyond which the shorter horizon's estimate is discarded.
 constexpr double kForeseen = 4.0;
 
-/// Where a full Gauss-Newton step leads, parameters at an active bound left where they are.
-std::vector<double> gauss_newton(const Problem& problem, const Evaluation& evaluation,
-                                 const std::vector<bool>& active_bound) {
-  const Linearisation system = linearise(problem, evaluation);
-  std::vector<Eigen::Index> free;
-  for (std::size_t j = 0; j < active_bound.size(); ++j) {
-    const auto column = static_cast<Eigen::Index>(j);
-    if (!active_bound[j] && system.jacobian.col(column).norm() > 0.0) free.push_back(column);
-  }
+/// Where a full Gauss-Newton step leads.
+std::vector<double> gauss_newton(const Evaluation& evaluation, const OptimumCheck& check) {
   std::vector<double> z = evaluation.z;
-  if (free.empty()) return z;
-  Eigen::MatrixXd scaled = system.jacobian(Eigen::all, free);
-  const Eigen::VectorXd norms = scaled.colwise().norm();
-  scaled.array().rowwise() /= norms.transpose().array();
-  Svd svd(scaled, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  svd.setThreshold(rank_threshold(problem.tolerance));
-  const Eigen::VectorXd step = -(svd.solve(system.residual).array() / norms.array()).matrix();
-  for (std::size_t k = 0; k < free.size(); ++k) {
-    double& each = z[static_cast<std::size_t>(free[k])];
-    each = std::clamp(each + step(static_cast<Eigen::Index>(k)), 0.0, 1.0);
-  }
+  for (std::size_t j = 0; j < z.size(); ++j)
+    z[j] = std::clamp(z[j] + check.step(static_cast<Eigen::Index>(j)), 0.0, 1.0);
   return z;
 }
 
@@ -112,7 +95,7 @@ bool Search::enter(const Stage& stage) {
   const OptimumCheck check = check_optimum(problem_, coarse);
   evaluator_.set_fidelity(stage.fidelity);
   if (check.relative_offset > kFullStepOffset) return true;
-  const std::vector<double> next = gauss_newton(problem_, coarse, check.active_bound);
+  const std::vector<double> next = gauss_newton(coarse, check);
   if (evaluator_.evaluate(next).ok) z_ = next;
   return true;
 }
@@ -145,8 +128,7 @@ OptimumCheck Search::full_steps() {
   const int most = std::min(kFullSteps, iterations_.left());
   for (int steps = 0; steps < most && check.relative_offset <= kFullStepOffset; ++steps) {
     if (check.relative_offset <= kFullStepEnd) break;
-    const Evaluation& after =
-        evaluator_.evaluate(gauss_newton(problem_, evaluator_.best(), check.active_bound));
+    const Evaluation& after = evaluator_.evaluate(gauss_newton(evaluator_.best(), check));
     if (!after.ok) break;
     const OptimumCheck found = check_optimum(problem_, after);
     if (found.relative_offset >= check.relative_offset) break;

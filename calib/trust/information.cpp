@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "calib/problem/r_factor.hpp"
-#include "calib/problem/svd.hpp"
+#include "calib/problem/scaled_svd.hpp"
 #include "calib/search/optimum.hpp"
 
 namespace rigcal::calib {
@@ -139,24 +139,14 @@ std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<
                                               const Eigen::MatrixXd& jacobian) {
   const Eigen::Index n = jacobian.cols();
   std::vector<std::optional<double>> result(static_cast<std::size_t>(n));
-  const Eigen::VectorXd norms = jacobian.colwise().norm();
-  Eigen::MatrixXd scaled = jacobian;
+  const ScaledSvd svd(jacobian, rank_threshold(problem.tolerance));
+  const Eigen::MatrixXd root = svd.root();
   for (Eigen::Index j = 0; j < n; ++j) {
-    if (norms(j) > 0.0) scaled.col(j) /= norms(j);
-  }
-  Svd svd(scaled, Eigen::ComputeFullV | Eigen::ComputeThinU);
-  svd.setThreshold(rank_threshold(problem.tolerance));
-  const Eigen::Index rank = svd.rank();
-  const Eigen::MatrixXd& V = svd.matrixV();
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const bool lost = rank < n && V.row(j).tail(n - rank).cwiseAbs().maxCoeff() > kLost;
-    if (lost || !(norms(j) > 0.0)) continue;
-    const double length =
-        (V.row(j).head(rank).array() / svd.singularValues().head(rank).transpose().array())
-            .matrix()
-            .norm();
+    const auto undetermined = svd.V().row(j).tail(n - svd.rank());
+    const bool lost = undetermined.size() > 0 && undetermined.cwiseAbs().maxCoeff() > kLost;
+    if (lost || svd.inverse_lengths()(j) == 0.0) continue;
     const auto u = static_cast<std::size_t>(j);
-    result[u] = problem.map.slope(static_cast<int>(j), z[u]) * length / norms(j);
+    result[u] = problem.map.slope(static_cast<int>(j), z[u]) * root.row(j).norm();
   }
   return result;
 }

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "calib/problem/repeat_inputs.hpp"
-#include "calib/problem/svd.hpp"
+#include "calib/problem/scaled_svd.hpp"
 #include "calib/search/optimum.hpp"
 #include "calib/trust/coherent_error.hpp"
 #include "common/parallel.hpp"
@@ -88,15 +88,11 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
                         std::vector<ConditionRows> rows, int threads) {
   const Linearisation system = linearise(problem, optimum);
   const auto n = static_cast<Eigen::Index>(optimum.z.size());
-  const Eigen::VectorXd norms = system.jacobian.colwise().norm();
-  Eigen::VectorXd inverse_norms(n);
-  for (Eigen::Index j = 0; j < n; ++j) inverse_norms(j) = norms(j) > 0.0 ? 1.0 / norms(j) : 0.0;
-  const Eigen::MatrixXd scaled = system.jacobian * inverse_norms.asDiagonal();
-  Svd svd(scaled, Eigen::ComputeThinU | Eigen::ComputeFullV);
-  svd.setThreshold(rank_threshold(problem.tolerance));
+  const ScaledSvd svd(system.jacobian, rank_threshold(problem.tolerance));
   const Eigen::Index rank = svd.rank();
-  const Eigen::VectorXd s = svd.singularValues();
-  const Eigen::MatrixXd& V = svd.matrixV();
+  const Eigen::VectorXd& s = svd.singular_values();
+  const Eigen::VectorXd& inverse_lengths = svd.inverse_lengths();
+  const Eigen::MatrixXd& V = svd.V();
 
   Uncertainty result;
   result.rank = static_cast<int>(rank);
@@ -106,13 +102,12 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   result.freedom = std::max(freedom, 1.0);
 
   // (J^T J)^-1 in the unit box, on the directions that the data determine.
-  const Eigen::MatrixXd root =
-      inverse_norms.asDiagonal() * V.leftCols(rank) * s.head(rank).cwiseInverse().asDiagonal();
+  const Eigen::MatrixXd root = svd.root();
   const Eigen::MatrixXd inverse = root * root.transpose();
   const double sigma = std::sqrt(std::max(1.0, result.reduced_chi_square));
   const double least = std::max(s(0) * rank_threshold(problem.tolerance), 1e-150);
   const Eigen::VectorXd lengths = sigma * s.cwiseMax(least).cwiseInverse();
-  result.spread = inverse_norms.asDiagonal() * V * lengths.asDiagonal();
+  result.spread = inverse_lengths.asDiagonal() * V * lengths.asDiagonal();
   result.root = root;
   result.known = known_uncertainty(problem, optimum.z, root, threads);
   const Eigen::MatrixXd priors = prior_information(problem, optimum.z, root);
@@ -135,7 +130,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   std::vector<std::vector<std::size_t>> directions;
   for (Eigen::Index k = rank; k < n; ++k) {
     std::vector<std::size_t>& members = directions.emplace_back();
-    const Eigen::VectorXd moves = (inverse_norms.array() * V.col(k).array()).abs();
+    const Eigen::VectorXd moves = (inverse_lengths.array() * V.col(k).array()).abs();
     for (Eigen::Index j = 0; j < n; ++j) {
       if (std::abs(V(j, k)) > kFelt || moves(j) > kMoves * moves.maxCoeff())
         members.push_back(static_cast<std::size_t>(j));
@@ -152,7 +147,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   result.correlation = Eigen::MatrixXd::Identity(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     const auto u = static_cast<std::size_t>(j);
-    if (norms(j) == 0.0) {
+    if (inverse_lengths(j) == 0.0) {
       result.reason[u] = null_reason(problem, {}, u);
       continue;
     }

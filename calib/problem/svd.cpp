@@ -1,3 +1,0 @@
-#include "calib/problem/svd.hpp"
-
-template class Eigen::JacobiSVD<Eigen::MatrixXd>;
