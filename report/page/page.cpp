@@ -23,9 +23,9 @@ constexpr double kBytesPerPoint = 2.0 * 4.0 / 3.0;
 constexpr std::size_t kLeastPoints = 2000;
 
 /// Points of one series, so that all of them together keep the size of the page.
-std::size_t points_of(const std::vector<Table>& series) {
+std::size_t points_of(const Calibration& stored, std::size_t conditions) {
   std::size_t columns = 0;
-  for (const Table& table : series) columns += table.columns.size();
+  for (std::size_t i = 0; i < conditions; ++i) columns += stored.series(i)->columns.size();
   const auto points =
       static_cast<std::size_t>(static_cast<double>(kSeriesBytes) / kBytesPerPoint /
                                static_cast<double>(std::max<std::size_t>(1, columns)));
@@ -34,7 +34,7 @@ std::size_t points_of(const std::vector<Table>& series) {
 
 Json condition_views(const Calibration& stored, int threads) {
   const Json& conditions = stored.result.at("conditions");
-  const std::size_t points = points_of(stored.series);
+  const std::size_t points = points_of(stored, conditions.size());
   std::vector<Json> sections(conditions.size());
   const Json none;
   const auto all = stored.curves.find("conditions");
@@ -42,7 +42,7 @@ Json condition_views(const Calibration& stored, int threads) {
     const std::string id = text_of(conditions.at(i), "id");
     const bool found = all != stored.curves.end() && all->contains(id);
     sections[i] =
-        condition_view(conditions.at(i), stored.series[i], found ? all->at(id) : none, points);
+        condition_view(conditions.at(i), *stored.series(i), found ? all->at(id) : none, points);
   });
   return sections;
 }
@@ -68,8 +68,9 @@ StoredProvenance provenance_of(const Json& result, const std::string& file) {
   return provenance;
 }
 
-Part calibration_part(const ReadFile& read, const std::string& where, int threads) {
-  const Calibration stored = load_calibration(read, where, threads);
+Part calibration_part(const ReadFile& read, const std::string& where, int threads,
+                      const ReadTable& made) {
+  const Calibration stored = load_calibration(read, where, threads, made);
   const Json& result = stored.result;
   const bool is_fit = text_of(result, "schema") == "rigcal.fit/1";
   Part part;
@@ -197,7 +198,7 @@ struct Parts {
 };
 
 /// What is there; what cannot be read is named on the page, unless it is all there is.
-Parts parts_of(const ReadFile& read, const std::string& where, int threads) {
+Parts parts_of(const ReadFile& read, const std::string& where, int threads, const ReadTable& made) {
   Parts parts;
   std::exception_ptr first;
   const auto add = [&](bool is_there, const auto& make) {
@@ -211,7 +212,7 @@ Parts parts_of(const ReadFile& read, const std::string& where, int threads) {
   };
   const auto has = [&](const char* file) { return read(file).has_value(); };
   add(has("fit.json") || has("validation.json"),
-      [&] { return calibration_part(read, where, threads); });
+      [&] { return calibration_part(read, where, threads, made); });
   add(has("leak_table.json"), [&] { return leak_table_part(read, where); });
   add(has("diagnosis.json"), [&] { return diagnosis_part(read, where); });
   add(has("parity.json"), [&] { return parity_part(read, where); });
@@ -271,12 +272,13 @@ Json page_view(Parts parts) {
 
 }  // namespace
 
-std::string result_page(const ReadFile& read, const std::string& where, int threads) {
+std::string result_page(const ReadFile& read, const std::string& where, int threads,
+                        const ReadTable& made) {
   std::vector<Partial> sections;
   for (const std::string name :
        {"calibration", "leak_table", "diagnosis", "parity", "comparison", "batch"})
     sections.push_back({"section_" + name, asset(name + ".html")});
-  return render(asset("report.html"), page_view(parts_of(read, where, threads)), sections);
+  return render(asset("report.html"), page_view(parts_of(read, where, threads, made)), sections);
 }
 
 std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& read,
@@ -289,9 +291,10 @@ std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& rea
   with_json_errors(where, [&] {
     if (has("fit.json") || has("validation.json")) {
       const Calibration stored = load_calibration(read, where, 1);
-      for (std::size_t i = 0; i < stored.series.size(); ++i) {
-        const Json& condition = stored.result.at("conditions").at(i);
-        add(condition_figures(condition, stored.series[i]), text_of(condition, "id") + "_");
+      const Json& conditions = stored.result.at("conditions");
+      for (std::size_t i = 0; !stored.of_tables && i < conditions.size(); ++i) {
+        const Json& condition = conditions.at(i);
+        add(condition_figures(condition, *stored.series(i)), text_of(condition, "id") + "_");
       }
     }
     if (has("leak_table.json")) add(leak_table_figures(load_leak_table(read, where)));

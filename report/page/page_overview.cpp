@@ -140,7 +140,7 @@ Json overview_view(const Calibration& stored) {
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     const Json& condition = conditions.at(i);
     const std::string id = text_of(condition, "id");
-    const Plot plot = small_plot(condition, stored.series[i], channel);
+    const Plot plot = small_plot(condition, *stored.series(i), channel);
     view["cells"].push_back({{"id", id},
                              {"anchor", anchor(id)},
                              {"badge", badge(condition.at("verdict"))},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "common/error.hpp"
 #include "common/file.hpp"
@@ -41,7 +42,12 @@ void name_files(const std::vector<ResultFile>& files, StoredProvenance& provenan
 }
 
 void name_files(const std::vector<ResultFile>& files, Json& result) {
-  result["provenance"]["files"] = json_of(hashed(files));
+  name_files({}, files, result);
+}
+
+void name_files(std::vector<InputFile> named, const std::vector<ResultFile>& files, Json& result) {
+  for (InputFile& file : hashed(files)) named.push_back(std::move(file));
+  result["provenance"]["files"] = json_of(named);
 }
 
 ReadFile files_of_run(const ReadFile& read, const StoredProvenance& provenance,

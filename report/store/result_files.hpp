@@ -16,6 +16,9 @@ namespace rigcal::report {
 void name_files(const std::vector<ResultFile>& files, StoredProvenance& provenance);
 void name_files(const std::vector<ResultFile>& files, Json& result);
 
+/// The same, of files that are named already and then of `files`.
+void name_files(std::vector<InputFile> named, const std::vector<ResultFile>& files, Json& result);
+
 /// Reads the files of a result's own run.
 ///
 /// @param read    the folder, borrowed

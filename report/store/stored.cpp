@@ -61,7 +61,8 @@ Json load_json(const ReadFile& read, const std::string& where, const std::string
                   has_schema ? "\"schema\": " + json["schema"].dump() : "no schema", expected));
 }
 
-Calibration load_calibration(const ReadFile& read, const std::string& where, int threads) {
+Calibration load_calibration(const ReadFile& read, const std::string& where, int threads,
+                             const ReadTable& made) {
   Calibration stored;
   const bool has_fit = read("fit.json").has_value();
   const bool both = has_fit && read("validation.json").has_value();
@@ -75,12 +76,25 @@ Calibration load_calibration(const ReadFile& read, const std::string& where, int
   const ReadFile own = files_of_run(read, stored.result, where, stored.file);
   stored.curves = parsed(own, where, "residual_tests.json");
   const Json& conditions = stored.result.at("conditions");
-  stored.series.resize(conditions.size());
-  parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    const std::string id = checked_id(conditions.at(i), "id", path_in(where, stored.file));
-    const std::string name = "residuals/" + id + ".csv";
-    if (const auto text = own(name)) stored.series[i] = parse_table(*text, path_in(where, name));
+  std::vector<std::string> names;
+  for (const Json& condition : conditions)
+    names.push_back("residuals/" + checked_id(condition, "id", path_in(where, stored.file)) +
+                    ".csv");
+  if (made) {
+    stored.series = [made, names](std::size_t i) {
+      auto table = made(names[i]);
+      return table != nullptr ? table : std::make_shared<const Table>();
+    };
+    return stored;
+  }
+  const auto tables = std::make_shared<std::vector<Table>>(names.size());
+  parallel_for(names.size(), threads, [&](std::size_t i) {
+    if (const auto text = own(names[i]))
+      (*tables)[i] = parse_table(*text, path_in(where, names[i]));
   });
+  stored.series = [tables](std::size_t i) {
+    return std::shared_ptr<const Table>(tables, &(*tables)[i]);
+  };
   return stored;
 }
 
