@@ -10,7 +10,9 @@
 #include <atomic>
 #include <cerrno>
 #include <memory>
+#include <mutex>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "common/error.hpp"
@@ -29,61 +31,6 @@ std::string reason(int error_number) { return std::generic_category().message(er
 [[noreturn]] void fail_to_write(const fs::path& path, const std::string& why) {
   throw WriteError(fmt::format("{}: cannot be written: {}", path.string(), why));
 }
-
-/// A new file beside the final place; removed again unless it was renamed.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(const fs::path& target) : target_(target) {
-    // Process and running number keep writers of the same target apart; O_EXCL makes sure. What a
-    // killed process of the same number left, as in containers, where all are number 1, is passed
-    // over.
-    static std::atomic<unsigned> running_number{0};
-    for (int tries = 0; descriptor_ < 0; ++tries) {
-      const std::string name =
-          fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), running_number++);
-      path_ = target.parent_path() / name;
-      descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (descriptor_ < 0 && (errno != EEXIST || tries == kMostLeftovers))
-        fail_to_write(target, reason(errno));
-    }
-  }
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    if (!renamed_) ::unlink(path_.c_str());
-  }
-
-  void write(std::string_view content) const {
-    while (!content.empty()) {
-      const ssize_t written = ::write(descriptor_, content.data(), content.size());
-      if (written < 0 && errno == EINTR) continue;
-      if (written < 0) fail_to_write(target_, reason(errno));
-      content.remove_prefix(static_cast<std::size_t>(written));
-    }
-  }
-
-  /// Whole, but not in its place yet.
-  void finish() {
-    // Without fsync a power cut can leave the new name on an empty file.
-    if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS)
-      fail_to_write(target_, reason(errno));
-    const int closed = ::close(descriptor_);
-    descriptor_ = -1;
-    if (closed != 0) fail_to_write(target_, reason(errno));
-  }
-
-  void rename_into_place() {
-    if (::rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, reason(errno));
-    renamed_ = true;
-  }
-
- private:
-  fs::path target_;
-  fs::path path_;
-  int descriptor_ = -1;
-  bool renamed_ = false;
-};
 
 /// An open regular file.
 class RegularFile {
@@ -185,26 +132,121 @@ class Sha256 {
 
 }  // namespace
 
+/// A new file beside the final place; removed again unless it was renamed.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target) : target_(target) {
+    // Process and running number keep writers of the same target apart; O_EXCL makes sure. What a
+    // killed process of the same number left, as in containers, where all are number 1, is passed
+    // over.
+    static std::atomic<unsigned> running_number{0};
+    for (int tries = 0; descriptor_ < 0; ++tries) {
+      const std::string name =
+          fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), running_number++);
+      path_ = target.parent_path() / name;
+      descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (descriptor_ < 0 && (errno != EEXIST || tries == kMostLeftovers))
+        fail_to_write(target, reason(errno));
+    }
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    remove();
+  }
+
+  void write(std::string_view content) const {
+    while (!content.empty()) {
+      const ssize_t written = ::write(descriptor_, content.data(), content.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0) fail_to_write(target_, reason(errno));
+      content.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+
+  /// Whole, but not in its place yet.
+  void finish() {
+    // Without fsync a power cut can leave the new name on an empty file.
+    if (::fsync(descriptor_) != 0 && errno != EINVAL && errno != EROFS)
+      fail_to_write(target_, reason(errno));
+    const int closed = ::close(descriptor_);
+    descriptor_ = -1;
+    if (closed != 0) fail_to_write(target_, reason(errno));
+  }
+
+  /// Unless it is in its place already. Safe within a handler of signals.
+  void remove() const {
+    if (!renamed_) ::unlink(path_.c_str());
+  }
+
+  void rename_into_place() {
+    if (::rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, reason(errno));
+    renamed_ = true;
+  }
+
+ private:
+  fs::path target_;
+  fs::path path_;
+  int descriptor_ = -1;
+  bool renamed_ = false;
+};
+
 void write_file_atomically(const fs::path& path, std::string_view content) {
   write_files_atomically({{path, content}});
 }
 
 void write_files_atomically(const std::vector<std::pair<fs::path, std::string_view>>& files) {
+  FilesInWriting writing;
+  for (const auto& [path, content] : files) writing.add(path, content);
+  writing.rename_into_place();
+}
+
+namespace {
+
+/// Those that live, newest first. A signal handler can reach nothing but a global.
+FilesInWriting* in_writing = nullptr;
+std::mutex change_in_writing;
+
+}  // namespace
+
+FilesInWriting::FilesInWriting() {
   const Uninterrupted whole;
-  std::vector<std::unique_ptr<TemporaryFile>> written;
-  for (const auto& [path, content] : files) {
-    std::error_code error;
-    if (!path.has_filename() || fs::is_directory(path, error))
-      fail_to_write(path, "not the name of a file");
-    if (path.has_parent_path()) {
-      fs::create_directories(path.parent_path(), error);
-      if (error) fail_to_write(path, fmt::format("its folder cannot be made: {}", error.message()));
-    }
-    written.push_back(std::make_unique<TemporaryFile>(path));
-    written.back()->write(content);
-    written.back()->finish();
+  const std::lock_guard lock(change_in_writing);
+  next_ = std::exchange(in_writing, this);
+}
+
+FilesInWriting::~FilesInWriting() {
+  const Uninterrupted whole;
+  written_.clear();
+  const std::lock_guard lock(change_in_writing);
+  FilesInWriting** place = &in_writing;
+  while (*place != this) place = &(*place)->next_;
+  *place = next_;
+}
+
+void FilesInWriting::remove_all() {
+  for (const FilesInWriting* each = in_writing; each != nullptr; each = each->next_)
+    for (const auto& file : each->written_) file->remove();
+}
+
+void FilesInWriting::add(const fs::path& path, std::string_view content) {
+  const Uninterrupted whole;
+  std::error_code error;
+  if (!path.has_filename() || fs::is_directory(path, error))
+    fail_to_write(path, "not the name of a file");
+  if (path.has_parent_path()) {
+    fs::create_directories(path.parent_path(), error);
+    if (error) fail_to_write(path, fmt::format("its folder cannot be made: {}", error.message()));
   }
-  for (const auto& file : written) file->rename_into_place();
+  written_.push_back(std::make_unique<TemporaryFile>(path));
+  written_.back()->write(content);
+  written_.back()->finish();
+}
+
+void FilesInWriting::rename_into_place() {
+  const Uninterrupted whole;
+  for (const auto& file : written_) file->rename_into_place();
 }
 
 std::string read_file(const fs::path& path, std::size_t most_bytes, const std::string& expected) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +20,33 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view c
 /// The same for several files: all are written before the first takes its place.
 void write_files_atomically(
     const std::vector<std::pair<std::filesystem::path, std::string_view>>& files);
+
+class TemporaryFile;
+
+/// Files on their way: each is written beside its place when it is added, and all are renamed into
+/// their places together. What was not renamed goes with the object.
+class FilesInWriting {
+ public:
+  FilesInWriting();
+  FilesInWriting(const FilesInWriting&) = delete;
+  FilesInWriting& operator=(const FilesInWriting&) = delete;
+  ~FilesInWriting();
+
+  /// Creates missing folders.
+  /// @throws WriteError  with path and reason
+  void add(const std::filesystem::path& path, std::string_view content);
+
+  /// @throws WriteError  with path and reason
+  void rename_into_place();
+
+  /// Removes what no object has renamed yet, where the process ends before their destructors can.
+  /// Safe within a handler of signals, as long as there is no Uninterrupted.
+  static void remove_all();
+
+ private:
+  std::vector<std::unique_ptr<TemporaryFile>> written_;
+  FilesInWriting* next_ = nullptr;
+};
 
 /// The content of a regular file. Never waits for a pipe.
 ///

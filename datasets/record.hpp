@@ -60,7 +60,7 @@ struct Series {
   double sd_of_mean = std::numeric_limits<double>::quiet_NaN();
   int repeats = 1;  ///< repeats that carry this channel
   /// Each repeat minus the mean, NaN where it has no sample, shape (repeats, samples); empty unless
-  /// asked for.
+  /// asked for, and of a reference that all repeats share.
   std::vector<std::vector<double>> deviations;
 };
 

@@ -6,10 +6,10 @@
 #include <complex>
 #include <limits>
 #include <stdexcept>
-#include <unsupported/Eigen/FFT>
 #include <utility>
 
 #include "metrics/distributions.hpp"
+#include "metrics/shared_transform.hpp"
 
 namespace rigcal::metrics {
 namespace {
@@ -46,9 +46,8 @@ std::vector<Complex> padded_transform(std::vector<double> values) {
   std::size_t length = 1;
   while (length < 2 * values.size()) length *= 2;
   values.resize(length, 0.0);
-  Eigen::FFT<double> fft;
   std::vector<Complex> result;
-  fft.fwd(result, values);
+  shared_transform().fwd(result, values);
   return result;
 }
 
@@ -56,9 +55,8 @@ std::vector<Complex> padded_transform(std::vector<double> values) {
 std::vector<double> lagged_products(const std::vector<Complex>& a, const std::vector<Complex>& b) {
   std::vector<Complex> product(a.size());
   for (std::size_t i = 0; i < a.size(); ++i) product[i] = a[i] * std::conj(b[i]);
-  Eigen::FFT<double> fft;
   std::vector<double> result;
-  fft.inv(result, product);
+  shared_transform().inv(result, product);
   return result;
 }
 
@@ -96,14 +94,16 @@ Autocorrelation test_autocorrelation(const std::vector<double>& e, const std::ve
   return result;
 }
 
+/// @param transform  of e, padded
 std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>& e,
+                                                       const std::vector<Complex>& transform,
                                                        const std::vector<double>& u,
                                                        std::size_t lags, double effective,
                                                        double interval_s) {
   const double scale =
       static_cast<double>(e.size()) * std::sqrt(mean_square(e)) * std::sqrt(mean_square(u));
   if (!(scale > 0.0) || !std::isfinite(scale)) return std::nullopt;
-  const std::vector<double> products = lagged_products(padded_transform(e), padded_transform(u));
+  const std::vector<double> products = lagged_products(transform, padded_transform(u));
   CrossCorrelation result;
   result.band = white_band(effective);
   result.values.resize(2 * lags + 1);
@@ -139,9 +139,8 @@ Lines line_powers(const std::vector<double>& e) {
     return n == 1;
   };
   while (!smooth(values.size())) values.pop_back();
-  Eigen::FFT<double> fft;
   std::vector<Complex> spectrum;
-  fft.fwd(spectrum, values);
+  shared_transform().fwd(spectrum, values);
   std::vector<double> power(values.size() / 2);
   for (std::size_t k = 1; k <= power.size(); ++k) power[k - 1] = std::norm(spectrum[k]);
   return {std::move(power), 1.0 / static_cast<double>(values.size())};
@@ -292,9 +291,9 @@ ResidualTests residual_tests(std::span<const double> residual, std::span<const d
   result.autocorrelation = test_autocorrelation(e, rho, sample_interval_s);
   result.effective_samples = effective_sample_size(rho);
   if (!input.empty()) {
-    result.cross_correlation =
-        test_cross_correlation(e, centred(input), result.autocorrelation.values.size() - 1,
-                               result.effective_samples, sample_interval_s);
+    result.cross_correlation = test_cross_correlation(e, transform, centred(input),
+                                                      result.autocorrelation.values.size() - 1,
+                                                      result.effective_samples, sample_interval_s);
   }
   result.periodogram = test_periodogram(e, sample_interval_s);
   result.normality = test_normality(e, result.effective_samples);

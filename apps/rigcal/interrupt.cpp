@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "common/error.hpp"
+#include "common/file.hpp"
 #include "common/uninterrupted.hpp"
 #include "report/store/folder.hpp"
 
@@ -20,6 +21,7 @@ static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not
 /// Nothing in here locks or asks for memory: the signal may have come in the middle of either.
 [[noreturn]] void end_at_once() {
   constexpr std::string_view kWords = "rigcal: stopped by a signal before its end\n";
+  FilesInWriting::remove_all();
   report::HeldFolder::remove_if_empty();
   if (::write(STDERR_FILENO, kWords.data(), kWords.size()) < 0) {
     // Nobody is left to be told.

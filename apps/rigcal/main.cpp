@@ -17,6 +17,7 @@
 #include "apps/rigcal/processes.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
+#include "common/file.hpp"
 #include "common/memory.hpp"
 #include "common/suggest.hpp"
 #include "common/uninterrupted.hpp"
@@ -182,6 +183,7 @@ ExitCode complain(ExitCode code, const std::string& message) {
 }
 
 [[noreturn]] void end(std::string_view words) {
+  rigcal::FilesInWriting::remove_all();
   rigcal::report::HeldFolder::remove_if_empty();
   std::fputs(words.data(), stderr);
   std::_Exit(static_cast<int>(ExitCode::internal));

@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <functional>
+#include <memory>
+
 #include "apps/rigcal/result_page.hpp"
+#include "common/file.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
@@ -26,25 +30,47 @@ std::string fitted_toml(const CampaignOptions& options, const report::Result& re
   return "# status: stopped: the best so far, not a fit that converged\n" + text;
 }
 
-/// @param stored  the result, to which the names of its files are added
-std::vector<report::ResultFile> files_of(const CampaignOptions& options,
-                                         const report::Result& result, report::StoredFit& stored) {
-  const bool is_fit = result.kind == report::ResultKind::fit;
-  std::vector<report::ResultFile> files;
-  for (const calib::ConditionScore& score : result.fit.conditions) {
-    files.push_back({std::filesystem::path("residuals") / (score.id + ".csv"),
-                     report::residuals_csv(result, score)});
-  }
-  // A fit that failed early scored nothing; its files say so all the same.
+std::filesystem::path residual_file(const std::string& condition) {
+  return std::filesystem::path("residuals") / (condition + ".csv");
+}
+
+/// Scores whose residuals are written. A fit that failed early scored nothing; its files say so all
+/// the same.
+std::vector<calib::ConditionScore> unscored(const report::Result& result) {
+  std::vector<calib::ConditionScore> scores;
   for (const datasets::Condition& condition : result.campaign.conditions) {
     const bool taken =
         condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
     if (!taken || !result.fit.conditions.empty()) continue;
-    calib::ConditionScore score;
-    score.id = condition.id;
-    files.push_back({std::filesystem::path("residuals") / (condition.id + ".csv"),
-                     report::residuals_csv(result, score)});
+    scores.emplace_back().id = condition.id;
   }
+  return scores;
+}
+
+/// Before anything is made.
+/// @throws UsageError  one of the files would replace an input
+void require_inputs_kept(const CampaignOptions& options, const report::Result& result) {
+  std::vector<std::filesystem::path> files{
+      "scorecard.csv",
+      "parameters.csv",
+      "residual_tests.json",
+      "fitted.toml",
+      "report.html",
+      result.kind == report::ResultKind::fit ? "fit.json" : "validation.json"};
+  for (const datasets::Condition& condition : result.campaign.conditions)
+    files.push_back(residual_file(condition.id));
+  report::require_inputs_kept(options.out, files, result.provenance.inputs);
+}
+
+/// Every file but the residuals.
+/// @param residuals  their names, which the result gives with those of the other files
+/// @param stored     the result, to which they are added
+std::vector<report::ResultFile> files_of(const CampaignOptions& options,
+                                         const report::Result& result,
+                                         const std::vector<report::InputFile>& residuals,
+                                         report::StoredFit& stored) {
+  const bool is_fit = result.kind == report::ResultKind::fit;
+  std::vector<report::ResultFile> files;
   files.push_back({"scorecard.csv", report::scorecard_csv(result)});
   files.push_back(
       {"parameters.csv", report::parameters_csv(stored.status, stored.message, stored.parameters)});
@@ -53,11 +79,16 @@ std::vector<report::ResultFile> files_of(const CampaignOptions& options,
   if (is_fit && report::status_of(result.fit) != FitStatus::failed) {
     files.push_back({"fitted.toml", fitted_toml(options, result)});
   }
-  name_files(files, stored.provenance);
+  report::name_files(residuals, files, stored.provenance);
   // Last, so that whoever finds it finds the others too.
   files.push_back(
       {is_fit ? "fit.json" : "validation.json", report::json_text(report::json_of(stored))});
-  add_page(options.out, options.threads, files);
+  add_page(options.out, options.threads, files, [&result](const std::filesystem::path& path) {
+    for (const calib::ConditionScore& score : result.fit.conditions)
+      if (residual_file(score.id) == path)
+        return std::make_shared<const report::Table>(report::residual_table(result, score));
+    return std::shared_ptr<const report::Table>();
+  });
   return files;
 }
 
@@ -96,9 +127,21 @@ void add_strict_option(CLI::App& verb, bool& strict) {
 ExitCode write_and_print(const CampaignOptions& options, const report::Result& result,
                          bool strict) {
   report::StoredFit stored = report::stored(result);
-  const std::vector<report::ResultFile> files = files_of(options, result, stored);
   const ExitCode code = exit_code_of(stored.status, stored.verdict, strict);
-  report::write_results(options.out, files, result.provenance.inputs);
+  const std::vector<calib::ConditionScore> early = unscored(result);
+  require_inputs_kept(options, result);
+  report::ResultsInWriting writing(options.out, result.provenance.inputs);
+  std::vector<report::InputFile> residuals;
+  for (const auto& scores : {std::cref(result.fit.conditions), std::cref(early)}) {
+    for (const calib::ConditionScore& score : scores.get()) {
+      const std::string text = report::residuals_csv(result, score);
+      residuals.push_back({residual_file(score.id).generic_string(), sha256_of_text(text)});
+      writing.add(residual_file(score.id), text);
+    }
+  }
+  const std::vector<report::ResultFile> files = files_of(options, result, residuals, stored);
+  for (const report::ResultFile& file : files) writing.add(file.path, file.content);
+  writing.move_into_place();
   if (result.kind == report::ResultKind::fit && code == ExitCode::no_result) {
     report::remove_stale(options.out / "fitted.toml");
   }

@@ -73,19 +73,31 @@ model::SimulationOptions simulation_options(const Problem& problem, std::size_t 
   return options;
 }
 
-ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
-                                       std::span<const double> z, const std::atomic<bool>* cancel,
-                                       ConditionRows* rows, const Fidelity& fidelity) {
+model::Simulation simulate_condition(const Problem& problem, std::size_t condition,
+                                     std::span<const double> z, const std::atomic<bool>* cancel,
+                                     const Fidelity& fidelity) {
   const ProblemCondition& data = problem.conditions[condition];
-  const datasets::Campaign& campaign = *problem.campaign;
   auto options =
       simulation_options(problem, condition, problem.tolerance_of(condition, fidelity), cancel);
   if (fidelity.exact) options.sensitivity_looseness = kLoosenessNearOptimum;
-  const bool slopes_too = fidelity.derivatives;
-  const model::Simulation run = model::simulate(
-      data.rig, problem.values_at(condition, z), slopes_too ? data.free : std::vector<int>(),
-      data.inputs, data.fit_times(fidelity), data.outputs, options);
+  return model::simulate(data.rig, problem.values_at(condition, z),
+                         fidelity.derivatives ? data.free : std::vector<int>(), data.inputs,
+                         data.fit_times(fidelity), data.outputs, options);
+}
 
+ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condition,
+                                       std::span<const double> z, const std::atomic<bool>* cancel,
+                                       ConditionRows* rows, const Fidelity& fidelity) {
+  return evaluate_run(problem, condition, z,
+                      simulate_condition(problem, condition, z, cancel, fidelity), rows, fidelity);
+}
+
+ConditionEvaluation evaluate_run(const Problem& problem, std::size_t condition,
+                                 std::span<const double> z, const model::Simulation& run,
+                                 ConditionRows* rows, const Fidelity& fidelity) {
+  const ProblemCondition& data = problem.conditions[condition];
+  const datasets::Campaign& campaign = *problem.campaign;
+  const bool slopes_too = fidelity.derivatives;
   ConditionEvaluation result;
   result.status = run.status;
   result.steps = run.steps + run.rejected_steps;

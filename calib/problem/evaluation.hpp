@@ -67,6 +67,19 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
                                        ConditionRows* rows = nullptr,
                                        const Fidelity& fidelity = Fidelity::full);
 
+/// The simulation that evaluate_condition() looks at. It depends on what was measured only where
+/// that drives the model, so that the same one serves other measurements of the outputs.
+model::Simulation simulate_condition(const Problem& problem, std::size_t condition,
+                                     std::span<const double> z, const std::atomic<bool>* cancel,
+                                     const Fidelity& fidelity = Fidelity::full);
+
+/// What evaluate_condition() makes of it, to the same bits.
+/// @param run  at `z` and this fidelity
+ConditionEvaluation evaluate_run(const Problem& problem, std::size_t condition,
+                                 std::span<const double> z, const model::Simulation& run,
+                                 ConditionRows* rows = nullptr,
+                                 const Fidelity& fidelity = Fidelity::full);
+
 /// All conditions at one point.
 struct Evaluation {
   std::vector<double> z;

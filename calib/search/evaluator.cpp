@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "common/parallel.hpp"
 
@@ -38,7 +39,9 @@ Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int th
   parallel_for(problem.conditions.size(), threads, [&](std::size_t i) {
     ConditionRows* const rows = options.rows != nullptr ? &(*options.rows)[i] : nullptr;
     evaluation.conditions[i] =
-        evaluate_condition(problem, i, z, options.cancel, rows, options.fidelity);
+        options.runs != nullptr
+            ? evaluate_run(problem, i, z, (*options.runs)[i], rows, options.fidelity)
+            : evaluate_condition(problem, i, z, options.cancel, rows, options.fidelity);
   });
   evaluation.ok = std::all_of(evaluation.conditions.begin(), evaluation.conditions.end(),
                               [](const ConditionEvaluation& each) { return each.ok(); });
@@ -105,6 +108,12 @@ void Evaluator::keep_best() {
 void Evaluator::begin_start(int number) {
   start_ = number;
   best_ = {};
+}
+
+void Evaluator::begin_with(Evaluation evaluation) {
+  last_ = std::move(evaluation);
+  record(last_);
+  keep_best();
 }
 
 void Evaluator::set_fidelity(const Fidelity& fidelity) {

@@ -29,6 +29,8 @@ struct EvaluationOptions {
   Fidelity fidelity = Fidelity::full;
   const std::atomic<bool>* cancel = nullptr;
   std::vector<ConditionRows>* rows = nullptr;  ///< if not null, receives those of each condition
+  /// If not null, the simulations at that point, which are then not made anew.
+  const std::vector<model::Simulation>* runs = nullptr;
 };
 
 /// Every condition at z, whatever limits say.
@@ -60,6 +62,9 @@ class Evaluator {
   /// Evaluates even after cancellation or an exhausted budget, so that a stopped fit is still
   /// scored by whole records.
   const Evaluation& conclude(std::span<const double> z);
+
+  /// Begins with a point that was evaluated elsewhere, and counts it.
+  void begin_with(Evaluation evaluation);
 
   /// Sets the fidelity of the simulations to come, and clears the cache if it is another one.
   void set_fidelity(const Fidelity& fidelity);

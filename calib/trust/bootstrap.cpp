@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <mutex>
+#include <vector>
 
 #include "calib/search/search.hpp"
 #include "common/bytes.hpp"
@@ -247,8 +249,16 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   const std::optional<long> allowed = left.evaluations_left();
   std::vector<long> taken(replicates, 0);  // evaluations; 0: not made to its end
   std::atomic<int> done = 0;
+  // Every replicate begins at the optimum, where it is the same simulation for all of them.
+  std::once_flag simulated;
+  std::vector<model::Simulation> runs(problem.conditions.size());
+  const auto simulate = [&] {
+    for (std::size_t i = 0; i < runs.size(); ++i)
+      runs[i] = simulate_condition(problem, i, optimum.z, left.cancel());
+  };
   const auto make = [&](std::size_t b) -> TaskResult {
     if (left.spent()) return {{}, false};
+    std::call_once(simulated, simulate);
     Problem drawn = problem;
     for (std::size_t i = 0; i < drawn.conditions.size(); ++i) {
       auto stream = datasets::random_stream(
@@ -258,6 +268,8 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
                                                                 drawn.conditions[i]);
     }
     Evaluator evaluator(drawn, {1, left.cancel(), left.deadline(), {}});
+    evaluator.begin_with(
+        evaluate_at(drawn, optimum.z, 1, {evaluator.fidelity(), nullptr, nullptr, &runs}));
     const auto solved = Search(drawn, evaluator, quiet, static_cast<int>(b) + 1).polish(optimum.z);
     left.count(evaluator.counters().evaluations);
     if (solved.status == FitStatus::stopped && evaluator.aborted()) return {{}, false};

@@ -67,13 +67,17 @@ std::vector<EqualRun> clipped_runs(std::span<const double> x, std::span<const do
   if (runs.size() < 2 || drive.size() != x.size()) return found;
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   const double extreme = end == RangeEnd::lowest ? *low : *high;
+  const double shortest = static_cast<double>(kShortestClip) * typical_length(runs, *low, *high);
+  std::vector<EqualRun> long_enough;
+  for (const EqualRun& run : runs)
+    if (run.value == extreme && !(static_cast<double>(run.length) < shortest))
+      long_enough.push_back(run);
+  if (long_enough.empty()) return found;  // as of most signals: the rest costs more than all above
   const bool noisy = shows_noise(runs, *low, *high);
   const double step = typical_step(runs);
   const double smallest = resolution(runs);
   const bool cut = noise_is_cut(runs, extreme, smallest);
-  const double shortest = static_cast<double>(kShortestClip) * typical_length(runs, *low, *high);
-  for (const EqualRun& run : runs) {
-    if (run.value != extreme || static_cast<double>(run.length) < shortest) continue;
+  for (const EqualRun& run : long_enough) {
     if (cut) {
       found.push_back(run);
       continue;

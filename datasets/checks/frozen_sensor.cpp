@@ -25,12 +25,15 @@ std::vector<EqualRun> frozen_runs(std::span<const double> x, std::span<const dou
   std::vector<EqualRun> found;
   const std::vector<EqualRun> runs = equal_runs(x);
   if (runs.size() < 2 || drive.size() != x.size()) return found;
+  std::vector<EqualRun> long_enough;
+  for (const EqualRun& run : runs)
+    if (!(static_cast<double>(run.length) <
+          static_cast<double>(kShortestFreeze) * typical_length(x.size(), runs.size(), run)))
+      long_enough.push_back(run);
+  if (long_enough.empty()) return found;  // as of most signals: the rest costs more than all above
   const bool noisy = shows_noise(runs, -kInfinity, kInfinity);
   const double least = std::max(typical_step(runs), kStandSteps * resolution(runs));
-  for (const EqualRun& run : runs) {
-    if (static_cast<double>(run.length) <
-        static_cast<double>(kShortestFreeze) * typical_length(x.size(), runs.size(), run))
-      continue;
+  for (const EqualRun& run : long_enough) {
     if ((noisy && drive_motion(drive, run) >= kFreezeDriveMotion) ||
         (drive_passages(drive, run) >= kFreezePassages && cuts_a_motion(x, run, least)))
       found.push_back(run);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
-#include <unsupported/Eigen/FFT>
+
+#include "metrics/shared_transform.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -32,7 +33,6 @@ Spectrum spectrum_of(const std::vector<std::vector<double>>& deviations, double 
   result.step_hz = rate_hz / static_cast<double>(length);
   result.length = static_cast<double>(length);
   result.samples = static_cast<double>(samples);
-  Eigen::FFT<double> fft;
   std::vector<std::complex<double>> transform;
   for (std::vector<double> row : deviations) {
     for (double& value : row) {
@@ -40,7 +40,7 @@ Spectrum spectrum_of(const std::vector<std::vector<double>>& deviations, double 
       result.squares += value * value;
     }
     row.resize(length, 0.0);
-    fft.fwd(transform, row);
+    metrics::shared_transform().fwd(transform, row);
     for (std::size_t k = 0; k < result.power.size(); ++k)
       result.power[k] += std::norm(transform[k]);
   }

@@ -137,12 +137,24 @@ double common_offset(const std::vector<double>& offsets, double smallest) {
   return sum / count;
 }
 
-/// Delay of one repeat against another, in samples of their own counting.
-std::optional<Lag> lag_between(const Repeat& a, const Repeat& b, Channel channel) {
-  const auto& x = a.values.at(channel);
-  const auto& y = b.values.at(channel);
-  const auto near = find_lag(x, y, kSearchSamples);
-  return near ? near : find_lag(x, y, 10 * kSearchSamples);
+/// Delay of each repeat against one of them, in samples of their own counting; empty where one of
+/// them cannot be told.
+std::optional<std::vector<Lag>> lags_against(std::size_t centre, const std::vector<Repeat>& repeats,
+                                             Channel channel) {
+  std::vector<const std::vector<double>*> others;
+  for (std::size_t r = 0; r < repeats.size(); ++r)
+    if (r != centre) others.push_back(&repeats[r].values.at(channel));
+  const std::vector<double>& x = repeats[centre].values.at(channel);
+  const auto near = find_lags(x, others, kSearchSamples);
+  std::vector<Lag> lags;
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    if (k == centre) lags.emplace_back();
+    const auto lag = near[k] ? near[k] : find_lag(x, *others[k], 10 * kSearchSamples);
+    if (!lag) return std::nullopt;
+    lags.push_back(*lag);
+  }
+  if (centre == others.size()) lags.emplace_back();
+  return lags;
 }
 
 struct Offsets {
@@ -155,16 +167,15 @@ std::optional<Offsets> correlate_offsets(const std::vector<Repeat>& repeats) {
   const double dt = interval(repeats.front());
   for (const Channel channel : alignment_channels(repeats)) {
     const std::size_t centre = central_repeat(repeats, channel);
+    const auto lags = lags_against(centre, repeats, channel);
+    if (!lags) continue;
     Offsets offsets;
     for (std::size_t r = 0; r < repeats.size(); ++r) {
-      const auto lag = r == centre ? Lag{} : lag_between(repeats[centre], repeats[r], channel);
-      if (!lag) break;
       // Samples count from each file's first; a time column that starts later says so already.
-      offsets.seconds.push_back(lag->samples * dt + repeats[r].time_s.front() -
+      offsets.seconds.push_back((*lags)[r].samples * dt + repeats[r].time_s.front() -
                                 repeats[centre].time_s.front());
-      offsets.sd_s.push_back(lag->sd_samples * dt);
+      offsets.sd_s.push_back((*lags)[r].sd_samples * dt);
     }
-    if (offsets.seconds.size() < repeats.size()) continue;
     // The central repeat is no better known than the others.
     offsets.sd_s[centre] = *std::max_element(offsets.sd_s.begin(), offsets.sd_s.end());
     const double common = common_offset(offsets.seconds, dt);

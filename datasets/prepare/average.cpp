@@ -87,6 +87,10 @@ Series moments(const Stack& stack, Span span) {
   Series series;
   series.repeats = static_cast<int>(stack.rows.size());
   const bool several = stack.rows.size() > 1;
+  // At their size: what grows keeps up to twice as much, for as long as the record lives.
+  series.mean.reserve(span.end - span.begin);
+  series.count.reserve(span.end - span.begin);
+  if (several) series.sd.reserve(span.end - span.begin);
   double sum_of_variances = 0.0;
   long with_variance = 0;
   for (std::size_t i = span.begin; i < span.end; ++i) {
@@ -122,10 +126,17 @@ std::vector<std::vector<double>> deviations_from(const Stack& stack, const Serie
   std::vector<std::vector<double>> result;
   for (const auto& row : stack.rows) {
     std::vector<double>& own = result.emplace_back();
+    own.reserve(span.end - span.begin);
     for (std::size_t i = span.begin; i < span.end; ++i)
       own.push_back(row[i] - series.mean[i - span.begin]);
   }
   return result;
+}
+
+bool any_differs(const std::vector<std::vector<double>>& deviations) {
+  return std::any_of(deviations.begin(), deviations.end(), [](const auto& own) {
+    return std::any_of(own.begin(), own.end(), [](double x) { return x != 0.0; });
+  });
 }
 
 /// Fills in the standard deviations that a fit divides by.
@@ -345,7 +356,8 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
     if (stack.rows.size() > 1) {
       auto deviations = deviations_from(stack, series, span);
       warn_of_noise(deviations, series, channel, options, repeats, record.warnings);
-      if (options.keep_deviations) series.deviations = std::move(deviations);
+      if (options.keep_deviations && (channel != Channel::reference || any_differs(deviations)))
+        series.deviations = std::move(deviations);
     }
     if (repeats.size() == 1) series.repeats = options.repeats_averaged;
     record.channels.emplace(channel, std::move(series));

@@ -44,6 +44,7 @@ double resolution(const std::vector<EqualRun>& runs) {
 
 double typical_step(const std::vector<EqualRun>& runs) {
   std::vector<double> steps;
+  steps.reserve(runs.size());
   for (std::size_t k = 1; k < runs.size(); ++k)
     steps.push_back(std::abs(runs[k].value - runs[k - 1].value));
   return steps.empty() ? 0.0 : median(std::move(steps));

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <utility>
+
+#include "datasets/prepare/lag_sums.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -16,17 +19,29 @@ constexpr int kMargin = 4;
 // each, that noise decides which is the nearest.
 constexpr double kFastest = 0.35;
 
-Eigen::VectorXd without_mean(const std::vector<double>& x) {
-  const Eigen::Map<const Eigen::VectorXd> map(x.data(), static_cast<Eigen::Index>(x.size()));
-  return map.array() - map.mean();
-}
+constexpr int kShortest = 64;
 
-/// Sums of the first i values, i = 0..n.
-Eigen::VectorXd running_sum(const Eigen::VectorXd& x) {
-  Eigen::VectorXd sum(x.size() + 1);
-  sum[0] = 0.0;
-  for (Eigen::Index i = 0; i < x.size(); ++i) sum[i + 1] = sum[i] + x[i];
-  return sum;
+/// A record, and the sums of its first i values and of their squares, i = 0..n.
+struct Trace {
+  explicit Trace(std::vector<double> values)
+      : x(std::move(values)), sum(x.size() + 1), squares(x.size() + 1) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      sum[i + 1] = sum[i] + x[i];
+      squares[i + 1] = squares[i] + x[i] * x[i];
+    }
+  }
+
+  std::vector<double> x;
+  std::vector<double> sum;
+  std::vector<double> squares;
+};
+
+Trace without_mean(const std::vector<double>& x) {
+  const Eigen::Map<const Eigen::VectorXd> map(x.data(), static_cast<Eigen::Index>(x.size()));
+  const double mean = x.empty() ? 0.0 : map.mean();
+  std::vector<double> centred(x.size());
+  std::transform(x.begin(), x.end(), centred.begin(), [&](double value) { return value - mean; });
+  return Trace(std::move(centred));
 }
 
 /// Pearson's correlation of the overlap at each lag of a range; 0 where one side is constant.
@@ -38,27 +53,41 @@ struct Correlation {
   double at(int lag) const { return r[static_cast<std::size_t>(lag - first_lag)]; }
 };
 
-Correlation correlate(const Eigen::VectorXd& a, const Eigen::VectorXd& b, int first_lag,
-                      int last_lag) {
-  const Eigen::VectorXd sum_a = running_sum(a);
-  const Eigen::VectorXd sum_b = running_sum(b);
-  const Eigen::VectorXd sum_aa = running_sum(a.cwiseAbs2());
-  const Eigen::VectorXd sum_bb = running_sum(b.cwiseAbs2());
+/// Sums of products at each lag of a range.
+std::vector<double> products(const Trace& a, const Trace& b, int first_lag, int last_lag) {
+  std::vector<double> result;
+  if (first_lag < 0) {
+    result = shifted_products(b.x, a.x, std::max(1, -last_lag), -first_lag);
+    std::reverse(result.begin(), result.end());
+  }
+  if (last_lag >= 0) {
+    const auto late = shifted_products(a.x, b.x, std::max(0, first_lag), last_lag);
+    result.insert(result.end(), late.begin(), late.end());
+  }
+  return result;
+}
+
+Correlation correlate(const Trace& a, const Trace& b, int first_lag, int last_lag) {
+  const std::vector<double> product = products(a, b, first_lag, last_lag);
+  const auto size_a = static_cast<long>(a.x.size());
+  const auto size_b = static_cast<long>(b.x.size());
+  const auto over = [](const std::vector<double>& sums, long begin, long end) {
+    return sums[static_cast<std::size_t>(end)] - sums[static_cast<std::size_t>(begin)];
+  };
   Correlation result{first_lag, {}};
   for (int lag = first_lag; lag <= last_lag; ++lag) {
-    const Eigen::Index begin = std::max<Eigen::Index>(0, -lag);
-    const Eigen::Index end = std::min<Eigen::Index>(a.size(), b.size() - lag);
+    const long begin = std::max(0, -lag);
+    const long end = std::min(size_a, size_b - lag);
     const auto n = static_cast<double>(end - begin);
-    const double total_a = sum_a[end] - sum_a[begin];
-    const double total_b = sum_b[end + lag] - sum_b[begin + lag];
-    const double variance_a = sum_aa[end] - sum_aa[begin] - total_a * total_a / n;
-    const double variance_b = sum_bb[end + lag] - sum_bb[begin + lag] - total_b * total_b / n;
+    const double total_a = over(a.sum, begin, end);
+    const double total_b = over(b.sum, begin + lag, end + lag);
+    const double variance_a = over(a.squares, begin, end) - total_a * total_a / n;
+    const double variance_b = over(b.squares, begin + lag, end + lag) - total_b * total_b / n;
     const double covariance =
-        a.segment(begin, end - begin).dot(b.segment(begin + lag, end - begin)) -
-        total_a * total_b / n;
+        product[static_cast<std::size_t>(lag - first_lag)] - total_a * total_b / n;
     // Rounding leaves a trace of the whole record's energy in a constant overlap.
     const bool constant =
-        variance_a <= 1e-12 * sum_aa[a.size()] || variance_b <= 1e-12 * sum_bb[b.size()];
+        variance_a <= 1e-12 * a.squares.back() || variance_b <= 1e-12 * b.squares.back();
     result.r.push_back(constant ? 0.0 : covariance / std::sqrt(variance_a * variance_b));
   }
   return result;
@@ -128,7 +157,7 @@ int half_width(const Correlation& c, int peak) {
 }
 
 /// Gaussian smoothing, without the ends that the kernel does not cover.
-Eigen::VectorXd smooth(const Eigen::VectorXd& x, double sd_samples) {
+Trace smooth(const Trace& trace, double sd_samples) {
   const auto reach = static_cast<Eigen::Index>(std::ceil(4.0 * sd_samples));
   Eigen::VectorXd kernel(2 * reach + 1);
   for (Eigen::Index j = -reach; j <= reach; ++j) {
@@ -136,10 +165,7 @@ Eigen::VectorXd smooth(const Eigen::VectorXd& x, double sd_samples) {
     kernel[j + reach] = std::exp(-0.5 * z * z);
   }
   kernel /= kernel.sum();
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(x.size() - 2 * reach);
-  for (Eigen::Index j = 0; j < kernel.size(); ++j)
-    result += kernel[j] * x.segment(j, result.size());
-  return result;
+  return Trace(weighted_sums(trace.x, {kernel.data(), static_cast<std::size_t>(kernel.size())}));
 }
 
 /// Slope and curvature of the correlation between samples, interpolated by a Gaussian of one sample
@@ -162,13 +188,21 @@ Shape shape_at(const Correlation& c, double lag) {
   return shape;
 }
 
-/// The lag near `peak` after both records were smoothed; empty where there is no maximum.
-/// @param hill  lags over which the peak stretches, @param r  its height
-std::optional<Lag> refine(const Eigen::VectorXd& x, const Eigen::VectorXd& y, int peak, int hill,
-                          double r, double smoothing) {
-  const int reach = std::clamp(hill, 1, static_cast<int>(std::ceil(smoothing)) + 1);
-  const Correlation c = correlate(smooth(x, smoothing), smooth(y, smoothing),
-                                  peak - reach - kMargin - 1, peak + reach + kMargin + 1);
+/// The peak of the correlation that counts.
+struct Coarse {
+  int peak = 0;       ///< its lag
+  int hill = 0;       ///< lags over which it stretches
+  double height = 0;  ///< of it
+  int shorter = 0;    ///< samples of the shorter record
+};
+
+/// The lag near the peak, of records that were smoothed; empty where there is no maximum.
+std::optional<Lag> refine(const Trace& x, const Trace& y, const Coarse& coarse, double smoothing) {
+  const int peak = coarse.peak;
+  const int reach = std::clamp(coarse.hill, 1, static_cast<int>(std::ceil(smoothing)) + 1);
+  const auto left = static_cast<int>(std::min(x.x.size(), y.x.size()));
+  if (left <= std::abs(peak) + reach + kMargin + 1) return std::nullopt;  // no overlap
+  const Correlation c = correlate(x, y, peak - reach - kMargin - 1, peak + reach + kMargin + 1);
   int top = peak;
   for (int lag = peak - reach; lag <= peak + reach; ++lag)
     if (c.at(lag) > c.at(top)) top = lag;
@@ -183,44 +217,69 @@ std::optional<Lag> refine(const Eigen::VectorXd& x, const Eigen::VectorXd& y, in
   const double curvature = -shape_at(c, samples).curvature;
   if (!(curvature > 0.0)) return std::nullopt;
   // Noise against signal, then noise against noise behind the smoothing of both records.
-  const double noise_per_sample = std::max(0.0, 1.0 - r) / curvature;
-  const auto n = static_cast<double>(std::min(x.size(), y.size()));
+  const double noise_per_sample = std::max(0.0, 1.0 - coarse.height) / curvature;
+  const auto n = static_cast<double>(coarse.shorter);
   const double width = std::sqrt(2.0 * smoothing * smoothing + 1.0);
   const double variance =
       2.0 * noise_per_sample / n + noise_per_sample * noise_per_sample /
                                        (n * 4.0 * std::sqrt(std::numbers::pi) * std::pow(width, 3));
-  return Lag{samples, std::sqrt(variance), r};
+  return Lag{samples, std::sqrt(variance), coarse.height};
+}
+
+double norm(const Trace& trace) {
+  return Eigen::Map<const Eigen::VectorXd>(trace.x.data(),
+                                           static_cast<Eigen::Index>(trace.x.size()))
+      .norm();
+}
+
+/// Where the correlation of two records is highest, if that tells anything.
+std::optional<Coarse> coarse_peak(const Trace& x, const Trace& y, double first_x, double first_y,
+                                  int max_lag) {
+  const auto shorter = static_cast<int>(std::min(x.x.size(), y.x.size()));
+  if (shorter < kShortest || max_lag < 1) return std::nullopt;
+  max_lag = std::min(max_lag, shorter / 3);
+  const double rounding = 1e-13 * std::sqrt(shorter);
+  if (norm(x) <= rounding * std::abs(first_x) || norm(y) <= rounding * std::abs(first_y))
+    return std::nullopt;
+  const Correlation c = correlate(x, y, -max_lag - kMargin, max_lag + kMargin);
+  const int peak = peak_lag(c, shorter);
+  const double height = peak_at(c, peak).height;
+  // Six standard deviations of what unrelated noise correlates by chance.
+  if (std::abs(peak) >= max_lag || height < 6.0 / std::sqrt(shorter)) return std::nullopt;
+  if (cosine_at(c, peak) < std::cos(2.0 * std::numbers::pi * kFastest)) return std::nullopt;
+  return Coarse{peak, half_width(c, peak), height, shorter};
 }
 
 }  // namespace
 
-std::optional<Lag> find_lag(const std::vector<double>& a, const std::vector<double>& b,
-                            int max_lag) {
-  const auto shorter = static_cast<int>(std::min(a.size(), b.size()));
-  if (shorter < 64 || max_lag < 1) return std::nullopt;
-  max_lag = std::min(max_lag, shorter / 3);
-
-  const Eigen::VectorXd x = without_mean(a);
-  const Eigen::VectorXd y = without_mean(b);
-  const double rounding = 1e-13;
-  if (x.norm() <= rounding * std::sqrt(shorter) * std::abs(a.front()) ||
-      y.norm() <= rounding * std::sqrt(shorter) * std::abs(b.front()))
-    return std::nullopt;
-  const Correlation coarse = correlate(x, y, -max_lag - kMargin, max_lag + kMargin);
-  const int peak = peak_lag(coarse, shorter);
-  const double r = peak_at(coarse, peak).height;
-  // Six standard deviations of what unrelated noise correlates by chance.
-  if (std::abs(peak) >= max_lag || r < 6.0 / std::sqrt(shorter)) return std::nullopt;
-  if (cosine_at(coarse, peak) < std::cos(2.0 * std::numbers::pi * kFastest)) return std::nullopt;
-
+std::vector<std::optional<Lag>> find_lags(const std::vector<double>& a,
+                                          const std::vector<const std::vector<double>*>& others,
+                                          int max_lag) {
+  std::vector<std::optional<Lag>> best(others.size());
+  const Trace x = without_mean(a);
+  std::vector<Trace> y;
+  std::vector<std::optional<Coarse>> coarse;
+  for (const std::vector<double>* b : others) {
+    y.push_back(without_mean(*b));
+    coarse.push_back(coarse_peak(x, y.back(), a.empty() ? 0.0 : a.front(),
+                                 b->empty() ? 0.0 : b->front(), max_lag));
+  }
   // Smoothing takes noise away and, where the record has edges, the signal with it.
-  std::optional<Lag> best;
   for (const double smoothing : {0.7, 1.5, 3.0, 6.0, 12.0, 24.0}) {
-    if (best && smoothing > shorter / 60.0) break;
-    const auto lag = refine(x, y, peak, half_width(coarse, peak), r, smoothing);
-    if (lag && (!best || lag->sd_samples < best->sd_samples)) best = lag;
+    std::optional<Trace> smooth_x;
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      if (!coarse[k] || (best[k] && smoothing > coarse[k]->shorter / 60.0)) continue;
+      if (!smooth_x) smooth_x = smooth(x, smoothing);
+      const auto lag = refine(*smooth_x, smooth(y[k], smoothing), *coarse[k], smoothing);
+      if (lag && (!best[k] || lag->sd_samples < best[k]->sd_samples)) best[k] = lag;
+    }
   }
   return best;
+}
+
+std::optional<Lag> find_lag(const std::vector<double>& a, const std::vector<double>& b,
+                            int max_lag) {
+  return find_lags(a, {&b}, max_lag).front();
 }
 
 }  // namespace rigcal::datasets

@@ -42,6 +42,7 @@ Excursion excursion(const std::vector<double>& x, std::size_t begin, std::size_t
 /// noise, its step.
 double typical_step(const std::vector<double>& x) {
   std::vector<double> steps;
+  steps.reserve(x.size());
   for (std::size_t i = 1; i < x.size(); ++i)
     if (x[i] != x[i - 1]) steps.push_back(std::abs(x[i] - x[i - 1]));
   return steps.empty() ? 0.0 : median(std::move(steps));
@@ -49,6 +50,7 @@ double typical_step(const std::vector<double>& x) {
 
 double limit_of(const std::vector<double>& x) {
   std::vector<double> off;
+  off.reserve(x.size());
   for (std::size_t i = 1; i + 1 < x.size(); ++i)
     off.push_back(std::abs(excursion(x, i, 1).farthest));
   return std::max(kDeviations * median(std::move(off)) / kMedianOfNormal, kSteps * typical_step(x));
@@ -64,10 +66,11 @@ std::vector<Spike> find_spikes(const std::vector<double>& x) {
   for (std::size_t i = 2; i + 3 < x.size(); ++i) {
     for (std::size_t length = 1; length <= kLongestRun; ++length) {
       const Excursion off = excursion(x, i, length);
+      if (std::abs(off.least) <= limit) continue;
       // On each side two samples must agree, or the run is part of an edge or an oscillation.
       const std::size_t after = i + length;
       const auto [low, high] = std::minmax({x[i - 2], x[i - 1], x[after], x[after + 1]});
-      if (std::abs(off.least) <= std::max(limit, kNeighbourFactor * (high - low))) continue;
+      if (std::abs(off.least) <= kNeighbourFactor * (high - low)) continue;
       spikes.push_back({i, length, off.farthest});
       i = after;
       break;

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
+
+#include "common/parse_double.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -165,7 +166,7 @@ std::optional<double> csv_number(std::string_view text, bool decimal_comma) {
     text.remove_prefix(1);
   double value = 0.0;
   const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
+  const auto [rest, error] = parse_double(text.data(), end, value);
   if (error != std::errc{} || rest != end || !std::isfinite(value)) return std::nullopt;
   return value;
 }

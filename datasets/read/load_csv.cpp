@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -11,6 +12,7 @@
 #include <system_error>
 
 #include "common/error.hpp"
+#include "common/parse_double.hpp"
 #include "common/suggest.hpp"
 #include "datasets/read/csv_lines.hpp"
 #include "datasets/read/csv_text.hpp"
@@ -103,6 +105,7 @@ std::size_t find_column(const Header& header, const std::string& wanted) {
 struct Wanted {
   std::size_t field;
   std::size_t target;
+  bool is_time;
 };
 
 /// Reads rows one by one into a table, and knows where it is for its messages.
@@ -110,7 +113,9 @@ class RowReader {
  public:
   RowReader(const Header& header, const CsvRequest& request) : header_(header), request_(request) {
     for (std::size_t i = 0; i < request.columns.size(); ++i)
-      wanted_.push_back({find_column(header, request.columns[i]), i});
+      wanted_.push_back(
+          {find_column(header, request.columns[i]), i, request.columns[i] == request.time_column});
+    values_.resize(wanted_.size());
     std::sort(wanted_.begin(), wanted_.end(),
               [](const Wanted& a, const Wanted& b) { return a.field < b.field; });
     table_.columns.resize(request.columns.size());
@@ -118,33 +123,12 @@ class RowReader {
 
   void read(std::string_view line, long line_number) {
     if (rows_ == 0) table_.first_data_line = line_number;
-    if (rows_ * wanted_.size() + wanted_.size() > kMostValues)
+    if ((rows_ + 1) * wanted_.size() > kMostValues)
       throw InputError({header_.file, line_number},
                        fmt::format("more than {} numbers ({} rows of {} columns), the limit of one "
                                    "file; decimate the record, or split it into several files",
                                    kMostValues, rows_, wanted_.size()));
-    std::size_t count = 0;
-    auto next = wanted_.begin();
-    std::optional<CsvField> bad;
-    std::size_t bad_index = 0;
-    CsvFields fields(line, header_.separator);
-    for (CsvField field; fields.next(field); ++count)
-      for (; next != wanted_.end() && next->field == count; ++next) {
-        const auto value = csv_number(field.text, header_.separator != ',');
-        if (!value && !bad) {
-          bad = field;
-          bad_index = count;
-        }
-        if (!value || bad) continue;
-        if (count + 1 == header_.names.size()) note_last_field(field.text.size(), line_number);
-        auto& column = table_.columns[next->target];
-        if (!column.empty() && request_.columns[next->target] == request_.time_column &&
-            !(*value > column.back()))
-          fail_on_time(line, line_number, field, *value, column.back());
-        column.push_back(*value);
-      }
-    if (count != header_.names.size()) fail_on_count(line, line_number, count);
-    if (bad) fail_on_number(line, line_number, *bad, bad_index);
+    if (!read_plain(line, line_number)) read_any(line, line_number);
     ++rows_;
   }
 
@@ -175,6 +159,64 @@ class RowReader {
   }
 
  private:
+  /// Takes a row as most loggers write it: numbers right between separators where they are wanted,
+  /// and no quote where a field begins. Any other row it leaves as it is, right or wrong.
+  bool read_plain(std::string_view line, long line_number) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    std::size_t length = 0;  // of the last wanted field
+    auto next = wanted_.begin();
+    auto value = values_.begin();
+    for (std::size_t field = 0; field < header_.names.size(); ++field) {
+      if (field > 0 && (at == end || *at++ != header_.separator)) return false;
+      if (next == wanted_.end() || next->field != field) {
+        if (at != end && (*at == '"' || *at == ' ')) return false;
+        at = std::find(at, end, header_.separator);
+        continue;
+      }
+      const auto [rest, error] = parse_double(at, end, *value);
+      if (error != std::errc{} || !std::isfinite(*value)) return false;
+      length = static_cast<std::size_t>(rest - at);
+      at = rest;
+      for (const double number = *value; next != wanted_.end() && next->field == field; ++next) {
+        *value = number;
+        const auto& column = table_.columns[next->target];
+        if (next->is_time && !column.empty() && !(number > column.back())) return false;
+        ++value;
+      }
+    }
+    if (at != end) return false;
+    value = values_.begin();
+    for (const Wanted& wanted : wanted_) table_.columns[wanted.target].push_back(*value++);
+    if (wanted_.back().field + 1 == header_.names.size()) note_last_field(length, line_number);
+    return true;
+  }
+
+  /// Takes any row, or says what is wrong with it.
+  void read_any(std::string_view line, long line_number) {
+    std::size_t count = 0;
+    auto next = wanted_.begin();
+    std::optional<CsvField> bad;
+    std::size_t bad_index = 0;
+    CsvFields fields(line, header_.separator);
+    for (CsvField field; fields.next(field); ++count)
+      for (; next != wanted_.end() && next->field == count; ++next) {
+        const auto value = csv_number(field.text, header_.separator != ',');
+        if (!value && !bad) {
+          bad = field;
+          bad_index = count;
+        }
+        if (!value || bad) continue;
+        if (count + 1 == header_.names.size()) note_last_field(field.text.size(), line_number);
+        auto& column = table_.columns[next->target];
+        if (!column.empty() && next->is_time && !(*value > column.back()))
+          fail_on_time(line, line_number, field, *value, column.back());
+        column.push_back(*value);
+      }
+    if (count != header_.names.size()) fail_on_count(line, line_number, count);
+    if (bad) fail_on_number(line, line_number, *bad, bad_index);
+  }
+
   InputError error(std::string_view line, long line_number, std::size_t byte,
                    const std::string& message) const {
     return InputError({header_.file, line_number, character_column(line, byte)}, message);
@@ -250,6 +292,7 @@ class RowReader {
   const Header& header_;
   const CsvRequest& request_;
   std::vector<Wanted> wanted_;
+  std::vector<double> values_;  ///< of the row being read, in the order of wanted_
   CsvTable table_;
   std::size_t rows_ = 0;
   long last_line_ = 0;  ///< 0: the last column is not wanted

@@ -28,9 +28,10 @@ constexpr double kBytesPerPoint = 2.0 * 4.0 / 3.0;
 constexpr std::size_t kLeastPoints = 2000;
 
 /// Points of one series, so that all of them together keep the size of the page.
-std::size_t points_of(const std::vector<Table>& series) {
+std::size_t points_of(const Calibration& stored) {
   std::size_t columns = 0;
-  for (const Table& table : series) columns += table.columns.size();
+  for (std::size_t i = 0; i < stored.result.conditions.size(); ++i)
+    columns += stored.series(i)->columns.size();
   const auto points =
       static_cast<std::size_t>(static_cast<double>(kSeriesBytes) / kBytesPerPoint /
                                static_cast<double>(std::max<std::size_t>(1, columns)));
@@ -39,10 +40,10 @@ std::size_t points_of(const std::vector<Table>& series) {
 
 Json condition_views(const Calibration& stored, int threads) {
   const std::vector<StoredCondition>& conditions = stored.result.conditions;
-  const std::size_t points = points_of(stored.series);
+  const std::size_t points = points_of(stored);
   std::vector<Json> sections(conditions.size());
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    sections[i] = condition_view(conditions[i], stored.series[i],
+    sections[i] = condition_view(conditions[i], *stored.series(i),
                                  find(stored.curves.conditions, conditions[i].id), points);
     sections[i]["open"] = i == 0 || conditions.size() <= kFew;
   });
@@ -117,8 +118,8 @@ Part calibration_part(const Calibration& stored, int threads) {
   return part;
 }
 
-Part fit_part(const ReadFile& read, const std::string& where, int threads) {
-  const auto stored = load_calibration(read, where, threads);
+Part fit_part(const ReadFile& read, const std::string& where, int threads, const ReadTable& made) {
+  const auto stored = load_calibration(read, where, threads, made);
   if (const auto* tables = std::get_if<StoredTablesFit>(&stored)) return tables_fit_part(*tables);
   return calibration_part(std::get<Calibration>(stored), threads);
 }
@@ -266,7 +267,7 @@ struct Parts {
 };
 
 /// What is there; what cannot be read is named on the page, unless it is all there is.
-Parts parts_of(const ReadFile& read, const std::string& where, int threads) {
+Parts parts_of(const ReadFile& read, const std::string& where, int threads, const ReadTable& made) {
   Parts parts;
   std::exception_ptr first;
   const auto add = [&](bool is_there, const auto& make) {
@@ -279,7 +280,8 @@ Parts parts_of(const ReadFile& read, const std::string& where, int threads) {
     }
   };
   const auto has = [&](const char* file) { return read(file).has_value(); };
-  add(has("fit.json") || has("validation.json"), [&] { return fit_part(read, where, threads); });
+  add(has("fit.json") || has("validation.json"),
+      [&] { return fit_part(read, where, threads, made); });
   add(has("leak_table.json"), [&] { return leak_table_part(read, where); });
   add(has("diagnosis.json"), [&] { return diagnosis_part(read, where); });
   add(has("parity.json"), [&] { return parity_part(read, where); });
@@ -343,12 +345,13 @@ Json page_view(Parts parts) {
 
 }  // namespace
 
-std::string result_page(const ReadFile& read, const std::string& where, int threads) {
+std::string result_page(const ReadFile& read, const std::string& where, int threads,
+                        const ReadTable& made) {
   std::vector<Partial> sections;
   for (const std::string name : {"calibration", "leak_table", "diagnosis", "parity", "comparison",
                                  "batch", "average", "plan"})
     sections.push_back({"section_" + name, asset(name + ".html")});
-  return render(asset("report.html"), page_view(parts_of(read, where, threads)), sections);
+  return render(asset("report.html"), page_view(parts_of(read, where, threads, made)), sections);
 }
 
 std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& read,
@@ -362,9 +365,9 @@ std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& rea
     if (has("fit.json") || has("validation.json")) {
       const auto stored = load_calibration(read, where, 1);
       if (const auto* fit = std::get_if<Calibration>(&stored)) {
-        for (std::size_t i = 0; i < fit->series.size(); ++i) {
+        for (std::size_t i = 0; i < fit->result.conditions.size(); ++i) {
           const StoredCondition& condition = fit->result.conditions[i];
-          add(condition_figures(condition, fit->series[i]), condition.id + "_");
+          add(condition_figures(condition, *fit->series(i)), condition.id + "_");
         }
       }
     }

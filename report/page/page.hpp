@@ -14,8 +14,10 @@ namespace rigcal::report {
 /// only one.
 ///
 /// @param where    the folder, named in errors
+/// @param made     as of load_calibration()
 /// @throws InputError  there is no result, or none that this version can read
-std::string result_page(const ReadFile& read, const std::string& where, int threads);
+std::string result_page(const ReadFile& read, const std::string& where, int threads,
+                        const ReadTable& made = {});
 
 /// Every picture as a file of its own beneath figures/, as SVG and as PDF: <condition>_<plot>,
 /// leak_table, leak_levels, diagnosis, comparison_<parameter>, trend_<along>_<level>.

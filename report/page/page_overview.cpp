@@ -134,7 +134,7 @@ Json overview_view(const Calibration& stored) {
   view["has_numbers"] = !view["numbers"].empty();
   if (channel.empty()) return view;
   for (std::size_t i = 0; i < conditions.size(); ++i) {
-    const Plot plot = small_plot(conditions[i], stored.series[i], channel);
+    const Plot plot = small_plot(conditions[i], *stored.series(i), channel);
     view["cells"].push_back({{"id", conditions[i].id},
                              {"anchor", anchor(conditions[i].id)},
                              {"badge", badge(conditions[i].verdict)},

@@ -100,46 +100,46 @@ std::string scorecard_csv(const Result& result) {
   return text;
 }
 
+Table residual_table(const Result& result, const calib::ConditionScore& score) {
+  Table table;
+  const auto add = [&](std::string name, const auto& value) {
+    table.names.push_back(std::move(name));
+    std::vector<double>& column = table.columns.emplace_back(score.time_s.size());
+    for (std::size_t i = 0; i < column.size(); ++i) {
+      const double x = value(i);
+      column[i] = std::isfinite(x) ? x : std::nan("");
+    }
+  };
+  const auto add_values = [&](std::string name, std::span<const double> values) {
+    add(std::move(name), [&](std::size_t i) { return at(values, i); });
+  };
+  add_values("time_s", score.time_s);
+  for (const auto& [channel, series] : score.series) {
+    // A condition that could not be simulated has a measured side alone.
+    const auto& [measured, simulated] = series;
+    const auto name = [&](const char* what) {
+      return fmt::format("{}_{}", what, info(channel).name);
+    };
+    add_values(name("measured"), measured);
+    add_values(name("simulated"), simulated);
+    add(name("residual"), [&](std::size_t i) { return at(measured, i) - at(simulated, i); });
+    add_values(name("sd"), sd_of(result, score.id, channel));
+    const auto band = score.prediction_sd.find(channel);
+    if (band != score.prediction_sd.end()) add_values(name("prediction_sd"), band->second);
+  }
+  add("in_window",
+      [&](std::size_t i) { return score.in_window.empty() || score.in_window[i] ? 1.0 : 0.0; });
+  const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
+  add_values(closed_loop ? "reference_m" : "command_v", score.drive);
+  add_values("servo_flow_m3_per_s", score.servo_flow_m3_per_s);
+  add_values("leakage_flow_m3_per_s", score.leakage_flow_m3_per_s);
+  return table;
+}
+
 std::string residuals_csv(const Result& result, const calib::ConditionScore& score) {
   std::string text = status_line(result.fit);
   if (!score.failure.empty()) text += csv_comment("not simulated: " + score.failure);
-  std::vector<std::string> titles{"time_s"};
-  for (const auto& [channel, series] : score.series) {
-    for (const char* what : {"measured", "simulated", "residual", "sd"}) {
-      titles.push_back(fmt::format("{}_{}", what, info(channel).name));
-    }
-    if (score.prediction_sd.contains(channel))
-      titles.push_back(fmt::format("prediction_sd_{}", info(channel).name));
-  }
-  const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
-  titles.insert(titles.end(), {"in_window", closed_loop ? "reference_m" : "command_v",
-                               "servo_flow_m3_per_s", "leakage_flow_m3_per_s"});
-  text += csv_row(titles);
-  std::vector<std::span<const double>> scatter;
-  for (const auto& [channel, series] : score.series)
-    scatter.push_back(sd_of(result, score.id, channel));
-  for (std::size_t i = 0; i < score.time_s.size(); ++i) {
-    std::vector<std::string> fields{csv_number(score.time_s[i])};
-    auto sd = scatter.begin();
-    for (const auto& [channel, series] : score.series) {
-      // A condition that could not be simulated has a measured side alone.
-      const auto& [measured, simulated] = series;
-      const double y = at(measured, i);
-      const double s = at(simulated, i);
-      fields.push_back(csv_number(y));
-      fields.push_back(csv_number(s));
-      fields.push_back(csv_number(y - s));
-      fields.push_back(csv_number(at(*sd++, i)));
-      const auto band = score.prediction_sd.find(channel);
-      if (band != score.prediction_sd.end()) fields.push_back(csv_number(at(band->second, i)));
-    }
-    fields.emplace_back(score.in_window.empty() || score.in_window[i] ? "1" : "0");
-    fields.push_back(csv_number(at(score.drive, i)));
-    fields.push_back(csv_number(at(score.servo_flow_m3_per_s, i)));
-    fields.push_back(csv_number(at(score.leakage_flow_m3_per_s, i)));
-    text += csv_row(fields);
-  }
-  return text;
+  return text + csv_of(residual_table(result, score));
 }
 
 std::string averaged_csv(const datasets::Record& record) {

@@ -9,6 +9,7 @@
 #include "datasets/record.hpp"
 #include "model/simulate.hpp"
 #include "report/store/result.hpp"
+#include "report/store/table.hpp"
 
 // Result tables as CSV (RFC 4180, LF): SI units, units at the end of column names, numbers that
 // read back to the same bits, empty fields where there is no number. The result of a fit that
@@ -23,6 +24,9 @@ std::string scorecard_csv(const Result& result);
 /// minus simulated) and sd (of one repeat about the mean, where there are repeats), whether the
 /// sample counts, the drive (reference_m or command_v) and the simulated flows.
 std::string residuals_csv(const Result& result, const calib::ConditionScore& score);
+
+/// The same as it is read back.
+Table residual_table(const Result& result, const calib::ConditionScore& score);
 
 /// averaged/<condition>.csv: time_s, and mean, sd and count of every channel.
 std::string averaged_csv(const datasets::Record& record);

@@ -86,14 +86,19 @@ void require_inputs_kept(const fs::path& out, const std::vector<fs::path>& resul
   }
 }
 
+void ResultsInWriting::add(const fs::path& path, std::string_view content) {
+  require_inputs_kept(out_, {path}, inputs_);
+  writing_.add(out_ / path, content);
+}
+
 void write_results(const fs::path& out, const std::vector<ResultFile>& files,
                    const std::vector<InputFile>& inputs) {
   std::vector<fs::path> paths;
   for (const ResultFile& file : files) paths.push_back(file.path);
   require_inputs_kept(out, paths, inputs);
-  std::vector<std::pair<fs::path, std::string_view>> contents;
-  for (const ResultFile& file : files) contents.emplace_back(out / file.path, file.content);
-  write_files_atomically(contents);
+  ResultsInWriting writing(out, inputs);
+  for (const ResultFile& file : files) writing.add(file.path, file.content);
+  writing.move_into_place();
 }
 
 void remove_stale(const fs::path& file) {

@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "common/file.hpp"
 #include "report/store/provenance.hpp"
 
 namespace rigcal::report {
@@ -46,6 +48,29 @@ class HeldFolder {
 void require_inputs_kept(const std::filesystem::path& out,
                          const std::vector<std::filesystem::path>& results,
                          const std::vector<InputFile>& inputs);
+
+/// Result files on their way: each is written beside its place when it is added, so that it need
+/// not stay in memory until the last one is known, and all are moved there together, so that a full
+/// disk leaves the files of an earlier run as they were.
+class ResultsInWriting {
+ public:
+  /// @param out, inputs  of the run; both outlive the object
+  ResultsInWriting(const std::filesystem::path& out, const std::vector<InputFile>& inputs)
+      : out_(out), inputs_(inputs) {}
+
+  /// @param path  relative to the result folder
+  /// @throws WriteError  with path and reason
+  /// @throws UsageError  it would replace one of `inputs`; then none is written
+  void add(const std::filesystem::path& path, std::string_view content);
+
+  /// @throws WriteError  with path and reason
+  void move_into_place() { writing_.rename_into_place(); }
+
+ private:
+  const std::filesystem::path& out_;
+  const std::vector<InputFile>& inputs_;
+  FilesInWriting writing_;
+};
 
 /// Writes every file, each whole or not at all: all are written beside their places before the
 /// first is moved there, so that a full disk leaves the files of an earlier run as they were.

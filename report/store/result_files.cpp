@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "common/error.hpp"
 #include "common/file.hpp"
@@ -36,8 +37,14 @@ ReadFile only(const ReadFile& read, const std::vector<InputFile>& named, const s
 
 }  // namespace
 
+void name_files(std::vector<InputFile> named, const std::vector<ResultFile>& files,
+                StoredProvenance& provenance) {
+  for (InputFile& file : hashed(files)) named.push_back(std::move(file));
+  provenance.files = std::move(named);
+}
+
 void name_files(const std::vector<ResultFile>& files, StoredProvenance& provenance) {
-  provenance.files = hashed(files);
+  name_files({}, files, provenance);
 }
 
 void name_files(const std::vector<ResultFile>& files, Json& result) {

@@ -14,6 +14,9 @@ namespace rigcal::report {
 
 /// `provenance.files`: path and SHA-256 of each of `files`, in their order.
 void name_files(const std::vector<ResultFile>& files, StoredProvenance& provenance);
+/// @param named  of files that are written already, which come first
+void name_files(std::vector<InputFile> named, const std::vector<ResultFile>& files,
+                StoredProvenance& provenance);
 void name_files(const std::vector<ResultFile>& files, Json& result);
 
 /// Reads the files of a result's own run.

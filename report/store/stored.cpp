@@ -61,7 +61,8 @@ Json load_json(const ReadFile& read, const std::string& where, const std::string
 }
 
 std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read,
-                                                            const std::string& where, int threads) {
+                                                            const std::string& where, int threads,
+                                                            const ReadTable& made) {
   Calibration stored;
   const bool has_fit = read("fit.json").has_value();
   const bool both = has_fit && read("validation.json").has_value();
@@ -73,14 +74,26 @@ std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read
   stored.result = as<StoredFit>(json, where, stored.file);
   const ReadFile own = files_of_run(read, stored.result.provenance, where, stored.file);
   stored.curves = load<StoredCurves>(own, where, "residual_tests.json");
-  const std::vector<StoredCondition>& conditions = stored.result.conditions;
-  for (const StoredCondition& condition : conditions)
+  std::vector<std::string> names;
+  for (const StoredCondition& condition : stored.result.conditions) {
     require_id(condition.id, "id", path_in(where, stored.file));
-  stored.series.resize(conditions.size());
-  parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    const std::string name = "residuals/" + conditions[i].id + ".csv";
-    if (const auto text = own(name)) stored.series[i] = parse_table(*text, path_in(where, name));
+    names.push_back("residuals/" + condition.id + ".csv");
+  }
+  if (made) {
+    stored.series = [made, names](std::size_t i) {
+      auto table = made(names[i]);
+      return table != nullptr ? table : std::make_shared<const Table>();
+    };
+    return stored;
+  }
+  const auto tables = std::make_shared<std::vector<Table>>(names.size());
+  parallel_for(names.size(), threads, [&](std::size_t i) {
+    if (const auto text = own(names[i]))
+      (*tables)[i] = parse_table(*text, path_in(where, names[i]));
   });
+  stored.series = [tables](std::size_t i) {
+    return std::shared_ptr<const Table>(tables, &(*tables)[i]);
+  };
   return stored;
 }
 

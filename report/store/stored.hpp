@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -25,6 +26,9 @@ using Json = nlohmann::ordered_json;
 /// The text of a result file by its path in the result folder; nothing where there is none.
 using ReadFile = std::function<std::optional<std::string>(const std::filesystem::path&)>;
 
+/// The table of a result file by its path in the result folder; null where there is none.
+using ReadTable = std::function<std::shared_ptr<const Table>(const std::filesystem::path&)>;
+
 /// Reads from a folder on disk.
 ReadFile files_in(const std::filesystem::path& folder);
 
@@ -33,15 +37,19 @@ struct Calibration {
   std::string file;  ///< fit.json or validation.json
   StoredFit result;
   StoredCurves curves;
-  std::vector<Table> series;  ///< residuals/, shape (conditions)
+  /// residuals/ of a condition by its number; an empty table where there is none.
+  std::function<std::shared_ptr<const Table>(std::size_t)> series;
 };
 
 /// Where a fit and a validation lie in one folder, the one to which residual_tests.json belongs; a
 /// fit to published tables has nothing beside it.
 ///
 /// @param threads  read the series
+/// @param made     tables that this run has made, whose text need not be read back; each is asked
+///                 for when it is wanted, so that they are not in memory at once
 std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read,
-                                                            const std::string& where, int threads);
+                                                            const std::string& where, int threads,
+                                                            const ReadTable& made = {});
 
 /// A leak table, and the series of its features by level.
 struct LeakTableFiles {

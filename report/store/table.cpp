@@ -1,12 +1,15 @@
 #include "report/store/table.hpp"
 
+#include <fmt/compile.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cmath>
 #include <limits>
 
 #include "common/error.hpp"
+#include "common/parse_double.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -28,6 +31,22 @@ std::vector<std::string> split(std::string_view line) {
 const std::vector<double>* Table::find(std::string_view name) const {
   const auto found = std::find(names.begin(), names.end(), name);
   return found == names.end() ? nullptr : &columns[static_cast<std::size_t>(found - names.begin())];
+}
+
+std::string csv_of(const Table& table) {
+  fmt::memory_buffer text;
+  fmt::format_to(fmt::appender(text), "{}\n", fmt::join(table.names, ","));
+  const std::size_t rows = table.columns.empty() ? 0 : table.columns.front().size();
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (const std::vector<double>& column : table.columns) {
+      // Compiled, since most of the time of a result's files goes here.
+      if (std::isfinite(column[i]))
+        fmt::format_to(fmt::appender(text), FMT_COMPILE("{}"), column[i]);
+      text.push_back(',');
+    }
+    text[text.size() - 1] = '\n';
+  }
+  return {text.data(), text.size()};
 }
 
 Table parse_table(std::string_view text, const std::string& file) {
@@ -57,7 +76,7 @@ Table parse_table(std::string_view text, const std::string& file) {
       };
       double value = std::numeric_limits<double>::quiet_NaN();
       if (at != stop && *at != ',') {
-        const auto [next, error] = std::from_chars(at, stop, value);
+        const auto [next, error] = parse_double(at, stop, value);
         if (error != std::errc() || (next != stop && *next != ',')) fail("a number");
         at = next;
       }

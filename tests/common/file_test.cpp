@@ -17,6 +17,7 @@
 
 namespace fs = std::filesystem;
 using Catch::Matchers::Contains;
+using rigcal::FilesInWriting;
 using rigcal::InputError;
 using rigcal::read_file;
 using rigcal::require_regular_file;
@@ -106,6 +107,45 @@ TEST_CASE("write_file_atomically: what a killed process of this number left is n
   write_file_atomically(folder / "out.csv", "x");
   CHECK(text_of(folder / "out.csv") == "x");
   CHECK(entries(folder) == 101);
+}
+
+TEST_CASE("FilesInWriting: nothing in its place before all are, nothing left of what is not",
+          "[common]") {
+  const TemporaryFolder folder;
+  write_file_atomically(folder / "first", "old");
+  {
+    FilesInWriting writing;
+    writing.add(folder / "first", "new");
+    writing.add(folder / "second", "new");
+    CHECK(text_of(folder / "first") == "old");
+    CHECK_FALSE(fs::exists(folder / "second"));
+    CHECK(entries(folder) == 3);
+  }
+  CHECK(entries(folder) == 1);
+  FilesInWriting writing;
+  writing.add(folder / "first", "new");
+  writing.rename_into_place();
+  CHECK(text_of(folder / "first") == "new");
+  CHECK(entries(folder) == 1);
+}
+
+TEST_CASE("FilesInWriting: the end of a process takes back what every one of them has written",
+          "[common]") {
+  const TemporaryFolder folder;
+  FilesInWriting first;
+  FilesInWriting second;
+  {
+    FilesInWriting gone;
+    gone.add(folder / "gone", "x");
+  }
+  first.add(folder / "a", "x");
+  second.add(folder / "b", "x");
+  second.rename_into_place();
+  second.add(folder / "c", "x");
+  CHECK(entries(folder) == 3);
+  FilesInWriting::remove_all();
+  CHECK(entries(folder) == 1);
+  CHECK(text_of(folder / "b") == "x");
 }
 
 TEST_CASE("read_file: all bytes of a regular file, up to a limit", "[common]") {

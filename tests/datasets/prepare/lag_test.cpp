@@ -169,3 +169,17 @@ TEST_CASE("lag: its standard deviation to a tenth", "[datasets]") {
   }
   CHECK_THAT(std::sqrt(variances / squares), WithinAbs(1.0, 0.15));
 }
+
+TEST_CASE("lag: of several records at once, the same bits as of each alone", "[datasets]") {
+  const auto a = sampled(soft_square(100, 3), 3000, 0.0, 0.01, 1);
+  const auto b = sampled(soft_square(100, 3), 3000, 3.3, 0.01, 2);
+  const auto other = sampled([](double) { return 0.0; }, 3000, 0.0, 1.0, 3);
+  const auto shorter = sampled(soft_square(100, 3), 700, -7.2, 0.01, 4);
+  const auto lags = find_lags(a, {&b, &other, &shorter}, 200);
+  REQUIRE(lags.size() == 3);
+  CHECK(lags[0].value().samples == find_lag(a, b, 200).value().samples);
+  CHECK_FALSE(lags[1].has_value());
+  CHECK(lags[2].value().samples == find_lag(a, shorter, 200).value().samples);
+  CHECK(lags[2].value().sd_samples == find_lag(a, shorter, 200).value().sd_samples);
+  CHECK(find_lags(a, {}, 200).empty());
+}

@@ -1,6 +1,8 @@
 #include "report/store/csv.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
 
 using namespace rigcal;
 using datasets::Channel;
@@ -93,6 +95,29 @@ TEST_CASE("residuals_csv: a fit that did not converge says so first", "[report]"
   result.fit.message = "stopped on request";
   CHECK(result.residuals().rfind("# status: stopped: stopped on request\ntime_s,", 0) == 0);
   CHECK(result.scorecard().rfind("# status: stopped: stopped on request\ncondition,", 0) == 0);
+}
+
+TEST_CASE("residual_table: what is read back of the text, to the last bit", "[report]") {
+  ThreeSamples result;
+  calib::ConditionScore& score = result.fit.conditions[0];
+  score.time_s = {0.1, 0.2, 0.1 + 0.2};
+  score.series[Channel::position] = {{1.0 / 3.0, -0.0, 1e-310}, {2e300, 1e17}};  // one is missing
+  score.drive = {std::numeric_limits<double>::infinity(), -1e-5, 123456789012345680.0};
+  const report::Table made = report::residual_table(
+      {report::ResultKind::fit, result.campaign, result.records, result.fit, result.provenance},
+      score);
+  const report::Table read = report::parse_table(result.residuals(), "residuals.csv");
+  REQUIRE(made.names == read.names);
+  REQUIRE(made.columns.size() == read.columns.size());
+  for (std::size_t k = 0; k < made.columns.size(); ++k) {
+    CAPTURE(made.names[k]);
+    REQUIRE(made.columns[k].size() == read.columns[k].size());
+    for (std::size_t i = 0; i < made.columns[k].size(); ++i) {
+      const double a = made.columns[k][i];
+      const double b = read.columns[k][i];
+      CHECK(((std::isnan(a) && std::isnan(b)) || (a == b && std::signbit(a) == std::signbit(b))));
+    }
+  }
 }
 
 TEST_CASE("scorecard_csv: gain, phase and delay in columns of their own", "[report]") {

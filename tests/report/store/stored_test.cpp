@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
+#include <memory>
 
 #include "common/error.hpp"
 #include "report/store/result_files.hpp"
@@ -61,6 +62,26 @@ TEST_CASE("stored: the files of another run are refused", "[report]") {
                         Contains("is not the file that fit.json was written with"));
   fit["provenance"].erase("files");  // by an earlier version
   CHECK_NOTHROW(load_calibration(files.reader(), "folder", 1));
+}
+
+TEST_CASE("stored: a table that this run has made is not read back", "[report]") {
+  StoredFiles files;
+  files.json["residual_tests.json"] = {{"of", "rigcal.fit/1"}};
+  files.json["fit.json"] = rigcal::test::stored_result();
+  int asked = 0;
+  const Calibration stored =
+      load_calibration(files.reader(), "folder", 1, [&](const std::filesystem::path& path) {
+        ++asked;
+        CHECK(path == "residuals/sine.csv");
+        return std::make_shared<const Table>(Table{{"time_s"}, {{0.0, 1.0}}});
+      });
+  CHECK(asked == 0);
+  CHECK(stored.series(0)->names == std::vector<std::string>{"time_s"});
+  CHECK(asked == 1);
+  for (const std::string& other : files.others) CHECK_THAT(other, !Contains("residuals"));
+  const Calibration none = load_calibration(
+      files.reader(), "folder", 1, [](const auto&) { return std::shared_ptr<const Table>(); });
+  CHECK(none.series(0)->columns.empty());
 }
 
 TEST_CASE("stored: nor is the condition of a parity record", "[report]") {

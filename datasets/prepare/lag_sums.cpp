@@ -1,0 +1,171 @@
+#include "datasets/prepare/lag_sums.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstring>
+
+// Compiled twice, for every x86-64 and for AVX2; without FMA, so that both round alike.
+#if defined(__x86_64__) && !defined(__AVX2__)
+#define RIGCAL_SUMS_IN_TWO_WIDTHS
+#endif
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr std::size_t kLanes = 4;
+constexpr std::size_t kTogether = 4;  // sums at once: they fill the registers of the older set
+
+using Lanes __attribute__((vector_size(kLanes * sizeof(double)))) = double;
+
+// What takes or gives lanes has to be inlined: they pass through no call in both sets alike.
+#define RIGCAL_INLINED [[gnu::always_inline]] inline
+
+RIGCAL_INLINED void add_product(Lanes& sum, const Lanes& factor, const double* x) {
+  Lanes other;
+  std::memcpy(&other, x, sizeof other);
+  sum += factor * other;
+}
+
+/// One shifted product of `n` terms, of which `done` are in the lanes already.
+RIGCAL_INLINED double finished(Lanes& lanes, const double* fixed, const double* moving,
+                               std::size_t done, std::size_t n) {
+  for (; done + kLanes <= n; done += kLanes) {
+    Lanes factor;
+    std::memcpy(&factor, fixed + done, sizeof factor);
+    add_product(lanes, factor, moving + done);
+  }
+  double even = lanes[0] + lanes[2];
+  double odd = lanes[1] + lanes[3];
+  if (done + 2 <= n) {
+    even += fixed[done] * moving[done];
+    odd += fixed[done + 1] * moving[done + 1];
+    done += 2;
+  }
+  double sum = even + odd;
+  if (done < n) sum += fixed[done] * moving[done];
+  return sum;
+}
+
+/// Products for kTogether shifts that follow each other.
+/// @param n  terms of each; later ones have no more, and at most three less
+RIGCAL_INLINED void products_in(const double* fixed, const double* moving,
+                                const std::array<std::size_t, kTogether>& n, double* result) {
+  // Each by its own name: in an array, the compiler keeps them in memory.
+  Lanes sum0{};
+  Lanes sum1{};
+  Lanes sum2{};
+  Lanes sum3{};
+  const std::size_t common = n.back() - n.back() % kLanes;
+  for (std::size_t i = 0; i < common; i += kLanes) {
+    Lanes factor;
+    std::memcpy(&factor, fixed + i, sizeof factor);
+    add_product(sum0, factor, moving + i);
+    add_product(sum1, factor, moving + i + 1);
+    add_product(sum2, factor, moving + i + 2);
+    add_product(sum3, factor, moving + i + 3);
+  }
+  result[0] = finished(sum0, fixed, moving, common, n[0]);
+  result[1] = finished(sum1, fixed, moving + 1, common, n[1]);
+  result[2] = finished(sum2, fixed, moving + 2, common, n[2]);
+  result[3] = finished(sum3, fixed, moving + 3, common, n[3]);
+}
+
+/// kTogether * kLanes weighted sums that follow each other.
+RIGCAL_INLINED void weighted_in(const double* x, const double* kernel, std::size_t taps,
+                                double* result) {
+  Lanes sum0{};
+  Lanes sum1{};
+  Lanes sum2{};
+  Lanes sum3{};
+  for (std::size_t j = 0; j < taps; ++j) {
+    const Lanes factor = Lanes{} + kernel[j];
+    add_product(sum0, factor, x + j);
+    add_product(sum1, factor, x + j + kLanes);
+    add_product(sum2, factor, x + j + 2 * kLanes);
+    add_product(sum3, factor, x + j + 3 * kLanes);
+  }
+  std::memcpy(result, &sum0, sizeof sum0);
+  std::memcpy(result + kLanes, &sum1, sizeof sum1);
+  std::memcpy(result + 2 * kLanes, &sum2, sizeof sum2);
+  std::memcpy(result + 3 * kLanes, &sum3, sizeof sum3);
+}
+
+/// The two sums in one set of instructions.
+struct Sums {
+  void (*products)(const double* fixed, const double* moving,
+                   const std::array<std::size_t, kTogether>& n, double* result);
+  void (*weighted)(const double* x, const double* kernel, std::size_t taps, double* result);
+};
+
+constexpr Sums kSums{
+    [](const double* fixed, const double* moving, const std::array<std::size_t, kTogether>& n,
+       double* result) { products_in(fixed, moving, n, result); },
+    [](const double* x, const double* kernel, std::size_t taps, double* result) {
+      weighted_in(x, kernel, taps, result);
+    }};
+
+#ifdef RIGCAL_SUMS_IN_TWO_WIDTHS
+[[gnu::target("avx2")]] void wide_products(const double* fixed, const double* moving,
+                                           const std::array<std::size_t, kTogether>& n,
+                                           double* result) {
+  products_in(fixed, moving, n, result);
+}
+[[gnu::target("avx2")]] void wide_weighted(const double* x, const double* kernel, std::size_t taps,
+                                           double* result) {
+  weighted_in(x, kernel, taps, result);
+}
+
+Sums fastest() {
+  return __builtin_cpu_supports("avx2") ? Sums{wide_products, wide_weighted} : kSums;
+}
+#else
+Sums fastest() { return kSums; }
+#endif
+
+const Sums& sums() {
+  static const Sums chosen = fastest();
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<double> shifted_products(std::span<const double> fixed, std::span<const double> moving,
+                                     int first, int last) {
+  std::vector<double> result;
+  const auto terms = [&](std::size_t shift) {
+    return shift < moving.size() ? std::min(fixed.size(), moving.size() - shift) : 0;
+  };
+  const auto end = static_cast<std::size_t>(last) + 1;
+  for (auto shift = static_cast<std::size_t>(first); shift < end; shift += kTogether) {
+    const std::size_t wanted = std::min(kTogether, end - shift);
+    if (shift + kTogether > moving.size()) {
+      for (std::size_t k = 0; k < wanted; ++k) {
+        Lanes none{};
+        result.push_back(
+            finished(none, fixed.data(), moving.data() + shift + k, 0, terms(shift + k)));
+      }
+      continue;
+    }
+    std::array<double, kTogether> block{};
+    sums().products(fixed.data(), moving.data() + shift,
+                    {terms(shift), terms(shift + 1), terms(shift + 2), terms(shift + 3)},
+                    block.data());
+    result.insert(result.end(), block.begin(), block.begin() + static_cast<std::ptrdiff_t>(wanted));
+  }
+  return result;
+}
+
+std::vector<double> weighted_sums(std::span<const double> x, std::span<const double> kernel) {
+  if (kernel.empty() || x.size() < kernel.size()) return {};
+  constexpr std::size_t kBlock = kTogether * kLanes;
+  std::vector<double> result(x.size() - kernel.size() + 1);
+  std::size_t i = 0;
+  for (; i + kBlock <= result.size(); i += kBlock)
+    sums().weighted(x.data() + i, kernel.data(), kernel.size(), result.data() + i);
+  for (; i < result.size(); ++i)
+    for (std::size_t j = 0; j < kernel.size(); ++j) result[i] += kernel[j] * x[i + j];
+  return result;
+}
+
+}  // namespace rigcal::datasets
