@@ -4,11 +4,11 @@
 #include <memory>
 
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "report/comparison/comparison.hpp"
+#include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 
 namespace rigcal::app {

@@ -7,9 +7,9 @@
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/leak_table_files.hpp"
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "report/leak/fit_tables.hpp"
+#include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/parameters_csv.hpp"
 

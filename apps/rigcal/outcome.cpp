@@ -1,14 +1,7 @@
 #include "apps/rigcal/outcome.hpp"
 
-#include <fmt/format.h>
-
-#include "apps/rigcal/result_page.hpp"
-#include "report/store/csv.hpp"
-#include "report/store/folder.hpp"
+#include "report/run/write_result.hpp"
 #include "report/store/json_fields.hpp"
-#include "report/store/parameters_csv.hpp"
-#include "report/store/residual_tests_json.hpp"
-#include "report/store/result_files.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::app {
@@ -16,58 +9,13 @@ namespace {
 
 using calib::FitStatus;
 
-std::string fitted_toml(const CampaignOptions& options, const report::Result& result) {
-  std::vector<datasets::FittedValue> values;
-  for (const calib::FittedParameter& p : result.fit.parameters) {
-    if (p.fitted) values.push_back({p.index, p.scope, p.level, p.value});
-  }
-  const std::string text = fitted_campaign_text(result.campaign, values, options.out);
-  if (result.fit.has_converged()) return text;
-  return "# status: stopped: the best so far, not a fit that converged\n" + text;
-}
-
-/// @param json  the result, to which the names of its files are added
-std::vector<report::ResultFile> files_of(const CampaignOptions& options,
-                                         const report::Result& result, report::Json& json) {
-  const bool is_fit = result.kind == report::ResultKind::fit;
-  std::vector<report::ResultFile> files;
-  for (const calib::ConditionScore& score : result.fit.conditions) {
-    files.push_back({std::filesystem::path("residuals") / (score.id + ".csv"),
-                     report::residuals_csv(result, score)});
-  }
-  // A fit that failed early scored nothing; its files say so all the same.
-  for (const datasets::Condition& condition : result.campaign.conditions) {
-    const bool taken =
-        condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
-    if (!taken || !result.fit.conditions.empty()) continue;
-    calib::ConditionScore score;
-    score.id = condition.id;
-    files.push_back({std::filesystem::path("residuals") / (condition.id + ".csv"),
-                     report::residuals_csv(result, score)});
-  }
-  files.push_back({"scorecard.csv", report::scorecard_csv(result)});
-  files.push_back({"parameters.csv", report::parameters_csv(json)});
-  files.push_back({"residual_tests.json", report::residual_curves_text(result)});
-  if (is_fit && report::status_of(result.fit) != FitStatus::failed) {
-    files.push_back({"fitted.toml", fitted_toml(options, result)});
-  }
-  name_files(files, json);
-  // Last, so that whoever finds it finds the others too.
-  files.push_back({is_fit ? "fit.json" : "validation.json", report::json_text(json)});
-  add_page(options.out, options.threads, files);
-  return files;
-}
-
 std::string text_of(const CampaignOptions& options, const report::Result& result,
                     const std::vector<report::ResultFile>& files) {
-  const report::Style style = terminal_style();
   std::vector<std::string> paths;
   for (auto file = files.rbegin(); file != files.rend(); ++file)  // the page and the result first
     if (!file->path.has_parent_path()) paths.push_back((options.out / file->path).string());
   paths.push_back((options.out / "residuals" / "").string());
-  return report::summary_text(result, paths, style) + "\n" +
-         report::parameters_text(result, style) + "\n" + report::scorecard_text(result, style) +
-         "\n" + report::reasons_text(result, style);
+  return report::result_text(result, paths, terminal_style());
 }
 
 }  // namespace
@@ -102,25 +50,9 @@ void add_strict_option(CLI::App& verb, bool& strict) {
 ExitCode write_and_print(const CampaignOptions& options, const report::Result& result,
                          bool strict) {
   report::Json json = report::result_json(result);
-  const std::vector<report::ResultFile> files = files_of(options, result, json);
-  const ExitCode code = exit_code_of(result.fit, strict);
-  report::write_results(options.out, files, result.provenance.inputs);
-  if (result.kind == report::ResultKind::fit && code == ExitCode::no_result) {
-    report::remove_stale(options.out / "fitted.toml");
-  }
+  const auto files = report::write_result(options.out, options.threads, result, json);
   print(options.print, text_of(options, result, files), json);
-  return code;
-}
-
-calib::FitOptions fit_options(const CampaignOptions& options, const datasets::Campaign& campaign,
-                              const std::atomic<bool>& cancel) {
-  calib::FitOptions fit;
-  fit.starts = campaign.fit.starts;
-  fit.max_iterations = campaign.fit.max_iterations;
-  fit.max_seconds = campaign.fit.max_seconds;
-  fit.threads = options.threads;
-  fit.cancel = &cancel;
-  return fit;
+  return exit_code_of(result.fit, strict);
 }
 
 }  // namespace rigcal::app

@@ -1,18 +1,12 @@
-#include "model/simulate.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "calib/problem/initial_state.hpp"
-#include "common/parallel.hpp"
 #include "common/suggest.hpp"
-#include "datasets/prepare/load_record.hpp"
-#include "report/store/csv.hpp"
+#include "report/run/simulation.hpp"
 #include "report/store/folder.hpp"
 
 namespace rigcal::app {
@@ -21,20 +15,11 @@ namespace {
 using datasets::Campaign;
 using datasets::Condition;
 using datasets::Record;
+using report::SimulationTask;
 
 struct SimulateRequest {
   CampaignOptions common;
   std::vector<std::string> conditions;
-};
-
-/// A condition with all that its simulation needs.
-struct Task {
-  const Condition* condition = nullptr;
-  model::Rig rig;
-  model::ParameterValues values;
-  model::SimulationInputs inputs;
-  std::vector<double> time_s;
-  std::optional<Record> record;
 };
 
 std::vector<const Condition*> wanted(const Campaign& campaign,
@@ -60,40 +45,7 @@ std::vector<const Condition*> wanted(const Campaign& campaign,
   return result;
 }
 
-Task prepare(const Campaign& campaign, const Condition& condition) {
-  Task task;
-  task.condition = &condition;
-  task.rig = campaign.rig;
-  task.values = datasets::values_in(campaign, condition);
-  const bool generated = condition.waveform != datasets::Waveform::recorded &&
-                         condition.duration_s && condition.sample_rate_hz;
-  if (!generated && condition.has_record()) {
-    task.record = datasets::load_record(campaign, condition);
-    const calib::InitialPlan plan =
-        calib::plan_initial_state(campaign, condition, *task.record, task.values);
-    task.rig.initial = plan.state;
-    for (const auto& [index, value] : plan.known) task.values.set(index, value);
-  } else if (condition.waveform == datasets::Waveform::recorded) {
-    throw InputError(condition.where,
-                     fmt::format("condition \"{}\": the waveform is \"recorded\", but there is no "
-                                 "record; expected repeats or averaged",
-                                 condition.id));
-  }
-  const Record* record = task.record ? &*task.record : nullptr;
-  task.time_s = datasets::sample_times(condition, record);
-  task.inputs = datasets::inputs_of(campaign, condition, task.values, record);
-  return task;
-}
-
-std::string file_of(const Task& task, const model::Simulation& simulation) {
-  std::vector<double> reference_m;
-  if (task.rig.controller == model::ControllerKind::pid) {
-    for (const double t : task.time_s) reference_m.push_back(task.inputs.drive.value(t));
-  }
-  return report::simulation_csv(task.time_s, reference_m, model::kAllOutputs, simulation);
-}
-
-std::string line_of(const Task& task, const model::Simulation& simulation) {
+std::string line_of(const SimulationTask& task, const model::Simulation& simulation) {
   if (simulation.ok()) {
     return fmt::format("{}: {} samples, {} steps\n", task.condition->id, task.time_s.size(),
                        simulation.steps);
@@ -102,7 +54,7 @@ std::string line_of(const Task& task, const model::Simulation& simulation) {
                      simulation.failed_at_s, simulation.reason);
 }
 
-report::Json json_of(const Task& task, const model::Simulation& simulation) {
+report::Json json_of(const SimulationTask& task, const model::Simulation& simulation) {
   report::Json json;
   json["condition"] = task.condition->id;
   json["status"] = std::string(to_string(simulation.status));
@@ -116,31 +68,24 @@ report::Json json_of(const Task& task, const model::Simulation& simulation) {
 
 ExitCode run_simulate(const SimulateRequest& options) {
   const Campaign campaign = load(options.common);
-  std::vector<Task> tasks;
+  std::vector<SimulationTask> tasks;
   std::vector<Record> records;
   for (const Condition* condition : wanted(campaign, options.conditions)) {
-    tasks.push_back(prepare(campaign, *condition));
+    tasks.push_back(report::simulation_task(campaign, *condition));
     if (tasks.back().record) records.push_back(*tasks.back().record);
   }
   const report::HeldFolder held(options.common.out);
 
-  model::SimulationOptions settings;
-  settings.method = campaign.simulation.method;
-  settings.tolerance = campaign.simulation.tolerance.value_or(settings.tolerance);
-  settings.max_seconds = campaign.simulation.max_seconds;
-  std::vector<model::Simulation> simulations(tasks.size());
-  parallel_for(tasks.size(), options.common.threads, [&](std::size_t i) {
-    const Task& task = tasks[i];
-    simulations[i] = model::simulate(task.rig, task.values, {}, task.inputs, task.time_s,
-                                     model::kAllOutputs, settings);
-  });
+  const auto simulations =
+      report::simulate(tasks, report::simulation_options(campaign), options.common.threads);
 
   std::vector<report::ResultFile> files;
   std::string text;
   std::string problems;
   report::Json json = report::Json::array();
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    files.push_back({tasks[i].condition->id + ".csv", file_of(tasks[i], simulations[i])});
+    files.push_back(
+        {tasks[i].condition->id + ".csv", report::simulation_file(tasks[i], simulations[i])});
     text += line_of(tasks[i], simulations[i]);
     if (!simulations[i].ok()) problems += line_of(tasks[i], simulations[i]);
     json.push_back(json_of(tasks[i], simulations[i]));

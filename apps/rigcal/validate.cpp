@@ -1,8 +1,5 @@
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cmath>
 #include <memory>
+#include <optional>
 
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
@@ -11,8 +8,9 @@
 #include "apps/rigcal/verb.hpp"
 #include "calib/fit.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "report/run/fit_choices.hpp"
+#include "report/run/validation.hpp"
 #include "report/store/folder.hpp"
-#include "report/store/validity.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -26,63 +24,6 @@ struct ValidateRequest {
   bool strict = false;
 };
 
-/// Known values of the rig that were others when the fit was made.
-std::vector<std::string> changed_values(const Campaign& campaign,
-                                        const report::EarlierFit& earlier) {
-  const auto table = model::parameter_table(campaign.rig.plant);
-  std::vector<std::string> warnings;
-  for (const datasets::FittedValue& known : earlier.known) {
-    const datasets::ParameterSetting* setting = campaign.setting(known.index);
-    if (setting == nullptr || setting->fit || setting->value == known.value) continue;
-    const model::ParameterSpec& spec = table[static_cast<std::size_t>(known.index)];
-    warnings.push_back(fmt::format("{} is {:g} {} here, but was {:g} {} in the fit", spec.key,
-                                   setting->value, spec.unit, known.value, spec.unit));
-  }
-  return warnings;
-}
-
-std::vector<std::string> warnings_of(const Campaign& campaign,
-                                     const std::vector<datasets::Record>& records,
-                                     const calib::Fit& fit, const report::EarlierFit& earlier) {
-  std::vector<std::string> warnings;
-  if (earlier.status == calib::FitStatus::stopped) {
-    warnings.push_back("the fit was stopped before it converged: " + earlier.message);
-  }
-  const auto add = [&](const std::vector<std::string>& more) {
-    warnings.insert(warnings.end(), more.begin(), more.end());
-  };
-  add(changed_values(campaign, earlier));
-  add(report::outside(report::coverage(campaign, records, fit, {Use::fit, Use::validate}),
-                      earlier.validity));
-  return warnings;
-}
-
-/// Which of the records the earlier fit was estimated from: by their content, since names may stay
-/// where recordings are new ones.
-calib::Origin origin_of(const report::EarlierFit& earlier,
-                        const std::vector<datasets::Record>& records,
-                        const report::Provenance& provenance) {
-  const auto seen = [&](const FileState& file) {
-    const auto input = std::find_if(provenance.inputs.begin(), provenance.inputs.end(),
-                                    [&](const auto& each) { return each.path == file.path; });
-    return input != provenance.inputs.end() &&
-           std::find(earlier.input_hashes.begin(), earlier.input_hashes.end(), input->sha256) !=
-               earlier.input_hashes.end();
-  };
-  calib::Origin origin;
-  origin.parameters = earlier.parameters;
-  for (const datasets::Record& record : records) {
-    if (std::none_of(record.files.begin(), record.files.end(), seen)) continue;
-    const auto then =
-        std::find_if(earlier.conditions.begin(), earlier.conditions.end(),
-                     [&](const auto& each) { return each.first == record.condition; });
-    // A file that the fit read under another name counts as one that it was estimated from.
-    if (then == earlier.conditions.end() || then->second == Use::fit)
-      origin.estimated_from.insert(record.condition);
-  }
-  return origin;
-}
-
 ExitCode run_validate(const ValidateRequest& options, const Invocation& invocation) {
   const Campaign campaign = load(options.common);
   std::optional<report::EarlierFit> earlier;
@@ -93,7 +34,8 @@ ExitCode run_validate(const ValidateRequest& options, const Invocation& invocati
   }
   const auto records =
       datasets::load_records(campaign, {Use::fit, Use::validate}, options.common.threads);
-  calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
+  calib::FitOptions settings =
+      report::fit_options(campaign, options.common.threads, invocation.cancel);
   const report::Provenance provenance{invocation.command, settings.seed, recorded(options.common),
                                       report::hash_inputs(campaign, records, more_inputs)};
   const Kept kept;
@@ -103,14 +45,7 @@ ExitCode run_validate(const ValidateRequest& options, const Invocation& invocati
   {
     FitProgress progress(options.common.print.quiet, "nuisance parameters", settings);
     settings.progress = std::ref(progress);
-    const auto origin =
-        earlier ? std::optional(origin_of(*earlier, records, provenance)) : std::nullopt;
-    fit = calib::validate(campaign, records, earlier ? &earlier->values : nullptr, settings,
-                          origin ? &*origin : nullptr);
-  }
-  if (earlier) {
-    const auto warnings = warnings_of(campaign, records, fit, *earlier);
-    fit.warnings.insert(fit.warnings.end(), warnings.begin(), warnings.end());
+    fit = report::validate(campaign, records, earlier ? &*earlier : nullptr, provenance, settings);
   }
   return write_and_print(options.common,
                          {report::ResultKind::validation, campaign, records, fit, provenance},
