@@ -1,0 +1,41 @@
+#include "report/run/write_result.hpp"
+
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+
+#include "tests/report/run/made_fit.hpp"
+
+namespace rigcal::report {
+namespace {
+
+TEST_CASE("written result: the JSON comes last, and names the others", "[report][run]") {
+  test::MadeFit fitted;
+  Json json = result_json(fitted.result());
+  const auto files = write_result(fitted.folder / "out", 1, fitted.result(), json);
+  REQUIRE(files.size() == 9);
+  CHECK(files.back().path == "fit.json");
+  CHECK(files[7].path == "report.html");
+  CHECK(json["provenance"]["files"].size() == 7);
+  for (const ResultFile& file : files)
+    CHECK(test::text_of(fitted.folder / "out" / file.path.string()) == file.content);
+}
+
+TEST_CASE("written result: a failed fit leaves no fitted campaign of an earlier one",
+          "[report][run]") {
+  test::MadeFit fitted;
+  Json json = result_json(fitted.result());
+  const auto out = fitted.folder / "out";
+  write_result(out, 1, fitted.result(), json);
+  REQUIRE(std::filesystem::exists(out / "fitted.toml"));
+  fitted.fit = {};
+  fitted.fit.message = "no start could be simulated";
+  json = result_json(fitted.result());
+  write_result(out, 1, fitted.result(), json);
+  CHECK_FALSE(std::filesystem::exists(out / "fitted.toml"));
+  CHECK(test::text_of(out / "fit.json").find("no start could be simulated") != std::string::npos);
+  CHECK(std::filesystem::exists(out / "residuals" / "sine_1Hz.csv"));
+}
+
+}  // namespace
+}  // namespace rigcal::report
