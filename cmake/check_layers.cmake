@@ -1,7 +1,7 @@
 # Forbids includes that go up: cmake -DROOT=... -P check_layers.cmake
 cmake_minimum_required(VERSION 3.25)
-# common <- { model, metrics } <- datasets <- calib <- diagnosis <- report <- apps
-set(layers common model metrics datasets calib diagnosis report apps)
+# common <- { model, metrics } <- datasets <- calib <- diagnosis <- report <- { apps, python }
+set(layers common model metrics datasets calib diagnosis report apps python)
 set(allowed_common common)
 set(allowed_model common model)
 set(allowed_metrics common metrics)
@@ -9,7 +9,8 @@ set(allowed_datasets common model metrics datasets)
 set(allowed_calib common model metrics datasets calib)
 set(allowed_diagnosis common model metrics datasets calib diagnosis)
 set(allowed_report common model metrics datasets calib diagnosis report)
-set(allowed_apps ${layers})
+set(allowed_apps common model metrics datasets calib diagnosis report apps)
+set(allowed_python common model metrics datasets calib diagnosis report python)
 
 # What a room may include of its own layer, beside itself. What lies in no room is for all of model and datasets, and
 # stands above all rooms of calib.
@@ -38,6 +39,7 @@ set(report_leak store text)
 set(report_batch store text comparison)
 set(report_page store text figure comparison batch)
 set(report_comparison store text page)
+set(report_run store text page)
 
 set(violations "")
 foreach(layer IN LISTS layers)

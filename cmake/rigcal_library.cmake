@@ -14,6 +14,14 @@ set(rigcal_optimised $<$<BOOL:${RIGCAL_SANITIZE}>:-O1>)
 set(rigcal_less_optimised $<$<CONFIG:Release>:-O1>)
 set(rigcal_light diagnosis report)
 
+# Objects of these targets may become part of the command and of a shared module alike (CMakeLists.txt).
+function(rigcal_position_independent)
+  set_target_properties(${ARGN} PROPERTIES POSITION_INDEPENDENT_CODE ${rigcal_shared})
+  if(rigcal_shared)
+    set_target_properties(${ARGN} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+  endif()
+endfunction()
+
 # rigcal_library(name SOURCES ... LIGHT ... LINKS ...): one layer as a static library, alias rigcal::name.
 # LIGHT: its sources that compute little, where the others do.
 function(rigcal_library name)
@@ -39,6 +47,7 @@ function(rigcal_library name)
     target_link_libraries(${part} PUBLIC ${ARG_LINKS}
       PRIVATE ${ARG_PRIVATE_LINKS} $<BUILD_INTERFACE:rigcal_warnings>)
   endforeach()
+  rigcal_position_independent(${parts})
   set_target_properties(rigcal_${name} PROPERTIES EXPORT_NAME ${name})
   install(TARGETS rigcal_${name} EXPORT rigcal COMPONENT development ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()

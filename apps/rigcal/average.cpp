@@ -3,11 +3,9 @@
 #include <memory>
 
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "datasets/checks/short_records.hpp"
-#include "datasets/prepare/load_record.hpp"
-#include "report/store/csv.hpp"
+#include "report/run/averaging.hpp"
+#include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
 #include "report/store/result_files.hpp"
@@ -20,37 +18,21 @@ namespace {
 ExitCode run_average(const CampaignOptions& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options);
   const report::HeldFolder held(options.out);
-  std::vector<datasets::Record> records;
-  std::vector<report::ResultFile> files;
+  const std::vector<datasets::Record> records = report::averaged_records(campaign);
   report::Json json;
   json["schema"] = "rigcal.average/1";
   json["campaign"] = campaign.name;
   json["synthetic"] = campaign.synthetic;
   json["records"] = report::Json::array();
-  for (const datasets::Condition& condition : campaign.conditions) {
-    if (!condition.has_record() || condition.use == datasets::Use::ignore) continue;
-    records.push_back(datasets::load_record(campaign, condition));
-  }
-  std::vector<datasets::Record*> all;
-  for (datasets::Record& record : records) all.push_back(&record);
-  datasets::warn_of_short_records(campaign, all);
-  for (const datasets::Record& record : records) {
-    const datasets::Condition& condition = *campaign.find(record.condition);
-    files.push_back({std::filesystem::path("averaged") / (condition.id + ".csv"),
-                     report::averaged_csv(record)});
-    json["records"].push_back(report::record_json(condition, record));
-  }
-  if (records.empty()) {
-    throw InputError({campaign.file.string()},
-                     "no condition has a record to average; expected repeats or averaged");
-  }
-  files.push_back({"repeatability.csv", report::repeatability_csv(records)});
+  for (const datasets::Record& record : records)
+    json["records"].push_back(report::record_json(*campaign.find(record.condition), record));
+  std::vector<report::ResultFile> files = report::averaged_files(records);
   const report::Provenance provenance{invocation.command, 1, recorded(options),
                                       report::hash_inputs(campaign, records)};
   json["provenance"] = report::json_of(report::stored(provenance));
   report::name_files(files, json);
   files.push_back({"average.json", report::json_text(json)});
-  add_page(options.out, options.threads, files);
+  report::add_page(options.out, options.threads, files);
   report::write_results(options.out, files, provenance.inputs);
   std::string text = report::repeatability_text(campaign, records, terminal_style());
   text +=

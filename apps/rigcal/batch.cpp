@@ -12,10 +12,10 @@
 #include "apps/rigcal/fit_choices.hpp"
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/stored.hpp"
 

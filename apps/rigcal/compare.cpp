@@ -4,12 +4,12 @@
 #include <memory>
 
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "report/comparison/comparison.hpp"
 #include "report/comparison/comparison_curves.hpp"
+#include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
 #include "report/store/result_files.hpp"

@@ -10,12 +10,12 @@
 #include "apps/rigcal/leak_records.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/progress.hpp"
-#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/checks/record_warnings.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/obstacles.hpp"
 #include "report/leak/diagnosis.hpp"
+#include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/validity.hpp"
 

@@ -8,11 +8,12 @@
 #include <cmath>
 #include <optional>
 
-#include "apps/rigcal/earlier_fit.hpp"
-#include "apps/rigcal/simulation_task.hpp"
+#include "apps/rigcal/chosen_condition.hpp"
 #include "calib/problem/known_values.hpp"
 #include "calib/problem/parameter_map.hpp"
 #include "common/suggest.hpp"
+#include "report/run/simulation.hpp"
+#include "report/run/validation.hpp"
 #include "report/store/json_node.hpp"
 #include "report/store/read_json.hpp"
 
@@ -197,7 +198,7 @@ void require_simulable(const Campaign& campaign, const model::ExportedRig& rig) 
 }
 
 /// Inputs that were recorded start from their first sample; what follows is the importer's.
-void start_from_record(const SimulationTask& task, ParameterValues& values,
+void start_from_record(const report::SimulationTask& task, ParameterValues& values,
                        std::vector<std::string>& warnings) {
   std::vector<std::string_view> recorded;
   const auto take = [&](const std::optional<model::Signal>& signal, std::string_view key,
@@ -256,7 +257,7 @@ ExportChoice choose_export(const ExportRequest& options) {
   if (!options.fit.empty()) {
     earlier = report::read_fit(options.fit, campaign.rig.plant);
     more_inputs.push_back(options.fit);
-    choice.warnings = doubts_about(*earlier, campaign);
+    choice.warnings = report::doubts_about(*earlier, campaign);
   }
   Condition of_level;
   const Condition* condition = &of_level;
@@ -275,7 +276,7 @@ ExportChoice choose_export(const ExportRequest& options) {
   fmu.rig.tolerance = campaign.simulation.tolerance.value_or(fmu.rig.tolerance);
   std::vector<datasets::Record> records;
   if (options.condition) {
-    SimulationTask task = simulation_task(campaign, *condition, values);
+    report::SimulationTask task = report::simulation_task(campaign, *condition, values);
     fmu.rig.rig = task.rig;
     values = task.values;
     start_from_record(task, values, choice.warnings);

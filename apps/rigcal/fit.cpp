@@ -63,11 +63,11 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
   const auto records = datasets::load_records(
       campaign, {datasets::Use::fit, datasets::Use::validate}, options.common.threads, true);
-  calib::FitOptions settings = fit_options(options.common, campaign, invocation.cancel);
+  calib::FitOptions settings =
+      report::fit_options(campaign, options.common.threads, invocation.cancel);
   apply(options.choices, settings);
-  report::Provenance searched{invocation.command, options.choices.seed, recorded(options.common),
-                              report::hash_inputs(campaign, records)};
-  searched.options.emplace_back("starts", fmt::format("{}", settings.starts));
+  const report::Provenance searched = report::provenance_of_starts(
+      invocation.command, options.common, options.choices, settings, campaign, records);
   report::Provenance provenance = searched;
   for (const auto& option : recorded(options.choices)) provenance.options.push_back(option);
   const Kept kept;

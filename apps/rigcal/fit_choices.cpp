@@ -11,10 +11,8 @@
 namespace rigcal::app {
 namespace {
 
-constexpr int kMostStarts = 100'000;
-/// Where nobody said how many starts to make and the campaign's ends at no minimum.
-constexpr int kFurtherStarts = 3;
-constexpr int kMostReplicates = 1'000'000;
+using report::kMostReplicates;
+using report::kMostStarts;
 
 /// CLI11's own check of a positive number lets "nan" and "inf" pass.
 CLI::Validator finite_positive() {
@@ -71,26 +69,6 @@ std::vector<std::string> arguments_of(const FitChoices& choices) {
     add("--max-evaluations", fmt::format("{}", *choices.max_evaluations));
   if (choices.strict) arguments.emplace_back("--strict");
   return arguments;
-}
-
-void apply(const FitChoices& choices, calib::FitOptions& settings) {
-  settings.starts = choices.starts.value_or(settings.starts);
-  if (!choices.starts) settings.further_starts = kFurtherStarts;
-  settings.seed = choices.seed;
-  settings.bootstrap = choices.bootstrap;
-  settings.profiles = choices.profiles;
-  settings.cross_validate = choices.cross_validate;
-  settings.max_evaluations = choices.max_evaluations;
-  if (choices.max_time_s) settings.max_seconds = choices.max_time_s;
-}
-
-std::vector<std::pair<std::string, std::string>> recorded(const FitChoices& choices) {
-  std::vector<std::pair<std::string, std::string>> options;
-  if (choices.bootstrap > 0)
-    options.emplace_back("bootstrap", fmt::format("{}", choices.bootstrap));
-  if (choices.profiles) options.emplace_back("profiles", "true");
-  if (choices.cross_validate) options.emplace_back("cross_validate", "true");
-  return options;
 }
 
 }  // namespace rigcal::app

@@ -9,9 +9,9 @@
 #include "apps/rigcal/fitted_rig.hpp"
 #include "apps/rigcal/leak_table_files.hpp"
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "report/leak/leak_table.hpp"
+#include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 
 namespace rigcal::app {

@@ -15,14 +15,12 @@
 
 #include "apps/rigcal/processes.hpp"
 #include "common/error.hpp"
+#include "report/run/fit_choices.hpp"
 #include "report/text/text_table.hpp"
 
 namespace rigcal::app {
-namespace {
 
-constexpr int kMostThreads = 1024;
-
-}  // namespace
+using report::kMostThreads;
 
 CLI::Validator not_empty() {
   return CLI::Validator(
@@ -75,19 +73,6 @@ void add_campaign_options(CLI::App& verb, CampaignOptions& options) {
       ->check(CLI::Range(1, kMostThreads))
       ->default_str("all");
   add_print_options(verb, options.print);
-}
-
-datasets::Campaign load(const CampaignOptions& options) {
-  datasets::Campaign campaign = datasets::load_campaign(options.campaign, options.data);
-  for (const std::string& assignment : options.set) datasets::set_value(campaign, assignment);
-  if (!options.free.empty()) datasets::set_free(campaign, options.free);
-  if (!options.set.empty() || !options.free.empty()) datasets::check_values(campaign);
-  return campaign;
-}
-
-std::vector<std::pair<std::string, std::string>> recorded(const CampaignOptions& options) {
-  return {{"set", fmt::format("{}", fmt::join(options.set, ", "))},
-          {"free", fmt::format("{}", fmt::join(options.free, ","))}};
 }
 
 std::size_t terminal_columns(int stream) {

@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "datasets/campaign/campaign.hpp"
+#include "report/run/campaign_choice.hpp"
 #include "report/store/json.hpp"
-#include "report/store/provenance.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::app {
@@ -20,12 +19,8 @@ struct PrintOptions {
 };
 
 /// What every verb that reads a campaign understands.
-struct CampaignOptions {
-  std::filesystem::path campaign;
-  std::filesystem::path data;
+struct CampaignOptions : report::CampaignChoice {
   std::filesystem::path out = "rigcal-out";
-  std::vector<std::string> set;
-  std::vector<std::string> free;
   int threads = 1;
   PrintOptions print;
 };
@@ -41,14 +36,6 @@ int hardware_threads();
 
 void add_print_options(CLI::App& verb, PrintOptions& options);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);
-
-/// The campaign with the values of --set and --free.
-///
-/// @throws InputError, UsageError
-datasets::Campaign load(const CampaignOptions& options);
-
-/// The options that change numbers, for the provenance.
-std::vector<std::pair<std::string, std::string>> recorded(const CampaignOptions& options);
 
 /// Columns of the terminal that a stream goes to; 0 where it goes elsewhere.
 std::size_t terminal_columns(int stream);

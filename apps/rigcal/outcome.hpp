@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 
 #include "apps/rigcal/options.hpp"
@@ -21,9 +20,5 @@ ExitCode write_and_print(const CampaignOptions& options, const report::Result& r
 
 /// --strict
 void add_strict_option(CLI::App& verb, bool& strict);
-
-/// Options of the solver from the campaign and the command line.
-calib::FitOptions fit_options(const CampaignOptions& options, const datasets::Campaign& campaign,
-                              const std::atomic<bool>& cancel);
 
 }  // namespace rigcal::app

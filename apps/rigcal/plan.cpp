@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/result_page.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/plan.hpp"
 

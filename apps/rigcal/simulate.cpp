@@ -1,15 +1,13 @@
-#include "model/simulate.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <memory>
 
+#include "apps/rigcal/chosen_condition.hpp"
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/simulation_task.hpp"
 #include "apps/rigcal/verb.hpp"
-#include "common/parallel.hpp"
-#include "report/store/csv.hpp"
+#include "common/suggest.hpp"
+#include "report/run/simulation.hpp"
 #include "report/store/folder.hpp"
 
 namespace rigcal::app {
@@ -18,6 +16,7 @@ namespace {
 using datasets::Campaign;
 using datasets::Condition;
 using datasets::Record;
+using report::SimulationTask;
 
 struct SimulateRequest {
   CampaignOptions common;
@@ -40,14 +39,6 @@ std::vector<const Condition*> wanted(const Campaign& campaign,
     }
   }
   return result;
-}
-
-std::string file_of(const SimulationTask& task, const model::Simulation& simulation) {
-  std::vector<double> reference_m;
-  if (task.rig.controller == model::ControllerKind::pid) {
-    for (const double t : task.time_s) reference_m.push_back(task.inputs.drive.value(t));
-  }
-  return report::simulation_csv(task.time_s, reference_m, model::kAllOutputs, simulation);
 }
 
 std::string line_of(const SimulationTask& task, const model::Simulation& simulation) {
@@ -76,29 +67,21 @@ ExitCode run_simulate(const SimulateRequest& options) {
   std::vector<SimulationTask> tasks;
   std::vector<Record> records;
   for (const Condition* condition : wanted(campaign, options.conditions)) {
-    tasks.push_back(
-        simulation_task(campaign, *condition, datasets::values_in(campaign, *condition)));
+    tasks.push_back(report::simulation_task(campaign, *condition));
     if (tasks.back().record) records.push_back(*tasks.back().record);
   }
   const report::HeldFolder held(options.common.out);
 
-  model::SimulationOptions settings;
-  settings.method = campaign.simulation.method;
-  settings.tolerance = campaign.simulation.tolerance.value_or(settings.tolerance);
-  settings.max_seconds = campaign.simulation.max_seconds;
-  std::vector<model::Simulation> simulations(tasks.size());
-  parallel_for(tasks.size(), options.common.threads, [&](std::size_t i) {
-    const SimulationTask& task = tasks[i];
-    simulations[i] = model::simulate(task.rig, task.values, {}, task.inputs, task.time_s,
-                                     model::kAllOutputs, settings);
-  });
+  const auto simulations =
+      report::simulate(tasks, report::simulation_options(campaign), options.common.threads);
 
   std::vector<report::ResultFile> files;
   std::string text;
   std::string problems;
   report::Json json = report::Json::array();
   for (std::size_t i = 0; i < tasks.size(); ++i) {
-    files.push_back({tasks[i].condition->id + ".csv", file_of(tasks[i], simulations[i])});
+    files.push_back(
+        {tasks[i].condition->id + ".csv", report::simulation_file(tasks[i], simulations[i])});
     text += line_of(tasks[i], simulations[i]);
     if (!simulations[i].ok()) problems += line_of(tasks[i], simulations[i]);
     json.push_back(json_of(tasks[i], simulations[i]));

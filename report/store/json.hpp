@@ -61,6 +61,11 @@ struct EarlierFit {
 ///                     fit.json holds), what was found and what was expected; a fit that failed
 EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant);
 
+/// The same of what is read already.
+///
+/// @param name  for messages
+EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKind plant);
+
 /// Values of the truth.json that `synthesize` wrote.
 ///
 /// @throws InputError  as read_fit()

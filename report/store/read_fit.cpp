@@ -124,8 +124,10 @@ void read_values(const StoredFit& stored, const JsonNode& root, model::PlantKind
 }  // namespace
 
 EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant) {
-  const std::string name = file.string();
-  const Json json = read_json(file, "the fit.json of an earlier fit");
+  return earlier_fit(read_json(file, "the fit.json of an earlier fit"), file.string(), plant);
+}
+
+EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKind plant) {
   const JsonNode root(json, name, "", "fit.json");
   if (!json.is_object()) {
     throw InputError({name}, "found no JSON object, expected the fit.json of an earlier fit");

@@ -328,7 +328,7 @@ std::string summary_text(const Result& result, const std::vector<std::string>& f
   const std::vector<std::string> worst = worst_conditions(fit);
   if (!worst.empty()) text += "worst:\n";
   for (const std::string& line : worst) text += wrapped("  " + line, style.columns, 4) + "\n";
-  say(fmt::format("files: {}", fmt::join(files, " ")));
+  if (!files.empty()) say(fmt::format("files: {}", fmt::join(files, " ")));
   return text;
 }
 
@@ -355,6 +355,12 @@ std::string reasons_text(const Result& result, const Style& style) {
   if (!fit.interval_advice.empty()) say("intervals: " + fit.interval_advice, 2);
   for (const std::string& warning : fit.warnings) say("warning: " + warning, 2);
   return text;
+}
+
+std::string result_text(const Result& result, const std::vector<std::string>& files,
+                        const Style& style) {
+  return summary_text(result, files, style) + "\n" + parameters_text(result, style) + "\n" +
+         scorecard_text(result, style) + "\n" + reasons_text(result, style);
 }
 
 std::string record_text(const datasets::Condition& condition, const datasets::Record& record) {

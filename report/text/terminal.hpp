@@ -31,6 +31,12 @@ std::string parameters_text(const Result& result, const Style& style);
 /// Status, the reasons of each aspect, and the warnings.
 std::string reasons_text(const Result& result, const Style& style);
 
+/// All of these, as `fit` and `validate` print them.
+///
+/// @param files  paths
+std::string result_text(const Result& result, const std::vector<std::string>& files,
+                        const Style& style);
+
 /// One line on a record and one on each of its warnings.
 std::string record_text(const datasets::Condition& condition, const datasets::Record& record);
 

@@ -6,6 +6,7 @@
 #include "report/page/page.hpp"
 #include "report/store/read_json.hpp"
 #include "tests/fuzz/fuzz.hpp"
+#include "tests/report/stored_fixture.hpp"
 #ifdef RIGCAL_LIBFUZZER
 #include "tests/fuzz/json_mutator.hpp"
 #endif
@@ -36,17 +37,22 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     read_or_refuse([&] { read_truth(file, plant); });
     read_or_refuse([&] { read_leak_table(file, plant); });
   }
-  for (const std::string kind : {"fit.json", "leak_table.json", "diagnosis.json"}) {
+  for (const std::string kind :
+       {"fit.json", "residual_tests.json", "leak_table.json", "diagnosis.json", "parity.json",
+        "comparison.json", "batch.json", "average.json", "plan.json"}) {
     const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
-      if (path == kind || path == "residual_tests.json") return text;
+      if (path == kind) return text;
+      // What lies beside what is read is whole.
+      if (path == "fit.json" && kind == "residual_tests.json") return test::stored_result().dump();
+      if (path == "residual_tests.json" && kind == "fit.json") return test::kNoCurves;
       if (path.extension() == ".csv") return "time_s,position_residual_m\n0,1\n";
       return std::nullopt;
     };
     read_or_refuse([&] { result_page(read, "folder", 1); });
   }
   read_or_refuse([&] {
-    const auto compared = load_compared({fuzz::scratch_folder(), fuzz::scratch_folder()});
-    comparison_text(comparison_json(compared, {}), {});
+    const auto results = load_compared({fuzz::scratch_folder(), fuzz::scratch_folder()});
+    comparison_text(compared(results, {}), {});
   });
   return 0;
 }

@@ -66,21 +66,21 @@ TEST_CASE("stored: the files of another run are refused", "[report]") {
 
 TEST_CASE("stored: a table that this run has made is not read back", "[report]") {
   StoredFiles files;
-  files.json["residual_tests.json"] = {{"of", "rigcal.fit/1"}};
+  files.json["residual_tests.json"] = Json::parse(rigcal::test::kNoCurves);
   files.json["fit.json"] = rigcal::test::stored_result();
   int asked = 0;
-  const Calibration stored =
+  const auto stored = std::get<Calibration>(
       load_calibration(files.reader(), "folder", 1, [&](const std::filesystem::path& path) {
         ++asked;
         CHECK(path == "residuals/sine.csv");
         return std::make_shared<const Table>(Table{{"time_s"}, {{0.0, 1.0}}});
-      });
+      }));
   CHECK(asked == 0);
   CHECK(stored.series(0)->names == std::vector<std::string>{"time_s"});
   CHECK(asked == 1);
   for (const std::string& other : files.others) CHECK_THAT(other, !Contains("residuals"));
-  const Calibration none = load_calibration(
-      files.reader(), "folder", 1, [](const auto&) { return std::shared_ptr<const Table>(); });
+  const auto none = std::get<Calibration>(load_calibration(
+      files.reader(), "folder", 1, [](const auto&) { return std::shared_ptr<const Table>(); }));
   CHECK(none.series(0)->columns.empty());
 }
 

@@ -6,13 +6,13 @@
 #include "report/store/folder.hpp"
 #include "report/store/stored.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 
 /// Adds report.html before the last of `files`, the JSON that marks the result as whole. The page
 /// shows these files, and other results that lie in `out` already, as `report` would.
 ///
 /// @param made  the tables of this run's residuals/, where they are not among `files`
-void add_page(const std::filesystem::path& out, int threads, std::vector<report::ResultFile>& files,
-              const report::ReadTable& made = {});
+void add_page(const std::filesystem::path& out, int threads, std::vector<ResultFile>& files,
+              const ReadTable& made = {});
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

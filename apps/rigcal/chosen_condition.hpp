@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "datasets/campaign/campaign.hpp"
+
+namespace rigcal::app {
+
+/// @throws UsageError  of --condition: no condition has this id
+const datasets::Condition& chosen_condition(const datasets::Campaign& campaign,
+                                            const std::string& id);
+
+}  // namespace rigcal::app

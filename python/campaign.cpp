@@ -1,0 +1,175 @@
+#include "python/campaign.hpp"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "python/arguments.hpp"
+
+namespace rigcal::python {
+namespace {
+
+namespace py = pybind11;
+
+/// A row of the campaign's parameters with what the table of its plant says of it.
+struct Parameter {
+  datasets::ParameterSetting setting;
+  model::ParameterSpec spec;
+};
+
+std::optional<double> none_where_nan(double value) {
+  return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+std::vector<Parameter> campaign_parameters(const Campaign& self) {
+  const auto table = model::parameter_table(self.campaign.rig.plant);
+  std::vector<Parameter> parameters;
+  for (const datasets::ParameterSetting& setting : self.campaign.parameters)
+    parameters.push_back({setting, table[static_cast<std::size_t>(setting.index)]});
+  return parameters;
+}
+
+CampaignPtr load_campaign(const std::filesystem::path& campaign,
+                          const std::optional<std::filesystem::path>& data,
+                          const std::optional<py::dict>& set,
+                          const std::optional<std::vector<std::string>>& free) {
+  if (campaign.empty()) throw py::value_error("campaign: found an empty path");
+  if (data && data->empty()) throw py::value_error("data: found an empty path");
+  if (free && free->empty())
+    throw py::value_error("free: found an empty list, expected names of parameters, or None");
+  auto loaded = std::make_shared<Campaign>();
+  report::CampaignChoice& choice = loaded->choice;
+  choice.campaign = campaign;
+  choice.data = data.value_or("");
+  choice.set = assignments(set);
+  choice.free = free.value_or(std::vector<std::string>());
+  loaded->call = "rigcal.load(" + std::string(py::repr(py::str(campaign.string())));
+  if (data) loaded->call += ", " + written("data", py::str(data->string()));
+  if (set) loaded->call += ", " + written("set", *set);
+  if (free) loaded->call += ", " + written("free", py::cast(*free));
+  loaded->call += ")";
+  const py::gil_scoped_release released;
+  loaded->campaign = report::load(choice);
+  return loaded;
+}
+
+void bind_parameter(py::module_& module) {
+  using model::ParameterSpec;
+  py::class_<Parameter>(module, "Parameter", "A parameter that the campaign gives; SI.")
+      .def_property_readonly(
+          "key", [](const Parameter& self) { return self.spec.key; },
+          "Name in the campaign file: \"bulk_modulus\".")
+      .def_property_readonly(
+          "name", [](const Parameter& self) { return self.spec.name; },
+          "Name in results, with its unit: \"bulk_modulus_pa\".")
+      .def_property_readonly(
+          "symbol", [](const Parameter& self) { return self.spec.symbol; },
+          "Symbol in the equations.")
+      .def_property_readonly(
+          "unit", [](const Parameter& self) { return self.spec.unit; },
+          "SI unit; \"1\" of a number.")
+      .def_property_readonly(
+          "meaning", [](const Parameter& self) { return self.spec.meaning; }, "In one line.")
+      .def_property_readonly(
+          "start", [](const Parameter& self) { return self.setting.value; },
+          "The known value, or where the fit starts, in `unit`.")
+      .def_property_readonly(
+          "lower", [](const Parameter& self) { return none_where_nan(self.setting.lower); },
+          "Bound of the fit, in `unit`; None of a known value.")
+      .def_property_readonly(
+          "upper", [](const Parameter& self) { return none_where_nan(self.setting.upper); },
+          "Bound of the fit, in `unit`; None of a known value.")
+      .def_property_readonly(
+          "free", [](const Parameter& self) { return self.setting.fit; }, "Whether it is fitted.")
+      .def_property_readonly(
+          "scope", [](const Parameter& self) { return to_string(self.setting.scope); },
+          "For whom one value holds: \"rig\", \"leak_level\" or \"condition\".")
+      .def_property_readonly(
+          "nuisance", [](const Parameter& self) { return self.setting.nuisance; },
+          "Fitted, but of no interest itself: validation estimates it again.")
+      .def_property_readonly(
+          "prior",
+          [](const Parameter& self) -> std::optional<std::pair<double, double>> {
+            if (!self.setting.prior) return std::nullopt;
+            return std::pair(self.setting.prior->mean, self.setting.prior->sd);
+          },
+          "Mean and standard deviation that the campaign states, in `unit`; or None.")
+      .def("__repr__", [](const Parameter& self) {
+        return fmt::format("<rigcal.Parameter {}: {:g} {}{}>", self.spec.key, self.setting.value,
+                           self.spec.unit, self.setting.fit ? ", free" : "");
+      });
+}
+
+void bind_condition(py::module_& module) {
+  using datasets::Condition;
+  py::class_<Condition>(module, "Condition",
+                        "A signal at a leak level, recorded once or several times; SI.")
+      .def_readonly("id", &Condition::id, "Its name in campaign and results.")
+      .def_property_readonly(
+          "use", [](const Condition& self) { return to_string(self.use); },
+          "\"fit\", \"validate\", \"diagnose\" or \"ignore\".")
+      .def_property_readonly(
+          "waveform", [](const Condition& self) { return to_string(self.waveform); },
+          "\"sine\", \"square\", \"recorded\"...")
+      .def_readonly("frequency_hz", &Condition::frequency_hz, "[Hz]; of a chirp, where it begins.")
+      .def_readonly("amplitude", &Condition::amplitude,
+                    "[m], or [V] where no controller is in the loop.")
+      .def_readonly("leak_level", &Condition::leak_level, "Name of the setting of the leak.")
+      .def_readonly("temperature_k", &Condition::temperature_k, "[K]")
+      .def_property_readonly("has_record", &Condition::has_record,
+                             "Whether the campaign names recordings of it.")
+      .def("__repr__", [](const Condition& self) {
+        return fmt::format("<rigcal.Condition {}: {}>", self.id, to_string(self.use));
+      });
+}
+
+}  // namespace
+
+CampaignClass bind_campaign(py::module_& module) {
+  bind_parameter(module);
+  bind_condition(module);
+  CampaignClass campaign(
+      module, "Campaign",
+      "A campaign file, checked and in SI. load() makes it; it does not change.");
+  campaign
+      .def_property_readonly(
+          "name", [](const Campaign& self) { return self.campaign.name; }, "As the file says.")
+      .def_property_readonly(
+          "file", [](const Campaign& self) { return self.campaign.file; },
+          "Path of the campaign file.")
+      .def_property_readonly(
+          "plant", [](const Campaign& self) { return to_string(self.campaign.rig.plant); },
+          "\"load_pressure\" or \"two_chamber\".")
+      .def_property_readonly(
+          "synthetic", [](const Campaign& self) { return self.campaign.synthetic; },
+          "Whether its records were made by `rigcal synthesize`.")
+      .def_property_readonly(
+          "conditions", [](const Campaign& self) { return self.campaign.conditions; },
+          "In the order of the file.")
+      .def_property_readonly("parameters", &campaign_parameters,
+                             "Those that the file gives, in its order, with the changes of `set` "
+                             "and `free`.")
+      .def("__repr__",
+           [](const Campaign& self) { return "<rigcal.Campaign \"" + self.campaign.name + "\">"; });
+  module.def("load", &load_campaign, py::arg("campaign"), py::arg("data") = py::none(),
+             py::arg("set") = py::none(), py::arg("free") = py::none(),
+             R"(Reads and checks a campaign file.
+
+Args:
+    campaign: its path
+    data: where relative paths of records start; the file's folder if None
+    set: values in place of the file's, {"mass": "60 kg"}, as --set of the command
+    free: exactly these parameters are fitted, ["mass", "bulk_modulus"], as --free of the command
+
+Raises:
+    InputError: the file is wrong; with file, line and column
+    UsageError: set or free names an unknown parameter, or a value outside its limits)");
+  return campaign;
+}
+
+}  // namespace rigcal::python

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "calib/fit.hpp"
+#include "datasets/record.hpp"
+#include "python/campaign.hpp"
+#include "report/store/provenance.hpp"
+#include "report/store/result.hpp"
+
+namespace rigcal::python {
+
+/// A fit or validation with all that its files are made from.
+struct FitResult {
+  CampaignPtr campaign;
+  report::ResultKind kind = report::ResultKind::fit;
+  std::vector<datasets::Record> records;
+  report::Provenance provenance;
+  calib::Fit fit;
+
+  /// Borrows from this one.
+  report::Result result() const { return {kind, campaign->campaign, records, fit, provenance}; }
+};
+using FitResultPtr = std::shared_ptr<FitResult>;
+
+/// A parameter of a result with what the table of its plant says of it.
+struct FittedParameter {
+  calib::FittedParameter value;
+  model::ParameterSpec spec;
+};
+
+/// A scored condition, which keeps its result alive.
+struct ScoredCondition {
+  std::shared_ptr<const calib::ConditionScore> score;
+};
+
+}  // namespace rigcal::python

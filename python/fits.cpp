@@ -1,0 +1,424 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calib/fit.hpp"
+#include "common/suggest.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "python/arguments.hpp"
+#include "python/arrays.hpp"
+#include "python/fit_result.hpp"
+#include "python/interruptible.hpp"
+#include "python/progress.hpp"
+#include "report/run/fit_choices.hpp"
+#include "report/run/validation.hpp"
+#include "report/run/write_result.hpp"
+#include "report/store/folder.hpp"
+#include "report/store/json.hpp"
+#include "report/text/terminal.hpp"
+
+namespace rigcal::python {
+namespace {
+
+namespace py = pybind11;
+namespace fs = std::filesystem;
+using datasets::Use;
+
+// ---- making them
+
+/// Raises what a signal brought; of Ctrl-C an exception that holds what was found by then.
+[[noreturn]] void raise_interrupted(const std::exception_ptr& raised, const FitResultPtr& found) {
+  try {
+    std::rethrow_exception(raised);
+  } catch (const py::error_already_set& error) {
+    if (!found || !error.matches(PyExc_KeyboardInterrupt)) throw;
+    const py::object type = py::module_::import("rigcal.errors").attr("Interrupted");
+    const py::object value = type(found->fit.message, found);
+    value.attr("__cause__") = error.value();
+    PyErr_SetObject(type.ptr(), value.ptr());
+    throw py::error_already_set();
+  }
+}
+
+/// Runs `work`, which sets the fit, and tells `progress` meanwhile.
+FitResultPtr made(const std::optional<py::function>& progress,
+                  const std::function<FitResultPtr(Progress&, std::atomic<bool>&)>& work) {
+  std::atomic<bool> cancel{false};
+  Progress told(progress, cancel);
+  FitResultPtr found;
+  const auto raised = run_interruptibly(cancel, [&] { found = work(told, cancel); });
+  if (raised) raise_interrupted(raised, found);
+  told.rethrow();
+  return found;
+}
+
+/// The arguments of a call that are not what they would be by themselves.
+class Call {
+ public:
+  explicit Call(std::string name) : text_(std::move(name) + "(") {}
+
+  template <typename T>
+  void add(const char* name, const T& value, const T& fallback) {
+    if (value == fallback) return;
+    text_ += std::string(first_ ? "" : ", ") + written(name, py::cast(value));
+    first_ = false;
+  }
+
+  std::string text() const { return text_ + ")"; }
+
+ private:
+  std::string text_;
+  bool first_ = true;
+};
+
+report::FitChoices choices_of(const std::optional<Integer>& starts, const Integer& seed,
+                              const Integer& bootstrap, bool profiles, bool cross_validate,
+                              std::optional<double> max_time_s,
+                              const std::optional<Integer>& max_evaluations) {
+  report::FitChoices choices;
+  if (starts) choices.starts = count("starts", *starts, 1, report::kMostStarts);
+  choices.seed = whole_number("seed", seed, 0, std::numeric_limits<std::uint64_t>::max());
+  choices.bootstrap = count("bootstrap", bootstrap, 0, report::kMostReplicates);
+  choices.profiles = profiles;
+  choices.cross_validate = cross_validate;
+  choices.max_time_s = positive("max_time", max_time_s);
+  if (max_evaluations) {
+    choices.max_evaluations = static_cast<long>(
+        whole_number("max_evaluations", *max_evaluations, 1, std::numeric_limits<long>::max()));
+  }
+  return choices;
+}
+
+std::string call_of(const Campaign& campaign, const report::FitChoices& choices) {
+  const report::FitChoices none;
+  Call call(campaign.call + ".fit");
+  call.add("starts", choices.starts, none.starts);
+  call.add("seed", choices.seed, none.seed);
+  call.add("bootstrap", choices.bootstrap, none.bootstrap);
+  call.add("profiles", choices.profiles, none.profiles);
+  call.add("cross_validate", choices.cross_validate, none.cross_validate);
+  call.add("max_time", choices.max_time_s, none.max_time_s);
+  call.add("max_evaluations", choices.max_evaluations, none.max_evaluations);
+  return call.text();
+}
+
+FitResultPtr fit(const CampaignPtr& self, const std::optional<Integer>& starts, const Integer& seed,
+                 const Integer& bootstrap, bool profiles, bool cross_validate,
+                 std::optional<double> max_time_s, const std::optional<Integer>& max_evaluations,
+                 const std::optional<Integer>& threads,
+                 const std::optional<py::function>& progress) {
+  const report::FitChoices choices =
+      choices_of(starts, seed, bootstrap, profiles, cross_validate, max_time_s, max_evaluations);
+  const int thread_number = thread_count(threads);
+  const std::string call = call_of(*self, choices);
+  return made(progress, [&](Progress& told, std::atomic<bool>& cancel) {
+    auto result = std::make_shared<FitResult>();
+    result->campaign = self;
+    const datasets::Campaign& campaign = self->campaign;
+    result->records =
+        datasets::load_records(campaign, {Use::fit, Use::validate}, thread_number, true);
+    calib::FitOptions settings = report::fit_options(campaign, thread_number, cancel);
+    report::apply(choices, settings);
+    result->provenance = report::provenance_of_starts(call, self->choice, choices, settings,
+                                                      campaign, result->records);
+    for (const auto& option : report::recorded(choices))
+      result->provenance.options.push_back(option);
+    told.attach(settings);
+    result->fit = calib::fit(campaign, result->records, settings);
+    return result;
+  });
+}
+
+using EarlierArgument = std::variant<FitResultPtr, fs::path>;
+
+report::EarlierFit earlier_of(const EarlierArgument& fit, model::PlantKind plant) {
+  if (const auto* file = std::get_if<fs::path>(&fit)) return report::read_fit(*file, plant);
+  const FitResult& result = *std::get<FitResultPtr>(fit);
+  return report::earlier_fit(report::json_of(report::stored(result.result())), "fit", plant);
+}
+
+FitResultPtr validate(const CampaignPtr& self, const std::optional<EarlierArgument>& fit,
+                      const std::optional<Integer>& threads,
+                      const std::optional<py::function>& progress) {
+  const int thread_number = thread_count(threads);
+  const fs::path* const file = fit ? std::get_if<fs::path>(&*fit) : nullptr;
+  if (file != nullptr && file->empty()) throw py::value_error("fit: found an empty path");
+  std::string call = self->call + ".validate(";
+  if (file != nullptr) call += written("fit", py::str(file->string()));
+  if (fit && file == nullptr) call += std::get<FitResultPtr>(*fit)->provenance.command;
+  call += ")";
+  return made(progress, [&](Progress& told, std::atomic<bool>& cancel) {
+    auto result = std::make_shared<FitResult>();
+    result->campaign = self;
+    result->kind = report::ResultKind::validation;
+    const datasets::Campaign& campaign = self->campaign;
+    std::optional<report::EarlierFit> earlier;
+    if (fit) earlier = earlier_of(*fit, campaign.rig.plant);
+    result->records = datasets::load_records(campaign, {Use::fit, Use::validate}, thread_number);
+    calib::FitOptions settings = report::fit_options(campaign, thread_number, cancel);
+    std::vector<fs::path> more_inputs;
+    if (file != nullptr) more_inputs.push_back(*file);
+    result->provenance = {call, settings.seed, report::recorded(self->choice),
+                          report::hash_inputs(campaign, result->records, more_inputs)};
+    told.attach(settings);
+    result->fit = report::validate(campaign, result->records, earlier ? &*earlier : nullptr,
+                                   result->provenance, settings);
+    return result;
+  });
+}
+
+// ---- what they hold
+
+std::vector<FittedParameter> result_parameters(const FitResult& self) {
+  const auto table = model::parameter_table(self.campaign->campaign.rig.plant);
+  std::vector<FittedParameter> parameters;
+  for (const calib::FittedParameter& each : self.fit.parameters)
+    parameters.push_back({each, table[static_cast<std::size_t>(each.index)]});
+  return parameters;
+}
+
+FittedParameter parameter_of(const FitResult& self, const std::string& key,
+                             const std::optional<std::string>& level) {
+  std::vector<std::string> known;
+  std::vector<std::string> levels;
+  for (const FittedParameter& each : result_parameters(self)) {
+    if (each.spec.key != key && each.spec.name != key) {
+      known.emplace_back(each.spec.key);
+      continue;
+    }
+    const bool of_rig = each.value.scope == datasets::Scope::rig;
+    if (level ? !of_rig && each.value.level == *level : of_rig) return each;
+    levels.push_back(of_rig ? "None" : each.value.level);
+  }
+  if (levels.empty()) throw py::key_error(unknown_name_message("parameter", key, known));
+  throw py::key_error(fmt::format("{}: found level {}, expected one of {}", key,
+                                  level.value_or("None"), fmt::join(levels, ", ")));
+}
+
+py::dict scored_conditions(const FitResultPtr& self) {
+  py::dict conditions;
+  for (const calib::ConditionScore& score : self->fit.conditions) {
+    conditions[py::str(score.id)] =
+        ScoredCondition{std::shared_ptr<const calib::ConditionScore>(self, &score)};
+  }
+  return conditions;
+}
+
+std::vector<fs::path> write(const FitResult& self, const fs::path& out,
+                            const std::optional<Integer>& threads) {
+  if (out.empty()) throw py::value_error("out: found an empty path");
+  const int thread_number = thread_count(threads);
+  const py::gil_scoped_release released;
+  const report::HeldFolder held(out);
+  const report::Result result = self.result();
+  report::StoredFit stored = report::stored(result);
+  std::vector<fs::path> paths;
+  for (const fs::path& file : report::write_result(out, thread_number, result, stored))
+    paths.push_back(out / file);
+  return paths;
+}
+
+py::object json_of_result(const FitResult& self) {
+  std::string text;
+  {
+    const py::gil_scoped_release released;
+    text = report::json_text(report::json_of(report::stored(self.result())));
+  }
+  return py::module_::import("json").attr("loads")(text);
+}
+
+/// None before anything was estimated: zero would look like a perfect fit.
+std::optional<double> cost_of(const FitResult& self) {
+  const bool has_cost =
+      report::status_of(self.fit) != calib::FitStatus::failed && !self.fit.starts.empty();
+  return has_cost ? std::optional(self.fit.cost) : std::nullopt;
+}
+
+void bind_start(py::module_& module) {
+  using calib::StartReport;
+  py::class_<StartReport>(module, "Start", "One start of a fit.")
+      .def_readonly("number", &StartReport::number, "From 1.")
+      .def_property_readonly(
+          "status", [](const StartReport& self) { return to_string(self.status); },
+          "\"converged\", \"stopped\" or \"failed\".")
+      .def_readonly("message", &StartReport::message, "In words.")
+      .def_readonly("start_values", &StartReport::start_values, "SI, one for each unknown.")
+      .def_readonly("end_values", &StartReport::end_values,
+                    "SI, one for each unknown; empty where it could not be simulated.")
+      .def_readonly("initial_cost", &StartReport::initial_cost, "Where it began.")
+      .def_readonly("final_cost", &StartReport::final_cost, "Where it ended.")
+      .def_readonly("iterations", &StartReport::iterations, "Of all its stages.");
+}
+
+void bind_result(py::module_& module) {
+  using Self = FitResult;
+  py::class_<Self, FitResultPtr>(
+      module, "Fit",
+      "What a fit found, or a validation (kind \"validation\"); SI. Its arrays cannot be written "
+      "to.\nWhat is not here is in json(), in the terms of docs/command-line.md.")
+      .def_property_readonly(
+          "kind",
+          [](const Self& self) {
+            return self.kind == report::ResultKind::fit ? "fit" : "validation";
+          },
+          "\"fit\" or \"validation\".")
+      .def_property_readonly(
+          "campaign", [](const Self& self) { return self.campaign; }, "What it was made from.")
+      .def_property_readonly(
+          "status", [](const Self& self) { return to_string(report::status_of(self.fit)); },
+          "\"converged\", \"stopped\" (the best so far) or \"failed\".")
+      .def_property_readonly(
+          "message", [](const Self& self) { return self.fit.message; },
+          "In words: why it stopped, what is not to be trusted.")
+      .def_property_readonly(
+          "verdict",
+          [](const Self& self) {
+            return self.fit.verdict ? std::optional(to_string(*self.fit.verdict)) : std::nullopt;
+          },
+          "\"PASS\", \"WARN\" or \"FAIL\"; None where nothing was judged.")
+      .def_property_readonly(
+          "assessment", [](const Self& self) { return self.fit.assessment; },
+          "The four aspects that the verdict follows from.")
+      .def_property_readonly(
+          "warnings", [](const Self& self) { return self.fit.warnings; }, "In words.")
+      .def_property_readonly("parameters", &result_parameters, "Fitted and known ones.")
+      .def("parameter", &parameter_of, py::arg("key"), py::arg("level") = py::none(),
+           R"(One parameter.
+
+Args:
+    key: "bulk_modulus", or its name with unit, "bulk_modulus_pa"
+    level: leak level or condition; None: that of the rig
+
+Raises:
+    KeyError: there is none)")
+      .def_property_readonly("conditions", &scored_conditions,
+                             "Fit and validate conditions by id, in the order of the campaign.")
+      .def_property_readonly("cost", &cost_of,
+                             "Half the sum of squared weighted residuals, priors included; None\n"
+                             "where nothing was estimated.")
+      .def_property_readonly(
+          "reduced_chi_square",
+          [](const Self& self) {
+            return self.fit.rank > 0 ? std::optional(self.fit.reduced_chi_square) : std::nullopt;
+          },
+          "Twice the cost over the degrees of freedom: about 1 if the noise is all that is left.")
+      .def_property_readonly(
+          "residual_count", [](const Self& self) { return self.fit.residual_count; }, "That count.")
+      .def_property_readonly(
+          "evaluations", [](const Self& self) { return self.fit.evaluations; }, "Of all residuals.")
+      .def_property_readonly(
+          "wall_seconds", [](const Self& self) { return self.fit.wall_seconds; }, "[s]")
+      .def_property_readonly(
+          "simulation_tolerance", [](const Self& self) { return self.fit.tolerance; },
+          "Local error per step of the simulations, over the peak of each state.")
+      .def_property_readonly(
+          "correlation_names", [](const Self& self) { return self.fit.correlation_names; },
+          "Of the rows and columns of `correlation`.")
+      .def_property_readonly(
+          "correlation", [](const Self& self) { return array_of(self.fit.correlation); },
+          "Of the estimates that have a standard error, shape (names, names).")
+      .def_property_readonly(
+          "rank", [](const Self& self) { return self.fit.rank; },
+          "Of the scaled Jacobian at the optimum.")
+      .def_property_readonly(
+          "singular_values",
+          [](const FitResultPtr& self) { return view(self, self->fit.singular_values); },
+          "Of the same, shape (unknowns).")
+      .def_property_readonly(
+          "combinations", [](const Self& self) { return self.fit.combinations; },
+          "What the records fix where they do not fix single parameters, in words.")
+      .def_property_readonly(
+          "interval_advice", [](const Self& self) { return self.fit.interval_advice; },
+          "Which interval to believe, and why, in words.")
+      .def_property_readonly(
+          "starts", [](const Self& self) { return self.fit.starts; }, "One report for each.")
+      .def_property_readonly(
+          "best_start", [](const Self& self) { return self.fit.best_start; },
+          "Number of the start that counts.")
+      .def_property_readonly(
+          "bootstrap_replicates", [](const Self& self) { return self.fit.bootstrap_replicates; },
+          "That converged.")
+      .def("json", &json_of_result,
+           R"(Contents of the fit.json, or validation.json, that write() would write.
+
+`provenance.files` is not among them: no files are written yet. Numbers are the same bits.)")
+      .def("write", &write, py::arg("out"), py::kw_only(), py::arg("threads") = py::none(),
+           R"(Writes the files of `rigcal fit`, or `rigcal validate`, report.html among them.
+
+They are the same bytes as the command's, but for `wall_seconds` and `provenance.command`.
+
+Args:
+    out: folder, made where it is missing
+    threads: that draw the page; None: as many as the machine has
+
+Returns:
+    what was written, fit.json (validation.json) last
+
+Raises:
+    WriteError: a file cannot be written
+    UsageError: a file would replace one that the result was made from, or another run writes there)")
+      .def(
+          "__str__",
+          [](const Self& self) { return report::result_text(self.result(), {}, report::Style{}); },
+          "What the command prints.")
+      .def("__repr__", [](const Self& self) {
+        return fmt::format("<rigcal.Fit of \"{}\": {}, {}>", self.campaign->campaign.name,
+                           to_string(report::status_of(self.fit)),
+                           self.fit.verdict ? to_string(*self.fit.verdict) : "no verdict");
+      });
+}
+
+}  // namespace
+
+void bind_fits(py::module_& module, CampaignClass& campaign) {
+  bind_start(module);
+  bind_result(module);
+  campaign.def("fit", &fit, py::kw_only(), py::arg("starts") = py::none(), py::arg("seed") = 1,
+               py::arg("bootstrap") = 0, py::arg("profiles") = false,
+               py::arg("cross_validate") = false, py::arg("max_time") = py::none(),
+               py::arg("max_evaluations") = py::none(), py::arg("threads") = py::none(),
+               py::arg("progress") = py::none(),
+               R"(Estimates the free parameters and scores the conditions, as `rigcal fit`.
+
+A fit that fails says so in its status; nothing is raised.
+
+Args:
+    starts: None: the campaign's number, or 1, and 3 more where that ends at no minimum
+    seed: of the further starts, the bootstrap...
+    bootstrap: number of replicates; 0: none
+    profiles: whether to follow the profile likelihood of every parameter
+    cross_validate: whether to leave out one condition after the other and predict it
+    max_time: stops the fit, bootstrap and all [s]; None: the campaign's limit, or none
+    max_evaluations: stops it after so many evaluations of all conditions
+    threads: None: as many as the machine has; results do not depend on it
+    progress: called with an Iteration or Pieces, from any thread; what it raises ends the fit and
+        is raised here
+
+Raises:
+    InputError: a recording is wrong, nothing is free...
+    ValueError: an argument is out of its range
+    Interrupted: Ctrl-C; it holds the best fit so far)");
+  campaign.def("validate", &validate, py::arg("fit") = py::none(), py::kw_only(),
+               py::arg("threads") = py::none(), py::arg("progress") = py::none(),
+               R"(Scores the conditions with the values of an earlier fit, as `rigcal validate`.
+
+Args:
+    fit: a Fit, or the path of a fit.json, which then is among the inputs of the result; None: the
+        campaign's own values
+    threads: None: as many as the machine has; results do not depend on it
+    progress: as that of fit()
+
+Raises:
+    InputError: a recording is wrong, or fit holds no values for this campaign
+    Interrupted: Ctrl-C; it holds what was reached)");
+}
+
+}  // namespace rigcal::python

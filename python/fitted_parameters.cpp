@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "python/arrays.hpp"
+#include "python/fit_result.hpp"
+
+namespace rigcal::python {
+namespace {
+
+namespace py = pybind11;
+
+using Self = FittedParameter;
+
+void bind_bootstrap(py::module_& module) {
+  using calib::BootstrapSpread;
+  py::class_<BootstrapSpread>(module, "BootstrapSpread",
+                              "A parameter over the replicates of the bootstrap, in its unit.")
+      .def_readonly("standard_error", &BootstrapSpread::standard_error,
+                    "Standard deviation of the replicates.")
+      .def_readonly("bias", &BootstrapSpread::bias, "Mean of the replicates minus the estimate.")
+      .def_readonly("freedom", &BootstrapSpread::freedom,
+                    "Degrees of freedom with which the spread is known.")
+      .def_readonly("ci95", &BootstrapSpread::ci95, "Percentiles, widened for the freedom.");
+}
+
+void bind_profile(py::module_& module) {
+  using calib::Profile;
+  using calib::ProfileEnd;
+  py::class_<ProfileEnd>(module, "ProfileEnd", "One end of a profile, in the parameter's unit.")
+      .def_readonly("value", &ProfileEnd::value,
+                    "End of the 95 % interval; None: the cost stays below up to `reached`.")
+      .def_readonly("reached", &ProfileEnd::reached, "Value up to which it was followed.")
+      .def_readonly("lost", &ProfileEnd::lost,
+                    "Whether it was abandoned: an inner fit failed or was cancelled.");
+  py::class_<Profile, std::shared_ptr<Profile>>(
+      module, "Profile", "Least cost of all other parameters at fixed values of this one.")
+      .def_readonly("low", &Profile::low, "Its lower end.")
+      .def_readonly("high", &Profile::high, "Its upper end.")
+      .def_property_readonly(
+          "values", [](const std::shared_ptr<Profile>& self) { return view(self, self->values); },
+          "Shape (points), ascending, in the parameter's unit.")
+      .def_property_readonly(
+          "rises", [](const std::shared_ptr<Profile>& self) { return view(self, self->rises); },
+          "Of twice the cost, shape (points); 1 ends the 95 % interval.")
+      .def_readonly("lower_cost_found", &Profile::lower_cost_found,
+                    "Whether the fit was not at the minimum.");
+}
+
+}  // namespace
+
+void bind_fitted_parameters(py::module_& module) {
+  bind_bootstrap(module);
+  bind_profile(module);
+  py::class_<Self>(module, "FittedParameter", "One parameter of a result, fitted or known; SI.")
+      .def_property_readonly(
+          "key", [](const Self& self) { return self.spec.key; },
+          "Name in the campaign file: \"bulk_modulus\".")
+      .def_property_readonly(
+          "name", [](const Self& self) { return self.spec.name; },
+          "With its unit: \"bulk_modulus_pa\".")
+      .def_property_readonly(
+          "symbol", [](const Self& self) { return self.spec.symbol; }, "Symbol in the equations.")
+      .def_property_readonly(
+          "unit", [](const Self& self) { return self.spec.unit; }, "SI unit; \"1\" of a number.")
+      .def_property_readonly(
+          "scope", [](const Self& self) { return to_string(self.value.scope); },
+          "For whom it holds: \"rig\", \"leak_level\" or \"condition\".")
+      .def_property_readonly(
+          "level",
+          [](const Self& self) -> std::optional<std::string> {
+            if (self.value.scope == datasets::Scope::rig) return std::nullopt;
+            return self.value.level;
+          },
+          "Its leak level or condition; None of the rig.")
+      .def_property_readonly(
+          "value", [](const Self& self) { return self.value.value; }, "In `unit`.")
+      .def_property_readonly(
+          "start", [](const Self& self) { return self.value.start; },
+          "Where the fit began, in `unit`.")
+      .def_property_readonly(
+          "lower",
+          [](const Self& self) {
+            return self.value.fitted ? std::optional(self.value.lower) : std::nullopt;
+          },
+          "Bound of the fit, in `unit`; None of a known value.")
+      .def_property_readonly(
+          "upper",
+          [](const Self& self) {
+            return self.value.fitted ? std::optional(self.value.upper) : std::nullopt;
+          },
+          "Bound of the fit, in `unit`; None of a known value.")
+      .def_property_readonly(
+          "fitted", [](const Self& self) { return self.value.fitted; }, "False of a known value.")
+      .def_property_readonly(
+          "nuisance", [](const Self& self) { return self.value.nuisance; },
+          "Fitted, but of no interest itself.")
+      .def_property_readonly(
+          "standard_error", [](const Self& self) { return self.value.standard_error; },
+          "As if the residuals were independent, in `unit`; None where the records do not\n"
+          "determine it.")
+      .def_property_readonly(
+          "robust_standard_error",
+          [](const Self& self) { return self.value.robust_standard_error; },
+          "From the scatter of the residuals themselves, in `unit`; or None.")
+      .def_property_readonly(
+          "ci95", [](const Self& self) { return self.value.ci95; },
+          "95 % interval (low, high), in `unit`; or None.")
+      .def_property_readonly(
+          "ci95_from",
+          [](const Self& self) {
+            return self.value.ci95 ? std::optional(to_string(self.value.interval)) : std::nullopt;
+          },
+          "What the interval rests on: \"standard_error\", \"robust_standard_error\"...; or None.")
+      .def_property_readonly(
+          "bootstrap", [](const Self& self) { return self.value.bootstrap; },
+          "Its spread, where the fit was asked for one.")
+      .def_property_readonly(
+          "profile",
+          [](const Self& self) -> std::shared_ptr<calib::Profile> {
+            if (!self.value.profile) return nullptr;
+            return std::make_shared<calib::Profile>(*self.value.profile);
+          },
+          "Its profile likelihood, where the fit was asked for one.")
+      .def_property_readonly(
+          "at_bound", [](const Self& self) { return self.value.at_bound; },
+          "Whether the estimate lies at one of its bounds.")
+      .def_property_readonly(
+          "identifiability",
+          [](const Self& self) {
+            return self.value.fitted ? std::optional(to_string(self.value.identifiability))
+                                     : std::nullopt;
+          },
+          "\"identified\", \"weak\", \"bounded\" or \"not_identifiable\"; None of a known value.")
+      .def_property_readonly(
+          "reason", [](const Self& self) { return self.value.reason; },
+          "In words: why it has no error, why it is weak, at which bound it lies.")
+      .def("__repr__", [](const Self& self) {
+        return fmt::format("<rigcal.FittedParameter {}{}: {:g} {}>", self.spec.key,
+                           self.value.level.empty() ? "" : " of " + self.value.level,
+                           self.value.value, self.spec.unit);
+      });
+}
+
+}  // namespace rigcal::python

@@ -1,0 +1,58 @@
+#include "python/progress.hpp"
+
+#include <fmt/format.h>
+
+#include "python/campaign.hpp"
+
+namespace rigcal::python {
+
+namespace py = pybind11;
+
+/// Only who holds the interpreter's lock touches `raised_` while the fit runs: no lock beside it,
+/// which two threads could wait for crosswise.
+template <typename Event>
+void Progress::tell(const Event& event) {
+  const py::gil_scoped_acquire acquired;
+  if (raised_) return;
+  try {
+    (*function_)(event);
+  } catch (const py::error_already_set&) {
+    raised_ = std::current_exception();
+    cancel_ = true;
+  }
+}
+
+void Progress::attach(calib::FitOptions& settings) {
+  if (!function_) return;
+  settings.progress = [this](int start, int iteration, double cost, double relative_change,
+                             double /*seconds*/) {
+    tell(Iteration{start, iteration, cost, relative_change});
+  };
+  settings.beside = [this](const char* work, int done, int all) { tell(Pieces{work, done, all}); };
+}
+
+void Progress::rethrow() const {
+  if (raised_) std::rethrow_exception(raised_);
+}
+
+void bind_progress(py::module_& module) {
+  py::class_<Iteration>(module, "Iteration", "What a fit tells its `progress` of one iteration.")
+      .def_readonly("start", &Iteration::start, "Which start, from 1.")
+      .def_readonly("iteration", &Iteration::iteration, "Of this call of the solver, from 0.")
+      .def_readonly("cost", &Iteration::cost, "Half the sum of squared weighted residuals.")
+      .def_readonly("relative_change", &Iteration::relative_change,
+                    "Of the cost; below zero: the step was rejected.")
+      .def("__repr__", [](const Iteration& self) {
+        return fmt::format("<rigcal.Iteration {} of start {}: cost {:.6g}>", self.iteration,
+                           self.start, self.cost);
+      });
+  py::class_<Pieces>(module, "Pieces", "What a fit tells its `progress` of the work beside it.")
+      .def_readonly("work", &Pieces::work, "\"replicates of the bootstrap\"...")
+      .def_readonly("done", &Pieces::done, "How many are done.")
+      .def_readonly("all", &Pieces::all, "Of how many.")
+      .def("__repr__", [](const Pieces& self) {
+        return fmt::format("<rigcal.Pieces: {} of {} {}>", self.done, self.all, self.work);
+      });
+}
+
+}  // namespace rigcal::python

@@ -1,0 +1,226 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/checks/short_records.hpp"
+#include "python/arrays.hpp"
+#include "python/campaign.hpp"
+#include "report/run/averaging.hpp"
+#include "report/run/check.hpp"
+#include "report/store/folder.hpp"
+#include "report/store/provenance.hpp"
+
+namespace rigcal::python {
+namespace {
+
+namespace py = pybind11;
+namespace fs = std::filesystem;
+using datasets::Record;
+using RecordPtr = std::shared_ptr<Record>;
+
+/// A channel of a record, which it keeps alive.
+struct RecordedChannel {
+  std::shared_ptr<const datasets::Series> series;
+  datasets::ChannelInfo about;
+};
+
+/// What `check` found.
+struct Checked {
+  std::vector<RecordPtr> records;
+  std::vector<std::string> without_record;
+  std::string text;
+};
+
+std::optional<double> none_if_nan(double value) {
+  return std::isnan(value) ? std::nullopt : std::optional(value);
+}
+
+py::dict channels_of(const RecordPtr& record) {
+  py::dict channels;
+  for (const auto& [channel, series] : record->channels) {
+    const datasets::ChannelInfo& about = info(channel);
+    channels[py::str(about.key.data(), about.key.size())] =
+        RecordedChannel{std::shared_ptr<const datasets::Series>(record, &series), about};
+  }
+  return channels;
+}
+
+py::dict average(const Campaign& self, const std::optional<fs::path>& out) {
+  std::vector<Record> records;
+  {
+    const py::gil_scoped_release released;
+    std::optional<report::HeldFolder> held;
+    if (out) held.emplace(*out);
+    records = report::averaged_records(self.campaign);
+    if (out) {
+      report::write_results(*out, report::averaged_files(records),
+                            report::hash_inputs(self.campaign, records));
+    }
+  }
+  py::dict by_condition;
+  for (Record& record : records) {
+    const std::string id = record.condition;
+    by_condition[py::str(id)] = std::make_shared<Record>(std::move(record));
+  }
+  return by_condition;
+}
+
+Checked check(const Campaign& self) {
+  const py::gil_scoped_release released;
+  Checked checked;
+  checked.text = report::check(self.campaign, [&](Record record) {
+                   checked.records.push_back(std::make_shared<Record>(std::move(record)));
+                 }).text;
+  std::vector<Record*> all;
+  for (const RecordPtr& record : checked.records) all.push_back(record.get());
+  datasets::warn_of_short_records(self.campaign, all);
+  for (const datasets::Condition& condition : self.campaign.conditions) {
+    if (!condition.has_record()) checked.without_record.push_back(condition.id);
+  }
+  return checked;
+}
+
+void bind_channel(py::module_& module) {
+  py::class_<RecordedChannel>(module, "Channel", "Mean over the repeats of one channel; SI.")
+      .def_property_readonly(
+          "key", [](const RecordedChannel& self) { return self.about.key; },
+          "Name in campaign and results: \"position\".")
+      .def_property_readonly(
+          "unit", [](const RecordedChannel& self) { return self.about.unit; },
+          "SI unit of mean and sd: \"m\".")
+      .def_property_readonly(
+          "repeats", [](const RecordedChannel& self) { return self.series->repeats; },
+          "How many carry this channel.")
+      .def_property_readonly(
+          "mean", [](const RecordedChannel& self) { return view(self.series, self.series->mean); },
+          "Shape (samples), in `unit`.")
+      .def_property_readonly(
+          "sd",
+          [](const RecordedChannel& self) { return view_or_none(self.series, self.series->sd); },
+          "Standard deviation over the repeats, shape (samples), in `unit`; NaN where only one\n"
+          "repeat has a sample, None of a single repeat.")
+      .def_property_readonly(
+          "count",
+          [](const RecordedChannel& self) { return view_or_none(self.series, self.series->count); },
+          "Repeats that carry each sample, shape (samples); None of a record that was averaged\n"
+          "already.")
+      .def_property_readonly(
+          "pooled_sd",
+          [](const RecordedChannel& self) { return none_if_nan(self.series->pooled_sd); },
+          "Standard deviation of one repeat, over all samples, in `unit`; None where neither\n"
+          "repeats nor the campaign tell it.")
+      .def_property_readonly(
+          "sd_of_mean",
+          [](const RecordedChannel& self) { return none_if_nan(self.series->sd_of_mean); },
+          "Standard deviation of the mean, in `unit`: what a residual is divided by; None where\n"
+          "it is not known.")
+      .def("__repr__", [](const RecordedChannel& self) {
+        return fmt::format("<rigcal.Channel {} [{}], {} samples>", self.about.key, self.about.unit,
+                           self.series->mean.size());
+      });
+}
+
+void bind_repeat(py::module_& module) {
+  using datasets::RepeatReport;
+  py::class_<RepeatReport>(module, "Repeat", "What became of one repeat when it was averaged.")
+      .def_readonly("source", &RepeatReport::source, "Its file.")
+      .def_readonly("offset_s", &RepeatReport::offset_s,
+                    "By how much it came later than the mean of all [s].")
+      .def_readonly("shifted_s", &RepeatReport::shifted_s,
+                    "The offset, where it was taken off to align the repeat; else 0 [s].")
+      .def_readonly("deviation", &RepeatReport::deviation,
+                    "Its rms distance from the mean of the others over the pooled standard\n"
+                    "deviation, in its worst channel.")
+      .def_readonly("outlier", &RepeatReport::outlier, "Whether it is too far from the others.")
+      .def("__repr__",
+           [](const RepeatReport& self) { return fmt::format("<rigcal.Repeat {}>", self.source); });
+}
+
+void bind_record(py::module_& module) {
+  py::class_<Record, RecordPtr>(module, "Record",
+                                "The averaged record of one condition; SI. Its arrays cannot be "
+                                "written to.")
+      .def_readonly("condition", &Record::condition, "Id of the condition.")
+      .def_readonly("repeats", &Record::repeats, "How many were averaged.")
+      .def_property_readonly(
+          "time_s", [](const RecordPtr& self) { return view(self, self->time_s); },
+          "Shape (samples), increasing [s].")
+      .def_property_readonly("channels", &channels_of, "By their keys: \"position\".")
+      .def_readonly("repeat_reports", &Record::repeat_reports, "In the order of the files.")
+      .def_property_readonly(
+          "windows_s",
+          [](const Record& self) {
+            std::vector<std::pair<double, double>> windows;
+            for (const datasets::TimeWindow& window : self.windows)
+              windows.emplace_back(window.start_s, window.end_s);
+            return windows;
+          },
+          "Start and end of each part that counts [s]; empty: all of it.")
+      .def_readonly("notes", &Record::notes, "In words: what was done to it.")
+      .def_readonly("warnings", &Record::warnings, "In words: outliers, gaps, spikes, sensors.")
+      .def_property_readonly(
+          "files",
+          [](const Record& self) {
+            std::vector<fs::path> files;
+            for (const FileState& file : self.files) files.emplace_back(file.path);
+            return files;
+          },
+          "Every file that was read for it.")
+      .def("__repr__", [](const Record& self) {
+        return fmt::format("<rigcal.Record {}: {} samples, {} repeats>", self.condition,
+                           self.time_s.size(), self.repeats);
+      });
+}
+
+}  // namespace
+
+void bind_records(py::module_& module, CampaignClass& campaign) {
+  bind_channel(module);
+  bind_repeat(module);
+  bind_record(module);
+  py::class_<Checked>(module, "Check", "What check() found.")
+      .def_readonly("records", &Checked::records, "In the order of the campaign.")
+      .def_readonly("without_record", &Checked::without_record, "Ids of conditions without one.")
+      .def_property_readonly(
+          "warnings",
+          [](const Checked& self) {
+            std::map<std::string, std::vector<std::string>> warnings;
+            for (const RecordPtr& record : self.records) {
+              if (!record->warnings.empty()) warnings[record->condition] = record->warnings;
+            }
+            return warnings;
+          },
+          "Those of each record that has some, by the id of its condition.")
+      .def("__str__", [](const Checked& self) { return self.text; })
+      .def("__repr__", [](const Checked& self) {
+        return fmt::format("<rigcal.Check: {} records>", self.records.size());
+      });
+  campaign.def("check", &check, R"(Reads every record, as `rigcal check`.
+
+str() of what is returned is what the command prints.
+
+Raises:
+    InputError: a recording is wrong)");
+  campaign.def("average", &average, py::kw_only(), py::arg("out") = py::none(),
+               R"(Averages the repeats of every condition, as `rigcal average`.
+
+Args:
+    out: folder for averaged/<condition>.csv and repeatability.csv; None writes nothing
+
+Returns:
+    the records by the ids of their conditions, in the order of the campaign
+
+Raises:
+    InputError: a recording is wrong, or there is none
+    WriteError: a file cannot be written)");
+}
+
+}  // namespace rigcal::python

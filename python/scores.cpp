@@ -1,0 +1,206 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "metrics/metric_table.hpp"
+#include "python/arrays.hpp"
+#include "python/fit_result.hpp"
+
+namespace rigcal::python {
+namespace {
+
+namespace py = pybind11;
+using datasets::Channel;
+
+/// A channel of a scored condition, which it keeps alive.
+struct ScoredChannel {
+  std::shared_ptr<const calib::ConditionScore> condition;
+  datasets::ChannelInfo about;
+  calib::ChannelScore score;
+
+  const std::vector<double>& measured() const { return series().first; }
+  const std::vector<double>& simulated() const { return series().second; }
+
+ private:
+  const std::pair<std::vector<double>, std::vector<double>>& series() const {
+    static const std::pair<std::vector<double>, std::vector<double>> kNone;
+    const auto found = condition->series.find(about.channel);
+    return found == condition->series.end() ? kNone : found->second;
+  }
+};
+
+/// Empty where it could not be simulated.
+py::array_t<double> residual(const ScoredChannel& self) {
+  const std::vector<double>& measured = self.measured();
+  const std::vector<double>& simulated = self.simulated();
+  const std::size_t size = std::min(measured.size(), simulated.size());
+  py::array_t<double> array(static_cast<py::ssize_t>(size));
+  auto values = array.mutable_unchecked<1>();
+  for (std::size_t i = 0; i < size; ++i)
+    values(static_cast<py::ssize_t>(i)) = measured[i] - simulated[i];
+  return array;
+}
+
+py::dict metrics_of(const ScoredChannel& self) {
+  py::dict metrics;
+  for (const metrics::MetricSpec& metric : metrics::kMetrics) {
+    const py::str name(metric.name.data(), metric.name.size());
+    metrics[name] = self.score.agreement
+                        ? py::object(py::float_((*self.score.agreement).*metric.value))
+                        : py::none();
+  }
+  return metrics;
+}
+
+std::optional<py::dict> noise_floor_of(const ScoredChannel& self) {
+  if (!self.score.noise_floor) return std::nullopt;
+  py::dict floor;
+  floor["rho2"] = self.score.noise_floor->rho2;
+  floor["ccc"] = self.score.noise_floor->ccc;
+  floor["absolute_error_percent"] = self.score.noise_floor->absolute_error_percent;
+  return floor;
+}
+
+py::dict scored_channels_of(const ScoredCondition& self) {
+  py::dict channels;
+  for (const calib::ChannelScore& score : self.score->channels) {
+    const datasets::ChannelInfo& about = info(score.channel);
+    channels[py::str(about.key.data(), about.key.size())] = ScoredChannel{self.score, about, score};
+  }
+  return channels;
+}
+
+std::optional<std::string> none_if_empty(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(text);
+}
+
+void bind_limit_check(py::module_& module) {
+  using calib::LimitCheck;
+  py::class_<LimitCheck>(module, "LimitCheck", "A metric of a channel against its limit.")
+      .def_property_readonly(
+          "channel", [](const LimitCheck& self) { return info(self.channel).key; },
+          "Key of the channel.")
+      .def_readonly("metric", &LimitCheck::metric, "Its name.")
+      .def_readonly("value", &LimitCheck::value, "None where it does not exist, see `words`.")
+      .def_readonly("limit", &LimitCheck::limit, "Beyond it: FAIL.")
+      .def_readonly("warn", &LimitCheck::warn, "Between it and the limit: WARN.")
+      .def_property_readonly(
+          "verdict", [](const LimitCheck& self) { return to_string(self.verdict); },
+          "\"PASS\", \"WARN\" or \"FAIL\".")
+      .def_readonly("words", &LimitCheck::words, "Why WARN or FAIL; empty for PASS.");
+}
+
+void bind_scored_channel(py::module_& module) {
+  py::class_<ScoredChannel>(module, "ScoredChannel",
+                            "How well the model agrees with one channel of a condition; SI.")
+      .def_property_readonly(
+          "key", [](const ScoredChannel& self) { return self.about.key; }, "\"position\"...")
+      .def_property_readonly(
+          "unit", [](const ScoredChannel& self) { return self.about.unit; },
+          "SI unit of the arrays.")
+      .def_property_readonly(
+          "measured",
+          [](const ScoredChannel& self) { return view(self.condition, self.measured()); },
+          "Mean of the repeats, shape (samples), in `unit`.")
+      .def_property_readonly(
+          "simulated",
+          [](const ScoredChannel& self) { return view(self.condition, self.simulated()); },
+          "Shape (samples), in `unit`; empty where it could not be simulated.")
+      .def_property_readonly("residual", &residual,
+                             "Measured minus simulated, shape (samples), in `unit`.")
+      .def_property_readonly("metrics", &metrics_of,
+                             "By name, \"ccc\", \"rho2\"...; None where it does not exist.")
+      .def_property_readonly("noise_floor", &noise_floor_of,
+                             "What a perfect model would reach, by name; None where the noise is\n"
+                             "unknown.")
+      .def_property_readonly(
+          "gain_ratio", [](const ScoredChannel& self) { return self.score.gain_ratio; },
+          "Simulated over measured amplitude of the fundamental; None where there is none.")
+      .def_property_readonly(
+          "phase_deg", [](const ScoredChannel& self) { return self.score.phase_deg; },
+          "Of the fundamental [degrees]; or None.")
+      .def_property_readonly(
+          "delay_s", [](const ScoredChannel& self) { return self.score.delay_s; },
+          "Of the fundamental [s]; or None.")
+      .def_property_readonly(
+          "problem", [](const ScoredChannel& self) { return none_if_empty(self.score.problem); },
+          "Why a metric does not exist, in words; or None.")
+      .def("__repr__", [](const ScoredChannel& self) {
+        return fmt::format("<rigcal.ScoredChannel {} of {}>", self.about.key, self.condition->id);
+      });
+}
+
+}  // namespace
+
+void bind_scores(py::module_& module) {
+  using Self = ScoredCondition;
+  bind_limit_check(module);
+  bind_scored_channel(module);
+  py::class_<Self>(module, "ScoredCondition",
+                   "How well the model agrees with the record of a condition; SI. Its arrays\n"
+                   "cannot be written to.")
+      .def_property_readonly(
+          "id", [](const Self& self) { return self.score->id; }, "Of the condition.")
+      .def_property_readonly(
+          "use", [](const Self& self) { return to_string(self.score->use); },
+          "\"fit\" or \"validate\".")
+      .def_property_readonly(
+          "verdict",
+          [](const Self& self) {
+            return self.score->verdict ? std::optional(to_string(*self.score->verdict))
+                                       : std::nullopt;
+          },
+          "\"PASS\", \"WARN\" or \"FAIL\"; None without limits.")
+      .def_property_readonly(
+          "reasons", [](const Self& self) { return self.score->reasons; },
+          "Of WARN and FAIL, in words.")
+      .def_property_readonly(
+          "checks", [](const Self& self) { return self.score->checks; }, "Of every limit.")
+      .def_property_readonly(
+          "warnings", [](const Self& self) { return self.score->data_warnings; },
+          "What is doubtful about the recording, in words.")
+      .def_property_readonly(
+          "failure", [](const Self& self) { return none_if_empty(self.score->failure); },
+          "Why it could not be simulated, in words; or None.")
+      .def_property_readonly(
+          "not_scored", [](const Self& self) { return none_if_empty(self.score->not_scored); },
+          "Why it was not scored, in words; or None.")
+      .def_property_readonly(
+          "samples", [](const Self& self) { return self.score->samples; }, "That count.")
+      .def_property_readonly(
+          "time_s", [](const Self& self) { return view(self.score, self.score->time_s); },
+          "Shape (samples of the whole record) [s].")
+      .def_property_readonly(
+          "in_window",
+          [](const Self& self) {
+            py::array_t<bool> array(static_cast<py::ssize_t>(self.score->time_s.size()));
+            auto values = array.mutable_unchecked<1>();
+            for (std::size_t i = 0; i < self.score->time_s.size(); ++i)
+              values(static_cast<py::ssize_t>(i)) =
+                  self.score->in_window.empty() || self.score->in_window[i];
+            return array;
+          },
+          "Whether each sample counts, shape (samples).")
+      .def_property_readonly(
+          "drive", [](const Self& self) { return view(self.score, self.score->drive); },
+          "Reference [m], or command [V] in open loop, shape (samples).")
+      .def_property_readonly(
+          "servo_flow_m3_per_s",
+          [](const Self& self) { return view(self.score, self.score->servo_flow_m3_per_s); },
+          "Simulated, shape (samples) [m3/s]; empty where it could not be simulated.")
+      .def_property_readonly(
+          "leakage_flow_m3_per_s",
+          [](const Self& self) { return view(self.score, self.score->leakage_flow_m3_per_s); },
+          "Simulated, shape (samples) [m3/s]; empty where it could not be simulated.")
+      .def_property_readonly("channels", &scored_channels_of, "By their keys: \"position\".")
+      .def("__repr__", [](const Self& self) {
+        return fmt::format("<rigcal.ScoredCondition {}: {}>", self.score->id,
+                           self.score->verdict ? to_string(*self.score->verdict) : "no limits");
+      });
+}
+
+}  // namespace rigcal::python

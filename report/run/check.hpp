@@ -1,0 +1,25 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
+#include "report/store/json.hpp"
+
+namespace rigcal::report {
+
+/// What `check` tells of the records of a campaign.
+struct Check {
+  std::string text;
+  Json json;
+};
+
+/// Reads every record, one at a time.
+///
+/// @param keep  is given each, in the campaign's order; may be empty
+/// @throws InputError  a record is wrong
+Check check(const datasets::Campaign& campaign,
+            const std::function<void(datasets::Record)>& keep = {});
+
+}  // namespace rigcal::report

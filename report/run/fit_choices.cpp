@@ -1,0 +1,53 @@
+#include "report/run/fit_choices.hpp"
+
+#include <fmt/format.h>
+
+namespace rigcal::report {
+namespace {
+
+/// Where nobody said how many starts to make and the campaign's ends at no minimum.
+constexpr int kFurtherStarts = 3;
+
+}  // namespace
+
+calib::FitOptions fit_options(const datasets::Campaign& campaign, int threads,
+                              const std::atomic<bool>& cancel) {
+  calib::FitOptions fit;
+  fit.starts = campaign.fit.starts;
+  fit.max_iterations = campaign.fit.max_iterations;
+  fit.max_seconds = campaign.fit.max_seconds;
+  fit.threads = threads;
+  fit.cancel = &cancel;
+  return fit;
+}
+
+void apply(const FitChoices& choices, calib::FitOptions& settings) {
+  settings.starts = choices.starts.value_or(settings.starts);
+  if (!choices.starts) settings.further_starts = kFurtherStarts;
+  settings.seed = choices.seed;
+  settings.bootstrap = choices.bootstrap;
+  settings.profiles = choices.profiles;
+  settings.cross_validate = choices.cross_validate;
+  settings.max_evaluations = choices.max_evaluations;
+  if (choices.max_time_s) settings.max_seconds = choices.max_time_s;
+}
+
+Provenance provenance_of_starts(const std::string& command, const CampaignChoice& choice,
+                                const FitChoices& choices, const calib::FitOptions& settings,
+                                const datasets::Campaign& campaign,
+                                const std::vector<datasets::Record>& records) {
+  Provenance provenance{command, choices.seed, recorded(choice), hash_inputs(campaign, records)};
+  provenance.options.emplace_back("starts", fmt::format("{}", settings.starts));
+  return provenance;
+}
+
+std::vector<std::pair<std::string, std::string>> recorded(const FitChoices& choices) {
+  std::vector<std::pair<std::string, std::string>> options;
+  if (choices.bootstrap > 0)
+    options.emplace_back("bootstrap", fmt::format("{}", choices.bootstrap));
+  if (choices.profiles) options.emplace_back("profiles", "true");
+  if (choices.cross_validate) options.emplace_back("cross_validate", "true");
+  return options;
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
+#include "model/simulate.hpp"
+
+namespace rigcal::report {
+
+/// A condition with all that its simulation needs.
+struct SimulationTask {
+  const datasets::Condition* condition = nullptr;  ///< of the campaign
+  model::Rig rig;
+  model::ParameterValues values;
+  model::SimulationInputs inputs;
+  std::vector<double> time_s;
+  std::optional<datasets::Record> record;  ///< absent where the drive is made
+};
+
+/// @param values  that hold in the condition
+/// @throws InputError  its record cannot be read, or there is none where the waveform is recorded
+SimulationTask simulation_task(const datasets::Campaign& campaign,
+                               const datasets::Condition& condition, model::ParameterValues values);
+/// With the campaign's own values.
+SimulationTask simulation_task(const datasets::Campaign& campaign,
+                               const datasets::Condition& condition);
+
+/// How the campaign wants to be simulated.
+model::SimulationOptions simulation_options(const datasets::Campaign& campaign);
+
+/// Simulates each, every output of it; one that fails says so in its status.
+std::vector<model::Simulation> simulate(const std::vector<SimulationTask>& tasks,
+                                        const model::SimulationOptions& options, int threads);
+
+/// The position reference at the samples [m]; empty where no controller follows one.
+std::vector<double> reference_of(const SimulationTask& task);
+
+/// The file of `simulate`: <condition>.csv.
+std::string simulation_file(const SimulationTask& task, const model::Simulation& simulation);
+
+}  // namespace rigcal::report

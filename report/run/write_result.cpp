@@ -1,0 +1,112 @@
+#include "report/run/write_result.hpp"
+
+#include <functional>
+#include <memory>
+
+#include "common/file.hpp"
+#include "report/run/result_page.hpp"
+#include "report/store/csv.hpp"
+#include "report/store/json.hpp"
+#include "report/store/parameters_csv.hpp"
+#include "report/store/result_files.hpp"
+
+namespace rigcal::report {
+namespace {
+
+namespace fs = std::filesystem;
+using calib::FitStatus;
+
+std::string fitted_toml(const fs::path& out, const Result& result) {
+  std::vector<datasets::FittedValue> values;
+  for (const calib::FittedParameter& p : result.fit.parameters) {
+    if (p.fitted) values.push_back({p.index, p.scope, p.level, p.value});
+  }
+  const std::string text = fitted_campaign_text(result.campaign, values, out);
+  if (result.fit.has_converged()) return text;
+  return "# status: stopped: the best so far, not a fit that converged\n" + text;
+}
+
+fs::path residual_file(const std::string& condition) {
+  return fs::path("residuals") / (condition + ".csv");
+}
+
+/// Scores whose residuals are written. A fit that failed early scored nothing; its files say so all
+/// the same.
+std::vector<calib::ConditionScore> unscored(const Result& result) {
+  std::vector<calib::ConditionScore> scores;
+  for (const datasets::Condition& condition : result.campaign.conditions) {
+    const bool taken =
+        condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
+    if (!taken || !result.fit.conditions.empty()) continue;
+    scores.emplace_back().id = condition.id;
+  }
+  return scores;
+}
+
+fs::path main_file(const Result& result) {
+  return result.kind == ResultKind::fit ? "fit.json" : "validation.json";
+}
+
+/// Before anything is made.
+/// @throws UsageError  one of the files would replace an input
+void require_inputs_kept(const fs::path& out, const Result& result) {
+  std::vector<fs::path> files{"scorecard.csv", "parameters.csv", "residual_tests.json",
+                              "fitted.toml",   "report.html",    main_file(result)};
+  for (const datasets::Condition& condition : result.campaign.conditions)
+    files.push_back(residual_file(condition.id));
+  require_inputs_kept(out, files, result.provenance.inputs);
+}
+
+/// Every file but the residuals.
+///
+/// @param residuals  their names, which the result gives with those of the other files
+/// @param stored     the result, to which they are added
+std::vector<ResultFile> files_of(const fs::path& out, int threads, const Result& result,
+                                 const std::vector<InputFile>& residuals, StoredFit& stored) {
+  std::vector<ResultFile> files;
+  files.push_back({"scorecard.csv", scorecard_csv(result)});
+  files.push_back(
+      {"parameters.csv", parameters_csv(stored.status, stored.message, stored.parameters)});
+  files.push_back({"residual_tests.json", json_line(json_of(stored_curves(result)))});
+  if (result.kind == ResultKind::fit && stored.status != FitStatus::failed)
+    files.push_back({"fitted.toml", fitted_toml(out, result)});
+  name_files(residuals, files, stored.provenance);
+  // Last, so that whoever finds it finds the others too.
+  files.push_back({main_file(result), json_text(json_of(stored))});
+  add_page(out, threads, files, [&result](const fs::path& path) {
+    for (const calib::ConditionScore& score : result.fit.conditions)
+      if (residual_file(score.id) == path)
+        return std::make_shared<const Table>(residual_table(result, score));
+    return std::shared_ptr<const Table>();
+  });
+  return files;
+}
+
+}  // namespace
+
+std::vector<fs::path> write_result(const fs::path& out, int threads, const Result& result,
+                                   StoredFit& stored) {
+  const std::vector<calib::ConditionScore> early = unscored(result);
+  require_inputs_kept(out, result);
+  ResultsInWriting writing(out, result.provenance.inputs);
+  std::vector<InputFile> residuals;
+  for (const auto& scores : {std::cref(result.fit.conditions), std::cref(early)}) {
+    for (const calib::ConditionScore& score : scores.get()) {
+      const std::string text = residuals_csv(result, score);
+      residuals.push_back({residual_file(score.id).generic_string(), sha256_of_text(text)});
+      writing.add(residual_file(score.id), text);
+    }
+  }
+  std::vector<fs::path> paths;
+  for (const InputFile& file : residuals) paths.emplace_back(file.path);
+  for (const ResultFile& file : files_of(out, threads, result, residuals, stored)) {
+    writing.add(file.path, file.content);
+    paths.push_back(file.path);
+  }
+  writing.move_into_place();
+  if (result.kind == ResultKind::fit && stored.status == FitStatus::failed)
+    remove_stale(out / "fitted.toml");
+  return paths;
+}
+
+}  // namespace rigcal::report

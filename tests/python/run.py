@@ -1,0 +1,11 @@
+"""Runs a test file by pytest, or skips it where Python has none. usage: run.py FILE"""
+import sys
+
+try:
+    import pytest
+except ImportError:
+    print("skipped: it needs python3-pytest (scripts/setup --dev)")
+    sys.exit(77)
+
+code = pytest.main(["-q", "-p", "no:cacheprovider", *sys.argv[1:]])
+sys.exit(int(code))
