@@ -251,15 +251,12 @@ ExportChoice choose_export(const ExportRequest& options) {
     throw UsageError("found --condition and --level, expected one of them");
   const Campaign campaign = load(options.common);
   std::optional<report::EarlierFit> earlier;
-  std::string verdict;
   std::vector<std::filesystem::path> more_inputs;
   ExportChoice choice;
   if (!options.fit.empty()) {
     earlier = report::read_fit(options.fit, campaign.rig.plant);
     more_inputs.push_back(options.fit);
     choice.warnings = doubts_about(*earlier, campaign);
-    verdict = verdict_of(options.fit);
-    if (verdict == "FAIL") choice.warnings.emplace_back("the verdict of the fit is FAIL");
   }
   Condition of_level;
   const Condition* condition = &of_level;
@@ -303,7 +300,9 @@ ExportChoice choose_export(const ExportRequest& options) {
   if (condition->leak_level) origin.emplace_back("leak level", *condition->leak_level);
   origin.emplace_back("values from", options.fit.empty() ? "the campaign file" : "a fit");
   if (earlier) {
+    const std::string verdict = verdict_of(options.fit);
     origin.emplace_back("verdict of the fit", verdict);
+    if (verdict == "FAIL") choice.warnings.emplace_back("the verdict of the fit is FAIL");
     tell_validity(earlier->validity, origin);
   }
   for (const std::string& assignment : options.common.set)
