@@ -227,7 +227,7 @@ std::string name_and_hash(const report::InputFile& file) {
 std::string verdict_of(const std::filesystem::path& fit) {
   const report::Json json = report::read_json(fit, "the fit.json of an earlier fit");
   const report::JsonNode verdict = report::JsonNode(json, fit.string(), "", "fit.json")["verdict"];
-  return verdict.is_null() ? "none" : verdict.string();
+  return verdict.is_null() ? "none, nothing was judged" : verdict.string();
 }
 
 void tell_validity(const report::Validity& validity,
@@ -301,7 +301,9 @@ ExportChoice choose_export(const ExportRequest& options) {
   if (condition->leak_level) origin.emplace_back("leak level", *condition->leak_level);
   origin.emplace_back("values from", options.fit.empty() ? "the campaign file" : "a fit");
   if (earlier) {
-    origin.emplace_back("verdict of the fit", verdict_of(options.fit));
+    const std::string verdict = verdict_of(options.fit);
+    origin.emplace_back("verdict of the fit", verdict);
+    if (verdict == "FAIL") choice.warnings.emplace_back("the verdict of the fit is FAIL");
     tell_validity(earlier->validity, origin);
   }
   for (const std::string& assignment : options.common.set)

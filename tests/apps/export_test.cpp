@@ -10,6 +10,7 @@
 #include "tests/apps/cli_fixture.hpp"
 #include "tests/apps/two_chamber_fixture.hpp"
 #include "tests/support/fmu.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace rigcal::test {
 namespace {
@@ -456,6 +457,9 @@ TEST_CASE("export: the model description keeps the rules of the standard", "[app
   CHECK(listed("InitialUnknowns") == initial);
   CHECK(derivatives.size() == 3);
   CHECK_THAT(text_of(fmu.folder() / "resources" / "rig.txt"), Contains("guid " + fmu.guid()));
+  // The C++ library within must not stand in for that of the importer.
+  const FmuLibrary library(fmu.library());
+  if (!kSanitized) CHECK_THROWS(library.function<void()>("_ZNSt6locale7classicEv"));
 }
 
 TEST_CASE("export: the same campaign gives the same bytes, another one another GUID", "[apps]") {
@@ -511,6 +515,23 @@ TEST_CASE("export: a fit gives the values of its leak level", "[apps]") {
   CHECK(unknown.exit_code == 2);
   CHECK_THAT(unknown.err, Contains("--level: unknown leak level 'nine'"));
   CHECK(run({"--level", "none", "--condition", "sine"}).exit_code == 2);
+}
+
+TEST_CASE("export: what speaks against a fit goes with it", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder, {{"rho2 = 0.9", "rho2 = 0.999999999"}}).exit_code == 0);
+  REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "fit", "--quiet"}).exit_code == 1);
+  const CommandFolder::Arguments arguments{"export",     "fmu",          "twin/campaign.toml",
+                                           "--fit",      "fit/fit.json", "--set",
+                                           "mass=61 kg", "--out",        "fmu"};
+  const Outcome outcome = folder.run(arguments);
+  REQUIRE(outcome.exit_code == 0);
+  CHECK_THAT(outcome.out, Contains("verdict of the fit: FAIL") &&
+                              Contains("warning: the verdict of the fit is FAIL") &&
+                              Contains("warning: mass is 61 kg here, but was 60 kg in the fit"));
+  unzip(folder.work() / "fmu" / "small_rig_synthetic.fmu", folder.work() / "unpacked");
+  CHECK_THAT(folder.read("unpacked/documentation/index.html"),
+             Contains("the verdict of the fit is FAIL") && Contains("mass=61 kg"));
 }
 
 TEST_CASE("export: bad input", "[apps]") {
