@@ -311,9 +311,8 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
   const Condition counted = within(own_condition(leak_problem, condition), record, covered);
   const std::vector<Record> records{record};
   const calib::Problem problem = problem_of(leak_problem, counted, records);
-  calib::Evaluator::Options options;
-  options.cancel = cancel;
-  calib::Evaluator evaluator(problem, options);
+  calib::Budget budget(cancel);
+  calib::Evaluator evaluator(problem, budget);
   std::vector<double> z = problem.start();
   for (std::size_t j = 0; j < z.size(); ++j) {
     if (scan != nullptr && problem.map.unknowns()[j].index == leak_problem.leak)
@@ -323,7 +322,7 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
   settings.max_iterations = kIterations;
   const calib::SolveResult solved = calib::Search(problem, evaluator, settings).run(z);
   const calib::Evaluation& best = evaluator.best();
-  if (!best.ok || evaluator.aborted()) {
+  if (!best.ok || evaluator.budget().spent()) {
     fit.failure = solved.message;
     return fit;
   }
