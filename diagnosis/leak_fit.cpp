@@ -23,6 +23,8 @@ using datasets::Condition;
 using datasets::Record;
 
 constexpr const char* kLeak = "leakage_coefficient";
+/// Of one leak and a few nuisance parameters, from the best of a scan: what takes more is told as a
+/// leak that did not converge.
 constexpr int kIterations = 40;
 
 void erase_value(datasets::Overrides& overrides, int index) {
