@@ -82,9 +82,8 @@ Solved solve(const Problem& data, const calib::FitOptions& options) {
   for (const auto& each : data.campaign.conditions) conditions.push_back(&each);
   Solved solved{
       calib::make_problem(data.campaign, data.records, conditions, false, nullptr), {}, 0};
-  calib::Evaluator::Options settings;
-  settings.threads = options.threads;
-  calib::Evaluator evaluator(solved.problem, settings);
+  calib::Budget budget;
+  calib::Evaluator evaluator(solved.problem, budget, options.threads);
   solved.found = calib::multi_start(solved.problem, evaluator, options);
   solved.evaluations = evaluator.counters().evaluations;
   return solved;
@@ -239,7 +238,8 @@ void stiff(int rounds) {
     for (const auto& each : data.campaign.conditions) conditions.push_back(&each);
     const auto problem =
         calib::make_problem(data.campaign, data.records, conditions, false, nullptr);
-    calib::Evaluator evaluator(problem, {});
+    calib::Budget budget;
+    calib::Evaluator evaluator(problem, budget);
     const double begin = cpu_ms();
     const calib::FitOptions settings;
     require_converged(calib::Search(problem, evaluator, settings).polish(optimum));

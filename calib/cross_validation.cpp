@@ -106,7 +106,7 @@ HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>&
 
 std::vector<HeldOut> cross_validate(const Campaign& campaign,
                                     const std::vector<datasets::Record>& records, const Fit& whole,
-                                    const FitOptions& options, Budget* budget) {
+                                    const FitOptions& options, Budget& left) {
   std::vector<std::string> ids;
   for (const auto& condition : campaign.conditions) {
     if (condition.use == Use::fit) ids.push_back(condition.id);
@@ -121,8 +121,6 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
     result[0].problem = "it is the only condition of the fit: expected two at least";
     return result;
   }
-  Budget without_limits(options.cancel, {}, {}, {});
-  Budget& left = budget != nullptr ? *budget : without_limits;
   const std::optional<long> allowed = left.evaluations_left();
   std::vector<long> taken(ids.size(), 0);
   std::atomic<int> done = 0;

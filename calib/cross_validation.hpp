@@ -16,7 +16,7 @@ namespace rigcal::calib {
 /// @param budget  what is left of that of the whole job; null: no limit but `options.cancel`
 std::vector<HeldOut> cross_validate(const datasets::Campaign& campaign,
                                     const std::vector<datasets::Record>& records, const Fit& whole,
-                                    const FitOptions& options, Budget* budget = nullptr);
+                                    const FitOptions& options, Budget& left);
 
 /// How many conditions were predicted, and how well at worst, in one sentence.
 std::string cross_validation_summary(const std::vector<HeldOut>& held_out);

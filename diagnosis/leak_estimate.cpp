@@ -11,6 +11,8 @@
 namespace rigcal::diagnosis {
 namespace {
 
+/// Equally probable values of the coefficient, and of what blurs its share: probabilities of
+/// classes in steps of 1 / 6015.
 constexpr int kDraws = 401;
 constexpr int kBlurs = 15;
 /// Below this an error is that of the arithmetic.

@@ -23,6 +23,8 @@ using datasets::Condition;
 using datasets::Record;
 
 constexpr const char* kLeak = "leakage_coefficient";
+/// Of one leak and a few nuisance parameters, from the best of a scan: what takes more is told as a
+/// leak that did not converge.
 constexpr int kIterations = 40;
 
 void erase_value(datasets::Overrides& overrides, int index) {
@@ -311,9 +313,8 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
   const Condition counted = within(own_condition(leak_problem, condition), record, covered);
   const std::vector<Record> records{record};
   const calib::Problem problem = problem_of(leak_problem, counted, records);
-  calib::Evaluator::Options options;
-  options.cancel = cancel;
-  calib::Evaluator evaluator(problem, options);
+  calib::Budget budget(cancel);
+  calib::Evaluator evaluator(problem, budget);
   std::vector<double> z = problem.start();
   for (std::size_t j = 0; j < z.size(); ++j) {
     if (scan != nullptr && problem.map.unknowns()[j].index == leak_problem.leak)
@@ -323,7 +324,7 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
   settings.max_iterations = kIterations;
   const calib::SolveResult solved = calib::Search(problem, evaluator, settings).run(z);
   const calib::Evaluation& best = evaluator.best();
-  if (!best.ok || evaluator.aborted()) {
+  if (!best.ok || evaluator.budget().spent()) {
     fit.failure = solved.message;
     return fit;
   }

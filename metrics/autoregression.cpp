@@ -97,7 +97,7 @@ bool is_autocovariance(std::span<const double> gamma) {
 }
 
 Autoregression fit_autoregression(std::span<const double> gamma, double samples) {
-  constexpr double kMemory = 10.0;
+  constexpr double kMemory = 10.0;  // records must be so many times as long as what is remembered
   if (gamma.empty() || !(gamma.front() > 0.0)) return {};
   const double most = std::max(0.0, 1.0 - kMemory / samples);
   Autoregression model{{}, gamma.front()};

@@ -18,6 +18,9 @@ struct Autoregression {
 /// Autocovariances about zero, sum_t x[t] x[t + h] / n for h = 0..lags (0 beyond the series).
 std::vector<double> autocovariance(std::span<const double> series, int lags);
 
+/// Most lags of a model that are summed: how long a sum over a slow drift may take.
+inline constexpr int kLongestMemory = 5000;
+
 /// Whether a series can have these autocovariances from lag 0 on: gamma[0] > 0 and all partial
 /// autocorrelations within (-1, 1). Those of a series of zeros are none.
 bool is_autocovariance(std::span<const double> gamma);

@@ -4,6 +4,11 @@
 
 namespace rigcal::metrics {
 
+/// Half width of a 95 % interval in standard errors, where they are of many degrees of freedom.
+inline constexpr double kNormal95 = 1.96;
+/// Significance level of a test whose result warns: one false alarm in twenty.
+inline constexpr double kWarningLevel = 0.05;
+
 /// Value below which a standard normal variable lies with `probability`.
 ///
 /// @param probability  in [0, 1]

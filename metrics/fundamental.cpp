@@ -114,16 +114,6 @@ Fundamental existing_fundamental(std::span<const double> time_s, std::span<const
   return result;
 }
 
-/// `to` over `from`.
-FrequencyResponse ratio(const Fundamental& from, const Fundamental& to, double frequency_hz) {
-  const double phase_rad = std::remainder(to.phase_rad - from.phase_rad, 2.0 * std::numbers::pi);
-  double phase_deg = phase_rad * 180.0 / std::numbers::pi;
-  if (phase_deg <= -180.0) phase_deg = 180.0;
-  return {.gain = to_double(wide(to.amplitude) / wide(from.amplitude), "fundamental"),
-          .phase_deg = phase_deg,
-          .delay_s = -phase_deg / (360.0 * frequency_hz)};
-}
-
 }  // namespace
 
 Fundamental fundamental(std::span<const double> time_s, std::span<const double> signal,
@@ -134,17 +124,14 @@ Fundamental fundamental(std::span<const double> time_s, std::span<const double> 
 FundamentalComparison compare_fundamentals(std::span<const double> time_s,
                                            std::span<const double> measured,
                                            std::span<const double> simulated, double frequency_hz) {
-  const FrequencyResponse response =
-      ratio(existing_fundamental(time_s, measured, "measured", frequency_hz),
-            existing_fundamental(time_s, simulated, "simulated", frequency_hz), frequency_hz);
-  return {
-      .gain_ratio = response.gain, .phase_deg = response.phase_deg, .delay_s = response.delay_s};
-}
-
-FrequencyResponse frequency_response(std::span<const double> time_s, std::span<const double> input,
-                                     std::span<const double> output, double frequency_hz) {
-  return ratio(existing_fundamental(time_s, input, "input", frequency_hz),
-               existing_fundamental(time_s, output, "output", frequency_hz), frequency_hz);
+  const Fundamental from = existing_fundamental(time_s, measured, "measured", frequency_hz);
+  const Fundamental to = existing_fundamental(time_s, simulated, "simulated", frequency_hz);
+  const double phase_rad = std::remainder(to.phase_rad - from.phase_rad, 2.0 * std::numbers::pi);
+  double phase_deg = phase_rad * 180.0 / std::numbers::pi;
+  if (phase_deg <= -180.0) phase_deg = 180.0;
+  return {.gain_ratio = to_double(wide(to.amplitude) / wide(from.amplitude), "fundamental"),
+          .phase_deg = phase_deg,
+          .delay_s = -phase_deg / (360.0 * frequency_hz)};
 }
 
 }  // namespace rigcal::metrics

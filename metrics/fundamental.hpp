@@ -39,15 +39,4 @@ FundamentalComparison compare_fundamentals(std::span<const double> time_s,
                                            std::span<const double> measured,
                                            std::span<const double> simulated, double frequency_hz);
 
-/// Output over input at the fundamental: gain and phase of the loop (position over reference).
-struct FrequencyResponse {
-  double gain = 0.0;       ///< output amplitude over input amplitude
-  double phase_deg = 0.0;  ///< output phase minus input phase, in (-180, 180]
-  double delay_s = 0.0;    ///< by how much the output is late: -phase / (360 f)
-};
-
-/// @throws  as compare_fundamentals()
-FrequencyResponse frequency_response(std::span<const double> time_s, std::span<const double> input,
-                                     std::span<const double> output, double frequency_hz);
-
 }  // namespace rigcal::metrics

@@ -16,12 +16,12 @@ namespace {
 
 using Complex = std::complex<double>;
 
-constexpr double kLevel = 0.05;
+/// A fifth of the samples are tested lags: three.
 constexpr std::size_t kLeastSamples = 16;
 constexpr int kTestedLags = 25;
 
 /// 95 % of the autocorrelations of n samples of white noise lie within +-this.
-double white_band(double n) { return 1.96 / std::sqrt(n); }
+double white_band(double n) { return kNormal95 / std::sqrt(n); }
 
 void conclude(Judged& test, Judged found) { test = std::move(found); }
 
@@ -89,7 +89,7 @@ Autocorrelation test_autocorrelation(const std::vector<double>& e, const std::ve
   std::size_t fall = 1;
   while (fall < e.size() && rho[fall] > result.band) ++fall;
   result.correlation_time_s = fall == 1 ? 0.0 : static_cast<double>(fall) * interval_s;
-  conclude(result, judge(result.p_value < kLevel,
+  conclude(result, judge(result.p_value < kWarningLevel,
                          {n, result.band, kLargestUsefulBound, "an autocorrelation"}));
   return result;
 }
@@ -116,7 +116,7 @@ std::optional<CrossCorrelation> test_cross_correlation(const std::vector<double>
     }
   }
   const double tests = std::min(static_cast<double>(result.values.size()), effective);
-  result.band_of_peak = normal_quantile(1.0 - 0.5 * kLevel / tests) / std::sqrt(effective);
+  result.band_of_peak = normal_quantile(1.0 - 0.5 * kWarningLevel / tests) / std::sqrt(effective);
   conclude(result, judge(std::abs(result.peak) > result.band_of_peak,
                          {effective, result.band_of_peak, kLargestUsefulBound,
                           "a correlation with the input"}));
@@ -174,7 +174,7 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
     result.peak_share += power[k] / total;
   // By Parseval all lines together stand for the mean square.
   const double density = mean_square(e) / (total * line_hz);
-  constexpr double kBinsPerDecade = 30.0;
+  constexpr double kBinsPerDecade = 30.0;  // of a picture, as the points below
   for (std::size_t k = 0; k < power.size();) {
     const double upper = static_cast<double>(k + 1) * std::pow(10.0, 1.0 / kBinsPerDecade);
     double mean = 0.0;
@@ -204,8 +204,8 @@ Normality test_normality(const std::vector<double>& e, double effective) {
       (result.skewness * result.skewness + 0.25 * result.excess_kurtosis * result.excess_kurtosis);
   result.p_value = std::exp(-0.5 * result.jarque_bera);
   // The statistic exceeds chi-square's 5 % point of two degrees by the kurtosis alone.
-  const double kurtosis = std::sqrt(-2.0 * std::log(kLevel) * 24.0 / effective);
-  conclude(result, judge(result.p_value < kLevel,
+  const double kurtosis = std::sqrt(-2.0 * std::log(kWarningLevel) * 24.0 / effective);
+  conclude(result, judge(result.p_value < kWarningLevel,
                          {effective, kurtosis, kLargestUsefulKurtosis, "an excess kurtosis"}));
   std::vector<double> sorted = e;
   std::sort(sorted.begin(), sorted.end());
@@ -239,7 +239,7 @@ Drift test_drift(std::span<const double> residual, const std::vector<double>& e,
   result.slope_p_value = two_sided_p(slope * std::sqrt(variance_of_time) / error_of_mean);
   // Two tests, so each at half the level. In units of the standard deviation both bounds are those
   // of a correlation: with a constant, and with time.
-  const double level = 0.5 * kLevel;
+  const double level = 0.5 * kWarningLevel;
   conclude(result, judge(result.mean_p_value < level || result.slope_p_value < level,
                          {effective, normal_quantile(1.0 - 0.5 * level) / std::sqrt(effective),
                           kLargestUsefulBound, "an offset or trend, in standard deviations,"}));

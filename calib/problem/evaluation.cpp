@@ -5,6 +5,7 @@
 
 #include "calib/problem/loss.hpp"
 #include "calib/problem/r_factor.hpp"
+#include "common/parallel.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -13,6 +14,18 @@ namespace {
 /// hundredth of a standard error and more where they are as loose as far from the optimum (decision
 /// 0004).
 constexpr double kLoosenessNearOptimum = 10.0;
+
+double prior_cost(const Problem& problem, std::span<const double> z) {
+  double cost = 0.0;
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const auto& prior = problem.map.unknowns()[j].prior;
+    if (!prior) continue;
+    const double residual =
+        (problem.map.to_physical(static_cast<int>(j), z[j]) - prior->mean) / prior->sd;
+    cost += 0.5 * residual * residual;
+  }
+  return cost;
+}
 
 }  // namespace
 
@@ -140,6 +153,30 @@ ConditionEvaluation evaluate_run(const Problem& problem, std::size_t condition,
     result.r_factor.resize(0, 0);
   }
   return result;
+}
+
+Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
+                       const EvaluationOptions& options) {
+  Evaluation evaluation;
+  evaluation.z.assign(z.begin(), z.end());
+  evaluation.conditions.resize(problem.conditions.size());
+  if (options.rows) {
+    evaluation.rows = std::make_shared<std::vector<ConditionRows>>(problem.conditions.size());
+  }
+  parallel_for(problem.conditions.size(), threads, [&](std::size_t i) {
+    ConditionRows* const rows = options.rows ? &(*evaluation.rows)[i] : nullptr;
+    evaluation.conditions[i] =
+        options.runs != nullptr
+            ? evaluate_run(problem, i, z, (*options.runs)[i], rows, options.fidelity)
+            : evaluate_condition(problem, i, z, options.cancel, rows, options.fidelity);
+  });
+  evaluation.ok = std::all_of(evaluation.conditions.begin(), evaluation.conditions.end(),
+                              [](const ConditionEvaluation& each) { return each.ok(); });
+  if (!evaluation.ok) return evaluation;
+  evaluation.share = problem.share_at(options.fidelity);
+  evaluation.cost = prior_cost(problem, z);
+  for (const ConditionEvaluation& each : evaluation.conditions) evaluation.cost += each.cost();
+  return evaluation;
 }
 
 Linearisation linearise(const Problem& problem, const Evaluation& evaluation) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <atomic>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -84,10 +85,24 @@ ConditionEvaluation evaluate_run(const Problem& problem, std::size_t condition,
 struct Evaluation {
   std::vector<double> z;
   std::vector<ConditionEvaluation> conditions;
-  double cost = 0.0;   ///< half the sum of squares, priors included
-  bool ok = false;     ///< every condition could be simulated
-  double share = 1.0;  ///< of the samples that count, those looked at
+  double cost = 0.0;                                 ///< half the sum of squares, priors included
+  bool ok = false;                                   ///< every condition could be simulated
+  double share = 1.0;                                ///< of the samples that count, those looked at
+  std::shared_ptr<std::vector<ConditionRows>> rows;  ///< of each condition, where they were kept
 };
+
+/// How a point is evaluated.
+struct EvaluationOptions {
+  Fidelity fidelity = Fidelity::full;
+  const std::atomic<bool>* cancel = nullptr;
+  bool rows = false;  ///< whether they are kept
+  /// If not null, the simulations at that point, which are then not made anew.
+  const std::vector<model::Simulation>* runs = nullptr;
+};
+
+/// Every condition at z, side by side.
+Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
+                       const EvaluationOptions& options = {});
 
 /// Least-squares system of all conditions and priors at one point, as a R factor.
 struct Linearisation {

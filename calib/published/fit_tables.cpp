@@ -18,7 +18,9 @@
 namespace rigcal::calib {
 namespace {
 
+/// The tables of docs/paper.md take 13 to 32, as the last digits of the start have it.
 constexpr int kMostIterations = 100;
+/// Each call has another set of unknowns at their bounds.
 constexpr int kMostCalls = 10;
 /// All but a full Gauss-Newton step would leave the box at once from a far start.
 constexpr double kTablesTrustRadius = 10.0;

@@ -13,6 +13,7 @@ namespace {
 
 /// Of ln coefficient: well below what three printed digits tell, above the noise of the flows.
 constexpr double kRootWidth = 1e-4;
+/// Bisection alone would come from two decades to the root's width in sixteen.
 constexpr std::uintmax_t kMostRootSteps = 60;
 /// An interval of the scan is flat where the quantity grows with less than this power of the
 /// coefficient, and near a target within this factor of it.

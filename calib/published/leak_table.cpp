@@ -14,8 +14,12 @@
 namespace rigcal::calib {
 namespace {
 
+/// Points of a scan over the coefficient.
+constexpr int kScanPerDecade = 4;
+/// Grades of docs/paper.md. A coefficient that is printed as 0.3 is itself rounded by up to 17 %.
 constexpr double kGoodPercent = 10.0;
 constexpr double kFairPercent = 16.0;
+/// 1 % of the share over it is 5 % of the coefficient.
 constexpr double kFlatSlope = 0.2;
 /// Grades compare errors with whole percents: a hair above is not beyond.
 constexpr double kHair = 1e-9;
@@ -116,7 +120,7 @@ struct Column {
 Column column_of(const PeriodicDrive& drive, const model::ParameterValues& values,
                  const datasets::LeakTableSettings& settings, const LeakTableOptions& options) {
   FlowCurve curve(drive, values, options.periodic);
-  curve.scan(settings.lowest_coefficient, settings.highest_coefficient, options.scan_per_decade);
+  curve.scan(settings.lowest_coefficient, settings.highest_coefficient, kScanPerDecade);
   Column column;
   for (const double target : settings.targets_percent) {
     LeakEntry entry;
@@ -176,7 +180,7 @@ FeatureRow feature_row(const PeriodicDrive& drive, const model::ParameterValues&
       metrics::residual_features({residual.data(), static_cast<std::size_t>(residual.size())});
   const auto leak = printed.printed.find(datasets::Feature::leak_flow);
   if (!printed.leaking && leak != printed.printed.end()) {
-    curve.scan(settings.lowest_coefficient, 10.0 * printed.coefficient, options.scan_per_decade);
+    curve.scan(settings.lowest_coefficient, 10.0 * printed.coefficient, kScanPerDecade);
     row.coefficients_for_leak_flow = curve.roots(leak_of, leak->second);
   }
   return row;

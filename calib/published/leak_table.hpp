@@ -99,7 +99,6 @@ struct RigUncertainty {
 
 struct LeakTableOptions {
   PeriodicOptions periodic;
-  int scan_per_decade = 4;
   int series_samples = 2000;  ///< of the features' period
   int threads = 1;            ///< results are the same bits for any number
   RigUncertainty rig;         ///< empty: coefficients have no interval

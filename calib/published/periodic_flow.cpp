@@ -17,6 +17,8 @@ using model::Output;
 constexpr std::array kOutputs{Output::servo_flow, Output::leakage_flow, Output::command};
 enum FlowColumn { kServo, kLeak, kCommand };
 
+/// Of a period; what more would resolve is not resolved.
+constexpr int kMostIntervals = 16384;
 /// Of a mean flow that is as good as none, so that a relative change means something.
 constexpr double kNoFlow = 1e-9;
 /// Of the limit: here the command counts as saturated.
@@ -176,7 +178,7 @@ PeriodicFlow periodic_flow(const PeriodicDrive& drive, const model::ParameterVal
       return flow;
     }
     const double sampling = sampling_error(run);
-    if (sampling > options.tolerance && 2 * flow.intervals <= options.most_intervals) {
+    if (sampling > options.tolerance && 2 * flow.intervals <= kMostIntervals) {
       flow.intervals *= 2;
       continue;
     }

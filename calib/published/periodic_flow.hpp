@@ -18,11 +18,10 @@ struct PeriodicDrive {
 
 struct PeriodicOptions {
   model::SimulationOptions simulation{.tolerance = 1e-5};
-  int periods = 4;             ///< to begin with; a power of two, at least 4
-  int most_periods = 1024;     ///< beyond: not periodic
-  int intervals = 512;         ///< samples per piece of a period, to begin with
-  int most_intervals = 16384;  ///< beyond: not resolved
-  double tolerance = 1e-4;     ///< of the mean flows: what transient and sampling may leave
+  int periods = 4;          ///< to begin with; a power of two, at least 4
+  int most_periods = 1024;  ///< beyond: not periodic
+  int intervals = 512;      ///< samples per piece of a period, to begin with
+  double tolerance = 1e-4;  ///< of the mean flows: what transient and sampling may leave
 };
 
 /// Mean flows of a rig that has become periodic.

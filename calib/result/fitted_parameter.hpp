@@ -12,6 +12,10 @@
 
 namespace rigcal::calib {
 
+/// Half width of an interval, relative to the value, above which a parameter is weak: the one limit
+/// of docs/uncertainty.md for what was fitted, planned, or fixed in a combination.
+inline constexpr double kWeak = 0.2;
+
 enum class Identifiability {
   identified,
   weak,              ///< half width of the 95 % interval above 20 % of the value

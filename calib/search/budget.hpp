@@ -13,17 +13,21 @@ class Budget {
  public:
   using Clock = std::chrono::steady_clock;
 
+  /// Without limits, but for a request.
+  explicit Budget(const std::atomic<bool>* cancel = nullptr) : cancel_(cancel) {}
   /// @param cancel           ends the job when it becomes true; may be null
   /// @param max_seconds      from `began`; beyond what a clock can count: without end
   /// @param max_evaluations  of all residuals
   Budget(const std::atomic<bool>* cancel, Clock::time_point began,
          const std::optional<double>& max_seconds, const std::optional<long>& max_evaluations);
 
+  /// For a part of the job that is counted when it is done: as long, but of any number of
+  /// evaluations.
+  Budget part() const { return Budget(cancel_, deadline_); }
+
   const std::atomic<bool>* cancel() const { return cancel_; }
   const std::optional<Clock::time_point>& deadline() const { return deadline_; }
-  const std::optional<long>& max_evaluations() const { return max_evaluations_; }
 
-  /// Evaluations that one piece of the job has taken.
   void count(long evaluations) { evaluations_ += evaluations; }
   /// Evaluations that are left; none without a limit.
   std::optional<long> evaluations_left() const;
@@ -39,6 +43,9 @@ class Budget {
   std::string reason() const;
 
  private:
+  Budget(const std::atomic<bool>* cancel, const std::optional<Clock::time_point>& deadline)
+      : cancel_(cancel), deadline_(deadline) {}
+
   const std::atomic<bool>* cancel_;
   std::optional<Clock::time_point> deadline_;
   std::optional<long> max_evaluations_;

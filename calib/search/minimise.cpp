@@ -10,6 +10,8 @@
 namespace rigcal::calib {
 namespace {
 
+/// Calls of Ceres that do not change the set of active bounds: the first and three from the best
+/// point with a fresh trust region.
 constexpr int kMaxCalls = 4;
 /// Standard errors that may be left of a step with coarse simulations: their own errors leave more.
 constexpr double kCoarseOffset = 1.0;
@@ -69,12 +71,8 @@ std::string describe_failure(const Problem& problem, const Evaluation& evaluatio
 }
 
 std::string stop_reason(const Evaluator& evaluator, int most_iterations) {
-  if (evaluator.cancelled()) return "stopped on request";
-  if (evaluator.out_of_time()) return "stopped at the time limit";
-  if (evaluator.out_of_evaluations()) {
-    return fmt::format("stopped after {} evaluations, the most allowed",
-                       evaluator.counters().evaluations);
-  }
+  const std::string reason = evaluator.budget().reason();
+  if (!reason.empty()) return reason;
   return fmt::format("stopped after {} iterations, the most allowed, before it converged",
                      most_iterations);
 }
@@ -86,9 +84,9 @@ SolveResult converged(const Iterations& iterations, const OptimumCheck& check) {
 
 SolveResult no_start(const Problem& problem, const Evaluator& evaluator, const Evaluation& first) {
   SolveResult result;
-  result.status = evaluator.aborted() ? FitStatus::stopped : FitStatus::failed;
-  result.message = evaluator.aborted() ? stop_reason(evaluator, 0)
-                                       : "the start " + describe_failure(problem, first);
+  result.status = evaluator.budget().spent() ? FitStatus::stopped : FitStatus::failed;
+  result.message = evaluator.budget().spent() ? stop_reason(evaluator, 0)
+                                              : "the start " + describe_failure(problem, first);
   return result;
 }
 
@@ -118,7 +116,7 @@ SolveResult minimise(const Problem& problem, Evaluator& evaluator, std::vector<d
       other_bounds = check.active_bound == active_bound ? 0 : other_bounds + 1;
       if (lets_go(active_bound, check.active_bound)) other_bounds = kPatience;
       return near_enough(problem, evaluator, check) || other_bounds >= kPatience ||
-             evaluator.aborted();
+             evaluator.budget().spent();
     };
     options.residuals = static_cast<Eigen::Index>(z.size()) + 1;
     options.active_bound = active_bound;
@@ -135,7 +133,7 @@ SolveResult minimise(const Problem& problem, Evaluator& evaluator, std::vector<d
                             : !lets_go(active_bound, result.check.active_bound);
     if (near_enough(problem, evaluator, result.check) || (descent.converged && nearly))
       return converged(iterations, result.check);
-    if (evaluator.aborted() || iterations.used() >= end) {
+    if (evaluator.budget().spent() || iterations.used() >= end) {
       result.status = FitStatus::stopped;
       result.message = stop_reason(evaluator, iterations.most());
       return result;

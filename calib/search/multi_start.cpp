@@ -95,7 +95,7 @@ void describe_best(const Problem& problem, const std::vector<double>& best_z, in
   found.result.iterations = report.iterations;
   if (!any) return;
   if (best_z.size() == problem.map.unknowns().size())
-    found.optimum = evaluate_at(problem, best_z, threads);
+    found.optimum = evaluate_at(problem, best_z, threads, {Fidelity::full, nullptr, true});
   if (found.optimum.ok) found.result.check = check_optimum(problem, found.optimum);
 }
 
@@ -118,7 +118,7 @@ MultiStart resumed(const Problem& problem, Evaluator& evaluator, const FitOption
 void make_in_turn(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                   const std::vector<std::vector<double>>& points, MultiStart& found) {
   for (std::size_t i = found.starts.size(); i < points.size(); ++i) {
-    if (i > 0 && evaluator.aborted()) break;
+    if (i > 0 && evaluator.budget().spent()) break;
     SolveResult solved;
     StartReport report =
         make_start(problem, evaluator, options, static_cast<int>(i) + 1, points[i], solved);
@@ -133,7 +133,7 @@ void make_in_turn(const Problem& problem, Evaluator& evaluator, const FitOptions
     }
     found.starts.push_back(std::move(report));
     // A start that was cut short is made again.
-    if (options.checkpoint && !evaluator.aborted())
+    if (options.checkpoint && !evaluator.budget().spent())
       options.checkpoint({found.starts, found.best, found.optimum.z, evaluator.counters()});
   }
 }
@@ -145,14 +145,14 @@ void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions
                   MultiStart& found) {
   const std::size_t first = found.starts.size();
   const auto make = [&](std::size_t i) -> TaskResult {
-    if (first + i > 0 && evaluator.aborted()) return {{}, false};
-    Evaluator own = evaluator;
-    own.set_counters({});
+    if (first + i > 0 && evaluator.budget().spent()) return {{}, false};
+    Budget part = evaluator.budget().part();
+    Evaluator own(evaluator, part);
     SolveResult solved;
     const StartReport report = make_start(problem, own, options, static_cast<int>(first + i) + 1,
                                           points[first + i], solved);
     return {to_bytes(report, own.best().ok ? own.best().z : std::vector<double>(), own.counters()),
-            !own.aborted()};
+            !own.budget().spent()};
   };
   const FarmJob job{"starts", to_bytes(points.front(), options.seed, points.size(), first),
                     points.size() - first, 1};
@@ -214,6 +214,7 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
 bool search_on(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                MultiStart& found) {
   evaluator.forget();
+  found.optimum.rows.reset();
   Search search(problem, evaluator, options, found.best, found.result.iterations);
   found.result = search.polish(found.optimum.z);
   if (!evaluator.best().ok) return false;

@@ -161,7 +161,7 @@ class Pieces final : public ceres::EvaluationCallback {
       return each.status == model::SimulationStatus::ok;
     });
   }
-  bool aborted() const { return error_ != nullptr || evaluator_.aborted(); }
+  bool aborted() const { return error_ != nullptr || evaluator_.budget().spent(); }
   void rethrow() const {
     if (error_) std::rethrow_exception(error_);
   }
@@ -213,7 +213,7 @@ class Pieces final : public ceres::EvaluationCallback {
   }
 
   void evaluate() {
-    parallel_for(pieces_.size(), evaluator_.options().threads,
+    parallel_for(pieces_.size(), evaluator_.threads(),
                  [this](std::size_t i) { evaluations_[i] = evaluate_piece(pieces_[i]); });
     Evaluation told;  // for the counters
     told.z.assign(z().begin(), z().end());
@@ -231,7 +231,7 @@ class Pieces final : public ceres::EvaluationCallback {
   PieceEvaluation evaluate_piece(const Piece& piece) const {
     const ProblemCondition& condition = problem_.conditions[piece.condition];
     const auto options =
-        simulation_options(problem_, piece.condition, tolerance_, evaluator_.options().cancel);
+        simulation_options(problem_, piece.condition, tolerance_, evaluator_.budget().cancel());
     const auto values = problem_.values_at(piece.condition, z());
     const auto times = condition.fit_times().subspan(piece.first, piece.last - piece.first + 1);
     const Node* from = piece.node < 0 ? nullptr : &node(piece.node);

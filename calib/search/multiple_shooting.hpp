@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "calib/search/evaluator.hpp"
+#include "calib/search/iterations.hpp"
 
 namespace rigcal::calib {
 

@@ -8,7 +8,8 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kStationary = 0.01;  // of a standard error
+/// Standard errors; see OptimumCheck.
+constexpr double kStationary = 0.01;
 constexpr double kNearlyStationary = 0.05;
 
 }  // namespace

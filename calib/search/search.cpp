@@ -34,7 +34,7 @@ SolveResult Search::run(std::vector<double> z) {
   ends_ = {z};
   if (const auto interval_s = problem_.campaign->fit.shooting_interval_s) {
     z = shoot(std::move(z), *interval_s);
-    if (evaluator_.aborted()) return stopped();
+    if (evaluator_.budget().spent()) return stopped();
   }
   const Evaluation first = evaluator_.evaluate(z);
   if (!first.ok) return no_start(problem_, evaluator_, first);
@@ -52,7 +52,8 @@ SolveResult Search::run(std::vector<double> z) {
     }
     if (evaluator_.best().ok) z_ = evaluator_.best().z;
     ends_.push_back(z_);
-    if (evaluator_.aborted() && !(stage.fidelity.exact && evaluator_.best().ok)) return stopped();
+    if (evaluator_.budget().spent() && !(stage.fidelity.exact && evaluator_.best().ok))
+      return stopped();
     if (!evaluator_.best().ok) return no_start(problem_, evaluator_, evaluator_.evaluate(z_));
     if (stage.is_horizon()) foreseen_ = mean_square(evaluator_.best());
   }
@@ -147,8 +148,8 @@ SolveResult Search::stopped() {
   const std::vector<double>* best = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const std::vector<double>& each : ends_) {
-    const Evaluation there = evaluate_at(problem_, each, evaluator_.options().threads,
-                                         {Fidelity::cost, nullptr, nullptr});
+    const Evaluation there =
+        evaluate_at(problem_, each, evaluator_.threads(), {Fidelity::cost, nullptr, false});
     if (!there.ok || there.cost >= least) continue;
     best = &each;
     least = there.cost;

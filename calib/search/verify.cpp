@@ -1,28 +1,21 @@
 #include "calib/search/verify.hpp"
 
 namespace rigcal::calib {
-namespace {
-
-std::vector<ConditionRows> simulate(const Problem& problem, Evaluator& evaluator, int threads,
-                                    Evaluation& optimum) {
-  std::vector<ConditionRows> rows;
-  EvaluationOptions options;
-  options.rows = &rows;
-  optimum = evaluate_at(problem, optimum.z, threads, options);
-  evaluator.record(optimum);
-  return rows;
-}
-
-}  // namespace
 
 std::vector<ConditionRows> verify_optimum(const Problem& problem, Evaluator& evaluator,
                                           const FitOptions& options, MultiStart& found) {
   if (!found.optimum.ok) return {};
   const bool claimed = found.result.status == FitStatus::converged;
-  auto rows = simulate(problem, evaluator, options.threads, found.optimum);
+  const auto simulate = [&] {
+    if (found.optimum.rows) return;  // the last that the search did
+    found.optimum =
+        evaluate_at(problem, found.optimum.z, options.threads, {Fidelity::full, nullptr, true});
+    evaluator.record(found.optimum);
+  };
+  simulate();
   if (found.optimum.ok && claimed && !check_optimum(problem, found.optimum).nearly_stationary()) {
     if (search_on(problem, evaluator, options, found)) report_best(problem, found);
-    rows = simulate(problem, evaluator, options.threads, found.optimum);
+    simulate();
   }
   if (!found.optimum.ok) {
     found.result.status = FitStatus::failed;
@@ -30,6 +23,9 @@ std::vector<ConditionRows> verify_optimum(const Problem& problem, Evaluator& eva
     return {};
   }
   found.result.check = check_optimum(problem, found.optimum);
+  evaluator.forget();  // so that they are held once
+  std::vector<ConditionRows> rows = std::move(*found.optimum.rows);
+  found.optimum.rows.reset();
   return rows;
 }
 

@@ -10,6 +10,7 @@
 namespace rigcal::calib {
 namespace {
 
+/// Where nothing has settled by then the fit says so in a warning.
 constexpr int kMaxRounds = 10;
 /// Reweighting stops when no standard deviation changes by more.
 constexpr double kSettled = 0.1;
@@ -83,11 +84,11 @@ void estimate_weights(Problem& problem, Evaluator& evaluator, const FitOptions& 
                       MultiStart& found, std::vector<std::string>& warnings) {
   bool settled = false;
   for (int round = 0; round < kMaxRounds && !settled; ++round) {
-    if (found.result.status != FitStatus::converged || evaluator.aborted()) break;
+    if (found.result.status != FitStatus::converged || evaluator.budget().spent()) break;
     settled = update(problem, found.optimum) <= kSettled;
     if (!search_on(problem, evaluator, options, found)) break;
   }
-  if (!settled && evaluator.aborted() && found.result.status == FitStatus::converged) {
+  if (!settled && evaluator.budget().spent() && found.result.status == FitStatus::converged) {
     found.result.status = FitStatus::stopped;
     found.result.message = "stopped before the noise was estimated";
   }

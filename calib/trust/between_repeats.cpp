@@ -11,8 +11,11 @@
 namespace rigcal::calib {
 namespace {
 
+/// Bancroft and Han's (docs/uncertainty.md): keeps the coverage near 95 % whatever is true.
 constexpr double kPoolingLevel = 0.25;
+/// Where Fisher's F is that of infinitely many, to six digits.
 constexpr double kFreedomWithoutEnd = 1e6;
+/// Share of the squares from which one cause is named: a second one has a quarter of its at most.
 constexpr double kMostlyExplained = 0.8;
 
 using Eigen::Index;
@@ -100,6 +103,7 @@ struct AlongCause {
   double noise = 0.0;
 };
 
+/// Parts of a record that are taken for independent: nineteen degrees of freedom.
 constexpr Index kStretches = 20;
 
 AlongCause along(const VectorXd& direction, const MatrixXd& deviations) {

@@ -17,8 +17,9 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr int kLongestBlockMemory = 5000;
+/// Of so many the standard deviation is known to a sixth.
 constexpr std::size_t kLeastReplicates = 20;
+/// Two repeats differ from their mean by the same, but for the sign: nothing to draw from.
 constexpr std::size_t kLeastRepeats = 3;
 
 using Samples = std::vector<std::vector<double>>;  ///< per channel, samples that count
@@ -208,7 +209,7 @@ void cut_at(const std::optional<long>& allowed, std::vector<long>& taken,
 
 std::size_t block_length(const metrics::Autoregression& noise, std::size_t samples) {
   if (noise.phi.empty() || samples < 2) return 1;
-  const int lags = std::min(kLongestBlockMemory, static_cast<int>(samples) - 1);
+  const int lags = std::min(metrics::kLongestMemory, static_cast<int>(samples) - 1);
   const auto gamma = metrics::autocovariance(noise, lags);
   double weighted = 0.0;
   double sum = gamma[0];
@@ -224,7 +225,7 @@ std::size_t block_length(const metrics::Autoregression& noise, std::size_t sampl
 
 void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
                const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit,
-               Budget* budget) {
+               Budget& left) {
   if (found.scatter.empty()) {
     fit.bootstrap_message = "no bootstrap: there are no residuals to draw from";
     return;
@@ -244,8 +245,6 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
   quiet.progress = nullptr;
   const auto replicates = static_cast<std::size_t>(options.bootstrap);
   std::vector<std::vector<double>> values(replicates);  // empty: did not converge
-  Budget without_limits(options.cancel, {}, {}, {});
-  Budget& left = budget != nullptr ? *budget : without_limits;
   const std::optional<long> allowed = left.evaluations_left();
   std::vector<long> taken(replicates, 0);  // evaluations; 0: not made to its end
   std::atomic<int> done = 0;
@@ -267,12 +266,13 @@ void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertai
       (sources[i].repeats.empty() ? draw_blocks : draw_repeats)(sources[i], stream,
                                                                 drawn.conditions[i]);
     }
-    Evaluator evaluator(drawn, {1, left.cancel(), left.deadline(), {}});
+    Budget part = left.part();
+    Evaluator evaluator(drawn, part);
     evaluator.begin_with(
-        evaluate_at(drawn, optimum.z, 1, {evaluator.fidelity(), nullptr, nullptr, &runs}));
+        evaluate_at(drawn, optimum.z, 1, {evaluator.fidelity(), nullptr, false, &runs}));
     const auto solved = Search(drawn, evaluator, quiet, static_cast<int>(b) + 1).polish(optimum.z);
     left.count(evaluator.counters().evaluations);
-    if (solved.status == FitStatus::stopped && evaluator.aborted()) return {{}, false};
+    if (solved.status == FitStatus::stopped && evaluator.budget().spent()) return {{}, false};
     return {to_bytes(evaluator.counters().evaluations, solved.status == FitStatus::converged
                                                            ? drawn.to_physical(evaluator.best().z)
                                                            : std::vector<double>())};

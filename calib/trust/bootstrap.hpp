@@ -36,10 +36,10 @@ std::size_t block_length(const metrics::Autoregression& noise, std::size_t sampl
 ///
 /// @param found   with scatter
 /// @param scores  of the problem's conditions at the optimum, in their order
-/// @param budget  what is left of that of the whole job; null: no limit but `options.cancel`. A
+/// @param left  the budget of the whole job. A
 ///                limit of evaluations ends it after the same replicate for any number of threads
 void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
                const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit,
-               Budget* budget = nullptr);
+               Budget& left);
 
 }  // namespace rigcal::calib

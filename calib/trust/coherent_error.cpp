@@ -5,6 +5,7 @@
 namespace rigcal::calib {
 namespace {
 
+/// Step over range of a converter of 12 bits (docs/uncertainty.md).
 constexpr double kFinestConverter = 1.0 / 4096.0;
 
 }  // namespace

@@ -7,18 +7,18 @@
 #include <optional>
 
 #include "common/unit_product.hpp"
+#include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 namespace {
 
-/// A combination is worth its name if it is this well known, and this much better than its parts.
-constexpr double kWellKnown = 0.2;
+/// A combination is worth its name if it is not weak, and this much better known than its parts.
 constexpr double kMuchBetter = 1.0 / 3.0;
+/// A power this near a simple one, relative to it, is written as that: 0.52 as a square root.
 constexpr double kRoundedPower = 0.1;
 /// Outside, one of the two is all but alone in what is fixed.
 constexpr double kLeastPower = 0.2;
 constexpr double kMostPower = 5.0;
-constexpr double kNormal95 = 1.96;
 
 struct PowerLaw {
   std::size_t first = 0;
@@ -71,9 +71,9 @@ std::optional<PowerLaw> best_partner(const Eigen::MatrixXd& log_spread,
     const double square = other.squaredNorm();
     if (!(square > 0.0)) continue;
     const double power = simple_power(own.dot(other) / square);
-    const double half_width = kNormal95 * (own - power * other).norm();
-    const bool useful = half_width < kWellKnown &&
-                        half_width < kMuchBetter * kNormal95 * own.norm() &&
+    const double half_width = metrics::kNormal95 * (own - power * other).norm();
+    const bool useful = half_width < kWeak &&
+                        half_width < kMuchBetter * metrics::kNormal95 * own.norm() &&
                         std::abs(power) > kLeastPower && std::abs(power) < kMostPower;
     if (useful && (!best || half_width < best->half_width))
       best = PowerLaw{unknown, k, power, half_width};

@@ -11,12 +11,17 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kWeak = 0.2;
+/// An interval as wide as the value to each side: not even its sign is told (docs/uncertainty.md).
 constexpr double kNotIdentifiable = 1.0;
+/// Robust over plain error from which the residuals are called autocorrelated: the interval is
+/// then half as wide again, which a user would miss.
 constexpr double kRobustMatters = 1.5;
 /// Below this share of the noise residuals tell of the simulation or of a wrong `sd`, not of noise.
 constexpr double kSuspiciouslySmall = 0.5;
+/// Student's t of two degrees of freedom has no variance: a robust error that is smaller than the
+/// plain one says nothing there.
 constexpr double kLeastFreedom = 3.0;
+/// A partner is named where less than a fifth of the variance is a parameter's own (1 - 0.9^2).
 constexpr double kStrongCorrelation = 0.9;
 
 using datasets::FittedValue;

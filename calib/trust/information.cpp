@@ -7,25 +7,28 @@
 
 #include "calib/problem/r_factor.hpp"
 #include "calib/problem/scaled_svd.hpp"
+#include "calib/result/fitted_parameter.hpp"
 #include "calib/search/optimum.hpp"
+#include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 namespace {
 
+/// Part in an undetermined direction from which a parameter is lost with it, as in uncertainty().
 constexpr double kLost = 0.1;
-constexpr double kAtBest95 = 1.96;
-constexpr double kTold = 0.2;
 constexpr double kTriedPrior = 0.05;      // relative standard deviation of a prior that is tried
 constexpr double kPressureNoise = 0.003;  // of the supply pressure, that of a plain sensor
+/// A record that is tried: half a period of the slowest signal, at 1 kHz or less.
 constexpr double kTriedSeconds = 5.0;
 constexpr std::size_t kMostSamples = 5000;
+/// The reader has to know one of them; more make the sentence long.
 constexpr std::size_t kMostPriors = 2;
 
 bool tells(const Problem& problem, std::span<const double> z, const Eigen::MatrixXd& jacobian,
            std::size_t target) {
   const auto sd = cramer_rao(problem, z, jacobian)[target];
   const double value = problem.map.to_physical(static_cast<int>(target), z[target]);
-  return relative_half_width(sd, value).value_or(2.0 * kTold) < kTold;
+  return relative_half_width(sd, value).value_or(2.0 * kWeak) < kWeak;
 }
 
 Eigen::MatrixXd above(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
@@ -153,7 +156,7 @@ std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<
 
 std::optional<double> relative_half_width(const std::optional<double>& sd, double value) {
   if (!sd || value == 0.0) return std::nullopt;
-  return kAtBest95 * *sd / std::abs(value);
+  return metrics::kNormal95 * *sd / std::abs(value);
 }
 
 std::vector<std::string> remedies(const Problem& problem, std::span<const double> z,

@@ -56,6 +56,7 @@ Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t conditio
 }
 
 KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
+                                   const std::vector<ConditionRows>& rows,
                                    const Eigen::MatrixXd& root, int threads) {
   KnownUncertainty result;
   const auto settings = uncertain_settings(problem);
@@ -67,12 +68,10 @@ KnownUncertainty known_uncertainty(const Problem& problem, std::span<const doubl
   if (settings.empty()) return result;
   std::vector<Eigen::MatrixXd> parts(problem.conditions.size());
   parallel_for(parts.size(), threads, [&](std::size_t i) {
-    ConditionRows rows;
-    if (!evaluate_condition(problem, i, z, nullptr, &rows).ok()) return;
     const Eigen::MatrixXd known = known_rows(problem, i, z, settings);
     if (known.size() == 0) return;
-    parts[i] =
-        root(problem.map.acting(i), Eigen::all).transpose() * (rows.jacobian.transpose() * known);
+    parts[i] = root(problem.map.acting(i), Eigen::all).transpose() *
+               (rows[i].jacobian.transpose() * known);
   });
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(root.cols(), knowns);
   for (const Eigen::MatrixXd& part : parts) {

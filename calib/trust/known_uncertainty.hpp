@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/problem/problem.hpp"
+#include "calib/problem/evaluation.hpp"
 
 namespace rigcal::calib {
 
@@ -25,8 +25,10 @@ struct KnownUncertainty {
 Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t condition,
                                     std::span<const double> z, const std::vector<int>& indices);
 
+/// @param rows  of each condition at z
 /// @param root  R with R R^T = (J^T J)^-1 on the directions that the data determine
 KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
+                                   const std::vector<ConditionRows>& rows,
                                    const Eigen::MatrixXd& root, int threads);
 
 }  // namespace rigcal::calib

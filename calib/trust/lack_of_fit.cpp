@@ -12,15 +12,13 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kMisfitLevel = 0.05;
-constexpr int kLongestMemory = 5000;
 /// A residual twice as large as the noise: what a test that passes must be able to tell.
 constexpr double kLargestUsefulRatio = 4.0;
 
 /// 1 + 2 sum rho_h^2: by how much correlation thins a sum of squares out.
 double square_inflation(const metrics::Autoregression& noise, double samples) {
   if (noise.phi.empty()) return 1.0;
-  const int lags = std::min(kLongestMemory, static_cast<int>(samples) - 1);
+  const int lags = std::min(metrics::kLongestMemory, static_cast<int>(samples) - 1);
   const auto gamma = metrics::autocovariance(noise, lags);
   double sum = 1.0;
   for (std::size_t h = 1; h < gamma.size(); ++h)
@@ -73,7 +71,7 @@ const LackOfFit* least_likely(const std::vector<LackOfFit>& tests) {
 }
 
 void judge_together(std::vector<LackOfFit>& tests) {
-  const double level = kMisfitLevel / static_cast<double>(tests.size());  // Bonferroni
+  const double level = metrics::kWarningLevel / static_cast<double>(tests.size());  // Bonferroni
   for (LackOfFit& test : tests) static_cast<metrics::Judged&>(test) = judged(test, level);
 }
 

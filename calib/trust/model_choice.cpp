@@ -98,8 +98,7 @@ ModelChoice choose(const Candidate& smaller, const Candidate& larger) {
   result.delta_aic = 2.0 * result.freedom - result.likelihood_ratio;
   result.delta_bic =
       result.freedom * std::log(noise.independent_residuals) - result.likelihood_ratio;
-  constexpr double kLevel = 0.05;
-  result.larger = result.p < kLevel;
+  result.larger = result.p < metrics::kWarningLevel;
   const bool bic_agrees = (result.delta_bic < 0.0) == result.larger;
   result.message = fmt::format(
       "{} is {} by {} (likelihood ratio {} for {} parameter{}, {}; AIC {}, BIC {} of {} against "

@@ -20,8 +20,6 @@ using datasets::Channel;
 using datasets::Condition;
 using datasets::Record;
 
-constexpr double kPlannedWeak = 0.2;
-
 bool takes_part(const Condition& condition) {
   return condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
 }
@@ -134,7 +132,7 @@ void leave_open(std::size_t unknown, Plan& plan) {
 std::string words_of(const Problem& problem, const Plan& plan, std::size_t unknown) {
   const FittedParameter& parameter = plan.parameters[unknown];
   const auto half = relative_half_width(plan.all[unknown], parameter.value);
-  if (half && *half <= kPlannedWeak) return {};
+  if (half && *half <= kWeak) return {};
   const std::string state =
       half ? fmt::format("known to {:.0f} % only", 100.0 * *half) : "not determined";
   const std::string& remedy = plan.remedies[unknown];
@@ -225,7 +223,7 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
   }
   for (std::size_t j = 0; j < z.size(); ++j) {
     const auto half = relative_half_width(result.all[j], result.parameters[j].value);
-    const bool wanting = !problem.map.unknowns()[j].nuisance && (!half || *half > kPlannedWeak);
+    const bool wanting = !problem.map.unknowns()[j].nuisance && (!half || *half > kWeak);
     result.remedies.push_back(
         open[j]   ? symmetry_remedy(problem, *symmetry)
         : wanting ? fmt::format("{}", fmt::join(remedies(problem, z, all, j), ", or "))

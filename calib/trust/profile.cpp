@@ -10,6 +10,7 @@
 #include "calib/search/search.hpp"
 #include "common/bytes.hpp"
 #include "common/task_farm.hpp"
+#include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 
@@ -25,15 +26,17 @@ void serialize(Archive& archive, Profile& profile) {
 
 namespace {
 
-constexpr double kProfile95 = 1.96;
 /// First step where no interval suggests one, and the least, as a share of the box.
 constexpr double kFirstStep = 0.05;
 constexpr double kLeastStep = 1e-6;
+/// As many take a step of a four-thousandth of the box across it.
 constexpr int kMostDoublings = 12;
+/// Halvings alone would come from a doubled step to within kCrossing in six.
 constexpr int kMostRefinements = 8;
 /// How often a step is made shorter where there is no fit, and by what.
 constexpr int kMostShortened = 4;
 constexpr double kShorter = 8.0;
+/// How near a crossing is found, relative to its distance from the optimum.
 constexpr double kCrossing = 0.02;
 /// A rise below minus this share of the threshold, about one standard error: the fit was not at its
 /// minimum. Less may be the error of simulations, which differs from point to point.
@@ -82,7 +85,8 @@ class Follower {
     datasets::Campaign campaign;
     const double value = problem_.map.to_physical(static_cast<int>(unknown_), z);
     const Problem fixed = with_known(problem_, records_, unknown_, value, campaign);
-    Evaluator evaluator(fixed, {1, budget_.cancel(), budget_.deadline(), {}});
+    Budget part = budget_.part();
+    Evaluator evaluator(fixed, part);
     const std::vector<double>& from = nearest(z);
     if (fixed.map.unknowns().empty()) {
       evaluator.evaluate(from);
@@ -204,7 +208,8 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
 /// Rise of 2 cost at which the profile of this parameter ends: a quadratic one at ci95.
 double threshold_of(const FittedParameter& parameter, double reduced_chi_square) {
   const double variance = std::max(1.0, reduced_chi_square);
-  if (!parameter.ci95 || !parameter.standard_error) return kProfile95 * kProfile95 * variance;
+  if (!parameter.ci95 || !parameter.standard_error)
+    return metrics::kNormal95 * metrics::kNormal95 * variance;
   // The longer half: the other may be cut off where values make no sense.
   const double half =
       std::max(parameter.ci95->second - parameter.value, parameter.value - parameter.ci95->first);
@@ -217,7 +222,7 @@ double first_step(const Problem& problem, std::size_t unknown, double z0,
   if (!parameter.standard_error) return kFirstStep;
   const double error = parameter.robust_standard_error.value_or(*parameter.standard_error);
   const double slope = problem.map.slope(static_cast<int>(unknown), z0);
-  return std::clamp(kProfile95 * error / slope, kLeastStep, 0.5);
+  return std::clamp(metrics::kNormal95 * error / slope, kLeastStep, 0.5);
 }
 
 /// Of which the budget allowed nothing but the optimum.
@@ -250,10 +255,8 @@ Problem with_known(const Problem& problem, const std::vector<datasets::Record>& 
 }
 
 void profiles(const Problem& problem, const std::vector<datasets::Record>& records,
-              const Evaluation& optimum, const FitOptions& options, Fit& fit, Budget* budget) {
+              const Evaluation& optimum, const FitOptions& options, Fit& fit, Budget& left) {
   const auto& unknowns = problem.map.unknowns();
-  Budget without_limits(options.cancel, {}, {}, {});
-  Budget& left = budget != nullptr ? *budget : without_limits;
   const std::optional<long> allowed = left.evaluations_left();
   std::vector<long> taken(unknowns.size(), 0);
   std::atomic<int> done = 0;

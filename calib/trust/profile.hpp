@@ -25,10 +25,9 @@ Problem with_known(const Problem& problem, const std::vector<datasets::Record>& 
 /// parameter.
 ///
 /// @param fit     with parameters of the problem's unknowns; receives the profiles
-/// @param budget  what is left of that of the whole job; null: no limit but `options.cancel`. A
+/// @param left  the budget of the whole job. A
 ///                profile that a limit of evaluations overtakes is made to its end
 void profiles(const Problem& problem, const std::vector<datasets::Record>& records,
-              const Evaluation& optimum, const FitOptions& options, Fit& fit,
-              Budget* budget = nullptr);
+              const Evaluation& optimum, const FitOptions& options, Fit& fit, Budget& left);
 
 }  // namespace rigcal::calib

@@ -154,6 +154,7 @@ std::vector<std::vector<Autoregression>> noise_models(const std::vector<ScoreRow
 /// Andrews' bandwidth of the Parzen kernel, 2.6614 (alpha(2) n)^(1/5) with alpha(2) from a
 /// first-order autoregression of every component (Econometrica 59, 1991, eqs. 6.2 and 6.4).
 double bandwidth(const RowMajor& scores) {
+  // The bound of Andrews and Monahan (Econometrica 60, 1992): at 1 the bandwidth is infinite.
   constexpr double kMostCorrelation = 0.97;
   double above = 0.0;
   double below = 0.0;
@@ -261,8 +262,8 @@ RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const M
 }
 
 double RobustVariance::quantile() const {
-  constexpr double kMostOwn = 0.9;
-  constexpr double kMostFreedom = 1e9;
+  constexpr double kMostOwn = 0.9;      // else nothing would be left to divide by
+  constexpr double kMostFreedom = 1e9;  // Student's t is the normal distribution there
   const double share = std::clamp(own, 0.0, kMostOwn);
   const double rest = 1.0 - share;
   const double scatter = std::max(1.0 / freedom - share * share, 1.0 / kMostFreedom);

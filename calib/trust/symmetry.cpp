@@ -14,6 +14,7 @@
 namespace rigcal::calib {
 namespace {
 
+/// Relative standard error from which the common scale is weak (kWeak, 95 %).
 constexpr double kScaleKnown = 0.1;
 constexpr std::string_view kSmoothing = "leakage_smoothing";  // no physics: no exponent of its own
 constexpr std::string_view kSupply = "supply_pressure";

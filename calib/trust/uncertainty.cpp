@@ -11,6 +11,7 @@
 #include "calib/search/optimum.hpp"
 #include "calib/trust/coherent_error.hpp"
 #include "common/parallel.hpp"
+#include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -79,9 +80,9 @@ std::string null_reason(const Problem& problem, const std::vector<std::size_t>& 
 }  // namespace
 
 bool Uncertainty::repeats_differ() const {
-  constexpr double kLevel = 0.05;
   const auto least = std::min_element(repeats_p.begin(), repeats_p.end());
-  return least != repeats_p.end() && *least * static_cast<double>(repeats_p.size()) < kLevel;
+  return least != repeats_p.end() &&
+         *least * static_cast<double>(repeats_p.size()) < metrics::kWarningLevel;
 }
 
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
@@ -109,7 +110,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   const Eigen::VectorXd lengths = sigma * s.cwiseMax(least).cwiseInverse();
   result.spread = inverse_lengths.asDiagonal() * V * lengths.asDiagonal();
   result.root = root;
-  result.known = known_uncertainty(problem, optimum.z, root, threads);
+  result.known = known_uncertainty(problem, optimum.z, rows, root, threads);
   const Eigen::MatrixXd priors = prior_information(problem, optimum.z, root);
   std::vector<ScoreRows> scores;
   std::vector<Eigen::MatrixXd> repeats;

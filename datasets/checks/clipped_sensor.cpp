@@ -9,6 +9,8 @@
 namespace rigcal::datasets {
 namespace {
 
+// The row "a clipped sensor" of docs/campaign-file.md in numbers; its test has records on both
+// sides.
 constexpr std::size_t kShortestClip = 3;
 constexpr std::size_t kFewestClipped = 8;
 constexpr double kClipDriveMotion = 0.005;

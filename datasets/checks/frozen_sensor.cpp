@@ -8,6 +8,8 @@
 namespace rigcal::datasets {
 namespace {
 
+// The row "an interrupted sensor" of docs/campaign-file.md in numbers; its test has records on both
+// sides.
 constexpr std::size_t kShortestFreeze = 16;
 constexpr double kFreezeDriveMotion = 0.1;
 constexpr int kFreezePassages = 2;

@@ -9,6 +9,8 @@
 namespace rigcal::datasets {
 namespace {
 
+// The row "hum of the mains" of docs/campaign-file.md in numbers; the frequency of a grid stays
+// within half a hertz.
 constexpr double kLineHalfWidthHz = 0.5;
 constexpr double kSideShare = 0.45;        ///< of the frequency: how far the neighbours reach
 constexpr double kSideLobes = 3.0;         ///< over the length of the record: what a line smears

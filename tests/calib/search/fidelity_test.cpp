@@ -127,7 +127,8 @@ TEST_CASE("search: first periods that mislead are not believed", "[calib]") {
   }
   const Problem problem = problem_of(twin, records);
   const auto end_from = [&](std::vector<double> z, bool all_at_once) {
-    Evaluator evaluator(problem, {});
+    Budget budget;
+    Evaluator evaluator(problem, budget);
     Search search(problem, evaluator, kOptions);
     const SolveResult found = all_at_once ? search.polish(std::move(z)) : search.run(std::move(z));
     CHECK(found.status == FitStatus::converged);
@@ -147,7 +148,8 @@ TEST_CASE("search: horizons that mislead are not believed", "[calib]") {
   for (std::size_t i = 0; i < 12; ++i)  // a plug that was not in yet
     records[1].channels.at(datasets::Channel::position).mean[i] += 0.01 * (i % 2 == 0 ? 1.0 : -1.0);
   const Problem problem = problem_of(twin, records);
-  Evaluator evaluator(problem, {});
+  Budget budget;
+  Evaluator evaluator(problem, budget);
   const SolveResult found = Search(problem, evaluator, kOptions).run(problem.start());
   CHECK(found.status == FitStatus::converged);
   const std::vector<double> values = problem.to_physical(evaluator.best().z);
@@ -156,8 +158,7 @@ TEST_CASE("search: horizons that mislead are not believed", "[calib]") {
   // Wherever it is stopped among them it ends no worse than it began.
   const double at_start = evaluate_at(problem, problem.start(), 1).cost;
   for (long most = 1; most <= 20; ++most) {
-    Evaluator::Options limited;
-    limited.max_evaluations = most;
+    Budget limited(nullptr, {}, {}, most);
     Evaluator stopped(problem, limited);
     Search(problem, stopped, kOptions).run(problem.start());
     REQUIRE(stopped.best().ok);
@@ -182,7 +183,8 @@ TEST_CASE("search: more records of the same take no more evaluations", "[calib]"
     auto records = twin.records(2000, 1000.0, 1);
     for (std::size_t i = 2; i < records.size(); ++i) records[i].channels = records[i % 2].channels;
     const Problem problem = problem_of(twin, records);
-    Evaluator evaluator(problem, {});
+    Budget budget;
+    Evaluator evaluator(problem, budget);
     CHECK(Search(problem, evaluator, kOptions).run(problem.start()).status == FitStatus::converged);
     return evaluator.counters().evaluations;
   };
@@ -201,7 +203,8 @@ TEST_CASE("search: what rings is found from a start that is out of step", "[cali
   const auto records = twin.records(600, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
   const auto fitted_from = [&](const auto& method) {
-    Evaluator evaluator(problem, {});
+    Budget budget;
+    Evaluator evaluator(problem, budget);
     evaluator.set_fidelity(Fidelity::coarse);
     method(evaluator);
     return problem.to_physical(evaluator.best().z);
@@ -223,12 +226,11 @@ TEST_CASE("search: a fit stopped among horizons is judged by whole records", "[c
   const Twin twin = three_signals();
   const auto records = twin.records(2000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
-  Evaluator::Options options;
-  options.max_evaluations = 4;
+  Budget options(nullptr, {}, {}, 4);
   Evaluator evaluator(problem, options);
   const SolveResult found = Search(problem, evaluator, kOptions).run(problem.start());
   CHECK(found.status == FitStatus::stopped);
-  CHECK(found.message == "stopped after 4 evaluations, the most allowed");
+  CHECK(found.message == "stopped by the limit of evaluations");
   const Evaluation again = evaluate_at(problem, evaluator.best().z, 1);
   CHECK_THAT(evaluator.best().cost, WithinRel(again.cost, 1e-12));
 }

@@ -151,9 +151,8 @@ Problem problem_of(const datasets::Campaign& campaign,
 
 /// Multiple shooting alone, from the campaign's start values.
 ShootingResult shoot(const Problem& problem, double interval_s, int threads = 1) {
-  Evaluator::Options settings;
-  settings.threads = threads;
-  Evaluator evaluator(problem, settings);
+  Budget budget;
+  Evaluator evaluator(problem, budget, threads);
   const FitOptions options;
   Iterations iterations(options);
   return multiple_shooting(problem, evaluator, problem.start(), interval_s, 100, iterations);

@@ -38,12 +38,14 @@ TEST_CASE("verify: a claimed end that is no minimum is solved on from", "[calib]
   const auto records = twin.records(1000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
   MultiStart found = claimed_at(problem, problem.start());
-  Evaluator evaluator(problem, {});
+  Budget budget;
+  Evaluator evaluator(problem, budget);
   const auto rows = verify_optimum(problem, evaluator, {}, found);
   CHECK(found.result.status == FitStatus::converged);
   CHECK(found.result.iterations > 0);
   CHECK(found.result.check.stationary());
-  Evaluator other(problem, {});
+  Budget of_other;
+  Evaluator other(problem, of_other);
   const FitOptions options;
   REQUIRE(Search(problem, other, options).run(problem.start()).status == FitStatus::converged);
   CHECK_THAT(found.optimum.cost, WithinRel(other.best().cost, 1e-5));
@@ -59,7 +61,8 @@ TEST_CASE("verify: an end that a checkpoint brings back is judged, too", "[calib
   const Twin twin = two_signals();
   const auto records = twin.records(1000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
-  Evaluator evaluator(problem, {});
+  Budget budget;
+  Evaluator evaluator(problem, budget);
   MultiStart found = multi_start(problem, evaluator, {});
   std::vector<double> off = found.optimum.z;
   off[0] += 1e-3;
@@ -76,8 +79,7 @@ TEST_CASE("verify: where there is no time left to make it good, it is not called
   const auto records = twin.records(1000, 1000.0, 1);
   const Problem problem = problem_of(twin, records);
   MultiStart found = claimed_at(problem, problem.start());
-  Evaluator::Options options;
-  options.max_evaluations = 1;
+  Budget options(nullptr, {}, {}, 1);
   Evaluator evaluator(problem, options);
   verify_optimum(problem, evaluator, {}, found);
   CHECK(found.result.status == FitStatus::stopped);

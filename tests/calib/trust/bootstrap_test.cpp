@@ -41,7 +41,9 @@ struct OffsetAlone {
     optimum.z = problem.start();
     FitOptions options;
     options.bootstrap = replicates;
-    bootstrap(problem, optimum, found, score_conditions(problem, optimum.z, 1), options, fit);
+    Budget budget;
+    bootstrap(problem, optimum, found, score_conditions(problem, optimum.z, 1), options, fit,
+              budget);
     CHECK(fit.bootstrap_replicates == replicates);
     return fit.parameters[0].bootstrap.value();
   }

@@ -75,8 +75,8 @@ TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of
   const Evaluation optimum = evaluate_at(problem, z, 1);
   const std::atomic<bool> cancel{true};
   FitOptions options;
-  options.cancel = &cancel;
-  profiles(problem, records, optimum, options, found);
+  Budget budget(&cancel);
+  profiles(problem, records, optimum, options, found, budget);
   const FittedParameter& mass = parameter(found, "mass");
   REQUIRE(mass.profile.has_value());
   CHECK(mass.profile->low.lost);
@@ -84,7 +84,6 @@ TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of
   CHECK_THAT(mass.reason, Contains("not made on either side: stopped on request"));
 
   twin.setting("mass").upper = mass.value + 0.2 * (mass.ci95->second - mass.value);
-  options.cancel = nullptr;
   options.profiles = true;
   const Fit bounded = fit(twin.campaign, records, options);
   const FittedParameter& cut = parameter(bounded, "mass");
@@ -123,7 +122,8 @@ TEST_CASE("profile: without an interval it ends where the cost says 95 %", "[cal
     bare.parameters[j].robust_standard_error.reset();
     z.push_back(problem.map.to_unit(static_cast<int>(j), found.parameters[j].value));
   }
-  profiles(problem, records, evaluate_at(problem, z, 1), {}, bare);
+  Budget budget;
+  profiles(problem, records, evaluate_at(problem, z, 1), {}, bare, budget);
   for (std::size_t j = 0; j < z.size(); ++j) {
     const double error = found.parameters[j].standard_error.value();
     const Profile& profile = bare.parameters[j].profile.value();
@@ -147,7 +147,8 @@ TEST_CASE("profile: a lower cost than that of the fit is told", "[calib]") {
     each.ci95->second += 5.0 * each.standard_error.value();
     z.push_back(problem.map.to_unit(static_cast<int>(j), each.value));
   }
-  profiles(problem, records, evaluate_at(problem, z, 1), {}, found);
+  Budget budget;
+  profiles(problem, records, evaluate_at(problem, z, 1), {}, found, budget);
   for (const auto* key : {"mass", "valve_gain"}) {
     CHECK(parameter(found, key).profile->lower_cost_found);
     CHECK_THAT(parameter(found, key).reason, Contains("its profile finds a lower cost"));

@@ -1,0 +1,86 @@
+#include "calib/finish.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "calib/score/assessment.hpp"
+#include "calib/score/scorecard.hpp"
+#include "calib/trust/lack_of_fit.hpp"
+#include "datasets/checks/record_warnings.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+using datasets::Record;
+using datasets::Use;
+
+/// The lack of fit of every scored condition that is not among those fitted to.
+void add_predictions(Fit& fit) {
+  std::vector<LackOfFit> predictions;
+  for (const ConditionScore& score : fit.conditions) {
+    for (const ChannelScore& channel : score.channels) {
+      const bool there =
+          std::any_of(fit.lack_of_fit.begin(), fit.lack_of_fit.end(), [&](const LackOfFit& test) {
+            return test.condition == score.id && test.channel == channel.channel;
+          });
+      if (channel.lack_of_fit && !there) predictions.push_back(*channel.lack_of_fit);
+    }
+  }
+  judge_together(predictions);
+  fit.lack_of_fit.insert(fit.lack_of_fit.end(), predictions.begin(), predictions.end());
+}
+
+/// Conditions that the values of a campaign are taken to be estimated from.
+std::set<std::string> fitted_conditions(const Campaign& campaign) {
+  std::set<std::string> ids;
+  for (const Condition& condition : campaign.conditions) {
+    if (condition.use == Use::fit) ids.insert(condition.id);
+  }
+  return ids;
+}
+
+/// What was found doubtful about the recordings, on with the result that rests on them: once for
+/// all conditions of which the same is said.
+void add_record_warnings(const std::vector<Record>& records, Fit& fit) {
+  std::vector<const Record*> used;
+  for (ConditionScore& score : fit.conditions) {
+    const auto record = std::find_if(records.begin(), records.end(), [&](const Record& each) {
+      return each.condition == score.id;
+    });
+    if (record == records.end()) continue;
+    score.data_warnings = record->warnings;
+    used.push_back(&*record);
+  }
+  for (const auto& each : datasets::gathered_warnings(used))
+    fit.warnings.push_back(each.with_conditions());
+}
+
+}  // namespace
+
+void finish(const Campaign& campaign, const std::vector<Record>& records,
+            Budget::Clock::time_point began, const Origin* origin, Fit& fit) {
+  std::stable_sort(fit.conditions.begin(), fit.conditions.end(), [&](const auto& a, const auto& b) {
+    return campaign.find(a.id) < campaign.find(b.id);
+  });
+  add_predictions(fit);
+  add_record_warnings(records, fit);
+  fit.assessment = assess(campaign, fit,
+                          origin != nullptr ? origin->estimated_from : fitted_conditions(campaign),
+                          origin != nullptr ? &origin->parameters : nullptr);
+  fit.verdict = verdict_of(fit.assessment);
+  const auto words = overfitting_warnings(fit.conditions);
+  fit.warnings.insert(fit.warnings.end(), words.begin(), words.end());
+  for (const ConditionScore& score : fit.conditions) {
+    if (!score.failure.empty()) {
+      fit.warnings.push_back(
+          fmt::format("condition \"{}\" could not be simulated: {}", score.id, score.failure));
+    }
+  }
+  fit.wall_seconds = std::chrono::duration<double>(Budget::Clock::now() - began).count();
+}
+
+}  // namespace rigcal::calib

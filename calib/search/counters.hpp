@@ -1,0 +1,24 @@
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "calib/problem/evaluation.hpp"
+#include "calib/result/search_report.hpp"
+
+namespace rigcal::calib {
+
+/// Evaluations that a search has made, and those of them that failed.
+struct EvaluationCounters {
+  long evaluations = 0;
+  long failure_count = 0;
+  std::vector<SimulationFailure> failures;  ///< the first few of each condition and kind
+  std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept;
+
+  void record(const Problem& problem, const Evaluation& evaluation, int start);
+  /// As if what `later` has counted had been counted here, one after the other.
+  void add(const EvaluationCounters& later, const Problem& problem);
+};
+
+}  // namespace rigcal::calib

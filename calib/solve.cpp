@@ -1,0 +1,91 @@
+#include "calib/solve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calib/search/checkpoint.hpp"
+#include "calib/search/verify.hpp"
+#include "calib/search/weights.hpp"
+#include "calib/trust/findings.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// Step budget of a later point, relative to what the start takes at a coarse tolerance: it may
+/// have to be simulated to its end where the start soon becomes periodic.
+constexpr long kStepsOverStart = 1000;
+/// For starts of fewer than twenty steps, at which nothing moves: elsewhere it may.
+constexpr long kLeastSteps = 20'000;
+
+void budget_steps(Problem& problem, const Evaluation& start) {
+  if (!start.ok) return;
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    problem.conditions[i].max_steps =
+        std::max(kLeastSteps, kStepsOverStart * start.conditions[i].steps);
+  }
+}
+
+}  // namespace
+
+Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options, Fit& fit) {
+  evaluator.set_fidelity(problem.of_starts());
+  budget_steps(problem, evaluator.evaluate(problem.start()));
+  MultiStart found = multi_start(problem, evaluator, options);
+  if (found.optimum.ok && problem.has_estimated_sd())
+    estimate_weights(problem, evaluator, options, found, fit.warnings);
+  std::vector<ConditionRows> rows = verify_optimum(problem, evaluator, options, found);
+  fit.status = found.result.status;
+  fit.message = found.result.message;
+  fit.starts = std::move(found.starts);
+  const auto made = static_cast<int>(fit.starts.size());
+  if (made < options.starts && fit.status == FitStatus::converged) {
+    // Starts that were never made could have been better.
+    fit.status = FitStatus::stopped;
+    fit.message = fmt::format("stopped after {} of {} starts; the best of these {}", made,
+                              options.starts, fit.message);
+  }
+  fit.best_start = found.best;
+  fit.evaluations = evaluator.counters().evaluations;
+  fit.failures = evaluator.counters().failures;
+  fit.failure_count = evaluator.counters().failure_count;
+  fit.residual_count = problem.residual_count();
+  fit.tolerance = problem.tolerance;
+  if (!found.optimum.ok) {
+    if (fit.starts.size() > 1)
+      fit.message = "no start could be simulated; of the first: " + fit.message;
+    return {};
+  }
+  Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads);
+  auto open =
+      describe_findings(problem, found.optimum, found.result.check, spread, options.threads, fit);
+  return {std::move(found.optimum), std::move(spread), std::move(open)};
+}
+
+Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                         Fit& fit) {
+  if (options.starts > 1 || options.further_starts == 0)
+    return solve_problem(problem, evaluator, options, fit);
+  const Problem fresh = problem;
+  const std::vector<std::string> warnings = fit.warnings;
+  Solved first = solve_problem(problem, evaluator, options, fit);
+  const bool lost =
+      fit.status == FitStatus::failed && first.optimum.ok && !evaluator.budget().spent();
+  if (!lost) return first;
+  const Checkpoint checkpoint{fit.starts, fit.best_start, first.optimum.z, evaluator.counters()};
+  FitOptions more = options;
+  more.starts += options.further_starts;
+  more.resume = &checkpoint;
+  problem = fresh;  // the weights of a point that is no minimum are not those of the others
+  evaluator.forget();
+  const std::string why = fit.message;
+  fit = {};
+  fit.warnings = warnings;
+  fit.warnings.push_back(
+      fmt::format("the start of the campaign led to no minimum ({}): {} further starts were made, "
+                  "as with --starts {}",
+                  why, options.further_starts, more.starts));
+  return solve_problem(problem, evaluator, more, fit);
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,192 @@
+#include "calib/trust/findings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/search/basins.hpp"
+#include "calib/trust/between_repeats.hpp"
+#include "calib/trust/combinations.hpp"
+#include "calib/trust/identifiability.hpp"
+#include "calib/trust/information.hpp"
+#include "calib/trust/interval_advice.hpp"
+#include "calib/trust/lack_of_fit.hpp"
+#include "calib/trust/symmetry.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+void add_correlation(const Problem& problem, const Uncertainty& found, Fit& fit) {
+  std::vector<Eigen::Index> rows;
+  for (std::size_t j = 0; j < found.standard_error.size(); ++j) {
+    if (!found.standard_error[j]) continue;
+    rows.push_back(static_cast<Eigen::Index>(j));
+    fit.correlation_names.push_back(problem.name(j));
+  }
+  fit.correlation = found.correlation(rows, rows);
+}
+
+void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
+  const double chi = found.reduced_chi_square;
+  const double freedom = std::max(1.0, static_cast<double>(fit.residual_count - found.rank));
+  const double scatter = 5.0 * std::sqrt(2.0 / freedom);
+  if (fit.residual_count <= found.rank) {
+    fit.warnings.push_back(
+        fmt::format("{} residuals for {} unknowns: nothing is left to tell the noise by",
+                    fit.residual_count, problem.map.unknowns().size()));
+  } else if (chi > 1.0 + std::max(0.1, scatter)) {
+    fit.warnings.push_back(fmt::format(
+        "the residuals are {:.3g} times as large as the noise (reduced chi-square {:.4g}): the "
+        "model does not explain all of the records; standard errors are scaled up by that factor",
+        std::sqrt(chi), chi));
+  } else if (!problem.has_estimated_sd() && chi < 1.0 - std::max(0.5, scatter)) {
+    fit.warnings.push_back(
+        fmt::format("the residuals are only {:.3g} times as large as the noise (reduced chi-square "
+                    "{:.4g}): the stated standard deviations are too large",
+                    std::sqrt(chi), chi));
+  }
+}
+
+/// A prior that the records contradict pulls the fit off both.
+void warn_of_priors(const Problem& problem, const std::vector<FittedParameter>& parameters,
+                    Fit& fit) {
+  constexpr double kFar = 3.0;  // standard deviations: one in 370 by chance
+  const auto warn = [&](const std::string& name, double value, const datasets::Prior& prior,
+                        std::string_view unit, const char* what) {
+    const double pull = std::abs(value - prior.mean) / prior.sd;
+    if (pull <= kFar) return;
+    fit.warnings.push_back(
+        fmt::format("{}: {} {:.4g} {}, {:.2g} standard deviations of its prior from {:.4g} {}",
+                    name, what, value, unit, pull, prior.mean, unit));
+  };
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    if (const auto& prior = problem.map.unknowns()[j].prior) {
+      warn(problem.name(j), parameters[j].value, *prior, problem.spec(j).unit,
+           "records and prior disagree: the fit ends at");
+    }
+  }
+  const auto table = model::parameter_table(problem.campaign->rig.plant);
+  for (const auto& setting : problem.campaign->parameters) {
+    if (!setting.prior || setting.fit) continue;
+    const auto& spec = table[static_cast<std::size_t>(setting.index)];
+    warn(std::string(spec.key), setting.value, *setting.prior, spec.unit, "known, and taken to be");
+  }
+}
+
+/// Names in words what is not to be trusted about the parameters.
+void warn_of_parameters(const Problem& problem, const std::vector<FittedParameter>& parameters,
+                        Fit& fit) {
+  std::vector<std::string> bounded;
+  std::vector<std::string> loose;
+  for (std::size_t j = 0; j < parameters.size(); ++j) {
+    const FittedParameter& each = parameters[j];
+    if (each.at_bound) bounded.push_back(problem.name(j));
+    if (each.identifiability == Identifiability::not_identifiable && !each.nuisance)
+      loose.push_back(problem.name(j));
+    const bool says_something = each.at_bound || !each.standard_error ||
+                                each.identifiability != Identifiability::identified;
+    if (says_something) fit.warnings.push_back(fmt::format("{}: {}", problem.name(j), each.reason));
+  }
+  if (!bounded.empty()) fit.message += fmt::format("; at a bound: {}", fmt::join(bounded, ", "));
+  if (!loose.empty()) fit.message += fmt::format("; not identifiable: {}", fmt::join(loose, ", "));
+}
+
+/// Akaike's and Schwarz's criteria. The noise is known, or was estimated from the residual: 2 cost
+/// is -2 ln(likelihood) but for a constant, of which correlated residuals tell only their share.
+void rate_model(const Uncertainty& spread, Fit& fit) {
+  const double residuals = std::max(1.0, static_cast<double>(fit.residual_count));
+  const double effective = spread.scatter.empty() ? residuals : spread.independent_residuals;
+  const double weighed = 2.0 * fit.cost * std::min(1.0, effective / residuals);
+  fit.aic = weighed + 2.0 * spread.rank;
+  fit.bic = weighed + spread.rank * std::log(std::max(1.0, effective));
+}
+
+/// What the residuals say of the noise, and of the intervals that rest on it.
+void judge_residuals(const Problem& problem, const OptimumCheck& check, const Uncertainty& spread,
+                     Fit& fit) {
+  fit.independent_residuals = spread.independent_residuals;
+  fit.lack_of_fit = lack_of_fit(problem, spread);
+  fit.misfit = misfit(fit.lack_of_fit);
+  fit.interval_advice = interval_advice(problem, check, spread, fit.lack_of_fit);
+  fit.between_repeats = between_repeats(problem, spread);
+  if (fit.between_repeats && fit.between_repeats->differ)
+    fit.warnings.push_back(between_repeats_warning(*fit.between_repeats));
+  if (spread.noiseless > 0) fit.warnings.push_back(noiseless_warning(problem, spread));
+  if (!spread.known.names.empty()) {
+    fit.interval_advice += fmt::format("; the errors hold those of known values: {}",
+                                       fmt::join(spread.known.names, ", "));
+  }
+  rate_model(spread, fit);
+}
+
+/// Says what would tell parameters that the records do not; the first few, since each is tried. Of
+/// those that a symmetry leaves open its own words tell.
+void add_remedies(const Problem& problem, const Evaluation& optimum,
+                  const std::vector<std::size_t>& symmetric, const Uncertainty& spread,
+                  std::vector<FittedParameter>& parameters) {
+  constexpr int kMostTried = 4;  // each takes the simulations of some records
+  int tried = 0;
+  const Eigen::MatrixXd jacobian = linearise(problem, optimum).jacobian;
+  for (std::size_t j = 0; j < parameters.size() && tried < kMostTried; ++j) {
+    FittedParameter& each = parameters[j];
+    if (each.nuisance || each.identifiability != Identifiability::not_identifiable) continue;
+    if (std::find(symmetric.begin(), symmetric.end(), j) != symmetric.end()) continue;
+    if (rests_on_known(problem, spread, optimum.z, j)) {
+      each.reason += fmt::format(
+          "; most of that is what is uncertain of {}: with fit = true there, and its prior, the "
+          "records may tell more",
+          fmt::join(spread.known.names, ", "));
+      continue;
+    }
+    ++tried;
+    const auto words = remedies(problem, optimum.z, jacobian, j);
+    if (!words.empty())
+      each.reason += fmt::format("; {} would make it identifiable", fmt::join(words, ", or "));
+  }
+}
+
+/// What is fixed where single parameters are not, and what would tell them.
+///
+/// @return  the unknowns that a scaling symmetry leaves open
+std::vector<std::size_t> judge_identifiability(const Problem& problem, const Evaluation& optimum,
+                                               const Uncertainty& spread, int threads, Fit& fit) {
+  const double sigma = std::sqrt(std::max(1.0, spread.reduced_chi_square));
+  const auto symmetry = scaling_symmetry(problem, optimum.z, sigma, threads);
+  const std::string symmetric = symmetry ? describe(problem, *symmetry) : "";
+  if (symmetry) grade_symmetric(problem, *symmetry, fit.parameters);
+  fit.combinations = name_combinations(problem, optimum.z, spread, fit.parameters);
+  if (!symmetric.empty()) {
+    // The other combinations are among the reasons of their parameters already.
+    fit.combinations.insert(fit.combinations.begin(), symmetric);
+    fit.warnings.push_back(symmetric);
+  }
+  const auto open = symmetry && symmetry->holds() ? symmetry->unknowns : std::vector<std::size_t>();
+  add_remedies(problem, optimum, open, spread, fit.parameters);
+  return open;
+}
+
+}  // namespace
+
+std::vector<std::size_t> describe_findings(const Problem& problem, const Evaluation& optimum,
+                                           const OptimumCheck& check, const Uncertainty& spread,
+                                           int threads, Fit& fit) {
+  fit.cost = optimum.cost;
+  fit.rank = spread.rank;
+  fit.singular_values = spread.singular_values;
+  fit.reduced_chi_square = spread.reduced_chi_square;
+  fit.parameters = describe_unknowns(problem, optimum, check, spread);
+  const double variance = std::max(1.0, fit.reduced_chi_square);
+  fit.basins = basins(fit.starts, fit.parameters, variance);
+  fit.agreement = agreement_of(fit.starts, fit.basins, variance);
+  auto open = judge_identifiability(problem, optimum, spread, threads, fit);
+  judge_residuals(problem, check, spread, fit);
+  add_correlation(problem, spread, fit);
+  warn_of_noise(problem, spread, fit);
+  warn_of_parameters(problem, fit.parameters, fit);
+  warn_of_priors(problem, fit.parameters, fit);
+  return open;
+}
+
+}  // namespace rigcal::calib
