@@ -6,13 +6,13 @@
 #include <cmath>
 #include <optional>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "model/arithmetic/subnormals.hpp"
 #include "model/plant/layout.hpp"
-#include "model/plant/load_pressure.hpp"
+#include "model/plant/plants.hpp"
 #include "model/plant/sensors.hpp"
-#include "model/plant/two_chamber.hpp"
 #include "model/signal/sampled_period.hpp"
 #include "model/solver/simulate_sized.hpp"
 
@@ -60,16 +60,12 @@ void require(bool condition, const char* message) {
   if (!condition) throw std::invalid_argument(std::string("simulate: ") + message);
 }
 
-/// Calls a function object with the type of a plant: the only place that maps one to the other, in
-/// which the compiler misses a new one.
-template <typename Function>
+/// Calls a function object with the type of a plant.
+template <std::size_t I = 0, typename Function>
 decltype(auto) with_plant(PlantKind plant, const Function& function) {
-  switch (plant) {
-    case PlantKind::load_pressure:
-      return function.template operator()<LoadPressurePlant>();
-    case PlantKind::two_chamber:
-      return function.template operator()<TwoChamberPlant>();
-  }
+  if (static_cast<std::size_t>(plant) == I)
+    return function.template operator()<std::tuple_element_t<I, Plants>>();
+  if constexpr (I + 1 < kPlantCount) return with_plant<I + 1>(plant, function);
   throw std::logic_error("simulate: no such plant");
 }
 
@@ -85,24 +81,20 @@ bool reversible(PlantKind plant, const PresentTerms& terms, std::span<const Outp
   });
 }
 
-/// The numbers of states for which a solver was compiled, in ascending order; those of
+/// The numbers of states for which solvers of a plant were compiled, in ascending order; those of
 /// CMakeLists.txt.
-template <typename Plant, InstructionSet Set>
-constexpr auto kSizes = std::integer_sequence<int>{};
-template <>
-constexpr auto kSizes<LoadPressurePlant, InstructionSet::base> =
-    std::integer_sequence<int, RIGCAL_base_SIZES_OF_LoadPressurePlant>{};
-template <>
-constexpr auto kSizes<TwoChamberPlant, InstructionSet::base> =
-    std::integer_sequence<int, RIGCAL_base_SIZES_OF_TwoChamberPlant>{};
+template <typename Plant, int... States>
+struct Sized {};
+template <typename... PerPlant>
+struct Solvers : PerPlant... {};
+using BaseSolvers = Solvers<RIGCAL_base_SOLVERS>;
 #ifdef RIGCAL_WITH_AVX2
-template <>
-constexpr auto kSizes<LoadPressurePlant, InstructionSet::avx2> =
-    std::integer_sequence<int, RIGCAL_avx2_SIZES_OF_LoadPressurePlant>{};
-template <>
-constexpr auto kSizes<TwoChamberPlant, InstructionSet::avx2> =
-    std::integer_sequence<int, RIGCAL_avx2_SIZES_OF_TwoChamberPlant>{};
+using Avx2Solvers = Solvers<RIGCAL_avx2_SOLVERS>;
 #endif
+
+/// Finds those of a plant among all; it does not compile for a plant without any.
+template <typename Plant, int... States>
+std::integer_sequence<int, States...> sizes_of(const Sized<Plant, States...>& solvers);
 
 /// By the first solver that has room for all states.
 template <typename Plant, InstructionSet Set, int N, int... Larger>
@@ -121,10 +113,13 @@ void dispatch(const SizedRequest& request, Simulation& result) {
   const SubnormalsAreZero while_it_runs;
   with_plant(request.parameters.plant, [&]<typename Plant>() {
 #ifdef RIGCAL_WITH_AVX2
-    if (best_instruction_set() == avx2)
-      return run<Plant, avx2>(kSizes<Plant, avx2>, request, result);
+    if constexpr (requires(const Avx2Solvers& all) { sizes_of<Plant>(all); }) {
+      using Sizes = decltype(sizes_of<Plant>(std::declval<const Avx2Solvers&>()));
+      if (best_instruction_set() == avx2) return run<Plant, avx2>(Sizes(), request, result);
+    }
 #endif
-    run<Plant, base>(kSizes<Plant, base>, request, result);
+    using Sizes = decltype(sizes_of<Plant>(std::declval<const BaseSolvers&>()));
+    run<Plant, base>(Sizes(), request, result);
   });
 }
 

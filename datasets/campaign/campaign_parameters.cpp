@@ -227,7 +227,10 @@ std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValu
 
 std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                                                const model::ParameterValues& values) {
-  const auto given = [&](std::string_view key) { return values.is_given(key); };
+  // Not every plant has every parameter.
+  const auto given = [&](std::string_view key) {
+    return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
+  };
   if (const auto missing = values.missing(); !missing.empty()) {
     return ParameterConflict{"", fmt::format("no value for {}: expected a known value or a start "
                                              "in [rig.parameters]",

@@ -8,21 +8,19 @@
 namespace rigcal::datasets {
 namespace {
 
-/// In the order of Waveform.
+/// In the order of Waveform; a new row comes last.
 constexpr std::array kWaveforms{
-    WaveformSpec{Waveform::sine, "sine", &model::Signal::sine},
-    WaveformSpec{Waveform::square, "square", &model::Signal::square, 2},
-    WaveformSpec{Waveform::chirp, "chirp"},
-    WaveformSpec{Waveform::recorded, "recorded"},
+    WaveformSpec{"sine", &model::Signal::sine},
+    WaveformSpec{"square", &model::Signal::square, 2},
+    WaveformSpec{"chirp"},
+    WaveformSpec{"recorded"},
 };
 
-constexpr bool in_order() {
-  for (std::size_t i = 0; i < kWaveforms.size(); ++i) {
-    if (static_cast<std::size_t>(kWaveforms[i].waveform) != i) return false;
-  }
-  return true;
+constexpr std::string_view name_of(Waveform waveform) {
+  return kWaveforms.at(static_cast<std::size_t>(waveform)).name;
 }
-static_assert(in_order());
+static_assert(name_of(Waveform::sine) == "sine" && name_of(Waveform::square) == "square" &&
+              name_of(Waveform::chirp) == "chirp" && name_of(Waveform::recorded) == "recorded");
 
 }  // namespace
 
@@ -41,7 +39,8 @@ model::Signal periodic_signal(Waveform waveform, double amplitude, double freque
 
 std::vector<std::pair<std::string, Waveform>> waveforms() {
   std::vector<std::pair<std::string, Waveform>> all;
-  for (const WaveformSpec& row : kWaveforms) all.emplace_back(row.name, row.waveform);
+  for (std::size_t i = 0; i < kWaveforms.size(); ++i)
+    all.emplace_back(kWaveforms[i].name, static_cast<Waveform>(i));
   return all;
 }
 

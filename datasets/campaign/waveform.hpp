@@ -9,12 +9,12 @@
 
 namespace rigcal::datasets {
 
+/// A position in the table of waveforms; those have a name here that other code asks for.
 enum class Waveform { sine, square, chirp, recorded };
 
 /// All that the program knows about one waveform. What is periodic is drawn, averaged over periods,
 /// solved for its periodic state and given a leak table by this row alone.
 struct WaveformSpec {
-  Waveform waveform;
   std::string_view name;  ///< as in campaign files and results
   /// A signal of this amplitude and frequency [Hz]; null unless that is all that describes it, in
   /// which case it is periodic.

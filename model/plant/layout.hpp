@@ -63,21 +63,21 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
     next += 2;
   }
   if (given("supply_capacity")) layout.supply = next++;
-  if (values.is_given("valve_frequency")) {
+  if (given("valve_frequency")) {
     layout.valve_order = 2;
-  } else if (values.is_given("valve_time_constant")) {
+  } else if (given("valve_time_constant")) {
     layout.valve_order = 1;
   }
   if (layout.valve_order > 0) layout.valve = next;
   next += layout.valve_order;
   layout.pid = rig.controller == ControllerKind::pid;
   if (layout.pid) {
-    if (values.is_given("ki")) layout.integral = next++;
-    if (values.is_given("kd")) layout.filter = next++;
-    if (values.is_given("sample_time")) layout.held = next++;
+    if (given("ki")) layout.integral = next++;
+    if (given("kd")) layout.filter = next++;
+    if (given("sample_time")) layout.held = next++;
   }
-  layout.terms.stribeck = values.is_given("stribeck_friction");
-  layout.terms.friction = layout.terms.stribeck || values.is_given("coulomb_friction");
+  layout.terms.stribeck = given("stribeck_friction");
+  layout.terms.friction = layout.terms.stribeck || given("coulomb_friction");
   const auto acts = [&](std::string_view key) {
     const int index = parameter_index(values.plant, key);
     return index >= 0 &&

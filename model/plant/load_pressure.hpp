@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <string_view>
 
 #include "model/plant/plant_input.hpp"
 #include "model/plant/terms.hpp"
@@ -15,6 +16,7 @@ namespace rigcal::model {
 ///
 /// A plant is a parameter table (`Parameters`), a right-hand side and its outputs.
 struct LoadPressurePlant {
+  static constexpr std::string_view kName = "load_pressure";  ///< in campaign files
   static constexpr int kStates = 3;
   enum State { position, velocity, load_pressure };
   template <typename T>

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <tuple>
+#include <type_traits>
 
-#include "model/plant/parameter_values.hpp"
-#include "model/plant/two_chamber_parameters.hpp"
+#include "model/plant/plants.hpp"
 
 namespace rigcal::model {
 namespace {
@@ -16,23 +17,18 @@ constexpr auto table_of(const Fields& fields) {
   for (std::size_t i = 0; i < fields.size(); ++i) table[i] = fields[i].spec;
   return table;
 }
-constexpr auto kLoadPressureTable = table_of(kLoadPressureFields<double>);
-constexpr auto kTwoChamberTable = table_of(kTwoChamberFields<double>);
+template <typename Plant>
+constexpr auto kTable = table_of(Plant::template fields<double>());
 
-/// One row per plant, in the order of PlantKind.
 struct PlantRow {
-  PlantKind plant;
   std::string_view name;
   std::span<const ParameterSpec> parameters;
 };
-constexpr std::array kPlants{
-    PlantRow{PlantKind::load_pressure, "load_pressure", kLoadPressureTable},
-    PlantRow{PlantKind::two_chamber, "two_chamber", kTwoChamberTable},
-};
-static_assert(kPlants.size() == kPlantCount, "every plant has a row");
-static_assert(std::all_of(kPlants.begin(), kPlants.end(), [](const PlantRow& row) {
-  return &row - kPlants.data() == static_cast<std::ptrdiff_t>(row.plant);
-}));
+template <typename... Plant>
+constexpr std::array<PlantRow, sizeof...(Plant)> rows_of(std::type_identity<std::tuple<Plant...>>) {
+  return {PlantRow{Plant::kName, kTable<Plant>}...};
+}
+constexpr auto kPlants = rows_of(std::type_identity<Plants>());
 
 const PlantRow& row_of(PlantKind plant) { return kPlants[static_cast<std::size_t>(plant)]; }
 
@@ -61,8 +57,8 @@ std::string_view to_string(ParameterKind kind) {
 }
 
 std::optional<PlantKind> plant_from_name(std::string_view name) {
-  for (const PlantRow& row : kPlants) {
-    if (row.name == name) return row.plant;
+  for (std::size_t i = 0; i < kPlants.size(); ++i) {
+    if (kPlants[i].name == name) return static_cast<PlantKind>(i);
   }
   return std::nullopt;
 }

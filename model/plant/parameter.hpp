@@ -34,8 +34,8 @@ struct ParameterSpec {
   bool can_be_fitted = true;              ///< false where the model is not differentiable in it
 };
 
+/// A position in the list of plants (plants.hpp); those have a name here that other code asks for.
 enum class PlantKind { load_pressure, two_chamber };
-inline constexpr std::size_t kPlantCount = 2;
 
 /// "load_pressure" -> PlantKind; empty if unknown.
 std::optional<PlantKind> plant_from_name(std::string_view name);

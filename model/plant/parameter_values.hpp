@@ -115,12 +115,11 @@ constexpr auto motion_rows() {
   };
 }
 
-/// Oil, valve, leak, friction, sensors, and the initial motion.
+/// Oil, orifices of the valve, and the leak.
 template <template <typename> class Parameters, typename T>
-constexpr auto shared_rows() {
+constexpr auto oil_rows() {
   using P = Parameters<T>;
   using K = ParameterKind;
-  constexpr double kInf = std::numeric_limits<double>::infinity();
   using F = ParameterField<P, T>;
   return std::array{
       // clang-format off
@@ -133,6 +132,18 @@ constexpr auto shared_rows() {
       F{&P::leakage_coefficient, {"leakage_coefficient", "leakage_coefficient", "C_leak", "1", "discharge coefficient of the internal leak; 0: no leak", "eq. 11", K::plant, 0, 1e3}},
       F{&P::leakage_area_m2, {"leakage_area", "leakage_area_m2", "w_leak", "m2", "orifice area of the internal leak", "eq. 11", K::plant, 0, 1}},
       F{&P::leakage_smoothing_pa, {"leakage_smoothing", "leakage_smoothing_pa", "eps", "Pa", "pressure below which the root of an orifice is straightened", "docs/model.md", K::plant, 1e-3, 1e6, 100.0, false}},
+      // clang-format on
+  };
+}
+
+/// Dynamics and null of the valve.
+template <template <typename> class Parameters, typename T>
+constexpr auto valve_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
       F{&P::valve_time_constant_s, {"valve_time_constant", "valve_time_constant_s", "tau_v", "s", "first-order lag of the valve", "docs/model.md", K::term, 1e-6, 10, 0.0}},
       F{&P::valve_frequency_rad_per_s, {"valve_frequency", "valve_frequency_rad_per_s", "omega_v", "rad/s", "natural frequency of a second-order valve", "docs/model.md", K::term, 1, 1e6, 0.0}},
       F{&P::valve_damping_ratio, {"valve_damping_ratio", "valve_damping_ratio", "zeta_v", "1", "damping ratio of a second-order valve", "docs/model.md", K::term, 0.01, 100, 0.0}},
@@ -140,12 +151,37 @@ constexpr auto shared_rows() {
       F{&P::valve_dead_band_v, {"valve_dead_band", "valve_dead_band_v", "u_db", "V", "half width of the spool overlap, in volts", "docs/model.md", K::term, 0, 100, 0.0}},
       F{&P::valve_rate_limit_v_per_s, {"valve_rate_limit", "valve_rate_limit_v_per_s", "r_v", "V/s", "fastest change of the spool signal, both signs", "docs/model.md", K::term, 1e-3, 1e9, 0.0}},
       F{&P::valve_null_leakage_m3_per_s_pa, {"valve_null_leakage", "valve_null_leakage_m3_per_s_pa", "G_0", "m3/(s Pa)", "laminar leak of each closed metering edge: servo flow lost per load pressure", "docs/model.md", K::term, 0, 1, 0.0}},
+      // clang-format on
+  };
+}
+
+/// Dry friction, a constant load, and the laminar leak.
+template <template <typename> class Parameters, typename T>
+constexpr auto load_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
       F{&P::coulomb_friction_n, {"coulomb_friction", "coulomb_friction_n", "F_c", "N", "dry friction of piston and rod", "docs/model.md", K::term, 0, 1e8, 0.0}},
       F{&P::stribeck_friction_n, {"stribeck_friction", "stribeck_friction_n", "F_st", "N", "friction at breakaway above Coulomb's", "docs/model.md", K::term, 0, 1e8, 0.0}},
       F{&P::stribeck_velocity_m_per_s, {"stribeck_velocity", "stribeck_velocity_m_per_s", "v_st", "m/s", "velocity at which the breakaway friction fades", "docs/model.md", K::term, 1e-6, 100, 0.01}},
       F{&P::friction_smoothing_m_per_s, {"friction_smoothing", "friction_smoothing_m_per_s", "v_0", "m/s", "velocity below which dry friction is straightened", "docs/model.md", K::term, 1e-6, 10, 1e-3, false}},
       F{&P::external_force_n, {"external_force", "external_force_n", "F_ext", "N", "constant load against positive travel", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
       F{&P::laminar_leakage_m3_per_s_pa, {"laminar_leakage", "laminar_leakage_m3_per_s_pa", "G_leak", "m3/(s Pa)", "laminar internal leak", "docs/model.md", K::term, 0, 1, 0.0}},
+      // clang-format on
+  };
+}
+
+/// Dead time, sensors, and the initial motion: what the solver asks of every plant.
+template <template <typename> class Parameters, typename T>
+constexpr auto sensor_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  using F = ParameterField<P, T>;
+  return std::array{
+      // clang-format off
       F{&P::transport_delay_s, {"transport_delay", "transport_delay_s", "T_d", "s", "dead time of the reference or command", "docs/model.md", K::term, 0, 10, 0.0}},
       F{&P::position_gain, {"position_gain", "position_gain", "s_x", "1", "recorded position per position", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
       F{&P::load_pressure_gain, {"load_pressure_gain", "load_pressure_gain", "s_PL", "1", "recorded load pressure per load pressure", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
@@ -171,6 +207,13 @@ constexpr auto shared_rows() {
       F{&P::initial_velocity_m_per_s, {"initial_velocity", "initial_velocity_m_per_s", "v(0)", "m/s", "velocity at the first sample", "docs/model.md", K::initial, -100, 100, 0.0}},
       // clang-format on
   };
+}
+
+/// What hydraulic plants share beside their motion.
+template <template <typename> class Parameters, typename T>
+constexpr auto shared_rows() {
+  return joined(oil_rows<Parameters, T>(), valve_rows<Parameters, T>(), load_rows<Parameters, T>(),
+                sensor_rows<Parameters, T>());
 }
 
 /// The controller.

@@ -20,6 +20,7 @@ namespace rigcal::model {
 ///
 /// Q_A flows from the valve into chamber A, Q_B from chamber B into the valve.
 struct TwoChamberPlant {
+  static constexpr std::string_view kName = "two_chamber";  ///< in campaign files
   static constexpr int kStates = 4;
   enum State { position, velocity, pressure_a, pressure_b };
   template <typename T>

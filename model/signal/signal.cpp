@@ -65,6 +65,16 @@ Signal Signal::square(double amplitude, double frequency_hz) {
   return s;
 }
 
+Signal Signal::shaped(const PeriodicShape& shape, double amplitude, double frequency_hz) {
+  require_frequency(frequency_hz);
+  Signal s;
+  s.kind_ = Kind::shaped;
+  s.amplitude_ = amplitude;
+  s.frequency_hz_ = frequency_hz;
+  s.shape_ = &shape;
+  return s;
+}
+
 Signal Signal::chirp(double amplitude, double start_hz, double end_hz, double sweep_s,
                      bool logarithmic) {
   require_frequency(start_hz);
@@ -98,7 +108,8 @@ Signal Signal::linear(std::vector<double> time_s, std::vector<double> value) {
   return s;
 }
 
-// Segments. square: half period k (segment 0 also holds before t = 0). chirp: the sweep, then the
+// Segments. square: half period k (segment 0 also holds before t = 0); shaped: likewise, by its
+// pieces. chirp: the sweep, then the
 // constant end frequency. held, linear: segment 0 before the first sample, k + 1 from sample k.
 std::size_t Signal::segment_at(double t) const {
   switch (kind_) {
@@ -108,6 +119,10 @@ std::size_t Signal::segment_at(double t) const {
     case Kind::square: {
       const double half_periods = 2.0 * frequency_hz_ * t + kEdgeTolerance;
       return half_periods <= 0.0 ? 0 : static_cast<std::size_t>(half_periods);
+    }
+    case Kind::shaped: {
+      const double pieces = shape_->pieces * frequency_hz_ * t + kEdgeTolerance;
+      return pieces <= 0.0 ? 0 : static_cast<std::size_t>(pieces);
     }
     case Kind::chirp:
       return t < sweep_s_ ? 0 : 1;
@@ -128,6 +143,8 @@ double Signal::segment_end(std::size_t segment) const {
       return kInfinity;
     case Kind::square:
       return static_cast<double>(segment + 1) / (2.0 * frequency_hz_);
+    case Kind::shaped:
+      return static_cast<double>(segment + 1) / (shape_->pieces * frequency_hz_);
     case Kind::chirp:
       return segment == 0 ? sweep_s_ : kInfinity;
     case Kind::held:
@@ -149,6 +166,12 @@ SignalSample Signal::sample(std::size_t segment, double t) const {
     }
     case Kind::square:
       return {segment % 2 == 0 ? amplitude_ : -amplitude_, 0.0};
+    case Kind::shaped: {
+      const auto pieces = static_cast<std::size_t>(shape_->pieces);
+      const double phase = frequency_hz_ * t - static_cast<double>(segment / pieces);
+      const SignalSample unit = shape_->at(static_cast<int>(segment % pieces), phase);
+      return {amplitude_ * unit.value, amplitude_ * frequency_hz_ * unit.slope};
+    }
     case Kind::chirp: {
       const double f0 = frequency_hz_;
       const double f1 = end_frequency_hz_;
@@ -201,6 +224,7 @@ std::optional<double> Signal::period_s() const {
       return 0.0;
     case Kind::sine:
     case Kind::square:
+    case Kind::shaped:
       return frequency_hz_ > 0.0 ? 1.0 / frequency_hz_ : 0.0;
     default:
       return std::nullopt;
@@ -208,6 +232,7 @@ std::optional<double> Signal::period_s() const {
 }
 
 bool Signal::reverses() const {
+  if (kind_ == Kind::shaped) return shape_->reverses;
   return (kind_ == Kind::sine || kind_ == Kind::square) && offset_ == 0.0;
 }
 

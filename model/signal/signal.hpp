@@ -13,6 +13,17 @@ struct SignalSample {
   double slope = 0.0;
 };
 
+/// One period of a signal of amplitude 1, in pieces of equal length within which it is smooth. To
+/// add a waveform: a shape, and a row of datasets/campaign/waveform.cpp.
+struct PeriodicShape {
+  int pieces = 1;  ///< at whose ends a simulation ends a step
+  /// @param piece  of the period, from 0
+  /// @param phase  within the period, in periods; before t = 0 negative, of the first piece
+  /// @return       value, and slope per period
+  SignalSample (*at)(int piece, double phase) = nullptr;
+  bool reverses = false;  ///< half a period later it is the same with the other sign
+};
+
 /// A scalar function of time that is smooth between breakpoints. A simulation ends a step at every
 /// breakpoint and asks for values by segment, so that an edge is never smeared or leapt over.
 class Signal {
@@ -23,6 +34,8 @@ class Signal {
   static Signal sine(double amplitude, double frequency_hz);
   /// A sgn(sin(2 pi f t)), +A at t = 0; at an edge the value of the new half period.
   static Signal square(double amplitude, double frequency_hz);
+  /// A times a shape that repeats itself f times a second; the shape outlives the signal.
+  static Signal shaped(const PeriodicShape& shape, double amplitude, double frequency_hz);
   /// A sin(phase) whose frequency goes from f0 to f1 over `sweep_s`, then stays at f1.
   static Signal chirp(double amplitude, double start_hz, double end_hz, double sweep_s,
                       bool logarithmic);
@@ -51,7 +64,7 @@ class Signal {
   double max_step() const;
 
  private:
-  enum class Kind { constant, sine, square, chirp, held, linear };
+  enum class Kind { constant, sine, square, shaped, chirp, held, linear };
   Kind kind_ = Kind::constant;
   double amplitude_ = 0.0;
   double offset_ = 0.0;
@@ -60,6 +73,7 @@ class Signal {
   double sweep_s_ = 0.0;
   double phase_rad_ = 0.0;
   bool logarithmic_ = false;
+  const PeriodicShape* shape_ = nullptr;
   std::shared_ptr<const std::vector<double>> time_s_;
   std::shared_ptr<const std::vector<double>> value_;
 };

@@ -155,3 +155,33 @@ TEST_CASE("signal: refuses what is not a signal", "[model]") {
     CHECK_THROWS_AS(Signal::chirp(1.0, 1.0, frequency_hz, 1.0, false), std::invalid_argument);
   }
 }
+
+TEST_CASE("Signal::shaped: a shape in pieces, of any amplitude and frequency", "[model]") {
+  // Up, then held, then down twice as far in half a period: 0, 1, 1, -1 at the ends of pieces.
+  static constexpr PeriodicShape kShape{4,
+                                        [](int piece, double phase) {
+                                          if (piece == 0) return SignalSample{4.0 * phase, 4.0};
+                                          if (piece == 1) return SignalSample{1.0, 0.0};
+                                          if (piece == 2)
+                                            return SignalSample{1.0 - 8.0 * (phase - 0.5), -8.0};
+                                          return SignalSample{-1.0 + 4.0 * (phase - 0.75), 4.0};
+                                        },
+                                        false};
+  const Signal signal = Signal::shaped(kShape, 3.0, 0.5);
+  CHECK(signal.period_s() == std::optional(2.0));
+  CHECK_FALSE(signal.reverses());
+  for (std::size_t k = 0; k < 9; ++k) {
+    const double end = 0.5 * static_cast<double>(k + 1);
+    CHECK(signal.segment_end(k) == Approx(end));
+    CHECK(signal.segment_at(end) == k + 1);  // at an edge the later piece
+    CHECK(signal.segment_at(end - 1e-3) == k);
+  }
+  CHECK(signal.value(0.25) == Approx(1.5));
+  CHECK(signal.value(0.75) == Approx(3.0));
+  CHECK(signal.value(1.25) == Approx(0.0).margin(1e-12));
+  CHECK(signal.value(4.25) == Approx(1.5));  // two periods later
+  CHECK(signal.sample(6, 3.25).slope == Approx(3.0 * 0.5 * -8.0));
+  CHECK(signal.value(-0.1) == Approx(-0.6));  // the first piece goes on
+  CHECK(signal.max_step() == kInfinity);
+  CHECK_THROWS_AS(Signal::shaped(kShape, 1.0, -1.0), std::invalid_argument);
+}

@@ -1,0 +1,26 @@
+# Lays an example of docs/extending over the sources: cmake -DROOT=... -DEXAMPLE=... -DTREE=... -DGIT=... -P apply.cmake
+# TREE then holds the example's own files and changed copies of those that its patch touches, of which there may be two.
+file(REMOVE_RECURSE ${TREE})
+file(GLOB_RECURSE own RELATIVE ${EXAMPLE} ${EXAMPLE}/*.hpp ${EXAMPLE}/*.cpp)
+foreach(file IN LISTS own)
+  if(EXISTS ${ROOT}/${file})
+    message(FATAL_ERROR "${EXAMPLE}/${file} would replace a file of the sources: say in change.patch what changes in it")
+  endif()
+  configure_file(${EXAMPLE}/${file} ${TREE}/${file} COPYONLY)
+endforeach()
+file(STRINGS ${EXAMPLE}/change.patch touched REGEX "^--- a/")
+list(TRANSFORM touched REPLACE "^--- a/" "")
+list(LENGTH touched places)
+if(places GREATER 2)
+  message(FATAL_ERROR "${EXAMPLE}/change.patch touches ${places} files; a thing is added in two places at most: ${touched}")
+endif()
+foreach(file IN LISTS touched)
+  configure_file(${ROOT}/${file} ${TREE}/${file} COPYONLY)
+endforeach()
+# Not as a part of the repository that it may stand in.
+execute_process(COMMAND ${CMAKE_COMMAND} -E env GIT_CEILING_DIRECTORIES=${TREE}/.. ${GIT} apply -C1 ${EXAMPLE}/change.patch
+  WORKING_DIRECTORY ${TREE} RESULT_VARIABLE failed ERROR_VARIABLE why)
+if(failed)
+  message(FATAL_ERROR "${EXAMPLE}/change.patch does not apply any more: ${why}")
+endif()
+file(TOUCH ${TREE}/applied)
