@@ -116,9 +116,10 @@ Table residual_table(const Result& result, const calib::ConditionScore& score) {
   add_values("time_s", score.time_s);
   for (const auto& [channel, series] : score.series) {
     // A condition that could not be simulated has a measured side alone.
-    const auto& [measured, simulated] = series;
-    const auto name = [&](const char* what) {
-      return fmt::format("{}_{}", what, info(channel).name);
+    const std::vector<double>& measured = series.first;
+    const std::vector<double>& simulated = series.second;
+    const auto name = [of = info(channel).name](const char* what) {
+      return fmt::format("{}_{}", what, of);
     };
     add_values(name("measured"), measured);
     add_values(name("simulated"), simulated);
