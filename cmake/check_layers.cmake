@@ -35,7 +35,7 @@ set(report_figure store text)
 set(report_leak store text)
 set(report_batch store text comparison)
 set(report_page store text figure comparison batch)
-set(report_comparison store text page)
+set(report_comparison store text page figure)
 
 set(violations "")
 foreach(layer IN LISTS layers)
