@@ -38,7 +38,7 @@ set(report_fmu store text)
 set(report_leak store text)
 set(report_batch store text comparison)
 set(report_page store text figure comparison batch)
-set(report_comparison store text page)
+set(report_comparison store text page figure)
 set(report_run store text page)
 
 set(violations "")

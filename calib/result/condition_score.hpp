@@ -61,7 +61,8 @@ struct ConditionScore {
   /// measured mean and simulated value per output channel, whole record
   std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
   /// Standard deviation of a measurement about the simulated value, whole record, SI: uncertainty
-  /// of the estimates and noise of the record. Absent where the estimates' uncertainty is not known.
+  /// of the estimates and noise of the record. Absent where the estimates' uncertainty is not
+  /// known.
   std::map<datasets::Channel, std::vector<double>> prediction_sd;
   std::vector<double> drive;  ///< reference [m] or command [V] at time_s
   /// Simulated flows at time_s [m3/s]; empty if it could not be simulated.

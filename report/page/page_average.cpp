@@ -155,7 +155,7 @@ Plot offset_plot(const Json& record) {
   plot.title = fmt::format("offset of each repeat of {}", text_of(record, "condition"));
   plot.x_label = "repeat";
   plot.y_label = "offset [ms]";
-  plot.width = 300.0;
+  plot.width = 620.0;
   plot.height = 150.0;
   plot.whole_x = true;
   plot.levels = {0.0};

@@ -117,18 +117,13 @@
       const values = [this.time];
       const bands = [];
       /** `middle` plus and minus `half`; `names` of its upper and lower edge in the legend. */
-      const addBand = (middle, half, names, fill) => {
+      const addBand = (middle, half, names, fill, stroke = "transparent") => {
         bands.push({series: [series.length, series.length + 1], fill});
         for (const sign of [1, -1]) {
-          series.push({label: names[sign > 0 ? 0 : 1], stroke: "transparent", points: {show: false}, value: (_, v) => digits(v)});
+          series.push({label: names[sign > 0 ? 0 : 1], stroke, width: 1, dash: [4, 3], points: {show: false}, value: (_, v) => digits(v)});
           values.push(half.map((h, i) => h == null || (middle && middle[i] == null) ? null : (middle ? middle[i] : 0) + sign * h));
         }
       };
-      if (plot.prediction != null) {
-        const {sd, middle, factor} = plot.prediction;
-        addBand(middle == null ? null : this.column(middle), this.column(sd).map((s) => s == null ? null : factor * s),
-                ["prediction, upper", "prediction, lower"], css("--model") + "30");
-      }
       if (plot.sd != null) addBand(this.column(plot.lines[0].column), this.column(plot.sd), ["+ sd", "- sd"], css("--measured") + "38");
       // The last is drawn on top: what was measured.
       for (const line of [...plot.lines].reverse()) {
@@ -137,6 +132,12 @@
           points: {show: false}, value: (_, v) => v == null ? "–" : digits(v) + " " + plot.unit,
         });
         values.push(this.column(line.column));
+      }
+      // Its edges lie on top of a residual, which would hide them.
+      if (plot.prediction != null) {
+        const {sd, middle, factor} = plot.prediction;
+        addBand(middle == null ? null : this.column(middle), this.column(sd).map((s) => s == null ? null : factor * s),
+                ["prediction, upper", "prediction, lower"], css("--model") + "30", middle == null ? css("--model") : "transparent");
       }
       const axis = {stroke: css("--soft"), grid: {stroke: css("--rule"), width: 1}, ticks: {stroke: css("--rule")}, font: "11px system-ui, sans-serif"};
       const chart = new uPlot({

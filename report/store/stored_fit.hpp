@@ -21,8 +21,8 @@ namespace rigcal::report {
 template <>
 inline std::vector<model::PlantKind> every() {
   std::vector<model::PlantKind> all;
-  for (std::size_t i = 0; i < model::kPlantCount; ++i)
-    all.push_back(static_cast<model::PlantKind>(i));
+  for (const std::string& name : model::plant_names())
+    all.push_back(*model::plant_from_name(name));
   return all;
 }
 template <>

@@ -345,7 +345,7 @@ def check_average(binary, work):
         check(shown == stored, f"scatter of the repeats: {shown}, {stored}")
         check(page.run("document.querySelectorAll('#means figure svg').length") >= 2 * len(stored), "pictures")
         check_widths(page)
-        check_printed(page, work, ["Floor of rho2", "sd of repeats", "offset [ms]"])
+        check_printed(page, work, ["Repeatability", "sd of repeats", "offset [ms]"])
         check_quiet(page, path)
 
 
