@@ -3,10 +3,10 @@
 #include <pybind11/pybind11.h>
 
 #include <exception>
-#include <string>
 #include <string_view>
 
 #include "common/error.hpp"
+#include "python/arguments.hpp"
 
 namespace rigcal::python {
 namespace {
@@ -14,9 +14,9 @@ namespace {
 namespace py = pybind11;
 
 /// Messages of the command name its options, which are arguments here: "--set mass" is "set mass".
-std::string without_dashes(std::string_view message) {
+py::str without_dashes(std::string_view message) {
   if (message.starts_with("--")) message.remove_prefix(2);
-  return std::string(message);
+  return decoded(message);
 }
 
 py::object known_or_none(long number) {
@@ -38,14 +38,14 @@ void translate_errors() {
       std::rethrow_exception(thrown);
     } catch (const InputError& error) {
       raise("InputError",
-            py::make_tuple(error.what(), error.where().file, known_or_none(error.where().line),
-                           known_or_none(error.where().column)));
+            py::make_tuple(decoded(error.what()), decoded(error.where().file),
+                           known_or_none(error.where().line), known_or_none(error.where().column)));
     } catch (const UsageError& error) {
       raise("UsageError", py::make_tuple(without_dashes(error.what())));
     } catch (const NoResultError& error) {
-      raise("NoResultError", py::make_tuple(error.what()));
+      raise("NoResultError", py::make_tuple(decoded(error.what())));
     } catch (const WriteError& error) {
-      raise("WriteError", py::make_tuple(error.what()));
+      raise("WriteError", py::make_tuple(decoded(error.what())));
     }
   });
 }
