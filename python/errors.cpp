@@ -4,6 +4,7 @@
 
 #include <exception>
 #include <string_view>
+#include <utility>
 
 #include "common/error.hpp"
 #include "python/arguments.hpp"
@@ -35,7 +36,7 @@ void translate_errors() {
   py::register_exception_translator([](std::exception_ptr thrown) {
     if (!thrown) return;
     try {
-      std::rethrow_exception(thrown);
+      std::rethrow_exception(std::move(thrown));
     } catch (const InputError& error) {
       raise("InputError",
             py::make_tuple(decoded(error.what()), decoded(error.where().file),
