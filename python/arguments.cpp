@@ -59,6 +59,13 @@ std::vector<std::string> assignments(const std::optional<py::dict>& values) {
   return texts;
 }
 
+py::str decoded(std::string_view text) {
+  PyObject* const object =
+      PyUnicode_DecodeUTF8(text.data(), static_cast<py::ssize_t>(text.size()), "surrogateescape");
+  if (object == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(object);
+}
+
 std::string written(const char* name, const py::handle& value) {
   return fmt::format("{}={}", name, std::string(py::repr(value)));
 }

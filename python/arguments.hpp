@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace rigcal::python {
@@ -33,6 +34,9 @@ int thread_count(const std::optional<Integer>& threads);
 ///
 /// @throws pybind11::type_error  a value is no text and no number
 std::vector<std::string> assignments(const std::optional<pybind11::dict>& values);
+
+/// Text that may hold the name of a file: bytes that are no UTF-8 as os.fsdecode() writes them.
+pybind11::str decoded(std::string_view text);
 
 /// "name=value" as Python writes it, for the call that a result was made by.
 std::string written(const char* name, const pybind11::handle& value);

@@ -48,8 +48,8 @@ CampaignPtr load_campaign(const std::filesystem::path& campaign,
   choice.data = data.value_or("");
   choice.set = assignments(set);
   choice.free = free.value_or(std::vector<std::string>());
-  loaded->call = "rigcal.load(" + std::string(py::repr(py::str(campaign.string())));
-  if (data) loaded->call += ", " + written("data", py::str(data->string()));
+  loaded->call = "rigcal.load(" + std::string(py::repr(decoded(campaign.string())));
+  if (data) loaded->call += ", " + written("data", decoded(data->string()));
   if (set) loaded->call += ", " + written("set", *set);
   if (free) loaded->call += ", " + written("free", py::cast(*free));
   loaded->call += ")";

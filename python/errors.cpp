@@ -3,10 +3,11 @@
 #include <pybind11/pybind11.h>
 
 #include <exception>
-#include <string>
 #include <string_view>
+#include <utility>
 
 #include "common/error.hpp"
+#include "python/arguments.hpp"
 
 namespace rigcal::python {
 namespace {
@@ -14,9 +15,9 @@ namespace {
 namespace py = pybind11;
 
 /// Messages of the command name its options, which are arguments here: "--set mass" is "set mass".
-std::string without_dashes(std::string_view message) {
+py::str without_dashes(std::string_view message) {
   if (message.starts_with("--")) message.remove_prefix(2);
-  return std::string(message);
+  return decoded(message);
 }
 
 py::object known_or_none(long number) {
@@ -35,17 +36,17 @@ void translate_errors() {
   py::register_exception_translator([](std::exception_ptr thrown) {
     if (!thrown) return;
     try {
-      std::rethrow_exception(thrown);
+      std::rethrow_exception(std::move(thrown));
     } catch (const InputError& error) {
       raise("InputError",
-            py::make_tuple(error.what(), error.where().file, known_or_none(error.where().line),
-                           known_or_none(error.where().column)));
+            py::make_tuple(decoded(error.what()), decoded(error.where().file),
+                           known_or_none(error.where().line), known_or_none(error.where().column)));
     } catch (const UsageError& error) {
       raise("UsageError", py::make_tuple(without_dashes(error.what())));
     } catch (const NoResultError& error) {
-      raise("NoResultError", py::make_tuple(error.what()));
+      raise("NoResultError", py::make_tuple(decoded(error.what())));
     } catch (const WriteError& error) {
-      raise("WriteError", py::make_tuple(error.what()));
+      raise("WriteError", py::make_tuple(decoded(error.what())));
     }
   });
 }

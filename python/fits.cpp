@@ -152,7 +152,7 @@ FitResultPtr validate(const CampaignPtr& self, const std::optional<EarlierArgume
   const fs::path* const file = fit ? std::get_if<fs::path>(&*fit) : nullptr;
   if (file != nullptr && file->empty()) throw py::value_error("fit: found an empty path");
   std::string call = self->call + ".validate(";
-  if (file != nullptr) call += written("fit", py::str(file->string()));
+  if (file != nullptr) call += written("fit", decoded(file->string()));
   if (fit && file == nullptr) call += std::get<FitResultPtr>(*fit)->provenance.command;
   call += ")";
   return made(progress, [&](Progress& told, std::atomic<bool>& cancel) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "datasets/checks/short_records.hpp"
+#include "python/arguments.hpp"
 #include "python/arrays.hpp"
 #include "python/campaign.hpp"
 #include "report/run/averaging.hpp"
@@ -131,7 +132,8 @@ void bind_channel(py::module_& module) {
 void bind_repeat(py::module_& module) {
   using datasets::RepeatReport;
   py::class_<RepeatReport>(module, "Repeat", "What became of one repeat when it was averaged.")
-      .def_readonly("source", &RepeatReport::source, "Its file.")
+      .def_property_readonly(
+          "source", [](const RepeatReport& self) { return decoded(self.source); }, "Its file.")
       .def_readonly("offset_s", &RepeatReport::offset_s,
                     "By how much it came later than the mean of all [s].")
       .def_readonly("shifted_s", &RepeatReport::shifted_s,

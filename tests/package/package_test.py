@@ -71,6 +71,21 @@ class Installed(unittest.TestCase):
             names = {path.relative_to(ROOT / folder) for path in (ROOT / folder).rglob(pattern)}
             self.assertEqual(names, {path.relative_to(share / installed) for path in (share / installed).rglob("*.*")})
 
+    def test_python_imports_the_module(self):
+        modules = list(self.prefix.glob("lib/python3*/dist-packages"))
+        if not (pathlib.Path(BUILD) / "python" / "rigcal").is_dir():
+            self.skipTest("the module was not built")
+        self.assertEqual(len(modules), 1)
+        self.assertEqual({"__init__.py", "_rigcal.pyi", "errors.py", "py.typed"},
+                         {file.name for file in (modules[0] / "rigcal").iterdir() if file.suffix != ".so"})
+        made = self.folder / "for_python"
+        printed = run("/usr/bin/python3", "-B", "-c",
+                      f"import rigcal; rig = rigcal.load({str(ROOT / 'docs' / 'tutorial' / 'known_rig.toml')!r})\n"
+                      f"fit = rigcal.load(rig.synthesize({str(made)!r}, seed=1)).fit()\n"
+                      "print(rigcal.__version__, fit.status, fit.parameter('mass').value)",
+                      env={"PYTHONPATH": str(modules[0])})
+        self.assertRegex(printed, r"^[\d.]+ converged 8[45]\.")  # 85 kg is the truth
+
     def test_the_manual_tells_every_verb_and_option(self):
         page = (self.prefix / "share" / "man" / "man1" / "rigcal.1").read_text().replace("\\-", "-")
         sections = {section.partition("\n")[0]: section for section in page.split(".SS ")[1:]}

@@ -6,6 +6,7 @@ import math
 import os
 import pathlib
 import pickle
+import shutil
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,18 @@ def test_a_missing_campaign(tmp_path: pathlib.Path) -> None:
         rigcal.load(tmp_path / "no_such.toml")
     assert caught.value.file == str(tmp_path / "no_such.toml")
     assert caught.value.line is None
+
+
+def test_names_of_files_may_be_any_bytes(data: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    folder = tmp_path / os.fsdecode(b"\xff")
+    with pytest.raises(rigcal.InputError) as caught:
+        rigcal.load(folder / "campaign.toml")
+    assert caught.value.file == str(folder / "campaign.toml")
+    shutil.copytree(data, folder)
+    fit = rigcal.load(folder / "campaign.toml").fit()
+    fit.write(folder / "out")
+    assert rigcal.load(folder / "campaign.toml").validate(folder / "out" / "fit.json").status == "converged"
+    assert fit.json()["provenance"]["command"] == rf"rigcal.load('{tmp_path}/\udcff/campaign.toml').fit()"
 
 
 def test_a_typo_in_a_key(data: pathlib.Path, tmp_path: pathlib.Path) -> None:

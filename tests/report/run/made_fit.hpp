@@ -14,7 +14,7 @@ namespace rigcal::test {
 /// Their fit.
 struct MadeFit : MadeRig {
   MadeFit() {
-    apply({}, settings);
+    report::apply({}, settings);
     fit = calib::fit(campaign, records, settings);
     if (!fit.has_converged()) throw std::runtime_error("the fit of the tutorial's rig has failed");
   }
