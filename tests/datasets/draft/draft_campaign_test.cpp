@@ -11,6 +11,7 @@
 #include "datasets/prepare/load_record.hpp"
 #include "model/plant/parameter.hpp"
 #include "tests/datasets/campaign_fixture.hpp"
+#include "tests/datasets/hdf5_fixture.hpp"
 #include "tests/datasets/mat_fixture.hpp"
 
 using namespace rigcal;
@@ -216,4 +217,21 @@ TEST_CASE("draft_campaign: a matrix without a time in its first row is no To Fil
   write_mat(text, MatFormat::v6, {mat_text("note", "run 3")});
   CHECK_THROWS_WITH(draft_campaign({text}, folder.path()),
                     Contains("no vector or matrix of numbers") && Contains("ts.Time"));
+}
+
+TEST_CASE("draft_campaign: a matrix of HDF5 has its time in the first column", "[datasets]") {
+  const TemporaryFolder folder;
+  std::vector<double> matrix;
+  for (int i = 0; i < 200; ++i)
+    matrix.insert(matrix.end(), {10.0 * i, std::sin(0.1 * i), 2.0 * std::sin(0.1 * i - 0.3)});
+  const auto path = folder.path() / "run.h5";
+  {
+    const Hdf5Writer file(path);
+    file.array("/log/data", matrix, {200, 3});
+    file.texts("/log/data", "units", {"ms", "mm", "mm"});
+  }
+  const std::string text = draft_campaign({path}, folder.path()).text;
+  CHECK_THAT(text, Contains("time = { column = \"/log/data(:,1)\", unit = \"ms\" }"));
+  CHECK_THAT(text, Contains("# A matrix with a time in its first column") &&
+                       Contains("# /log/data(:,2): -0.99") && Contains("one of these columns"));
 }
