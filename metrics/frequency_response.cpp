@@ -25,7 +25,7 @@ constexpr std::size_t kLeastPerPeriod = 8;
 constexpr std::size_t kLeastSamplesOfRecord = 64;
 /// At either end. Bloomfield, Fourier Analysis of Time Series, 1976: a split cosine bell.
 constexpr double kTaper = 0.1;
-constexpr double kBinsPerDecade = 12.0;
+constexpr double kResponseBinsPerDecade = 12.0;
 constexpr std::size_t kLeastLines = 8;
 constexpr double kLeastDensity = 1e-6;
 /// Differences of samples are those of the signal as long as it is sampled well.
@@ -266,7 +266,7 @@ std::vector<ResponsePoint> broadband_response(double sample_interval_s,
   const double line_hz = 1.0 / (sample_interval_s * static_cast<double>(length));
   const auto last = static_cast<std::size_t>(0.5 * kShareOfNyquist * static_cast<double>(length));
   for (std::size_t k = 1; k <= last;) {
-    const double upper = static_cast<double>(k) * std::pow(10.0, 1.0 / kBinsPerDecade);
+    const double upper = static_cast<double>(k) * std::pow(10.0, 1.0 / kResponseBinsPerDecade);
     Bin bin;
     for (; k <= last &&
            (bin.sums.pairs < static_cast<double>(kLeastLines) || static_cast<double>(k) < upper);

@@ -114,7 +114,8 @@ Json plan_view(const Json& plan) {
   view["parameters"] = Json::array();
   view["totals"] = Json::array();
   for (const Json& parameter : plan.at("parameters")) {
-    const RowUnit unit = row_unit(number_of(parameter, "value").value_or(0.0), parameter);
+    const RowUnit unit =
+        row_unit(number_of(parameter, "value").value_or(0.0), text_of(parameter, "unit"));
     view["parameters"].push_back({{"name", plan_label(parameter)}});
     view["totals"].push_back({{"name", plan_label(parameter)},
                               {"unit", unit.name.empty() ? std::string("1") : unit.name},

@@ -9,8 +9,8 @@ using Catch::Contains;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 using rigcal::report::Json;
+using rigcal::test::ComparedJson;
 using rigcal::test::stored_result;
-using Compared = rigcal::test::ComparedJson;
 
 namespace {
 
@@ -19,7 +19,7 @@ Json models_json(const std::vector<rigcal::report::Compared>& results) {
 }
 
 /// A fit of the mass to 1000 residuals of one record.
-Compared mass_alone(const std::string& name, double cost) {
+ComparedJson mass_alone(const std::string& name, double cost) {
   Json result = stored_result();
   result["model"] = "load_pressure";
   result["cost"] = cost;
@@ -37,8 +37,8 @@ Compared mass_alone(const std::string& name, double cost) {
 }
 
 /// The same with a friction free, which the other one does not have.
-Compared with_friction(const std::string& name, double cost) {
-  Compared compared = mass_alone(name, cost);
+ComparedJson with_friction(const std::string& name, double cost) {
+  ComparedJson compared = mass_alone(name, cost);
   Json friction = compared.result["parameters"][0];
   friction["name"] = "coulomb_friction_n";
   friction["key"] = "coulomb_friction";
@@ -70,7 +70,7 @@ TEST_CASE("models: a term that explains more than noise is preferred", "[report]
 }
 
 TEST_CASE("models: the share of independent residuals is that of the better one", "[report]") {
-  Compared plain = mass_alone("plain", 5000.0);
+  ComparedJson plain = mass_alone("plain", 5000.0);
   plain.result["independent_residuals"] = 20.0;
   const Json json = models_json({plain, with_friction("friction", 499.0)});
   // With shares of their own the worse model would have 5000 * 2 / 50 against 998.
@@ -78,9 +78,9 @@ TEST_CASE("models: the share of independent residuals is that of the better one"
 }
 
 TEST_CASE("models: estimated noise is compared at its own likeliest size", "[report]") {
-  Compared plain = mass_alone("plain", 510.0);
-  Compared more = with_friction("friction", 490.0);
-  for (Compared* each : {&plain, &more}) each->result["weights"][0]["sd"] = nullptr;
+  ComparedJson plain = mass_alone("plain", 510.0);
+  ComparedJson more = with_friction("friction", 490.0);
+  for (ComparedJson* each : {&plain, &more}) each->result["weights"][0]["sd"] = nullptr;
   plain.result["weights"][0]["rms"] = 2e-5;
   more.result["weights"][0]["rms"] = 1e-5;
   const Json json = models_json({plain, more});
@@ -90,21 +90,21 @@ TEST_CASE("models: estimated noise is compared at its own likeliest size", "[rep
 }
 
 TEST_CASE("models: what is not nested is told by the criteria alone", "[report]") {
-  Compared offset = with_friction("offset", 499.0);
+  ComparedJson offset = with_friction("offset", 499.0);
   offset.result["parameters"][2]["key"] = "valve_offset";
-  Compared both = with_friction("friction", 480.0);
+  ComparedJson both = with_friction("friction", 480.0);
   both.result["rank"] = 3;
   const Json json = models_json({offset, both});
   CHECK(json[1]["likelihood_ratio"].is_null());
   CHECK_THAT(json[1]["reason"].get<std::string>(),
              Contains("friction does not contain offset: valve_offset is free in one alone"));
   CHECK_THAT(json[1]["verdict"].get<std::string>(), Contains("friction is preferred"));
-  Compared supply = with_friction("supply", 499.0);
+  ComparedJson supply = with_friction("supply", 499.0);
   supply.result["parameters"][1]["value"] = 7e6;
   CHECK_THAT(models_json({mass_alone("plain", 520.0), supply})[1]["reason"].get<std::string>(),
              Contains("known value of supply_pressure"));
-  Compared bounded = with_friction("bounded", 499.0);
-  Compared known = mass_alone("known", 520.0);
+  ComparedJson bounded = with_friction("bounded", 499.0);
+  ComparedJson known = mass_alone("known", 520.0);
   Json friction = bounded.result["parameters"][2];
   friction["fitted"] = false;
   friction["value"] = 2000.0;
@@ -120,14 +120,14 @@ TEST_CASE("models: what is not nested is told by the criteria alone", "[report]"
 }
 
 TEST_CASE("models: what cannot be compared at all, and why", "[report]") {
-  const auto reason = [](const Compared& a, const Compared& b) {
+  const auto reason = [](const ComparedJson& a, const ComparedJson& b) {
     const Json json = models_json({a, b});
     CHECK(json[1]["verdict"].is_null());
     CHECK(json[1]["delta_aic"].is_null());
     return json[1]["reason"].get<std::string>();
   };
-  const Compared plain = mass_alone("plain", 520.0);
-  Compared other = with_friction("other", 499.0);
+  const ComparedJson plain = mass_alone("plain", 520.0);
+  ComparedJson other = with_friction("other", 499.0);
   other.result["provenance"]["inputs"][1]["sha256"] = "two";
   CHECK_THAT(reason(plain, other), Contains("same records"));
   other = with_friction("other", 499.0);

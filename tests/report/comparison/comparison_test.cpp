@@ -14,12 +14,12 @@ using rigcal::report::Json;
 using rigcal::report::Provenance;
 using rigcal::report::StoredComparison;
 using rigcal::report::text_width;
+using rigcal::test::ComparedJson;
 using rigcal::test::stored_result;
-using Compared = rigcal::test::ComparedJson;
 
 namespace {
 
-Json comparison_json(const std::vector<Compared>& results, const Provenance& provenance) {
+Json comparison_json(const std::vector<ComparedJson>& results, const Provenance& provenance) {
   return json_of(rigcal::report::compared({results.begin(), results.end()}, provenance));
 }
 
@@ -37,7 +37,7 @@ Json comparison_headline(const Json& json) {
 }
 
 /// A fit with this mass and leak, of records of its own.
-Compared compared_fit(const std::string& name, double mass_kg, double leak,
+ComparedJson compared_fit(const std::string& name, double mass_kg, double leak,
                       double day_shift = 0.0) {
   Json result = stored_result();
   result["parameters"][0]["value"] = mass_kg;
@@ -104,7 +104,7 @@ TEST_CASE("comparison: several differences are judged together", "[report]") {
 }
 
 TEST_CASE("comparison: nothing is a percentage of what may be zero", "[report]") {
-  Compared tight = compared_fit("before", 85.0, 0.0);
+  ComparedJson tight = compared_fit("before", 85.0, 0.0);
   Json json = comparison_json({tight, compared_fit("after", 85.0, 0.3)}, {});
   const Json& leak = json["parameters"][2]["differences"][1];
   CHECK(leak["percent"].is_null());
@@ -113,7 +113,7 @@ TEST_CASE("comparison: nothing is a percentage of what may be zero", "[report]")
   CHECK_THAT(comparison_headline(json)["reasons"][0]["text"].get<std::string>(),
              Contains("leakage_coefficient differs in after by +0.3 (p"));
   // Not zero, but its interval holds zero: 0.03 would be +200 %.
-  Compared other = compared_fit("after", 87.0, 0.03);
+  ComparedJson other = compared_fit("after", 87.0, 0.03);
   other.result["provenance"]["inputs"][1]["sha256"] = "before";
   json = comparison_json({compared_fit("before", 85.0, 0.01), other}, {});
   CHECK(json["parameters"][2]["differences"][1]["percent"].is_null());
@@ -140,7 +140,7 @@ TEST_CASE("comparison: fits on a terminal of 80 columns", "[report]") {
 }
 
 TEST_CASE("comparison: fits to the same records are not independent", "[report]") {
-  Compared other = compared_fit("other", 90.0, 0.3);
+  ComparedJson other = compared_fit("other", 90.0, 0.3);
   other.result["provenance"]["inputs"][1]["sha256"] = "one";
   const Json json = comparison_json({compared_fit("one", 85.0, 0.3), other}, {});
   const Json& difference = json["parameters"][0]["differences"][1];
@@ -152,7 +152,7 @@ TEST_CASE("comparison: fits to the same records are not independent", "[report]"
 }
 
 TEST_CASE("comparison: a failed fit has no values, and two usable ones are needed", "[report]") {
-  Compared failed = compared_fit("failed", 85.0, 0.3);
+  ComparedJson failed = compared_fit("failed", 85.0, 0.3);
   failed.result["status"] = "failed";
   failed.result["message"] = "no start could be simulated";
   const Json json = comparison_json({compared_fit("good", 85.0, 0.3), failed}, {});
@@ -180,9 +180,9 @@ TEST_CASE("comparison: the leak's trend along dates", "[report]") {
 }
 
 TEST_CASE("comparison: a leak is of the days on which its own conditions were fitted", "[report]") {
-  std::vector<Compared> results{compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
+  std::vector<ComparedJson> results{compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
                                 compared_fit("c", 85.0, 0.40, 10)};
-  for (Compared& each : results) {
+  for (ComparedJson& each : results) {
     Json other = each.result["conditions"][0];
     other["date"] = "2020-01-01";
     other["id"] = "validated";
@@ -202,7 +202,7 @@ TEST_CASE("comparison: a leak is of the days on which its own conditions were fi
 }
 
 TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
-  Compared worse = compared_fit("worse", 85.0, 0.3);
+  ComparedJson worse = compared_fit("worse", 85.0, 0.3);
   worse.result["conditions"][0]["metrics"]["position"]["rho2"] = 0.9;
   Json extra = worse.result["conditions"][0];
   extra["id"] = "only here";
@@ -223,13 +223,13 @@ TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
 }
 
 TEST_CASE("comparison: a sign test needs six conditions, of records of their own", "[report]") {
-  Compared good = compared_fit("good", 85.0, 0.3);
+  ComparedJson good = compared_fit("good", 85.0, 0.3);
   for (int i = 0; i < 5; ++i) {
     Json extra = good.result["conditions"][0];
     extra["id"] = "c" + std::to_string(i);
     good.result["conditions"].push_back(extra);
   }
-  Compared worse = good;
+  ComparedJson worse = good;
   worse.name = "worse";
   worse.result["provenance"]["inputs"][1]["sha256"] = "worse";
   for (Json& condition : worse.result["conditions"]) condition["metrics"]["position"]["rho2"] = 0.9;
@@ -239,7 +239,7 @@ TEST_CASE("comparison: a sign test needs six conditions, of records of their own
   CHECK(rho2["significant"] == true);
   CHECK(rho2["reason"].is_null());
   // A tie speaks for neither.
-  Compared tied = worse;
+  ComparedJson tied = worse;
   tied.result["conditions"][0]["metrics"]["position"]["rho2"] = 0.99876543;
   const Json of_five = comparison_json({good, tied}, {})["metrics"][0]["against_first"][1];
   CHECK(of_five["conditions"] == 6);
@@ -255,7 +255,7 @@ TEST_CASE("comparison: a sign test needs six conditions, of records of their own
 }
 
 TEST_CASE("comparison: what was not tested is not called insignificant", "[report]") {
-  Compared other = compared_fit("other", 90.0, 0.15);
+  ComparedJson other = compared_fit("other", 90.0, 0.15);
   other.result["provenance"]["inputs"][1]["sha256"] = "one";
   const Json json = comparison_json({compared_fit("one", 85.0, 0.3), other}, {});
   const Json& found = json["significance"][1];
@@ -277,7 +277,7 @@ TEST_CASE("comparison: what was not tested is not called insignificant", "[repor
 }
 
 TEST_CASE("comparison: what was tested is counted", "[report]") {
-  Compared after = compared_fit("after", 85.1, 0.6);
+  ComparedJson after = compared_fit("after", 85.1, 0.6);
   const Json none =
       comparison_json({compared_fit("before", 85.0, 0.3), compared_fit("after", 85.1, 0.3)}, {});
   CHECK(none["significance"][1]["text"] ==
@@ -299,7 +299,7 @@ TEST_CASE("comparison: what was tested is counted", "[report]") {
 }
 
 TEST_CASE("comparison: a trend of results that share records is not tested", "[report]") {
-  std::vector<Compared> results{compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
+  std::vector<ComparedJson> results{compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
                                 compared_fit("c", 85.0, 0.40, 10)};
   CHECK(comparison_json(results, {})["leak_trends"][0]["along_date"]["reason"].is_null());
   results[2].result["provenance"]["inputs"] = results[1].result["provenance"]["inputs"];
@@ -311,7 +311,7 @@ TEST_CASE("comparison: a trend of results that share records is not tested", "[r
 
 TEST_CASE("comparison: fits to published tables, which have no records", "[report]") {
   const auto tables_fit = [](const std::string& name, double mass_kg, const std::string& number) {
-    Compared fit = compared_fit(name, mass_kg, 0.3);
+    ComparedJson fit = compared_fit(name, mass_kg, 0.3);
     fit.result["of"] = "published tables";
     fit.result["conditions"] = Json::array();
     fit.result["provenance"]["inputs"] = Json::array();
@@ -333,7 +333,7 @@ TEST_CASE("comparison: fits to published tables, which have no records", "[repor
 }
 
 TEST_CASE("comparison: names the file that is no result of this version", "[report]") {
-  Compared broken = compared_fit("broken", 85.0, 0.3);
+  ComparedJson broken = compared_fit("broken", 85.0, 0.3);
   broken.result.erase("conditions");
   CHECK_THROWS_WITH(comparison_json({compared_fit("good", 85.0, 0.3), broken}, {}),
                     Contains("broken/fit.json") && Contains("conditions"));
