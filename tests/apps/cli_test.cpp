@@ -212,7 +212,7 @@ struct BadFit {
 };
 
 /// A fit.json that one thing is wrong with.
-std::string edited(const std::function<void(json&)>& edit) {
+std::string broken_fit(const std::function<void(json&)>& edit) {
   json fit = json::parse(stored_result().dump());
   edit(fit);
   return fit.dump();
@@ -227,19 +227,19 @@ const std::vector<BadFit> kBadFits{
      R"({"schema": "rigcal.fit/1", "status": "good", "message": ""})",
      {"status", "good", "converged"}},
     {"failed",
-     edited([](json& fit) {
+     broken_fit([](json& fit) {
        fit["status"] = "failed";
        fit["message"] = "no start";
      }),
      {"failed", "no start"}},
     {"no parameters",
-     edited([](json& fit) { fit.erase("parameters"); }),
+     broken_fit([](json& fit) { fit.erase("parameters"); }),
      {"parameters", "missing"}},
     {"unknown parameter",
-     edited([](json& fit) { fit["parameters"][0]["name"] = "mass_lb"; }),
+     broken_fit([](json& fit) { fit["parameters"][0]["name"] = "mass_lb"; }),
      {"parameters[0].name", "mass_lb", "mass_kg"}},
     {"value that is a text",
-     edited([](json& fit) { fit["parameters"][0]["value"] = "60"; }),
+     broken_fit([](json& fit) { fit["parameters"][0]["value"] = "60"; }),
      {"parameters[0].value", "60", "a number"}},
 };
 
