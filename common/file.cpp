@@ -219,6 +219,7 @@ FilesInWriting::FilesInWriting() {
 FilesInWriting::~FilesInWriting() {
   const Uninterrupted whole;
   written_.clear();
+  remove_made_folders();
   const std::lock_guard lock(change_in_writing);
   FilesInWriting** place = &in_writing;
   while (*place != this) place = &(*place)->next_;
@@ -226,8 +227,24 @@ FilesInWriting::~FilesInWriting() {
 }
 
 void FilesInWriting::remove_all() {
-  for (const FilesInWriting* each = in_writing; each != nullptr; each = each->next_)
+  for (const FilesInWriting* each = in_writing; each != nullptr; each = each->next_) {
     for (const auto& file : each->written_) file->remove();
+    each->remove_made_folders();
+  }
+}
+
+void FilesInWriting::remove_made_folders() const {
+  for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder)
+    ::rmdir(folder->c_str());  // which leaves what holds something
+}
+
+void FilesInWriting::make_folders(const fs::path& folder) {
+  std::error_code error;
+  if (folder.empty() || fs::exists(folder, error)) return;
+  make_folders(folder.parent_path());
+  fs::create_directory(folder, error);
+  if (error) fail_to_write(folder, fmt::format("cannot be made: {}", error.message()));
+  folders_.push_back(folder.string());
 }
 
 void FilesInWriting::add(const fs::path& path, std::string_view content) {
@@ -235,10 +252,7 @@ void FilesInWriting::add(const fs::path& path, std::string_view content) {
   std::error_code error;
   if (!path.has_filename() || fs::is_directory(path, error))
     fail_to_write(path, "not the name of a file");
-  if (path.has_parent_path()) {
-    fs::create_directories(path.parent_path(), error);
-    if (error) fail_to_write(path, fmt::format("its folder cannot be made: {}", error.message()));
-  }
+  make_folders(path.parent_path());
   written_.push_back(std::make_unique<TemporaryFile>(path));
   written_.back()->write(content);
   written_.back()->finish();

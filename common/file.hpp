@@ -32,7 +32,7 @@ class FilesInWriting {
   FilesInWriting& operator=(const FilesInWriting&) = delete;
   ~FilesInWriting();
 
-  /// Creates missing folders.
+  /// Creates missing folders, which go again where nothing comes into them.
   /// @throws WriteError  with path and reason
   void add(const std::filesystem::path& path, std::string_view content);
 
@@ -44,7 +44,11 @@ class FilesInWriting {
   static void remove_all();
 
  private:
+  void make_folders(const std::filesystem::path& folder);
+  void remove_made_folders() const;
+
   std::vector<std::unique_ptr<TemporaryFile>> written_;
+  std::vector<std::string> folders_;  ///< that were made, each after the one it lies in
   FilesInWriting* next_ = nullptr;
 };
 

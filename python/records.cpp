@@ -56,14 +56,17 @@ py::dict channels_of(const RecordPtr& record) {
 
 py::dict average(const Campaign& self, const std::optional<fs::path>& out) {
   std::vector<Record> records;
+  const std::string call =
+      self.call + ".average(" + (out ? written("out", decoded(out->string())) : "") + ")";
+  const int threads = thread_count(std::nullopt);
   {
     const py::gil_scoped_release released;
     std::optional<report::HeldFolder> held;
     if (out) held.emplace(*out);
     records = report::averaged_records(self.campaign);
     if (out) {
-      report::write_results(*out, report::averaged_files(records),
-                            report::hash_inputs(self.campaign, records));
+      report::write_average(*out, threads, self.campaign, records,
+                            {call, 1, report::recorded(self.choice), {}});
     }
   }
   py::dict by_condition;

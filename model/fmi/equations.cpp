@@ -14,7 +14,7 @@
 namespace rigcal::model {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kDoubleEpsilon = std::numeric_limits<double>::epsilon();
 
 /// Size below which each state counts as zero in the error control, as in run.hpp.
 template <typename Plant, int N>
@@ -122,7 +122,7 @@ class SizedEquations final : public Equations {
           for (std::size_t i = 0; i < N; ++i) peak[i] = std::max(peak[i], std::abs(state[i]));
         } else {
           h = step * std::min(factor(size), 0.9);
-          if (h < 16.0 * kEpsilon * std::max(t, 1e-3))
+          if (h < 16.0 * kDoubleEpsilon * std::max(t, 1e-3))
             fail(std::isfinite(size) ? "the step size vanishes" : "the state is no longer finite",
                  h);
         }

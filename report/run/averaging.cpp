@@ -3,7 +3,10 @@
 #include "common/error.hpp"
 #include "datasets/checks/short_records.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "report/run/result_page.hpp"
 #include "report/store/csv.hpp"
+#include "report/store/result_files.hpp"
+#include "report/store/stored_provenance.hpp"
 
 namespace rigcal::report {
 
@@ -23,14 +26,28 @@ std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaig
   return records;
 }
 
-std::vector<ResultFile> averaged_files(const std::vector<datasets::Record>& records) {
+Json write_average(const std::filesystem::path& out, int threads,
+                   const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
+                   Provenance provenance) {
+  provenance.inputs = hash_inputs(campaign, records);
+  Json json;
+  json["schema"] = "rigcal.average/1";
+  json["campaign"] = campaign.name;
+  json["synthetic"] = campaign.synthetic;
+  json["records"] = Json::array();
   std::vector<ResultFile> files;
   for (const datasets::Record& record : records) {
     files.push_back(
         {std::filesystem::path("averaged") / (record.condition + ".csv"), averaged_csv(record)});
+    json["records"].push_back(record_json(*campaign.find(record.condition), record));
   }
   files.push_back({"repeatability.csv", repeatability_csv(records)});
-  return files;
+  json["provenance"] = json_of(stored(provenance));
+  name_files(files, json);
+  files.push_back({"average.json", json_text(json)});
+  add_page(out, threads, files);
+  write_results(out, files, provenance.inputs);
+  return json;
 }
 
 }  // namespace rigcal::report

@@ -1,11 +1,12 @@
 #pragma once
 
-#include <string>
+#include <filesystem>
 #include <vector>
 
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/json.hpp"
 
 namespace rigcal::report {
 
@@ -15,7 +16,14 @@ namespace rigcal::report {
 /// @throws InputError  a record is wrong, or there is none
 std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaign);
 
-/// averaged/<condition>.csv of each, and repeatability.csv.
-std::vector<ResultFile> averaged_files(const std::vector<datasets::Record>& records);
+/// Writes averaged/<condition>.csv of each, repeatability.csv, average.json and the page.
+///
+/// @param threads     that draw the page
+/// @param provenance  but for the inputs
+/// @return            average.json
+/// @throws WriteError, UsageError  as write_results()
+Json write_average(const std::filesystem::path& out, int threads,
+                   const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
+                   Provenance provenance);
 
 }  // namespace rigcal::report

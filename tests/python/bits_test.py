@@ -46,15 +46,17 @@ class Pair:
 def files_in(folder: pathlib.Path) -> dict[str, str]:
     """Texts of all files, without what two runs of the same thing differ in: the call, and the time that it took."""
     files = {str(file.relative_to(folder)): file.read_text() for file in folder.rglob("*") if file.is_file()}
-    for name in ("fit.json", "validation.json"):
+    for name in ("fit.json", "validation.json", "average.json"):
         if name not in files:
             continue
         result = json.loads(files[name])
-        call, seconds = result["provenance"]["command"], result["wall_seconds"]
+        call = result["provenance"]["command"]
         files[name] = without(files[name], f'"command": {json.dumps(call)}')
-        files[name] = without(files[name], f'"wall_seconds": {seconds!r}')
         page = html.unescape(files["report.html"])
-        page = without(page, f"<pre><code>{call}</code></pre>")
+        files["report.html"] = page = without(page, f"<pre><code>{call}</code></pre>")
+        if name == "average.json":
+            continue
+        files[name] = without(files[name], f'"wall_seconds": {result["wall_seconds"]!r}')
         time = re.findall(r'<th scope="row">Time</th><td>[^<]* s</td>', page)
         assert len(time) == 1
         files["report.html"] = without(page, time[0])

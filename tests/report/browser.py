@@ -145,6 +145,8 @@ class Browser:
         except (RuntimeError, OSError):
             pass
         self.process.wait(timeout=30)
+        for end in (self.to, self.back):
+            os.close(end)
         shutil.rmtree(self.profile, ignore_errors=True)
 
     def __enter__(self):

@@ -23,6 +23,7 @@ ELSEWHERE = {
     "docs": "scripts/lint",
     "docs-numbers": "tests/docs/numbers_test.py",
     "mutation-study": "tests/CMakeLists.txt",
+    "performance-job": "scripts/performance",
     "reliability": "tests/CMakeLists.txt",
     "threads": "scripts/test",
 }
@@ -117,8 +118,10 @@ class Scripts(unittest.TestCase):
 
     def test_performance(self):
         (self.tree / "docs").mkdir()
-        self.run_script("performance", "3")
+        make_program(self.tree / "scripts" / "performance-job")
+        self.assertTrue(self.run_script("performance", "3").endswith("performance-job \n"))
         self.assertTrue((self.tree / "docs" / "performance.md").read_text().endswith("\nrigcal_speed 3\n"))
+        self.assertTrue(self.run_script("performance", "--job", "1", "2").endswith("performance-job 1 2\n"))
 
     def test_report_performance(self):
         printed = self.run_script("report-performance")

@@ -1,6 +1,7 @@
 #include "report/run/averaging.hpp"
 
 #include <catch2/catch.hpp>
+#include <filesystem>
 
 #include "tests/report/run/made_rig.hpp"
 
@@ -14,10 +15,12 @@ TEST_CASE("averaging: records of all conditions that are not ignored", "[report]
   const auto records = averaged_records(campaign);
   REQUIRE(records.size() == 2);
   CHECK(records[1].condition == campaign.conditions[2].id);
-  const auto files = averaged_files(records);
-  REQUIRE(files.size() == 3);
-  CHECK(files[0].path == "averaged/" + campaign.conditions[0].id + ".csv");
-  CHECK(files[2].path == "repeatability.csv");
+  const auto out = rig.folder / "out";
+  const Json json = write_average(out, 1, campaign, records, {"rigcal average", 1, {}, {}});
+  CHECK(json["records"].size() == 2);
+  CHECK(json["provenance"]["files"][0]["path"] == "averaged/" + campaign.conditions[0].id + ".csv");
+  for (const char* file : {"repeatability.csv", "average.json", "report.html"})
+    CHECK(std::filesystem::exists(out / file));
   for (datasets::Condition& condition : campaign.conditions) condition.repeats.clear();
   CHECK_THROWS_WITH(averaged_records(campaign), Catch::Contains("no condition has a record"));
 }
