@@ -21,7 +21,8 @@ struct Draft {
 ///
 /// The plant is that of both chambers where either chamber's pressure is among the columns.
 ///
-/// @param files   recordings of any format; those whose names differ in their last number only are repeats
+/// @param files   recordings of any format; those whose names differ in their last number only are
+/// repeats
 /// @param folder  record paths are written relative to it
 /// @return        what was drafted. A file without a time or a channel is left out, and so is the
 ///                 first of a group if it cannot be read; comments of the text name them too

@@ -21,8 +21,7 @@ namespace rigcal::report {
 template <>
 inline std::vector<model::PlantKind> every() {
   std::vector<model::PlantKind> all;
-  for (const std::string& name : model::plant_names())
-    all.push_back(*model::plant_from_name(name));
+  for (const std::string& name : model::plant_names()) all.push_back(*model::plant_from_name(name));
   return all;
 }
 template <>

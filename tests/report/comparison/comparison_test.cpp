@@ -38,7 +38,7 @@ Json comparison_headline(const Json& json) {
 
 /// A fit with this mass and leak, of records of its own.
 ComparedJson compared_fit(const std::string& name, double mass_kg, double leak,
-                      double day_shift = 0.0) {
+                          double day_shift = 0.0) {
   Json result = stored_result();
   result["parameters"][0]["value"] = mass_kg;
   result["parameters"][0]["standard_error"] = 0.3;
@@ -180,8 +180,9 @@ TEST_CASE("comparison: the leak's trend along dates", "[report]") {
 }
 
 TEST_CASE("comparison: a leak is of the days on which its own conditions were fitted", "[report]") {
-  std::vector<ComparedJson> results{compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
-                                compared_fit("c", 85.0, 0.40, 10)};
+  std::vector<ComparedJson> results{compared_fit("a", 85.0, 0.30, 0),
+                                    compared_fit("b", 85.0, 0.34, 4),
+                                    compared_fit("c", 85.0, 0.40, 10)};
   for (ComparedJson& each : results) {
     Json other = each.result["conditions"][0];
     other["date"] = "2020-01-01";
@@ -299,8 +300,9 @@ TEST_CASE("comparison: what was tested is counted", "[report]") {
 }
 
 TEST_CASE("comparison: a trend of results that share records is not tested", "[report]") {
-  std::vector<ComparedJson> results{compared_fit("a", 85.0, 0.30, 0), compared_fit("b", 85.0, 0.34, 4),
-                                compared_fit("c", 85.0, 0.40, 10)};
+  std::vector<ComparedJson> results{compared_fit("a", 85.0, 0.30, 0),
+                                    compared_fit("b", 85.0, 0.34, 4),
+                                    compared_fit("c", 85.0, 0.40, 10)};
   CHECK(comparison_json(results, {})["leak_trends"][0]["along_date"]["reason"].is_null());
   results[2].result["provenance"]["inputs"] = results[1].result["provenance"]["inputs"];
   const Json json = comparison_json(results, {});
