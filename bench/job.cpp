@@ -72,7 +72,8 @@ void print_phases(const datasets::Campaign& campaign, int rounds) {
       {"search",
        [&] {
          const auto problem = calib::make_problem(campaign, records, fitted, false, nullptr);
-         calib::Evaluator evaluator(problem, {});
+         calib::Budget budget;
+         calib::Evaluator evaluator(problem, budget);
          found = calib::multi_start(problem, evaluator, options);
        }},
       {"scores",
