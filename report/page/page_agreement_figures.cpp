@@ -44,11 +44,6 @@ double largest_size(std::span<const double> values) {
   return result;
 }
 
-std::string spaced_name(std::string key) {
-  std::replace(key.begin(), key.end(), '_', ' ');
-  return key;
-}
-
 bool all_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
@@ -130,7 +125,7 @@ Response response_of(std::optional<double> frequency_hz, const Table& series,
   if (!all_finite(cut(*input)) || !all_finite(cut(measured)) || !all_finite(cut(simulated)))
     return {{}, "Gain and phase: not told of signals with gaps."};
   ResponseCurves curves;
-  curves.of = fmt::format("{} over {}", spaced_name(std::string(about.key)), drive->name);
+  curves.of = fmt::format("{} over {}", spaced(std::string(about.key)), drive->name);
   set_gain_unit(curves, about.unit, drive->unit, largest_size(cut(measured)),
                 largest_size(cut(*input)));
   const auto step = equal_steps(cut(*time_s));
@@ -189,7 +184,7 @@ std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
     if (moments.samples < kLeastSamples || !(moments.sd > 0.0)) continue;
     ChannelAgreement found;
     found.channel = std::string(about.key);
-    const std::string words = spaced_name(found.channel);
+    const std::string words = spaced(found.channel);
     const ReadableUnit both = readable_unit(std::max(largest_size(y), largest_size(s)), about.unit);
     const ReadableUnit rest = readable_unit(moments.sd, about.unit);
     const auto name_of = [](const ReadableUnit& unit) {
@@ -234,7 +229,7 @@ Json agreement_view(const std::string& condition, std::optional<double> frequenc
     Json figures = Json::array();
     for (const Figure& figure : channel.figures)
       figures.push_back({{"svg_html", svg(figure.plot)}});
-    view.push_back({{"channel", spaced_name(channel.channel)},
+    view.push_back({{"channel", spaced(channel.channel)},
                     {"residual", channel.residual},
                     {"response", channel.response},
                     {"figures", std::move(figures)}});

@@ -20,11 +20,6 @@ constexpr std::size_t kCellPoints = 260;
 /// Periods that a small picture has room for.
 constexpr double kPeriods = 2.0;
 
-std::string spaced(std::string key) {
-  std::replace(key.begin(), key.end(), '_', ' ');
-  return key;
-}
-
 /// Position where it was compared, else the first channel.
 std::string shown_channel(const std::vector<StoredCondition>& conditions) {
   std::string first;

@@ -96,6 +96,11 @@ bool is_doubtful(const std::optional<calib::Identifiability>& grade) {
   return grade && grade != calib::Identifiability::identified;
 }
 
+std::string spaced(std::string key) {
+  std::replace(key.begin(), key.end(), '_', ' ');
+  return key;
+}
+
 std::string anchor(const std::string& condition) { return "condition-" + condition; }
 
 Json badge(const std::optional<calib::Verdict>& verdict) {

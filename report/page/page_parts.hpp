@@ -81,6 +81,9 @@ bool is_doubtful(const std::optional<calib::Identifiability>& grade);
 /// Longer lists are folded on a screen.
 inline constexpr std::size_t kFew = 8;
 
+/// A key as words: "load pressure".
+std::string spaced(std::string key);
+
 /// Id of a condition's section.
 std::string anchor(const std::string& condition);
 /// {"word": "PASS", "mark": "✓", "class": "good"} of a verdict; nothing: not judged.
