@@ -25,7 +25,7 @@
 #include "datasets/prepare/single_repeats.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
 #include "diagnosis/diagnose.hpp"
-#include "diagnosis/steady_leak.hpp"
+#include "diagnosis/leak/steady_leak.hpp"
 
 namespace {
 

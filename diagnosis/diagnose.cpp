@@ -13,10 +13,10 @@
 #include "diagnosis/feature_clusters.hpp"
 #include "diagnosis/healthy_reference.hpp"
 #include "diagnosis/judgement.hpp"
+#include "diagnosis/leak/residual_rms.hpp"
 #include "diagnosis/machine_states.hpp"
 #include "diagnosis/obstacles.hpp"
 #include "diagnosis/prepared.hpp"
-#include "diagnosis/residual_rms.hpp"
 #include "diagnosis/signal_name.hpp"
 
 namespace rigcal::diagnosis {

@@ -8,8 +8,8 @@
 
 #include "datasets/campaign/campaign.hpp"
 #include "diagnosis/accuracy.hpp"
-#include "diagnosis/leak_estimate.hpp"
-#include "diagnosis/leak_fit.hpp"
+#include "diagnosis/leak/leak_estimate.hpp"
+#include "diagnosis/leak/leak_fit.hpp"
 #include "diagnosis/leak_trend.hpp"
 #include "diagnosis/machine_state.hpp"
 #include "metrics/residual_features.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "diagnosis/leak_estimate.hpp"
-#include "diagnosis/leak_fit.hpp"
+#include "diagnosis/leak/leak_estimate.hpp"
+#include "diagnosis/leak/leak_fit.hpp"
 
 namespace rigcal::diagnosis {
 

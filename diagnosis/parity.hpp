@@ -8,7 +8,7 @@
 
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
-#include "diagnosis/leak_fit.hpp"
+#include "diagnosis/leak/leak_fit.hpp"
 #include "metrics/residual_features.hpp"
 
 namespace rigcal::diagnosis {

@@ -6,8 +6,8 @@
 
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
-#include "diagnosis/leak_fit.hpp"
-#include "diagnosis/leak_scan.hpp"
+#include "diagnosis/leak/leak_fit.hpp"
+#include "diagnosis/leak/leak_scan.hpp"
 
 namespace rigcal::diagnosis {
 

@@ -12,10 +12,10 @@
 #include "calib/problem/known_values.hpp"
 #include "calib/problem/parameter_map.hpp"
 #include "common/suggest.hpp"
+#include "report/json/json_node.hpp"
+#include "report/json/read_json.hpp"
 #include "report/run/simulation.hpp"
 #include "report/run/validation.hpp"
-#include "report/store/json_node.hpp"
-#include "report/store/read_json.hpp"
 
 namespace rigcal::app {
 namespace {

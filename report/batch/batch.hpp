@@ -7,7 +7,7 @@
 
 #include "common/error.hpp"
 #include "report/comparison/comparison.hpp"
-#include "report/store/described.hpp"
+#include "report/json/described.hpp"
 #include "report/text/terminal.hpp"
 
 // batch.json, as docs/command-line.md describes it: one row for each rig of `batch`.

@@ -3,7 +3,7 @@
 #include <optional>
 #include <utility>
 
-#include "diagnosis/leak_estimate.hpp"
+#include "diagnosis/leak/leak_estimate.hpp"
 #include "report/store/json.hpp"
 
 namespace rigcal::report {

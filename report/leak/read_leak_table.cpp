@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/json/json_node.hpp"
+#include "report/json/read_json.hpp"
 #include "report/leak/leak_table.hpp"
-#include "report/store/json_node.hpp"
-#include "report/store/read_json.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {

@@ -9,7 +9,7 @@
 
 #include "report/batch/batch.hpp"
 #include "report/figure/svg.hpp"
-#include "report/store/json_fields.hpp"
+#include "report/json/json_fields.hpp"
 #include "report/store/stored.hpp"
 #include "report/store/table.hpp"
 

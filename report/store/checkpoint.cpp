@@ -7,8 +7,8 @@
 
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "report/json/read_json.hpp"
 #include "report/store/json.hpp"
-#include "report/store/read_json.hpp"
 
 namespace rigcal::report {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "datasets/campaign/campaign.hpp"
-#include "report/store/described.hpp"
+#include "report/json/described.hpp"
 
 // The enumerations of a campaign, as results name them.
 

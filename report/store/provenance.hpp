@@ -9,7 +9,7 @@
 
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
-#include "report/store/described.hpp"
+#include "report/json/described.hpp"
 
 namespace rigcal::report {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "report/json/json_node.hpp"
+#include "report/json/read_json.hpp"
 #include "report/store/json.hpp"
-#include "report/store/json_node.hpp"
-#include "report/store/read_json.hpp"
 #include "report/store/stored_fit.hpp"
 
 namespace rigcal::report {

@@ -8,8 +8,8 @@
 #include "common/file.hpp"
 #include "common/parallel.hpp"
 #include "datasets/campaign/condition_id.hpp"
-#include "report/store/json_fields.hpp"
-#include "report/store/read_json.hpp"
+#include "report/json/json_fields.hpp"
+#include "report/json/read_json.hpp"
 #include "report/store/result_files.hpp"
 
 namespace rigcal::report {

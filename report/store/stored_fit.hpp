@@ -7,7 +7,7 @@
 
 #include "calib/fit.hpp"
 #include "metrics/metric_table.hpp"
-#include "report/store/described.hpp"
+#include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
 #include "report/store/result.hpp"
 #include "report/store/stored_provenance.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calib/published/leak_table.hpp"
-#include "report/store/described.hpp"
+#include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
 #include "report/store/stored_provenance.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "report/store/described.hpp"
+#include "report/json/described.hpp"
 #include "report/store/provenance.hpp"
 
 namespace rigcal::report {

@@ -7,7 +7,7 @@
 
 #include "calib/fit.hpp"
 #include "metrics/residual_tests.hpp"
-#include "report/store/described.hpp"
+#include "report/json/described.hpp"
 #include "report/store/result.hpp"
 
 // What the tests of residuals found, as `residual_tests` of fit.json and residual_tests.json hold

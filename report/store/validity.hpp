@@ -8,14 +8,9 @@
 #include "calib/fit.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
+#include "report/json/range.hpp"
 
 namespace rigcal::report {
-
-struct Range {
-  double low = 0.0;
-  double high = 0.0;
-  bool operator==(const Range&) const = default;
-};
 
 /// "5 mm", "0.1 to 10 Hz": both ends in the unit that suits the upper one.
 ///

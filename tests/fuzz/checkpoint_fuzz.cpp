@@ -1,8 +1,8 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "report/json/read_json.hpp"
 #include "report/store/checkpoint.hpp"
 #include "report/store/json.hpp"
-#include "report/store/read_json.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #ifdef RIGCAL_LIBFUZZER
 #include "tests/fuzz/json_mutator.hpp"

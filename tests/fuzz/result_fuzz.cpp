@@ -2,10 +2,10 @@
 
 #include "common/error.hpp"
 #include "report/comparison/comparison.hpp"
+#include "report/json/read_json.hpp"
 #include "report/leak/read_leak_table.hpp"
 #include "report/page/page.hpp"
 #include "report/store/json.hpp"
-#include "report/store/read_json.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/report/stored_fixture.hpp"
 #ifdef RIGCAL_LIBFUZZER

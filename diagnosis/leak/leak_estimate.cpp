@@ -1,0 +1,199 @@
+#include "diagnosis/leak/leak_estimate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "diagnosis/leak/exceeds_noise.hpp"
+#include "metrics/distributions.hpp"
+
+namespace rigcal::diagnosis {
+namespace {
+
+/// Equally probable values of the coefficient, and of what blurs its share: probabilities of
+/// classes in steps of 1 / 6015.
+constexpr int kDraws = 401;
+constexpr int kBlurs = 15;
+/// Below this an error is that of the arithmetic.
+constexpr double kLeastShareError = 1e-7;
+
+struct ErrorPart {
+  double variance = 0.0;
+  double freedom = 1e9;
+};
+
+/// Welch and Satterthwaite.
+double effective_freedom(const std::vector<ErrorPart>& parts) {
+  double sum = 0.0;
+  double weighted = 0.0;
+  for (const ErrorPart& part : parts) {
+    sum += part.variance;
+    weighted += part.variance * part.variance / part.freedom;
+  }
+  return weighted > 0.0 ? std::clamp(sum * sum / weighted, 1.0, 1e6) : 1e6;
+}
+
+/// The share given what is known of the coefficient: equally probable shares, each blurred by the
+/// error that comes from the rig's parameters.
+class ShareDistribution {
+ public:
+  ShareDistribution(const LeakEstimate& estimate, double own_se, double rig_se,
+                    const LeakCurve& curve)
+      : blur_(std::max(rig_se, kLeastShareError)) {
+    const double below_zero =
+        own_se > 0.0 ? metrics::student_t_cdf(-estimate.coefficient / own_se, estimate.freedom)
+                     : 0.0;
+    for (int i = 0; i < kDraws; ++i) {
+      const double p = below_zero + (1.0 - below_zero) * (i + 0.5) / kDraws;
+      const double coefficient =
+          p < 1.0 ? estimate.coefficient + own_se * metrics::student_t_quantile(p, estimate.freedom)
+                  : 0.0;
+      shares_.push_back(curve.share(std::max(0.0, coefficient)));
+    }
+  }
+
+  /// Probability of a share below x, given that it is not negative.
+  double below(double x) const {
+    const double none = raw_below(0.0);
+    return none < 1.0 ? (raw_below(x) - none) / (1.0 - none) : 1.0;
+  }
+
+  /// Calls with equally probable shares, blurred ones too, which may be negative.
+  template <typename Take>
+  void for_each(Take take) const {
+    std::array<double, kBlurs> blurs{};
+    for (std::size_t k = 0; k < blurs.size(); ++k)
+      blurs.at(k) = blur_ * metrics::normal_quantile((static_cast<double>(k) + 0.5) / kBlurs);
+    for (const double share : shares_) {
+      for (const double blur : blurs) take(share + blur);
+    }
+  }
+
+  double quantile(double p) const {
+    double low = 0.0;
+    double high = *std::max_element(shares_.begin(), shares_.end()) + 10.0 * blur_;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = 0.5 * (low + high);
+      (below(middle) < p ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+
+ private:
+  double raw_below(double x) const {
+    double sum = 0.0;
+    for (const double share : shares_) sum += metrics::normal_cdf((x - share) / blur_);
+    return sum / static_cast<double>(shares_.size());
+  }
+
+  double blur_;
+  std::vector<double> shares_;
+};
+
+double squared(double x) { return x * x; }
+
+/// How probable a share is beforehand, but for a factor: 1 / (offset + share), the less the larger
+/// it is, without a step at any limit. The offset is that by which a normal machine is as probable
+/// as one with a slight leak: (offset + first)^2 = offset (offset + second). Where the second limit
+/// is less than twice the first no offset does that, and every share is as probable as any other.
+class Prior {
+ public:
+  explicit Prior(const datasets::DiagnosisSettings& settings) {
+    const double first = settings.limits[0];
+    const double room = settings.limits[1] - 2.0 * first;
+    if (room > 0.0) offset_ = first * first / room;
+  }
+  double density(double share) const { return offset_ ? *offset_ / (*offset_ + share) : 1.0; }
+
+ private:
+  std::optional<double> offset_;
+};
+
+std::array<double, kClassCount> class_probabilities(const ShareDistribution& shares,
+                                                    const datasets::DiagnosisSettings& settings) {
+  const Prior prior(settings);
+  std::array<double, kClassCount> probability{};
+  shares.for_each([&](double share) {
+    if (share >= 0.0)
+      probability[static_cast<std::size_t>(class_of(settings, share))] += prior.density(share);
+  });
+  const double sum = std::accumulate(probability.begin(), probability.end(), 0.0);
+  for (double& each : probability) each /= sum;
+  return probability;
+}
+
+}  // namespace
+
+double CoefficientError::total() const { return std::hypot(own_se, rig_se); }
+
+double CoefficientError::half_width() const {
+  return metrics::student_t_quantile(0.975, freedom) * total();
+}
+
+CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& errors, int repeats,
+                                   int reference) {
+  const bool coloured = errors.misfit && exceeds_noise(squared(fit.cluster_se),
+                                                       squared(fit.white_se), fit.cluster_freedom);
+  std::vector<ErrorPart> parts;
+  if (coloured) {
+    parts.push_back({squared(fit.cluster_se), static_cast<double>(fit.cluster_freedom)});
+  } else {
+    parts.push_back({squared(fit.white_se), static_cast<double>(fit.white_freedom)});
+  }
+  if (errors.between_m && fit.effect_m > 0.0) {
+    const double means = 1.0 / repeats + (reference > 0 ? 1.0 / reference : 0.0);
+    parts.push_back({squared(*errors.between_m / fit.effect_m) * means,
+                     static_cast<double>(std::max(1, errors.repeat_freedom))});
+  }
+  if (errors.healthy_m && reference == 0 && fit.effect_m > 0.0)
+    parts.push_back({squared(*errors.healthy_m / fit.effect_m)});
+  double own_variance = 0.0;
+  for (const ErrorPart& part : parts) own_variance += part.variance;
+  parts.push_back({squared(fit.rig_se)});
+  return {std::sqrt(own_variance), fit.rig_se, effective_freedom(parts)};
+}
+
+LeakEstimate estimate_leak(double coefficient, const CoefficientError& error,
+                           const LeakCurve& curve, double share_rig_se,
+                           const datasets::DiagnosisSettings& settings) {
+  LeakEstimate estimate;
+  estimate.coefficient = coefficient;
+  estimate.standard_error = error.total();
+  estimate.freedom = error.freedom;
+  const double half = error.half_width();
+  estimate.ci95 = {std::max(0.0, coefficient - half), std::max(0.0, coefficient + half)};
+  estimate.share = curve.share(coefficient);
+  estimate.leak_flow_m3_per_s = curve.leak_flow_m3_per_s(coefficient);
+  estimate.share_slope = curve.share_slope(coefficient);
+
+  const ShareDistribution shares(estimate, error.own_se, share_rig_se, curve);
+  estimate.share_ci95 = {shares.quantile(0.025), shares.quantile(0.975)};
+  estimate.probability = class_probabilities(shares, settings);
+  const auto best = std::max_element(estimate.probability.begin(), estimate.probability.end());
+  estimate.most_probable =
+      datasets::kLeakClasses[static_cast<std::size_t>(best - estimate.probability.begin())];
+  if (estimate.standard_error > 0.0) {
+    estimate.leak_score = estimate.coefficient / estimate.standard_error;
+    estimate.leak_detected =
+        estimate.leak_score >
+        metrics::student_t_quantile(1.0 - settings.false_alarms, estimate.freedom);
+  }
+  if (!estimate.leak_detected) {
+    estimate.share_upper_limit = shares.quantile(0.95);
+    estimate.share_ci95 = {0.0, *estimate.share_upper_limit};
+  }
+  return estimate;
+}
+
+double detection_limit(const LeakEstimate& healthy, const datasets::DiagnosisSettings& settings) {
+  return healthy.standard_error *
+         (metrics::student_t_quantile(1.0 - settings.false_alarms, healthy.freedom) +
+          metrics::student_t_quantile(settings.detection, healthy.freedom));
+}
+
+void keep_larger(const DetectionLimit& limit, std::optional<DetectionLimit>& kept) {
+  if (!kept || limit.leak_flow_m3_per_s > kept->leak_flow_m3_per_s) kept = limit;
+}
+
+}  // namespace rigcal::diagnosis

@@ -1,0 +1,420 @@
+#include "diagnosis/leak/leak_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "calib/problem/evaluation.hpp"
+#include "calib/problem/r_factor.hpp"
+#include "calib/problem/scaled_svd.hpp"
+#include "calib/search/search.hpp"
+#include "diagnosis/leak/phase_clusters.hpp"
+#include "diagnosis/leak/residual_rms.hpp"
+#include "diagnosis/leak/steady_leak.hpp"
+
+namespace rigcal::diagnosis {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+using datasets::Record;
+
+constexpr const char* kLeak = "leakage_coefficient";
+/// Of one leak and a few nuisance parameters, from the best of a scan: what takes more is told as a
+/// leak that did not converge.
+constexpr int kIterations = 40;
+
+void erase_value(datasets::Overrides& overrides, int index) {
+  std::erase_if(overrides, [index](const auto& entry) { return entry.first == index; });
+}
+
+/// The campaign's own value, bounds and all, but from 0 and estimated for every record.
+datasets::ParameterSetting free_leak(const Campaign& campaign, int index) {
+  const auto row = static_cast<std::size_t>(index);
+  const model::ParameterSpec& spec = model::parameter_table(campaign.rig.plant)[row];
+  datasets::ParameterSetting setting;
+  if (const auto* own = campaign.setting(index)) setting = *own;
+  setting.index = index;
+  setting.lower = 0.0;
+  setting.upper = spec.upper;
+  setting.fit = true;
+  setting.scope = datasets::Scope::condition;
+  setting.prior.reset();
+  setting.nuisance = true;
+  return setting;
+}
+
+/// Weighted residuals of a record and all derivatives, at the end of the fit; the priors of the
+/// unknowns stand apart.
+struct Linear {
+  Eigen::MatrixXd jacobian;      ///< shape (residuals, unknowns), SI
+  Eigen::MatrixXd rig_jacobian;  ///< shape (residuals, rig parameters), SI
+  Eigen::VectorXd residual;      ///< simulated minus measured, weighted
+  Eigen::VectorXd prior_weight;  ///< 1 / sd of each unknown's prior, 0 where there is none
+  Eigen::VectorXd prior_residual;
+};
+
+void set_priors(const calib::Problem& problem, const model::ParameterValues& values,
+                Linear& linear) {
+  const auto& acting = problem.map.acting(0);
+  linear.prior_weight = Eigen::VectorXd::Zero(linear.jacobian.cols());
+  linear.prior_residual = Eigen::VectorXd::Zero(linear.jacobian.cols());
+  for (std::size_t j = 0; j < acting.size(); ++j) {
+    const calib::Unknown& unknown = problem.map.unknowns()[static_cast<std::size_t>(acting[j])];
+    if (!unknown.prior) continue;
+    const auto column = static_cast<Eigen::Index>(j);
+    linear.prior_weight(column) = 1.0 / unknown.prior->sd;
+    const double value = values[problem.spec(acting[j]).key];
+    linear.prior_residual(column) = (value - unknown.prior->mean) / unknown.prior->sd;
+  }
+}
+
+int column_of(const std::vector<int>& list, int index) {
+  const auto found = std::find(list.begin(), list.end(), index);
+  return found == list.end() ? -1 : static_cast<int>(found - list.begin());
+}
+
+Linear linearise(const calib::Problem& problem, const model::Simulation& run) {
+  const calib::ProblemCondition& condition = problem.conditions.front();
+  const auto samples = static_cast<Eigen::Index>(condition.rows.size());
+  const auto channels = static_cast<Eigen::Index>(condition.channels.size());
+  const auto own = static_cast<Eigen::Index>(condition.free.size());
+  const Eigen::Index all = run.sensitivities.front().cols();
+  Eigen::MatrixXd rows(samples * channels, all + 1);
+  double square_sum = 0.0;
+  for (std::size_t k = 0; k < condition.channels.size(); ++k) {
+    rows.middleRows(static_cast<Eigen::Index>(k) * samples, samples) =
+        calib::weighted_rows(condition, k, {0, condition.rows.size(), 0}, run,
+                             Eigen::VectorXd::Ones(all), problem.campaign->fit, square_sum);
+  }
+  return {rows.leftCols(own), rows.middleCols(own, all - own), rows.col(all), {}, {}};
+}
+
+/// The R factor of the samples and priors, whose singular values tell what the unknowns are.
+calib::Linearisation with_priors(const Linear& linear) {
+  const Eigen::Index p = linear.jacobian.cols();
+  const Eigen::Index samples = linear.jacobian.rows();
+  Eigen::MatrixXd rows(samples + p, p + 1);
+  rows << linear.jacobian, linear.residual,  //
+      Eigen::MatrixXd(linear.prior_weight.asDiagonal()), linear.prior_residual;
+  calib::RFactor r_factor(p + 1);
+  r_factor.add(std::move(rows));
+  return {r_factor.get().leftCols(p), r_factor.get().col(p)};
+}
+
+/// Record minus simulated position at the samples that count [m].
+std::vector<double> position_residual(const calib::ProblemCondition& condition,
+                                      const Eigen::VectorXd& simulated) {
+  const auto& measured = condition.record->channels.at(datasets::Channel::position).mean;
+  std::vector<double> residual;
+  for (const std::size_t row : condition.rows)
+    residual.push_back(measured[row] - simulated(static_cast<Eigen::Index>(row)));
+  return residual;
+}
+
+std::string in_words(const model::Simulation& run) {
+  return fmt::format("{} at {:g} s ({})", run.reason, run.failed_at_s,
+                     model::to_string(run.status));
+}
+
+/// Everything that simulations at the end of the fit, with and without the leak, tell.
+void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, int reference,
+              const model::ParameterValues& values, const std::atomic<bool>* cancel, LeakFit& fit) {
+  const calib::ProblemCondition& condition = problem.conditions.front();
+  std::vector<int> free = condition.free;
+  std::vector<int> rig_columns;  // of the covariance, for each rig parameter that is free here
+  for (std::size_t j = 0; j < rig.indices.size(); ++j) {
+    if (column_of(condition.free, rig.indices[j]) >= 0) continue;
+    free.push_back(rig.indices[j]);
+    rig_columns.push_back(static_cast<int>(j));
+  }
+  std::vector<model::Output> outputs = condition.outputs;
+  const std::size_t position = outputs.size();
+  outputs.push_back(model::Output::position);
+  const auto simulated = [&](double coefficient) {
+    model::ParameterValues at = values;
+    at.set(leak_row, coefficient);
+    return model::simulate(condition.rig, at, free, condition.inputs, condition.record->time_s,
+                           outputs, problem.simulation_options(cancel));
+  };
+  const auto run = simulated(values[kLeak]);
+  const auto healthy = simulated(0.0);
+  if (!run.ok() || !healthy.ok()) {
+    fit.failure = in_words(run.ok() ? healthy : run);
+    return;
+  }
+  Linear linear = linearise(problem, run);
+  set_priors(problem, values, linear);
+  const auto leak = static_cast<Eigen::Index>(column_of(condition.free, leak_row));
+  const calib::Linearisation system = with_priors(linear);
+  const calib::ScaledSvd svd(system.jacobian, std::numeric_limits<double>::epsilon());
+  if (svd.rank() < system.jacobian.cols()) {
+    fit.failure = "nothing that was recorded responds to a leak";
+    return;
+  }
+  const Eigen::VectorXd step = svd.step(system.residual);
+  const Eigen::MatrixXd root = svd.root();
+  fit.coefficient = values[kLeak] + step(leak);
+  const Eigen::MatrixXd bread = root.lazyProduct(root.transpose());
+  const Eigen::VectorXd left = linear.residual + linear.jacobian * step;
+  const auto [covariance, freedom] =
+      cluster_sandwich(linear.jacobian, left, bread, clusters_of(condition));
+  // Of the estimate's variance the white noise makes what the samples tell, and the priors theirs.
+  const Eigen::VectorXd of_priors = linear.prior_weight.asDiagonal() * bread.col(leak);
+  const double of_samples = std::max(0.0, bread(leak, leak) - of_priors.squaredNorm());
+  const double noise_se =
+      std::hypot(std::sqrt(of_samples) * noise_rms(std::vector<double>(left.begin(), left.end())),
+                 of_priors.norm());
+  fit.white_se = noise_se;
+  fit.white_freedom = std::max(1, static_cast<int>(left.size() - step.size()));
+  fit.cluster_se = std::sqrt(covariance(leak, leak) + of_priors.squaredNorm());
+  fit.cluster_freedom = freedom;
+  // The mean of the healthy repeats has noise too, which the residuals show but is not the
+  // record's.
+  fit.noise_se = noise_se / std::sqrt(1.0 + (reference > 0 ? 1.0 / reference : 0.0));
+  // Whether the optimiser is content does not matter: the last step is taken here, by linear
+  // continuation, which a long one would overstretch. The scatter may be nothing where the record
+  // is its own reference, so the error that white noise alone gives is granted too.
+  const double error = std::max({fit.white_se, fit.cluster_se, root.row(leak).norm()});
+  if (values[kLeak] > 0.0 && std::abs(step(leak)) > error + 1e-3 * values[kLeak]) {
+    fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
+                              std::abs(step(leak)) / error);
+    return;
+  }
+
+  fit.rig_moves = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rig.indices.size()));
+  if (!rig_columns.empty()) {
+    // What the rig's parameters change without a leak too is in the healthy reference already.
+    Eigen::MatrixXd rig_jacobian = linear.rig_jacobian;
+    if (reference > 0) rig_jacobian -= linearise(problem, healthy).rig_jacobian;
+    const Eigen::VectorXd weight = linear.jacobian * bread.col(leak);
+    fit.rig_moves(rig_columns) = -(rig_jacobian.transpose() * weight);
+    fit.rig_se = std::sqrt(std::max(0.0, fit.rig_moves.dot(rig.covariance * fit.rig_moves)));
+  }
+  const Eigen::VectorXd effect = run.sensitivities[position].col(leak);
+  double squares = 0.0;
+  for (const std::size_t row : condition.rows) {
+    const double each = effect(static_cast<Eigen::Index>(row));
+    squares += each * each;
+  }
+  fit.effect_m = std::sqrt(squares / static_cast<double>(condition.rows.size()));
+  const auto misfit =
+      position_residual(condition, run.outputs.col(static_cast<Eigen::Index>(position)));
+  fit.misfit_rms_m = rms(misfit);
+  fit.noise_rms_m = noise_rms(misfit);
+  fit.parity_rms_m =
+      rms(position_residual(condition, healthy.outputs.col(static_cast<Eigen::Index>(position))));
+}
+
+calib::Problem problem_of(const LeakProblem& leak_problem, const Condition& condition,
+                          const std::vector<Record>& record) {
+  return calib::make_problem(leak_problem.campaign, record, {&condition}, true,
+                             &leak_problem.values);
+}
+
+/// The condition with windows that hold only what the record covers.
+Condition within(const Condition& condition, const Record& record,
+                 const std::optional<datasets::TimeWindow>& covered) {
+  Condition result = condition;
+  if (!covered) return result;
+  if (condition.moving_windows) result.windows = record.windows;
+  result.moving_windows = false;
+  if (result.windows.empty()) {
+    result.windows = {*covered};
+    return result;
+  }
+  for (datasets::TimeWindow& window : result.windows) {
+    window.start_s = std::max(window.start_s, covered->start_s);
+    window.end_s = std::min(window.end_s, covered->end_s);
+  }
+  std::erase_if(result.windows, [](const auto& window) { return window.start_s > window.end_s; });
+  return result;
+}
+
+const Condition& own_condition(const LeakProblem& leak_problem, const Condition& condition) {
+  return *leak_problem.campaign.find(condition.id);
+}
+
+}  // namespace
+
+RigFit rig_fit_of(const calib::Fit& fit) {
+  RigFit rig;
+  std::vector<Eigen::Index> rows;
+  std::vector<double> errors;
+  std::vector<double> undetermined;
+  std::vector<int> without_error;
+  Eigen::Index row = 0;
+  for (const calib::FittedParameter& p : fit.parameters) {
+    if (!p.fitted) continue;
+    if (!p.nuisance) rig.values.push_back({p.index, p.scope, p.level, p.value});
+    const bool of_rig = !p.nuisance && p.scope == datasets::Scope::rig;
+    if (!p.standard_error || row >= fit.correlation.rows()) {
+      if (!of_rig) continue;
+      without_error.push_back(p.index);
+      undetermined.push_back(calib::undetermined_sd(p.ci95, p.lower, p.upper));
+      continue;
+    }
+    if (of_rig) {
+      rig.indices.push_back(p.index);
+      rows.push_back(row);
+      errors.push_back(std::max(*p.standard_error, p.robust_standard_error.value_or(0.0)));
+    }
+    ++row;
+  }
+  const auto known = static_cast<Eigen::Index>(errors.size());
+  const auto all = known + static_cast<Eigen::Index>(undetermined.size());
+  const auto scale = Eigen::Map<const Eigen::VectorXd>(errors.data(), known);
+  rig.covariance = Eigen::MatrixXd::Zero(all, all);
+  rig.covariance.topLeftCorner(known, known) =
+      scale.asDiagonal() * Eigen::MatrixXd(fit.correlation(rows, rows)) * scale.asDiagonal();
+  rig.covariance.diagonal().tail(all - known) =
+      Eigen::Map<const Eigen::VectorXd>(undetermined.data(), all - known).cwiseAbs2();
+  rig.indices.insert(rig.indices.end(), without_error.begin(), without_error.end());
+  return rig;
+}
+
+LeakProblem::LeakProblem(const Campaign& original, const RigFit& rig)
+    : campaign(original), leak(model::parameter_index(original.rig.plant, kLeak)) {
+  const datasets::ParameterSetting setting = free_leak(campaign, leak);
+  std::erase_if(campaign.parameters, [&](const auto& each) { return each.index == leak; });
+  campaign.parameters.push_back(setting);
+  for (auto& [level, overrides] : campaign.leak_levels) erase_value(overrides, leak);
+  for (Condition& condition : campaign.conditions) erase_value(condition.overrides, leak);
+  campaign.fit.loss = datasets::Loss::squared;
+  for (const datasets::FittedValue& value : rig.values) {
+    if (value.index != leak) values.push_back(value);
+  }
+}
+
+LeakProblem LeakProblem::up_to(double coefficient) const {
+  LeakProblem result = *this;
+  datasets::ParameterSetting& setting = result.campaign.parameters.back();
+  setting.upper = coefficient;
+  setting.value = std::min(setting.value, coefficient);
+  return result;
+}
+
+LeakProblem LeakProblem::corrected_by(int reference, int repeats) const {
+  LeakProblem result = *this;
+  for (datasets::ParameterSetting& setting : result.campaign.parameters) {
+    if (setting.between_repeats && reference > 0)
+      setting.prior->sd *= std::sqrt(1.0 + static_cast<double>(repeats) / reference);
+  }
+  return result;
+}
+
+LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condition& condition,
+                 const Record& record, const std::optional<datasets::TimeWindow>& covered,
+                 int reference, const LeakScan* scan, const std::atomic<bool>* cancel) {
+  LeakFit fit;
+  const Condition counted = within(own_condition(leak_problem, condition), record, covered);
+  const std::vector<Record> records{record};
+  const calib::Problem problem = problem_of(leak_problem, counted, records);
+  calib::Budget budget(cancel);
+  calib::Evaluator evaluator(problem, budget);
+  std::vector<double> z = problem.start();
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    if (scan != nullptr && problem.map.unknowns()[j].index == leak_problem.leak)
+      z[j] = problem.map.to_unit(static_cast<int>(j), scan->best_coefficient);
+  }
+  calib::FitOptions settings;
+  settings.max_iterations = kIterations;
+  const calib::SolveResult solved = calib::Search(problem, evaluator, settings).run(z);
+  const calib::Evaluation& best = evaluator.best();
+  if (!best.ok || evaluator.budget().spent()) {
+    fit.failure = solved.message;
+    return fit;
+  }
+  const model::ParameterValues values = problem.values_at(0, best.z);
+  describe(problem, rig, leak_problem.leak, reference, values, cancel, fit);
+  return fit;
+}
+
+LeakScan leak_scan_of(const LeakProblem& leak_problem, const Condition& condition,
+                      const Record& average) {
+  const std::vector<Record> records{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), records);
+  const double beyond = 1.3 * leak_problem.campaign.diagnosis.limits.back();
+  return scan_leaks(problem, problem.conditions.front(), beyond);
+}
+
+LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condition,
+                        const Record& average, double coefficient, double reach) {
+  const std::vector<Record> records{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), records);
+  const calib::ProblemCondition& prepared = problem.conditions.front();
+  const auto leak_at = [&](double each) {
+    model::ParameterValues values = prepared.values;
+    values.set(leak_problem.leak, each);
+    const SteadyLeak leak = steady_leak(problem, prepared, values, std::array{leak_problem.leak});
+    return LeakPoint{each, leak.share, leak.leak_flow_m3_per_s, leak.share_slope(0),
+                     leak.flow_slope(0)};
+  };
+  return curve_about(leak_at, coefficient, reach);
+}
+
+double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
+                       const Condition& condition, const Record& average, const LeakFit& fit,
+                       double share_slope) {
+  if (rig.indices.empty()) return 0.0;
+  Eigen::VectorXd moves = share_slope * fit.rig_moves;
+  if (fit.coefficient > 0.0) {  // else nothing leaks, whatever the rig
+    const std::vector<Record> records{average};
+    const calib::Problem problem =
+        problem_of(leak_problem, own_condition(leak_problem, condition), records);
+    const calib::ProblemCondition& prepared = problem.conditions.front();
+    model::ParameterValues values = prepared.values;
+    values.set(leak_problem.leak, fit.coefficient);
+    moves += steady_leak(problem, prepared, values, rig.indices).share_slope;
+  }
+  return std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)));
+}
+
+Residuals healthy_residuals(const LeakProblem& leak_problem, const Condition& condition,
+                            const Record& average, const std::vector<const Record*>& records) {
+  const std::vector<Record> averages{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), averages);
+  const calib::ProblemCondition& prepared = problem.conditions.front();
+  model::ParameterValues values = prepared.values;
+  values.set(leak_problem.leak, 0.0);
+  const auto healthy = model::simulate(prepared.rig, values, {}, prepared.inputs, average.time_s,
+                                       prepared.outputs, problem.simulation_options());
+  if (!healthy.ok())
+    throw NoResultError(
+        fmt::format("condition \"{}\": healthy model: {}", condition.id, in_words(healthy)));
+  Residuals result;
+  for (const Record* record : records) {
+    auto& channels = result.emplace_back();
+    for (std::size_t k = 0; k < prepared.channels.size(); ++k) {
+      const datasets::Channel channel = prepared.channels[k].channel;
+      std::vector<double> residual = record->channels.at(channel).mean;
+      for (std::size_t i = 0; i < residual.size(); ++i)
+        residual[i] -= healthy.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k));
+      channels.emplace(channel, std::move(residual));
+    }
+  }
+  return result;
+}
+
+double share_at(const Campaign& campaign, const Condition& condition, const Record& record,
+                const std::vector<datasets::FittedValue>& values) {
+  const std::vector<Record> records{record};
+  calib::Problem problem = calib::make_problem(campaign, records, {&condition}, true, nullptr);
+  calib::ProblemCondition& prepared = problem.conditions.front();
+  for (const datasets::FittedValue& value : values) {
+    const bool here = value.scope == datasets::Scope::rig ||
+                      value.level == (value.scope == datasets::Scope::condition
+                                          ? condition.id
+                                          : condition.leak_level.value_or(""));
+    if (here) prepared.values.set(value.index, value.value);
+  }
+  return steady_leak(problem, prepared, prepared.values, {}).share;
+}
+
+}  // namespace rigcal::diagnosis

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calib/fit.hpp"
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/prepare/single_repeats.hpp"
+#include "diagnosis/leak/leak_curve.hpp"
+#include "diagnosis/leak/leak_scan.hpp"
+
+namespace rigcal::diagnosis {
+
+/// What an earlier fit says of the rig.
+struct RigFit {
+  std::vector<datasets::FittedValue> values;  ///< fitted ones, without nuisance
+  std::vector<int> indices;    ///< table rows of fitted values of scope rig that have an error
+  Eigen::MatrixXd covariance;  ///< of these, SI, shape (indices)^2
+};
+
+/// The same of a fit that has just been made.
+RigFit rig_fit_of(const calib::Fit& fit);
+
+/// The campaign as a diagnosis sees it: the leakage coefficient is unknown in every condition, with
+/// 0 as its lower bound, and whatever the campaign or a fit knows of it is left out. Other nuisance
+/// parameters (offsets) stay unknown.
+struct LeakProblem {
+  datasets::Campaign campaign;
+  std::vector<datasets::FittedValue> values;  ///< of the rig
+  int leak = 0;                               ///< table row of the leakage coefficient
+
+  LeakProblem(const datasets::Campaign& original, const RigFit& rig);
+  /// The same with another upper bound of the coefficient.
+  LeakProblem up_to(double coefficient) const;
+  /// The same for records, each the mean of `repeats`, that the mean of `reference` healthy repeats
+  /// corrected: what differs between repeats (ParameterSetting::between_repeats) does so in both.
+  LeakProblem corrected_by(int reference, int repeats) const;
+};
+
+/// The leak that explains one record best.
+struct LeakFit {
+  std::string failure;  ///< why there is none, in words; empty if there is one
+  /// Least-squares estimate. Where a leak that is not negative fits best at 0, the linear
+  /// continuation below it, so that the scatter about 0 is not cut off.
+  double coefficient = 0.0;
+  /// Standard errors of it from the residuals, with their degrees of freedom (see fit_leak()): by
+  /// clusters of samples, and as white noise.
+  double cluster_se = 0.0;
+  int cluster_freedom = 1;
+  double white_se = 0.0;
+  int white_freedom = 1;
+  double noise_se = 0.0;  ///< the part of white_se that is the record's own, not its reference's
+  double rig_se = 0.0;    ///< from the uncertainty of the rig's parameters
+  /// How the coefficient moves per unit of each of the rig's parameters, shape (RigFit::indices).
+  Eigen::VectorXd rig_moves;
+  double effect_m = 0.0;      ///< rms change of position per unit of the coefficient [m]
+  double parity_rms_m = 0.0;  ///< of record (corrected, if it was) minus healthy model
+  double misfit_rms_m = 0.0;  ///< of record minus leaking model
+  double noise_rms_m = 0.0;   ///< part of it that is new in each sample
+  bool ok() const { return failure.empty(); }
+};
+
+/// Fits leak and nuisance parameters to one record, all else being known.
+///
+/// Standard error: residuals are correlated in time, and what a model lacks comes back in every
+/// period, so that it does not average out over them. The samples are put into ten classes by their
+/// phase in the period (into ten stretches where there is none), the scores of each are summed over
+/// the whole record, and these sums are taken for independent: a sandwich by clusters, which is
+/// right for white noise and honest for a misfit that repeats.
+///
+/// Beside it stands the error that white noise of the residuals' own scatter from sample to sample
+/// makes: ten sums are a poor estimate, and where a square wave tells its leak in one or two of the
+/// classes alone they are next to nothing at the least squares.
+///
+/// Rig parameters: C moves by -(J^T J)^-1 J^T J_rig per unit of each.
+///
+/// @param reference  how many healthy repeats had what the healthy model lacks taken off the
+/// record:
+///                   then the rig's parameters act through the difference that a leak makes alone;
+///                   0: none
+/// @param scan  of the same condition: where to start; may be null
+/// @param covered  times of the record that count, within the condition's windows
+LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
+                 const datasets::Condition& condition, const datasets::Record& record,
+                 const std::optional<datasets::TimeWindow>& covered, int reference,
+                 const LeakScan* scan, const std::atomic<bool>* cancel);
+
+/// Per record and channel: record minus healthy model.
+using Residuals = std::vector<std::map<datasets::Channel, std::vector<double>>>;
+
+/// Parity residuals (eq. 14) of records of one condition: each output channel minus the healthy
+/// model under the same reference, nuisance parameters at their start values.
+///
+/// @param records  on the time base of the average
+/// @throws NoResultError  the model cannot be simulated
+Residuals healthy_residuals(const LeakProblem& leak_problem, const datasets::Condition& condition,
+                            const datasets::Record& average,
+                            const std::vector<const datasets::Record*>& records);
+
+/// Scan of a condition by its average record.
+LeakScan leak_scan_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
+                      const datasets::Record& average);
+
+/// Share over the coefficient in one condition of the rig, about an estimate.
+///
+/// @param coefficient  of the record; may be negative
+/// @param reach        half the width of the interval that matters, above 0
+/// @throws NoResultError  as steady_leak()
+LeakCurve leak_curve_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
+                        const datasets::Record& average, double coefficient, double reach);
+
+/// Standard error of the share from the rig's parameters, the coefficient being fitted again: their
+/// own effect on it, and that of the coefficient which moves with them.
+double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
+                       const datasets::Condition& condition, const datasets::Record& average,
+                       const LeakFit& fit, double share_slope);
+
+/// Share of the servo flow that leaks in a condition at given values: of a truth that is known.
+double share_at(const datasets::Campaign& campaign, const datasets::Condition& condition,
+                const datasets::Record& record, const std::vector<datasets::FittedValue>& values);
+
+}  // namespace rigcal::diagnosis

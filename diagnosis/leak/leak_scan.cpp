@@ -1,0 +1,77 @@
+#include "diagnosis/leak/leak_scan.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "diagnosis/leak/record_share.hpp"
+
+namespace rigcal::diagnosis {
+namespace {
+
+/// Steps of the range: a fit finds its way from the nearest.
+constexpr double kRatio = 1.35;
+constexpr double kFirst = 1e-3;
+constexpr double kLargest = 1e3;
+
+/// One coefficient, in the record itself.
+struct Candidate {
+  double coefficient = 0.0;
+  double share = 0.0;
+  double cost = 0.0;  ///< half the sum of squared weighted residuals
+};
+
+Candidate simulate_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
+                        double coefficient) {
+  model::ParameterValues values = condition.values;
+  values.set("leakage_coefficient", coefficient);
+  std::vector<model::Output> outputs = condition.outputs;
+  outputs.push_back(model::Output::servo_flow);
+  outputs.push_back(model::Output::leakage_flow);
+  const auto run = model::simulate(condition.rig, values, {}, condition.inputs,
+                                   condition.record->time_s, outputs, problem.simulation_options());
+  if (!run.ok()) {
+    throw NoResultError(fmt::format(
+        "condition \"{}\" could not be simulated with a leakage coefficient of {:g}: {} at {:g} s",
+        condition.condition->id, coefficient, run.reason, run.failed_at_s));
+  }
+  Candidate point;
+  point.coefficient = coefficient;
+  for (std::size_t k = 0; k < condition.channels.size(); ++k) {
+    const calib::ProblemChannel& channel = condition.channels[k];
+    for (std::size_t i = 0; i < condition.rows.size(); ++i) {
+      const auto row = static_cast<Eigen::Index>(condition.rows[i]);
+      const double error =
+          (run.outputs(row, static_cast<Eigen::Index>(k)) - channel.measured[i]) / channel.sd;
+      point.cost += 0.5 * error * error;
+    }
+  }
+  const auto servo = static_cast<Eigen::Index>(condition.channels.size());
+  point.share = leak_in_record(condition, run, servo).share;
+  return point;
+}
+
+}  // namespace
+
+LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition& condition,
+                    double share_above) {
+  Candidate best = simulate_leak(problem, condition, 0.0);
+  // The coefficient says nothing without its area: the range begins where a thousandth leaks.
+  double coefficient = kFirst;
+  Candidate point = simulate_leak(problem, condition, coefficient);
+  while (point.share > 1e-3 && coefficient > 1e-12)
+    point = simulate_leak(problem, condition, coefficient *= 0.1);
+  while (point.share < 2e-4 && coefficient < kLargest)
+    point = simulate_leak(problem, condition, coefficient *= 5.0);
+  while (true) {
+    const bool is_better = point.cost < best.cost;
+    if (is_better) best = point;
+    if ((point.share >= share_above && !is_better) || coefficient >= kLargest) break;
+    // Coarser steps where the share is small and all but proportional to the coefficient.
+    coefficient *= point.share < 0.02 ? 2.0 : kRatio;
+    point = simulate_leak(problem, condition, coefficient);
+  }
+  return {best.coefficient, coefficient};
+}
+
+}  // namespace rigcal::diagnosis

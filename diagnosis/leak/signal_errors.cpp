@@ -1,0 +1,87 @@
+#include "diagnosis/leak/signal_errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "diagnosis/leak/exceeds_noise.hpp"
+#include "diagnosis/leak/residual_rms.hpp"
+
+namespace rigcal::diagnosis {
+namespace {
+
+double power(double x) { return x * x; }
+
+/// By the variances of all records over those that white noise would make.
+bool has_misfit(const std::vector<const LeakFit*>& records) {
+  double ratios = 0.0;
+  double freedom = 0.0;
+  for (const LeakFit* fit : records) {
+    if (!(fit->white_se > 0.0)) continue;
+    ratios += fit->cluster_freedom * power(fit->cluster_se / fit->white_se);
+    freedom += fit->cluster_freedom;
+  }
+  return freedom == 0.0 || exceeds_noise(ratios / freedom, 1.0, freedom);
+}
+
+}  // namespace
+
+SignalErrors signal_errors(const std::vector<std::vector<SingleFit>>& singles,
+                           const std::vector<const LeakFit*>& healthy,
+                           const std::vector<const LeakFit*>& averages) {
+  SignalErrors errors;
+  std::vector<const LeakFit*> records = averages;
+  double squares = 0.0;
+  double noise = 0.0;  // that of as many degrees of freedom
+  for (const auto& members : singles) {
+    if (members.size() < 2) continue;
+    double mean = 0.0;
+    for (const SingleFit& each : members) mean += each.fit->coefficient;
+    mean /= static_cast<double>(members.size());
+    const double freedom_of_each = 1.0 - 1.0 / static_cast<double>(members.size());
+    for (const auto& [fit, corrected_by] : members) {
+      // x less the mean of r others lies (r + 1) / r times as far from the mean of all as x does.
+      const double spread = corrected_by > 0 ? corrected_by / (corrected_by + 1.0) : 1.0;
+      squares += power(spread * (fit->coefficient - mean) * fit->effect_m);
+      noise += freedom_of_each * power(fit->noise_se * fit->effect_m);
+      records.push_back(fit);
+    }
+    errors.repeat_freedom += static_cast<int>(members.size()) - 1;
+  }
+  if (errors.repeat_freedom > 0) {
+    errors.repeat_m = std::sqrt(squares / errors.repeat_freedom);
+    errors.repeat_noise_m = std::sqrt(noise / errors.repeat_freedom);
+  }
+  double sum = 0.0;
+  for (const LeakFit* each : healthy) sum += power(each->coefficient * each->effect_m);
+  if (!healthy.empty()) errors.healthy_m = std::sqrt(sum / static_cast<double>(healthy.size()));
+  errors.misfit = has_misfit(records);
+  return errors;
+}
+
+void separate_noise(const std::vector<SignalErrors*>& signals) {
+  double ratios = 0.0;
+  double freedom = 0.0;
+  for (const SignalErrors* each : signals) {
+    if (!each->repeat_m || !(each->repeat_noise_m > 0.0)) continue;
+    ratios += each->repeat_freedom * power(*each->repeat_m / each->repeat_noise_m);
+    freedom += each->repeat_freedom;
+  }
+  const bool any = freedom == 0.0 || exceeds_noise(ratios / freedom, 1.0, freedom);
+  for (SignalErrors* each : signals) {
+    if (!each->repeat_m) continue;
+    const double all = power(*each->repeat_m);
+    const double noise = power(each->repeat_noise_m);
+    const bool differ = any && exceeds_noise(all, noise, each->repeat_freedom);
+    each->between_m = differ ? std::sqrt(all - noise) : 0.0;
+  }
+}
+
+double unexplained_share(const LeakFit& fit, double healthy_m) {
+  const double left = structured_rms(fit.misfit_rms_m, fit.noise_rms_m);
+  if (left <= std::max(2.0 * healthy_m, fit.noise_rms_m)) return 0.0;
+  const double beyond = power(left) - power(healthy_m);
+  const double explained = power(fit.parity_rms_m) - power(fit.misfit_rms_m);
+  return beyond / (beyond + std::max(0.0, explained));
+}
+
+}  // namespace rigcal::diagnosis

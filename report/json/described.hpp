@@ -1,0 +1,299 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "report/json/json_node.hpp"
+
+// One description of each struct that a result file holds, of which writer, reader and schema
+// follow. The members' names are the keys, in this order; a name that C++ keeps for itself has "_"
+// at its end.
+//
+//   struct Leak {
+//     std::string level;
+//     double share_percent = 0.0;
+//     std::optional<std::string> reason;
+//     RIGCAL_DESCRIBE(level, share_percent, reason)
+//   };
+
+// NOLINTBEGIN(cppcoreguidelines-macro-usage): only a macro knows the name of a member
+#define RIGCAL_VISIT_MEMBER(member) visit(#member, self.member);
+#define RIGCAL_DESCRIBE(...)                                                    \
+  template <typename Self, typename Visit>                                      \
+  static void describe(Self& self, const Visit& visit) {                        \
+    NLOHMANN_JSON_EXPAND(NLOHMANN_JSON_PASTE(RIGCAL_VISIT_MEMBER, __VA_ARGS__)) \
+  }
+// NOLINTEND(cppcoreguidelines-macro-usage)
+
+namespace rigcal::report {
+
+/// A value whose key is left out where there is none: rigs differ in what they have.
+template <typename T>
+struct Omittable : std::optional<T> {
+  using std::optional<T>::optional;
+};
+
+/// A member that results of earlier versions lack: the default of T then.
+template <typename T>
+struct Later : T {
+  using T::T;
+  using T::operator=;
+  Later() = default;
+  Later(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
+};
+
+/// Keys and values in their order.
+template <typename T>
+using Keyed = std::vector<std::pair<std::string, T>>;
+
+/// The value of a key; null where there is none.
+template <typename T>
+const T* find(const Keyed<T>& keyed, std::string_view key) {
+  for (const auto& [name, value] : keyed)
+    if (name == key) return &value;
+  return nullptr;
+}
+
+/// All values of an enumeration that results name by to_string(). A specialisation lists them.
+template <typename Enum>
+std::vector<Enum> every();
+
+namespace described {
+
+template <typename T>
+inline constexpr bool is_optional = false;
+template <typename T>
+inline constexpr bool is_optional<std::optional<T>> = true;
+template <typename T>
+inline constexpr bool is_omittable = false;
+template <typename T>
+inline constexpr bool is_omittable<Omittable<T>> = true;
+template <typename T>
+inline constexpr bool is_later = false;
+template <typename T>
+inline constexpr bool is_later<Later<T>> = true;
+template <typename T>
+struct LaterOf;
+template <typename T>
+struct LaterOf<Later<T>> {
+  using Type = T;
+};
+template <typename T>
+inline constexpr bool is_vector = false;
+template <typename T>
+inline constexpr bool is_vector<std::vector<T>> = true;
+template <typename T>
+inline constexpr bool is_array = false;
+template <typename T, std::size_t N>
+inline constexpr bool is_array<std::array<T, N>> = true;
+template <typename T>
+inline constexpr bool is_keyed = false;
+template <typename T>
+inline constexpr bool is_keyed<Keyed<T>> = true;
+
+/// Largest number of things that a result counts: sums of some hundred of them are whole numbers.
+inline constexpr long kMostCounted = 1'000'000'000;
+
+struct Anything {
+  template <typename T>
+  void operator()(const char* /*name*/, const T& /*member*/) const {}
+};
+
+template <typename T>
+concept Struct = requires(T& value) {
+  T::describe(value, Anything{});
+};
+
+inline std::string key_of(const char* member) {
+  std::string key(member);
+  if (key.back() == '_') key.pop_back();
+  return key;
+}
+
+}  // namespace described
+
+/// What JSON can hold of a number: nothing where it is not finite.
+inline std::optional<double> finite(double value) {
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+inline std::optional<double> finite(const std::optional<double>& value) {
+  return value ? finite(*value) : std::nullopt;
+}
+
+/// A value as JSON. Numbers that are not finite become null: JSON knows neither NaN nor infinity.
+template <typename T>
+Json json_of(const T& value) {
+  using namespace described;
+  if constexpr (is_later<T>) {
+    return json_of<typename LaterOf<T>::Type>(value);
+  } else if constexpr (std::same_as<T, Json>) {
+    return value;
+  } else if constexpr (std::floating_point<T>) {
+    return std::isfinite(value) ? Json(value) : Json(nullptr);
+  } else if constexpr (std::is_enum_v<T>) {
+    return std::string(to_string(value));
+  } else if constexpr (std::same_as<T, Range>) {
+    return Json::array({json_of(value.low), json_of(value.high)});
+  } else if constexpr (is_optional<T> || is_omittable<T>) {
+    return value ? json_of(*value) : Json(nullptr);
+  } else if constexpr (is_keyed<T>) {
+    Json json = Json::object();
+    for (const auto& [key, member] : value) json[key] = json_of(member);
+    return json;
+  } else if constexpr (is_vector<T> || is_array<T>) {
+    Json json = Json::array();
+    for (const auto& each : value) json.push_back(json_of(each));
+    return json;
+  } else if constexpr (Struct<T>) {
+    Json json = Json::object();
+    T::describe(value, [&json]<typename M>(const char* name, const M& member) {
+      if constexpr (is_omittable<M>) {
+        if (!member) return;
+      }
+      json[key_of(name)] = json_of(member);
+    });
+    return json;
+  } else {
+    return Json(value);
+  }
+}
+
+/// Reads what json_of() wrote. Keys that the struct does not know are passed over.
+///
+/// @throws InputError  file and key of what is missing or of another kind, and what was expected
+template <typename T>
+void read_into(const JsonNode& node, T& value) {
+  using namespace described;
+  if constexpr (is_later<T>) {
+    read_into<typename LaterOf<T>::Type>(node, value);
+  } else if constexpr (std::same_as<T, Json>) {
+    value = node.json();
+  } else if constexpr (std::same_as<T, bool>) {
+    value = node.boolean();
+  } else if constexpr (std::signed_integral<T>) {
+    value = node.integer<T>();
+    if (value < 0 || value > kMostCounted)
+      node.fail(fmt::format("a whole number from 0 to {}", kMostCounted));
+  } else if constexpr (std::integral<T>) {
+    value = node.integer<T>();
+  } else if constexpr (std::floating_point<T>) {
+    value = node.is_null() ? std::numeric_limits<T>::quiet_NaN() : node.real();
+  } else if constexpr (std::same_as<T, std::string>) {
+    value = node.string();
+  } else if constexpr (std::is_enum_v<T>) {
+    value = one_of(node, every<T>());
+  } else if constexpr (std::same_as<T, Range>) {
+    const auto ends = node.items();
+    if (ends.size() != 2) node.fail("two numbers");
+    read_into(ends[0], value.low);
+    read_into(ends[1], value.high);
+  } else if constexpr (is_optional<T> || is_omittable<T>) {
+    value.reset();
+    if constexpr (is_omittable<T>) {
+      // Null is a value of one that may be null.
+      if constexpr (is_optional<typename T::value_type>) value.emplace();
+    }
+    if (!node.is_null()) read_into(node, value.emplace());
+  } else if constexpr (is_keyed<T>) {
+    value.clear();
+    for (const auto& [key, member] : node.members())
+      read_into(member, value.emplace_back(key, typename T::value_type::second_type{}).second);
+  } else if constexpr (std::same_as<T, std::vector<double>>) {
+    value = node.reals();
+  } else if constexpr (is_vector<T>) {
+    value.clear();
+    for (const JsonNode& item : node.items()) {
+      typename T::value_type each{};
+      read_into(item, each);
+      value.push_back(std::move(each));
+    }
+  } else if constexpr (is_array<T>) {
+    const auto items = node.items();
+    if (items.size() != value.size()) node.fail(fmt::format("a list of {}", value.size()));
+    for (std::size_t i = 0; i < value.size(); ++i) read_into(items[i], value[i]);
+  } else {
+    static_assert(Struct<T>);
+    T::describe(value, [&node]<typename M>(const char* name, M& member) {
+      const std::string key = key_of(name);
+      if constexpr (is_omittable<M> || is_later<M> || std::same_as<M, Json>) {
+        member = M();
+        if (!node.has(key)) return;
+      }
+      read_into(node[key], member);
+    });
+  }
+}
+
+/// The JSON schema (draft 7) of what json_of() writes for a type.
+template <typename T>
+Json schema_of() {
+  using namespace described;
+  if constexpr (is_later<T>) {
+    return schema_of<typename LaterOf<T>::Type>();
+  } else if constexpr (std::same_as<T, Json>) {
+    return Json::object();
+  } else if constexpr (std::same_as<T, bool>) {
+    return {{"type", "boolean"}};
+  } else if constexpr (std::integral<T>) {
+    return {{"type", "integer"}, {"minimum", 0}};
+  } else if constexpr (std::floating_point<T>) {
+    return {{"type", {"number", "null"}}};
+  } else if constexpr (std::same_as<T, std::string>) {
+    return {{"type", "string"}};
+  } else if constexpr (std::is_enum_v<T>) {
+    Json names = Json::array();
+    for (const T each : every<T>()) names.push_back(std::string(to_string(each)));
+    return {{"enum", std::move(names)}};
+  } else if constexpr (std::same_as<T, Range>) {
+    return {{"type", "array"}, {"items", schema_of<double>()}, {"minItems", 2}, {"maxItems", 2}};
+  } else if constexpr (is_omittable<T>) {
+    return schema_of<typename T::value_type>();
+  } else if constexpr (is_optional<T>) {
+    Json schema = schema_of<typename T::value_type>();
+    if (schema.contains("enum")) {
+      schema["enum"].push_back(nullptr);
+    } else if (schema.contains("type") && schema["type"].is_string()) {
+      schema["type"] = Json::array({schema["type"], "null"});
+    }
+    return schema;
+  } else if constexpr (is_keyed<T>) {
+    return {{"type", "object"},
+            {"additionalProperties", schema_of<typename T::value_type::second_type>()}};
+  } else if constexpr (is_vector<T>) {
+    return {{"type", "array"}, {"items", schema_of<typename T::value_type>()}};
+  } else if constexpr (is_array<T>) {
+    const std::size_t size = std::tuple_size_v<T>;
+    return {{"type", "array"},
+            {"items", schema_of<typename T::value_type>()},
+            {"minItems", size},
+            {"maxItems", size}};
+  } else {
+    static_assert(Struct<T>);
+    Json properties = Json::object();
+    Json required = Json::array();
+    const T sample{};
+    T::describe(sample, [&]<typename M>(const char* name, const M& /*member*/) {
+      const std::string key = key_of(name);
+      properties[key] = schema_of<M>();
+      if constexpr (!is_omittable<M> && !is_later<M> && !std::same_as<M, Json>)
+        required.push_back(key);
+    });
+    return {{"type", "object"},
+            {"properties", std::move(properties)},
+            {"required", std::move(required)}};
+  }
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,69 @@
+#include "diagnosis/leak/leak_curve.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+using namespace rigcal::diagnosis;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+namespace {
+
+/// share = C^3 - C^2 + 0.5 C, flow = 1e-5 C^2: what a cubic with exact slopes must follow.
+LeakPoint cubic(double c) {
+  return {c, c * c * c - c * c + 0.5 * c, 1e-5 * c * c, 3.0 * c * c - 2.0 * c + 0.5, 2e-5 * c};
+}
+
+/// share = 1 - exp(-C).
+LeakPoint saturating(double c) { return {c, -std::expm1(-c), 1e-5 * c, std::exp(-c), 1e-5}; }
+
+}  // namespace
+
+TEST_CASE("LeakCurve: a cubic of exact slopes is followed exactly", "[diagnosis]") {
+  const LeakCurve curve({cubic(0.5), cubic(1.0), cubic(3.0)});
+  for (const double c : {0.5, 0.7, 1.0, 1.3, 2.9}) {
+    CAPTURE(c);
+    CHECK_THAT(curve.share(c), WithinRel(cubic(c).share, 1e-12));
+    CHECK_THAT(curve.share_slope(c), WithinAbs(cubic(c).share_slope, 1e-12));
+    CHECK_THAT(curve.leak_flow_m3_per_s(c), WithinRel(1e-5 * c * c, 1e-12));
+  }
+  // Straight on beyond both ends; nothing leaks backwards.
+  CHECK_THAT(curve.share(4.0), WithinRel(cubic(3.0).share + cubic(3.0).share_slope, 1e-12));
+  CHECK_THAT(curve.share_slope(4.0), WithinRel(cubic(3.0).share_slope, 1e-12));
+  CHECK_THAT(curve.leak_flow_m3_per_s(0.4), WithinRel(1e-5 * (0.25 - 0.1), 1e-12));
+  CHECK(curve.share(0.0) == 0.0);
+  CHECK(curve.share(-1.0) == 0.0);
+  CHECK(curve.leak_flow_m3_per_s(-1.0) == 0.0);
+  // Nor where a straight line from the first point would say so.
+  CHECK(LeakCurve({saturating(0.5), saturating(1.0)}).share(0.0) == 0.0);
+}
+
+TEST_CASE("LeakCurve: points that do not increase are refused", "[diagnosis]") {
+  CHECK_THROWS_AS(LeakCurve({cubic(1.0)}), std::invalid_argument);
+  CHECK_THROWS_AS(LeakCurve({cubic(1.0), cubic(1.0)}), std::invalid_argument);
+  CHECK_THROWS_AS(LeakCurve({cubic(-1.0), cubic(1.0)}), std::invalid_argument);
+}
+
+TEST_CASE("curve_about: simulated at the estimate and at both ends", "[diagnosis]") {
+  std::vector<double> simulated;
+  const auto leak_at = [&](double c) {
+    simulated.push_back(c);
+    return saturating(c);
+  };
+  const LeakCurve curve = curve_about(leak_at, 1.0, 0.25);
+  CHECK(simulated == std::vector<double>{0.75, 1.0, 1.25});
+  CHECK(curve.share(1.0) == saturating(1.0).share);
+  // A cubic is off by the fourth derivative (1 at most) times width^4 / 384.
+  for (double c = 0.75; c < 1.25; c += 0.05)
+    CHECK_THAT(curve.share(c), WithinAbs(saturating(c).share, std::pow(0.25, 4) / 384.0));
+}
+
+TEST_CASE("curve_about: from no leak on where that is within reach", "[diagnosis]") {
+  const LeakCurve curve = curve_about(saturating, -0.05, 0.1);
+  REQUIRE(curve.points().size() == 2);
+  CHECK(curve.points().front().coefficient == 0.0);
+  CHECK(curve.points().front().share == 0.0);
+  // The slope of a leak of a fiftieth: 1 - exp(-x) over x = 1 - x / 2.
+  CHECK_THAT(curve.share_slope(0.0), WithinRel(1.0 - 1e-3, 1e-6));
+  CHECK_THAT(curve.points().back().coefficient, WithinRel(0.1, 1e-12));
+}

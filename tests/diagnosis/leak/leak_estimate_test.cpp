@@ -1,0 +1,190 @@
+#include "diagnosis/leak/leak_estimate.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numeric>
+
+using namespace rigcal::diagnosis;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+namespace {
+
+/// share = C / 10: straight, so that errors carry over one to one.
+LeakCurve straight() {
+  return LeakCurve({{0.0, 0.0, 0.0, 0.1, 1e-5}, {8.0, 0.8, 8e-5, 0.1, 1e-5}});
+}
+
+/// A record whose coefficient is known within `se`, with all degrees of freedom one could wish for.
+LeakFit fit_of(double coefficient, double se) {
+  LeakFit fit;
+  fit.coefficient = coefficient;
+  fit.white_se = se;
+  fit.white_freedom = 1'000'000;
+  fit.effect_m = 1e-3;
+  return fit;
+}
+
+LeakEstimate estimated(const LeakFit& fit, const SignalErrors& errors = {}, int repeats = 1,
+                       int reference = 0, double share_rig_se = 0.0) {
+  return estimate_leak(fit.coefficient, coefficient_error(fit, errors, repeats, reference),
+                       straight(), share_rig_se, {});
+}
+
+double probability(const LeakEstimate& estimate, LeakClass leak_class) {
+  return estimate.probability[static_cast<std::size_t>(leak_class)];
+}
+
+const rigcal::datasets::DiagnosisSettings kSettings;
+
+}  // namespace
+
+TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]") {
+  const auto sure = estimated(fit_of(1.5, 0.02));
+  CHECK(sure.most_probable == LeakClass::medium);
+  CHECK(probability(sure, LeakClass::medium) > 0.999);
+  CHECK_THAT(sure.share, WithinRel(0.15, 1e-9));
+  // Normal quantile 1.96 of 0.02, a tenth of which is the share's; 401 draws resolve a hundredth.
+  CHECK_THAT(sure.share_ci95.first, WithinAbs(0.15 - 0.00392, 1e-4));
+  CHECK_THAT(sure.ci95.second, WithinAbs(1.5 + 0.0392, 1e-5));
+
+  const auto torn = estimated(fit_of(1.0, 0.1));
+  // Half the distribution lies below the limit, of which the prior makes the more probable half:
+  // integrals of exp(-(s - 0.1)^2 / (2 0.01^2)) / (0.00125 + s).
+  CHECK_THAT(probability(torn, LeakClass::slight), WithinAbs(0.5398, 2e-3));
+  CHECK_THAT(probability(torn, LeakClass::medium), WithinAbs(0.4602, 2e-3));
+  CHECK_THAT(std::accumulate(torn.probability.begin(), torn.probability.end(), 0.0),
+             WithinAbs(1.0, 1e-12));
+}
+
+TEST_CASE("estimate_leak: beforehand normal is as probable as slight, without a step between them",
+          "[diagnosis]") {
+  // A record that tells next to nothing of shares below 10 %: the prior alone.
+  const auto vague = estimated(fit_of(0.0, 50.0));
+  CHECK_THAT(probability(vague, LeakClass::normal) / probability(vague, LeakClass::slight),
+             WithinRel(1.0, 0.1));
+  // At a limit a record decides: 1.1 % with an error of 0.2 %, the same integrals as above.
+  const auto near = estimated(fit_of(0.11, 0.02));
+  CHECK_THAT(probability(near, LeakClass::slight), WithinAbs(0.6268, 4e-3));
+  // Limits of which no offset makes the classes equal: every share is as probable as any other.
+  rigcal::datasets::DiagnosisSettings close;
+  close.limits = {0.10, 0.15, 0.2, 0.3};
+  const LeakFit fit = fit_of(1.0, 0.1);
+  const auto flat = estimate_leak(1.0, coefficient_error(fit, {}, 1, 0), straight(), 0.0, close);
+  CHECK_THAT(probability(flat, LeakClass::normal), WithinAbs(0.5, 2e-3));
+}
+
+TEST_CASE("estimate_leak: given that a leak is not negative", "[diagnosis]") {
+  // Integrals of exp(-s^2 / (2 0.01^2)) / (0.00125 + s) from 0 to 1 %, and beyond.
+  const auto none = estimated(fit_of(0.0, 0.1));
+  CHECK_THAT(probability(none, LeakClass::normal), WithinAbs(0.8873, 4e-3));
+  CHECK(none.ci95.first == 0.0);
+  CHECK_FALSE(none.leak_detected);
+  const auto negative = estimated(fit_of(-0.5, 0.1));
+  CHECK(negative.share == 0.0);
+  CHECK(probability(negative, LeakClass::normal) > 0.99);
+}
+
+TEST_CASE("estimate_leak: every source of error is in the interval", "[diagnosis]") {
+  LeakFit fit = fit_of(1.5, 0.03);
+  fit.rig_se = 0.04;
+  SignalErrors errors;
+  errors.between_m = 0.12e-3;  // 0.12 of the coefficient
+  errors.repeat_freedom = 16;
+  errors.healthy_m = 0.05e-3;
+  const auto single = estimated(fit, errors, 1, 0);
+  CHECK_THAT(single.standard_error,
+             WithinRel(std::sqrt(0.03 * 0.03 + 0.04 * 0.04 + 0.12 * 0.12 + 0.05 * 0.05), 1e-9));
+  const auto mean = estimated(fit, errors, 4, 0);
+  CHECK_THAT(mean.standard_error,
+             WithinRel(std::sqrt(0.03 * 0.03 + 0.04 * 0.04 + 0.06 * 0.06 + 0.05 * 0.05), 1e-9));
+  CHECK(single.freedom > 16.0);
+  CHECK(single.freedom < 100.0);
+}
+
+TEST_CASE("coefficient_error: clusters count where the signal has misfit and the record shows it",
+          "[diagnosis]") {
+  LeakFit fit = fit_of(1.5, 0.03);
+  fit.cluster_freedom = 9;
+  SignalErrors errors;
+  const auto with = [&](bool misfit, double cluster_se) {
+    errors.misfit = misfit;
+    fit.cluster_se = cluster_se;
+    return coefficient_error(fit, errors, 1, 0);
+  };
+  CHECK(with(false, 0.09).own_se == 0.03);
+  CHECK(with(true, 0.09).own_se == 0.09);
+  CHECK_THAT(with(true, 0.09).freedom, WithinRel(9.0, 1e-9));
+  // The upper quartile of chi-square over 9 degrees of freedom is 1.265.
+  CHECK(with(true, 0.03 * std::sqrt(1.25)).own_se == 0.03);
+  CHECK(with(true, 0.03 * std::sqrt(1.28)).own_se > 0.03);
+}
+
+TEST_CASE("estimate_leak: a reference adds its own scatter and takes the model's off",
+          "[diagnosis]") {
+  SignalErrors errors;
+  errors.between_m = 0.12e-3;  // 0.12 of the coefficient
+  errors.repeat_freedom = 16;
+  errors.healthy_m = 0.05e-3;
+  const LeakFit fit = fit_of(1.5, 0.03);
+  const auto corrected = estimated(fit, errors, 1, 3);
+  CHECK_THAT(corrected.standard_error,
+             WithinRel(std::sqrt(0.03 * 0.03 + 0.12 * 0.12 * (1.0 + 1.0 / 3.0)), 1e-9));
+  // Welch and Satterthwaite: what the repeats tell has 16 degrees of freedom, the scatter 1e6.
+  const double repeats = 0.12 * 0.12 * (1.0 + 1.0 / 3.0);
+  CHECK_THAT(corrected.freedom, WithinRel(std::pow(0.03 * 0.03 + repeats, 2) /
+                                              (repeats * repeats / 16.0 + std::pow(0.03, 4) / 1e6),
+                                          1e-9));
+}
+
+TEST_CASE("estimate_leak: a leak is detected from the level of false alarms on", "[diagnosis]") {
+  // The normal quantile of 1 % false alarms is 2.3263.
+  REQUIRE(kSettings.false_alarms == 0.01);
+  CHECK_FALSE(estimated(fit_of(0.232, 0.1)).leak_detected);
+  CHECK(estimated(fit_of(0.233, 0.1)).leak_detected);
+  CHECK_THAT(estimated(fit_of(0.233, 0.1)).leak_score, WithinRel(2.33, 1e-12));
+}
+
+TEST_CASE("estimate_leak: the rig's error blurs the share", "[diagnosis]") {
+  const auto found = estimated(fit_of(1.5, 1e-9), {}, 1, 0, 0.01);
+  // 1.96 standard errors; the search stops at 1e-15 of the range.
+  CHECK_THAT(found.share_ci95.first, WithinAbs(0.15 - 0.0195996, 1e-6));
+  CHECK_THAT(found.share_ci95.second, WithinAbs(0.15 + 0.0195996, 1e-6));
+}
+
+TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis]") {
+  // Half a normal distribution of sd 0.1, below 1.959964 of which 95 % lie; a tenth is the share's.
+  const auto none = estimated(fit_of(0.0, 0.1));
+  REQUIRE(none.share_upper_limit);
+  CHECK_THAT(*none.share_upper_limit, WithinAbs(0.0196, 1e-4));
+  CHECK(none.share_ci95.first == 0.0);
+  CHECK(none.share_ci95.second == *none.share_upper_limit);
+  const auto some = estimated(fit_of(0.3, 0.1));
+  CHECK_FALSE(some.share_upper_limit);
+  CHECK(some.share_ci95.first > 0.0);
+}
+
+TEST_CASE("detection_limit: Currie's sum of both quantiles", "[diagnosis]") {
+  // 2.3263 + 1.6449
+  CHECK_THAT(detection_limit(estimated(fit_of(0.0, 0.01)), kSettings), WithinRel(0.039712, 1e-4));
+}
+
+TEST_CASE("keep_larger: the limit of the larger flow, whatever comes first", "[diagnosis]") {
+  const DetectionLimit small{0.5, 1e-6, 0.02};
+  const DetectionLimit large{0.1, 2e-6, 0.01};
+  for (const bool small_first : {false, true}) {
+    std::optional<DetectionLimit> kept;
+    keep_larger(small_first ? small : large, kept);
+    keep_larger(small_first ? large : small, kept);
+    REQUIRE(kept);
+    CHECK(kept->leak_flow_m3_per_s == 2e-6);
+  }
+}
+
+TEST_CASE("class_of: a share at a limit is above it", "[diagnosis]") {
+  CHECK(class_of(kSettings, 0.0) == LeakClass::normal);
+  CHECK(class_of(kSettings, 0.01) == LeakClass::slight);
+  CHECK(class_of(kSettings, 0.0999) == LeakClass::slight);
+  CHECK(class_of(kSettings, 0.25) == LeakClass::critical);
+  CHECK(class_of(kSettings, 2.0) == LeakClass::supercritical);
+}

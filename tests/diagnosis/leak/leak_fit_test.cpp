@@ -1,0 +1,182 @@
+#include "diagnosis/leak/leak_fit.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "datasets/campaign/campaign_parameters.hpp"
+#include "datasets/prepare/single_repeats.hpp"
+#include "datasets/synthetic/synthetic_repeat.hpp"
+#include "tests/diagnosis/healthy_sine.hpp"
+
+using namespace rigcal;
+using Catch::WithinRel;
+using test::healthy_sine;
+using test::HealthySine;
+using test::rig_of;
+
+namespace {
+
+calib::FittedParameter fitted(int index, double error, std::optional<double> robust) {
+  calib::FittedParameter p;
+  p.index = index;
+  p.fitted = true;
+  p.value = 1.0;
+  p.standard_error = error;
+  p.robust_standard_error = robust;
+  return p;
+}
+
+}  // namespace
+
+TEST_CASE("fit_leak: a healthy reference takes the rig's error off a healthy record",
+          "[diagnosis]") {
+  const HealthySine made = healthy_sine();
+  const diagnosis::RigFit rig = rig_of(made.campaign);
+  const diagnosis::LeakProblem problem(made.campaign, rig);
+  const auto error = [&](int reference) {
+    const auto fit =
+        diagnosis::fit_leak(problem.up_to(1.0), rig, problem.campaign.conditions.front(),
+                            made.record, std::nullopt, reference, nullptr, nullptr);
+    REQUIRE(fit.ok());
+    return fit.rig_se;
+  };
+  // Where nothing leaks a wrong rig makes the same error with and without the leak; alone, 1 % of
+  // the valve gain passes for a leak.
+  CHECK(error(0) > 1e-3);
+  CHECK(error(5) < 0.2 * error(0));
+}
+
+TEST_CASE("fit_leak: a supply that differs between repeats is part of the error", "[diagnosis]") {
+  HealthySine made = healthy_sine();
+  datasets::Campaign& campaign = made.campaign;
+  const int supply = model::parameter_index(campaign.rig.plant, "supply_pressure");
+  const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
+  constexpr double kTrue = 0.3;
+  constexpr int kRepeats = 40;
+  campaign.conditions.front().overrides = {{leak, kTrue}};
+  campaign.synthetic_settings->repeats = kRepeats;
+  campaign.synthetic_settings->variation[supply] = 0.02;
+  const datasets::Campaign truth = datasets::true_campaign(campaign);
+  std::vector<datasets::Repeat> repeats;
+  for (auto& each : datasets::synthetic_repeats(truth, truth.conditions.front(), nullptr, 5))
+    repeats.push_back(std::move(each.record));
+  const auto records = datasets::repeat_records(campaign, campaign.conditions.front(), repeats);
+
+  /// Root mean square of (estimate - truth) / standard error.
+  const auto rms_score = [&](int reference) {
+    const diagnosis::RigFit rig = rig_of(campaign);
+    const diagnosis::LeakProblem problem =
+        diagnosis::LeakProblem(campaign, rig).up_to(1.0).corrected_by(reference, 1);
+    double squares = 0.0;
+    for (const datasets::Record& record : records.singles) {
+      const auto fit = diagnosis::fit_leak(problem, rig, problem.campaign.conditions.front(),
+                                           record, std::nullopt, 0, nullptr, nullptr);
+      REQUIRE(fit.ok());
+      const double score = (fit.coefficient - kTrue) / fit.white_se;
+      squares += score * score;
+    }
+    return std::sqrt(squares / kRepeats);
+  };
+  CHECK(rms_score(0) > 3.0);
+  for (auto& setting : campaign.parameters) {
+    if (setting.index != supply) continue;
+    setting.lower = setting.upper = std::numeric_limits<double>::quiet_NaN();
+    datasets::differ_between_repeats(datasets::spec_of(campaign.rig.plant, supply),
+                                     0.02 * setting.value, setting);
+  }
+  // Of 40 independent scores the 0.1 and 99.9 % quantiles of the rms are 0.68 and 1.35.
+  const double score = rms_score(0);
+  CHECK(score > 0.68);
+  CHECK(score < 1.35);
+  // A reference of one repeat differs by as much again; the record tells a part of its own supply.
+  CHECK(rms_score(1) < score);
+}
+
+TEST_CASE("rig_fit_of: the larger error of each value, and their correlation", "[diagnosis]") {
+  calib::Fit fit;
+  fit.parameters = {fitted(1, 2.0, 3.0), fitted(4, 5.0, 4.0), fitted(2, 7.0, std::nullopt)};
+  fit.parameters.push_back(fitted(3, 1.0, 9.0));
+  fit.parameters.back().nuisance = true;  // of a condition's own: not the rig's
+  fit.correlation = Eigen::MatrixXd::Identity(4, 4);
+  fit.correlation(0, 1) = fit.correlation(1, 0) = 0.5;
+  const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
+  CHECK(rig.values.size() == 3);
+  CHECK(rig.indices == std::vector<int>{1, 4, 2});
+  REQUIRE(rig.covariance.rows() == 3);
+  CHECK_THAT(rig.covariance(0, 0), WithinRel(9.0, 1e-12));
+  CHECK_THAT(rig.covariance(1, 1), WithinRel(25.0, 1e-12));
+  CHECK_THAT(rig.covariance(2, 2), WithinRel(49.0, 1e-12));
+  CHECK_THAT(rig.covariance(0, 1), WithinRel(0.5 * 3.0 * 5.0, 1e-12));
+}
+
+TEST_CASE("rig_fit_of: what has no error counts with its whole range", "[diagnosis]") {
+  calib::Fit fit;
+  fit.parameters = {fitted(4, 1.0, {}), fitted(1, 1.0, {}), fitted(2, 1.0, {})};
+  for (std::size_t i : {0, 2}) {
+    fit.parameters[i].standard_error.reset();
+    fit.parameters[i].lower = 10.0;
+    fit.parameters[i].upper = 16.0;
+  }
+  fit.parameters[2].ci95 = {0.0, 3.0};
+  fit.correlation = Eigen::MatrixXd::Identity(1, 1);
+  const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
+  CHECK(rig.indices == std::vector<int>{1, 4, 2});
+  // A uniform distribution of width w has the variance w^2 / 12.
+  const Eigen::Vector3d variances(1.0, 3.0, 0.75);
+  CHECK((rig.covariance - Eigen::MatrixXd(variances.asDiagonal())).norm() < 1e-12);
+}
+
+TEST_CASE("fit_leak: the noise of the reference is not the record's own", "[diagnosis]") {
+  const HealthySine made = healthy_sine();
+  const diagnosis::RigFit rig = rig_of(made.campaign);
+  const diagnosis::LeakProblem problem = diagnosis::LeakProblem(made.campaign, rig).up_to(1.0);
+  const auto noise_se = [&](int reference) {
+    return diagnosis::fit_leak(problem, rig, problem.campaign.conditions.front(), made.record,
+                               std::nullopt, reference, nullptr, nullptr)
+        .noise_se;
+  };
+  // Less the mean of four, the noise of a record is the root of 5/4 as large.
+  CHECK_THAT(noise_se(0) / noise_se(4), WithinRel(std::sqrt(1.25), 1e-9));
+}
+
+TEST_CASE("share_rig_error: what the rig moves, with the coefficient and by itself",
+          "[diagnosis]") {
+  const HealthySine made = healthy_sine();
+  const diagnosis::RigFit rig = rig_of(made.campaign);
+  const diagnosis::LeakProblem problem(made.campaign, rig);
+  const datasets::Condition& condition = problem.campaign.conditions.front();
+  diagnosis::LeakFit fit;
+  fit.coefficient = 0.3;
+  const auto share = [&](double valve_gain) {
+    auto values = rig.values;
+    values.push_back({rig.indices.front(), datasets::Scope::rig, "", valve_gain});
+    values.push_back({problem.leak, datasets::Scope::condition, condition.id, fit.coefficient});
+    return diagnosis::share_at(problem.campaign, condition, made.record, values);
+  };
+  const double gain = 4.06e-5;
+  const double step = 1e-3 * gain;
+  const double itself = (share(gain + step) - share(gain - step)) / (2.0 * step);
+  const double sd = 4.06e-7;
+  const double share_slope = 0.5;
+  fit.rig_moves = Eigen::VectorXd::Zero(1);
+  const auto error = [&] {
+    return diagnosis::share_rig_error(problem, rig, condition, made.record, fit, share_slope);
+  };
+  CHECK_THAT(error(), WithinRel(std::abs(itself) * sd, 1e-3));
+  fit.rig_moves(0) = 3.0 * itself / share_slope;
+  CHECK_THAT(error(), WithinRel(4.0 * std::abs(itself) * sd, 1e-3));
+  // Where nothing leaks a share moves by the coefficient alone.
+  fit.coefficient = -0.1;
+  CHECK_THAT(error(), WithinRel(3.0 * std::abs(itself) * sd, 1e-9));
+}
+
+TEST_CASE("leak_scan_of: the best leak is found beyond the share of the last class",
+          "[diagnosis]") {
+  HealthySine made = healthy_sine(1.5);
+  const diagnosis::LeakProblem problem(made.campaign, rig_of(made.campaign));
+  const auto& condition = problem.campaign.conditions.front();
+  const auto scan = diagnosis::leak_scan_of(problem, condition, made.record);
+  CHECK_THAT(scan.best_coefficient, WithinRel(1.5, 0.2));
+  CHECK(scan.largest_coefficient > scan.best_coefficient);
+}

@@ -1,0 +1,118 @@
+#include "report/json/described.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "common/error.hpp"
+
+using namespace rigcal;
+using namespace rigcal::report;
+using Catch::Contains;
+
+namespace {
+
+enum class Colour { red, green };
+
+std::string_view to_string(Colour colour) { return colour == Colour::red ? "red" : "green"; }
+
+struct Part {
+  std::string name;
+  Colour colour = Colour::red;
+  RIGCAL_DESCRIBE(name, colour)
+};
+
+struct Whole {
+  int count = 0;
+  double value = 0.0;
+  bool class_ = false;  ///< a word of C++: its key is "class"
+  std::optional<double> maybe;
+  std::optional<Range> range;
+  Omittable<double> amplitude_m;
+  std::vector<Part> parts;
+  Keyed<double> limits;
+  std::array<double, 2> pair{};
+  RIGCAL_DESCRIBE(count, value, class_, maybe, range, amplitude_m, parts, limits, pair)
+};
+
+const Whole kWhole{3,
+                   0.1,
+                   true,
+                   std::nullopt,
+                   Range{-1.0, 2.0},
+                   {},
+                   {{"valve", Colour::green}},
+                   {{"slight", 10.0}, {"medium", 20.0}},
+                   {1.0, 2.0}};
+
+Whole read_text(const std::string& text) {
+  Whole whole;
+  const Json json = Json::parse(text);
+  read_into(JsonNode(json, "whole.json", "", "whole.json"), whole);
+  return whole;
+}
+
+}  // namespace
+
+namespace rigcal::report {
+template <>
+std::vector<Colour> every() {
+  return {Colour::red, Colour::green};
+}
+}  // namespace rigcal::report
+
+TEST_CASE("described: members are keys in their order", "[report]") {
+  CHECK(json_of(kWhole).dump() ==
+        R"({"count":3,"value":0.1,"class":true,"maybe":null,"range":[-1.0,2.0],)"
+        R"("parts":[{"name":"valve","colour":"green"}],"limits":{"slight":10.0,"medium":20.0},)"
+        R"("pair":[1.0,2.0]})");
+  Whole closed_loop = kWhole;
+  closed_loop.amplitude_m = 0.05;
+  CHECK(json_of(closed_loop).at("amplitude_m") == 0.05);
+  Whole unknown = kWhole;
+  unknown.value = std::nan("");
+  unknown.maybe = HUGE_VAL;
+  CHECK(json_of(unknown).at("value").is_null());
+  CHECK(json_of(unknown).at("maybe").is_null());
+}
+
+TEST_CASE("described: what was written is read back", "[report]") {
+  for (const bool closed_loop : {false, true}) {
+    Whole whole = kWhole;
+    if (closed_loop) whole.amplitude_m = 0.05;
+    CHECK(json_of(read_text(json_of(whole).dump())) == json_of(whole));
+  }
+  CHECK(std::isnan(read_text(json_of(kWhole).dump().replace(19, 3, "null")).value));
+}
+
+TEST_CASE("described: what is wrong is named with its key", "[report]") {
+  const std::string good = json_of(kWhole).dump();
+  const auto complaint = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    try {
+      read_text(text);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no complaint");
+  };
+  CHECK_THAT(complaint("\"count\"", "\"counts\""), Contains("key 'count' is missing"));
+  CHECK_THAT(complaint(":3", ":3.5"), Contains("key 'count'") && Contains("a whole number"));
+  CHECK_THAT(complaint(":3", ":3000000000"), Contains("a whole number"));
+  CHECK_THAT(complaint("green", "blue"),
+             Contains("key 'parts[0].colour'") && Contains("one of red, green"));
+  CHECK_THAT(complaint("[1.0,2.0]}", "[1.0]}"), Contains("key 'pair'") && Contains("a list of 2"));
+  CHECK_THAT(complaint("10.0", "\"ten\""), Contains("key 'limits.slight'") && Contains("a number"));
+}
+
+TEST_CASE("described: the schema has what must be there and of which kind", "[report]") {
+  const Json schema = schema_of<Whole>();
+  CHECK(schema.at("required").dump() ==
+        R"(["count","value","class","maybe","range","parts","limits","pair"])");
+  const Json& properties = schema.at("properties");
+  CHECK(properties.at("amplitude_m").dump() == R"({"type":["number","null"]})");
+  CHECK(properties.at("count").dump() == R"({"type":"integer","minimum":0})");
+  CHECK(properties.at("range").at("type").dump() == R"(["array","null"])");
+  CHECK(properties.at("parts").at("items").at("properties").at("colour").dump() ==
+        R"({"enum":["red","green"]})");
+}

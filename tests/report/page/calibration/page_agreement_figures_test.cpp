@@ -1,0 +1,94 @@
+#include "report/page/calibration/page_agreement_figures.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+
+using namespace rigcal::report;
+using Catch::Contains;
+
+namespace {
+
+/// A record of `seconds` at 200 Hz, and a model that is late by 10 ms.
+Table driven(double seconds, double frequency_hz) {
+  Table table;
+  table.names = {"time_s", "measured_position_m", "simulated_position_m", "in_window",
+                 "reference_m"};
+  table.columns.resize(5);
+  const auto count = static_cast<int>(seconds * 200.0);
+  for (int i = 0; i < count; ++i) {
+    const double t = i / 200.0;
+    const auto sine = [&](double at) {
+      return 0.05 * std::sin(2.0 * std::numbers::pi * frequency_hz * at);
+    };
+    // A noise that does not repeat itself from period to period.
+    const double noise = 1e-4 * ((i * 7919 % 1009) / 1009.0 - 0.5);
+    table.columns[0].push_back(t);
+    table.columns[1].push_back(sine(t) + noise);
+    table.columns[2].push_back(sine(t - 0.01));
+    table.columns[3].push_back(i < 20 ? 0.0 : 1.0);
+    table.columns[4].push_back(sine(t));
+  }
+  return table;
+}
+
+}  // namespace
+
+TEST_CASE("channel_agreements: four figures where a drive tells gain and phase", "[report]") {
+  const auto channels = channel_agreements("sine", 2.0, driven(5.0, 2.0));
+  REQUIRE(channels.size() == 1);
+  CHECK(channels[0].channel == "position");
+  std::vector<std::string> names;
+  for (const Figure& figure : channels[0].figures) names.push_back(figure.name);
+  CHECK(names == std::vector<std::string>{"position_parity", "position_histogram", "position_gain",
+                                          "position_phase"});
+  CHECK_THAT(channels[0].residual, Contains("over 980 samples"));  // those in the window
+  CHECK_THAT(channels[0].response,
+             Contains("position over reference at the fundamental") && Contains("95 % intervals"));
+  // The model is late by 10 ms, 7.2 degrees at 2 Hz.
+  const Plot& phase = channels[0].figures[3].plot;
+  CHECK_THAT(phase.traces.front().y.front(), Catch::WithinAbs(-7.2, 0.01));
+  CHECK_THAT(phase.traces.back().y.front(), Catch::WithinAbs(0.0, 0.05));
+}
+
+TEST_CASE("channel_agreements: says why there is no gain and phase", "[report]") {
+  Table table = driven(5.0, 2.0);
+  const auto response = [](const Table& series, std::optional<double> frequency_hz) {
+    const auto channels = channel_agreements("c", frequency_hz, series);
+    REQUIRE(channels.size() == 1);
+    CHECK(channels[0].figures.size() == 2);
+    return channels[0].response;
+  };
+  CHECK_THAT(response(table, 0.1), Contains("less than a period"));
+  CHECK_THAT(response(table, 90.0), Contains("fewer than 10 samples"));
+  Table without = table;
+  without.names.pop_back();
+  without.columns.pop_back();
+  CHECK_THAT(response(without, 2.0), Contains("no drive is stored"));
+  Table gap = table;
+  gap.columns[1][500] = std::nan("");
+  CHECK_THAT(response(gap, 2.0), Contains("gaps"));
+  Table uneven = table;
+  for (std::size_t i = 500; i < uneven.columns[0].size(); ++i) uneven.columns[0][i] += 0.5;
+  CHECK_THAT(response(uneven, std::nullopt), Contains("not equidistant"));
+  CHECK_THAT(response(uneven, 2.0), Contains("not equidistant"));
+}
+
+TEST_CASE("channel_agreements: none of a few samples, or of no model", "[report]") {
+  CHECK(channel_agreements("c", 2.0, driven(0.3, 2.0)).empty());
+  CHECK(channel_agreements("c", 2.0, Table{}).empty());
+}
+
+TEST_CASE("periodic_frequency: of sine and square alone", "[report]") {
+  using rigcal::datasets::Waveform;
+  const auto frequency = [](Waveform waveform, std::optional<double> frequency_hz) {
+    StoredCondition condition;
+    condition.waveform = std::optional(waveform);
+    condition.frequency_hz = frequency_hz;
+    return periodic_frequency(condition);
+  };
+  CHECK(frequency(Waveform::sine, 2.0) == 2.0);
+  CHECK(frequency(Waveform::square, 0.1) == 0.1);
+  CHECK(frequency(Waveform::chirp, 2.0) == std::nullopt);
+  CHECK(frequency(Waveform::sine, std::nullopt) == std::nullopt);
+}
