@@ -162,7 +162,8 @@ FitResultPtr validate(const CampaignPtr& self, const std::optional<EarlierArgume
     const datasets::Campaign& campaign = self->campaign;
     std::optional<report::EarlierFit> earlier;
     if (fit) earlier = earlier_of(*fit, campaign.rig.plant);
-    result->records = datasets::load_records(campaign, {Use::fit, Use::validate}, thread_number);
+    result->records =
+        datasets::load_records(campaign, {Use::fit, Use::validate}, thread_number, true);
     calib::FitOptions settings = report::fit_options(campaign, thread_number, cancel);
     std::vector<fs::path> more_inputs;
     if (file != nullptr) more_inputs.push_back(*file);

@@ -45,15 +45,20 @@ py::array_t<double> residual(const ScoredChannel& self) {
   return array;
 }
 
-py::dict metrics_of(const ScoredChannel& self) {
-  py::dict metrics;
+py::dict by_name(const std::optional<metrics::Agreement>& agreement) {
+  py::dict values;
   for (const metrics::MetricSpec& metric : metrics::kMetrics) {
     const py::str name(metric.name.data(), metric.name.size());
-    metrics[name] = self.score.agreement
-                        ? py::object(py::float_((*self.score.agreement).*metric.value))
-                        : py::none();
+    values[name] = agreement ? py::object(py::float_((*agreement).*metric.value)) : py::none();
   }
-  return metrics;
+  return values;
+}
+
+py::dict metrics_of(const ScoredChannel& self) { return by_name(self.score.agreement); }
+
+std::optional<py::dict> expanded_uncertainty_of(const ScoredChannel& self) {
+  if (!self.score.expanded_uncertainty) return std::nullopt;
+  return by_name(self.score.expanded_uncertainty);
 }
 
 std::optional<py::dict> noise_floor_of(const ScoredChannel& self) {
@@ -117,6 +122,9 @@ void bind_scored_channel(py::module_& module) {
       .def_property_readonly("noise_floor", &noise_floor_of,
                              "What a perfect model would reach, by name; None where the noise is\n"
                              "unknown.")
+      .def_property_readonly("expanded_uncertainty", &expanded_uncertainty_of,
+                             "Of each of `metrics`, 95 %, by repeats and sensor; None with fewer\n"
+                             "than two repeats.")
       .def_property_readonly(
           "gain_ratio", [](const ScoredChannel& self) { return self.score.gain_ratio; },
           "Simulated over measured amplitude of the fundamental; None where there is none.")

@@ -21,8 +21,10 @@ namespace rigcal::calib {
 /// Agreement of one channel in one condition.
 struct ChannelScore {
   datasets::Channel channel = datasets::Channel::position;
-  std::optional<metrics::Agreement> agreement;           ///< absent: see `problem`
-  std::optional<metrics::NoiseFloor> noise_floor;        ///< absent where the noise is unknown
+  std::optional<metrics::Agreement> agreement;     ///< absent: see `problem`
+  std::optional<metrics::NoiseFloor> noise_floor;  ///< absent where the noise is unknown
+  /// Of each score, by repeats and sensor; absent with fewer than two repeats.
+  std::optional<metrics::Agreement> expanded_uncertainty;
   std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
   std::string problem;                                   ///< why a metric does not exist, in words
   /// Of measured minus simulated, over the longest stretch that counts; absent where it is too
@@ -40,9 +42,11 @@ struct LimitCheck {
   std::string metric;
   std::optional<double> value;  ///< absent: it does not exist, see `words`
   std::optional<double> limit, warn;
+  std::optional<double> expanded_uncertainty;  ///< of the value; absent where not known
   Verdict verdict = Verdict::pass;
-  double used = 0.0;  ///< distance of the value from the ideal over that of the limit
-  std::string words;  ///< why WARN or FAIL; empty for PASS
+  bool in_guard_band = false;  ///< WARN because the limit is not kept by more than that
+  double used = 0.0;           ///< distance of the value from the ideal over that of the limit
+  std::string words;           ///< why WARN or FAIL; empty for PASS
 };
 
 /// Score of one condition, and the series it was computed from.

@@ -36,7 +36,8 @@ double used_of(const metrics::MetricSpec& spec, double value, double bound) {
   return distance / allowed;
 }
 
-LimitCheck check(const datasets::AcceptanceLimit& limit, const ChannelScore& channel) {
+LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule rule,
+                 const ChannelScore& channel) {
   LimitCheck result;
   result.channel = channel.channel;
   result.metric = limit.metric;
@@ -52,8 +53,13 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, const ChannelScore& cha
   const metrics::MetricSpec& spec = metric(limit.metric);
   const double value = (*channel.agreement).*spec.value;
   result.value = value;
+  if (channel.expanded_uncertainty)
+    result.expanded_uncertainty = (*channel.expanded_uncertainty).*spec.value;
+  const auto keeps = [&](double score, double bound) {
+    return spec.higher_is_better ? score >= bound : score <= bound;
+  };
   const auto beyond = [&](const std::optional<double>& bound) {
-    return bound && !(spec.higher_is_better ? value >= *bound : value <= *bound);
+    return bound && !keeps(value, *bound);
   };
   const auto text = [&](double bound) {
     std::string note;
@@ -69,6 +75,19 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, const ChannelScore& cha
   } else if (beyond(limit.warn)) {
     result.verdict = Verdict::warn;
     result.words = text(*limit.warn);
+  } else if (limit.limit && rule == datasets::DecisionRule::guard_band) {
+    const auto& uncertainty = result.expanded_uncertainty;
+    const double worse = spec.higher_is_better ? -1.0 : 1.0;
+    result.in_guard_band = !uncertainty || !keeps(value + worse * *uncertainty, *limit.limit);
+    if (result.in_guard_band) {
+      result.verdict = Verdict::warn;
+      result.words = fmt::format(
+          "{}: {} = {:.6g} keeps {:.6g}, but {}", key, limit.metric, value, *limit.limit,
+          uncertainty
+              ? fmt::format("not by more than its expanded uncertainty of {:.2g}", *uncertainty)
+              : std::string("its uncertainty is not known: that takes two "
+                            "repeats at least, which differ"));
+    }
   }
   if (const auto bound = limit.limit ? limit.limit : limit.warn)
     result.used = used_of(spec, value, *bound);
@@ -77,7 +96,8 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, const ChannelScore& cha
 
 }  // namespace
 
-void judge(const std::vector<datasets::AcceptanceLimit>& limits, ConditionScore& score) {
+void judge(const std::vector<datasets::AcceptanceLimit>& limits, datasets::DecisionRule rule,
+           ConditionScore& score) {
   if (limits.empty()) return;
   if (!score.failure.empty()) {
     score.verdict = Verdict::fail;
@@ -87,7 +107,7 @@ void judge(const std::vector<datasets::AcceptanceLimit>& limits, ConditionScore&
   for (const datasets::AcceptanceLimit& limit : limits) {
     for (const ChannelScore& channel : score.channels) {
       if (channel.channel != limit.channel) continue;
-      score.checks.push_back(check(limit, channel));
+      score.checks.push_back(check(limit, rule, channel));
       const LimitCheck& made = score.checks.back();
       score.verdict = std::max(score.verdict.value_or(Verdict::pass), made.verdict);
       if (!made.words.empty()) score.reasons.push_back(made.words);

@@ -64,7 +64,12 @@ void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<
                                evaluated ? "limit_broken" : "limit_not_evaluable", words, score->id,
                                numbers));
     } else if (score->verdict == Verdict::warn) {
-      reasons.push_back(reason(AspectState::reservation, "limit_near", words, score->id, numbers));
+      const bool guarded =
+          std::all_of(score->checks.begin(), score->checks.end(), [](const LimitCheck& check) {
+            return check.verdict != Verdict::warn || check.in_guard_band;
+          });
+      reasons.push_back(reason(AspectState::reservation, guarded ? "guard_band" : "limit_near",
+                               words, score->id, numbers));
     } else if (score->verdict) {
       ++kept;
       if (nearest == nullptr) nearest = score;

@@ -9,6 +9,7 @@
 #include "calib/score/acceptance.hpp"
 #include "calib/trust/lack_of_fit.hpp"
 #include "common/parallel.hpp"
+#include "metrics/agreement_uncertainty.hpp"
 #include "metrics/fundamental.hpp"
 #include "metrics/metric_table.hpp"
 
@@ -70,12 +71,33 @@ std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& cond
   }
 }
 
-ChannelScore score_channel(const ProblemCondition& condition, const ProblemChannel& channel,
-                           const std::vector<double>& simulated, std::span<const double> drive) {
+/// The averaged channel with what makes it uncertain, of the samples that count.
+metrics::MeasuredMean measured_mean(const datasets::Campaign& campaign,
+                                    const ProblemCondition& condition,
+                                    const ProblemChannel& channel) {
+  metrics::MeasuredMean result{channel.measured, {}};
+  for (const auto& whole : condition.record->channels.at(channel.channel).deviations) {
+    std::vector<double>& own = result.deviations.emplace_back();
+    own.reserve(condition.rows.size());
+    for (const std::size_t row : condition.rows) own.push_back(whole[row]);
+  }
+  if (const auto found = campaign.channels.find(channel.channel);
+      found != campaign.channels.end()) {
+    result.gain_sd = found->second.gain_sd;
+    result.offset_sd = found->second.offset_sd;
+  }
+  return result;
+}
+
+ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCondition& condition,
+                           const ProblemChannel& channel, const std::vector<double>& simulated,
+                           std::span<const double> drive) {
   ChannelScore score;
   score.channel = channel.channel;
   try {
     score.agreement = metrics::agreement(channel.measured, simulated);
+    score.expanded_uncertainty =
+        metrics::agreement_uncertainty(measured_mean(campaign, condition, channel), simulated);
   } catch (const std::logic_error& error) {  // constant, or fewer than two samples
     add_problem(score, error.what());
   }
@@ -130,12 +152,14 @@ ConditionScore score_condition(const Problem& problem, std::size_t i, std::span<
       std::vector<double> whole = column(k);
       std::vector<double> simulated;
       for (const std::size_t row : condition.rows) simulated.push_back(whole[row]);
-      score.channels.push_back(score_channel(condition, channel, simulated, score.drive));
+      score.channels.push_back(
+          score_channel(*problem.campaign, condition, channel, simulated, score.drive));
       score.series[channel.channel] = {condition.record->channels.at(channel.channel).mean,
                                        std::move(whole)};
     }
   }
-  judge(problem.campaign->limits(*condition.condition), score);
+  judge(problem.campaign->limits(*condition.condition),
+        problem.campaign->acceptance_bounds.decision, score);
   return score;
 }
 

@@ -62,6 +62,8 @@ struct ChannelSetting {
   std::string minus;         ///< second column that is taken off `column`; empty: none
   UnitConversion to_si;      ///< SI = conversion(gain * raw + offset), from the file's number
   std::optional<double> sd;  ///< of the samples in the file, SI, after `gain`
+  double gain_sd = 0.0;      ///< standard uncertainty of the sensor's gain, relative
+  double offset_sd = 0.0;    ///< that of its offset, SI
   ChannelRole role = ChannelRole::output;
   Interpolation interpolation = Interpolation::hold;
   bool in_counts = false;  ///< raw numbers of a converter: nothing says what they measure
@@ -85,8 +87,17 @@ struct AcceptanceLimit {
   std::optional<double> warn;
 };
 
+/// How the uncertainty of a score counts where it is held against a limit (ISO/IEC 17025:2017,
+/// 7.8.6).
+enum class DecisionRule {
+  simple,      ///< not at all
+  guard_band,  ///< a limit is kept without reservation only by more than the expanded uncertainty
+};
+std::string_view to_string(DecisionRule rule);
+
 /// What a result must be, beside the limits of its metrics, to be accepted without reservation.
 struct AcceptanceBounds {
+  DecisionRule decision = DecisionRule::simple;
   /// Standard deviation of the model's error over that of the noise of a record's mean.
   double model_error_to_noise = 0.5;
   /// Parameters of which an estimate that cannot be told from zero does not matter up to here, SI.

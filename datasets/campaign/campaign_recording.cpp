@@ -19,7 +19,7 @@ bool is_in_counts(const TomlNode& node) {
 
 /// Numbers that nothing converts stay as they are.
 UnitConversion read_counts(const TomlNode& node) {
-  for (const char* key : {"gain", "offset", "sd"}) {
+  for (const char* key : {"gain", "offset", "sd", "gain_sd", "offset_sd"}) {
     if (const auto entry = node.find(key))
       entry->fail("has no meaning for counts: expected the unit that the gain leads to");
   }
@@ -83,7 +83,8 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role,
 
 ChannelSetting read_channel(const TomlNode& node, Channel channel,
                             model::ControllerKind controller) {
-  node.allow_only({"column", "minus", "unit", "gain", "offset", "sd", "role", "interpolation"});
+  node.allow_only({"column", "minus", "unit", "gain", "offset", "sd", "gain_sd", "offset_sd",
+                   "role", "interpolation"});
   ChannelSetting setting;
   setting.channel = channel;
   if (const auto column = node.find("column")) setting.column = column->name("a column name");
@@ -98,6 +99,13 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel,
     setting.sd = sd->non_negative_difference(info(channel).unit);
     if (*setting.sd == 0.0) sd->fail_type("a standard deviation above zero");
   }
+  if (const auto sd = node.find("gain_sd")) {
+    setting.gain_sd = sd->number();
+    if (!(setting.gain_sd >= 0.0 && setting.gain_sd < 1.0))
+      sd->fail_type("a relative standard uncertainty, at least 0 and below 1");
+  }
+  if (const auto sd = node.find("offset_sd"))
+    setting.offset_sd = sd->non_negative_difference(info(channel).unit);
   setting.role = default_role(channel, controller);
   if (const auto role = node.find("role")) {
     setting.role = role->choice<ChannelRole>({{"input", ChannelRole::input},

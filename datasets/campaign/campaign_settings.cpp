@@ -12,6 +12,7 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr std::string_view kWarnPrefix = "warn_";
+constexpr const char* kDecision = "decision";
 constexpr const char* kModelError = "model_error_to_noise";
 constexpr const char* kNegligible = "negligible";
 
@@ -158,7 +159,11 @@ std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& c
 }
 
 void read_acceptance(const TomlNode& node, Campaign& campaign) {
-  campaign.acceptance = limits_but(node, campaign, {kModelError, kNegligible});
+  campaign.acceptance = limits_but(node, campaign, {kDecision, kModelError, kNegligible});
+  if (const auto decision = node.find(kDecision)) {
+    campaign.acceptance_bounds.decision = decision->choice<DecisionRule>(
+        {{"simple", DecisionRule::simple}, {"guard_band", DecisionRule::guard_band}});
+  }
   if (const auto ratio = node.find(kModelError)) {
     campaign.acceptance_bounds.model_error_to_noise = ratio->number();
     if (!(ratio->number() > 0.0)) ratio->fail_type("a number above zero");

@@ -86,6 +86,10 @@ std::string_view to_string(Use use) {
   return "";
 }
 
+std::string_view to_string(DecisionRule rule) {
+  return rule == DecisionRule::simple ? "simple" : "guard_band";
+}
+
 const Condition* Campaign::find(std::string_view id) const {
   const auto found = std::find_if(conditions.begin(), conditions.end(),
                                   [&](const Condition& condition) { return condition.id == id; });

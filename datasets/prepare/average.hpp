@@ -19,7 +19,7 @@ struct AverageOptions {
   std::map<Channel, double> known_sd;  ///< the campaign's `sd` of a sample, where given
   int repeats_averaged = 1;            ///< repeats already averaged in a single file
   double drive_hz = 0.0;               ///< frequency of a periodic drive; 0 if there is none
-  bool keep_deviations = false;        ///< Series::deviations, for a bootstrap over repeats
+  bool keep_deviations = false;        ///< Series::deviations: what repeats tell of errors
 };
 
 /// Aligned mean, sd and count of any number of repeats of one condition. Repeats may carry

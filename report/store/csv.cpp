@@ -17,12 +17,15 @@ std::string status_line(const calib::Fit& fit) {
   return csv_comment(fmt::format("status: {}: {}", to_string(status), fit.message));
 }
 
+void add_agreement(const std::optional<metrics::Agreement>& agreement,
+                   std::vector<std::string>& fields) {
+  for (const metrics::MetricSpec& metric : metrics::kMetrics)
+    fields.push_back(agreement ? csv_number((*agreement).*metric.value) : std::string());
+}
+
 std::vector<std::string> score_fields(const calib::ChannelScore& score) {
   std::vector<std::string> fields;
-  for (const metrics::MetricSpec& metric : metrics::kMetrics) {
-    fields.push_back(score.agreement ? csv_number((*score.agreement).*metric.value)
-                                     : std::string());
-  }
+  add_agreement(score.agreement, fields);
   const auto& floor = score.noise_floor;
   fields.push_back(floor ? csv_number(floor->rho2) : std::string());
   fields.push_back(floor ? csv_number(floor->ccc) : std::string());
@@ -68,6 +71,8 @@ std::string scorecard_csv(const Result& result) {
         "phase_deg", "delay_s", "problem"}) {
     titles.emplace_back(title);
   }
+  for (const metrics::MetricSpec& metric : metrics::kMetrics)
+    titles.push_back(fmt::format("{}_expanded_uncertainty", metric.name));
   std::string text = status_line(result.fit) + csv_row(titles);
   for (const calib::ConditionScore& score : result.fit.conditions) {
     const datasets::Condition* condition = result.campaign.find(score.id);
@@ -88,6 +93,7 @@ std::string scorecard_csv(const Result& result) {
       fields.push_back(unit);
       for (std::string& field : score_fields(values)) fields.push_back(std::move(field));
       fields.push_back(csv_text(problem));
+      add_agreement(values.expanded_uncertainty, fields);
       text += csv_row(fields);
     };
     if (score.channels.empty()) add("", "", {}, score.failure);

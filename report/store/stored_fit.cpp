@@ -160,10 +160,15 @@ std::vector<StoredLimit> stored(const std::vector<datasets::AcceptanceLimit>& li
   return list;
 }
 
-StoredScore stored(const calib::ChannelScore& score) {
-  StoredScore result;
+StoredAgreement stored(const std::optional<metrics::Agreement>& agreement) {
+  StoredAgreement result;
   for (const metrics::MetricSpec& metric : metrics::kMetrics)
-    result.*metric.value = score.agreement ? (*score.agreement).*metric.value : std::nan("");
+    result.*metric.value = agreement ? (*agreement).*metric.value : std::nan("");
+  return result;
+}
+
+StoredScore stored(const calib::ChannelScore& score) {
+  StoredScore result{stored(score.agreement), {}, {}, {}, {}};
   result.gain_ratio = score.gain_ratio;
   result.phase_deg = score.phase_deg;
   result.delay_s = score.delay_s;
@@ -176,7 +181,10 @@ void add_checks(const calib::ConditionScore& score, StoredCondition& condition) 
   for (const calib::LimitCheck& check : score.checks) {
     condition.limit_checks.push_back(
         {key_of(check.channel), check.metric, finite(check.value), finite(check.limit),
-         finite(check.warn), check.value ? finite(check.used) : std::nullopt, check.verdict});
+         finite(check.warn), check.value ? finite(check.used) : std::nullopt,
+         check.expanded_uncertainty ? Omittable<double>(*check.expanded_uncertainty)
+                                    : Omittable<double>(),
+         check.verdict});
     worst[check.channel] = std::max(worst[check.channel], check.verdict);
   }
   for (const auto& [channel, verdict] : worst)
@@ -215,6 +223,7 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score,
   condition.warnings = score.data_warnings;
   condition.not_scored = unless_empty(score.not_scored);
   condition.failure = unless_empty(score.failure);
+  condition.expanded_uncertainty.emplace();
   for (const calib::ChannelScore& channel : score.channels) {
     const std::string key = key_of(channel.channel);
     condition.metrics.emplace_back(key, stored(channel));
@@ -222,6 +231,9 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score,
     if (const auto& found = channel.noise_floor)
       floor = {found->rho2, found->ccc, found->absolute_error_percent};
     condition.noise_floor.emplace_back(key, floor);
+    condition.expanded_uncertainty->emplace_back(
+        key, channel.expanded_uncertainty ? std::optional(stored(channel.expanded_uncertainty))
+                                          : std::nullopt);
     std::optional<StoredResidualTests> tests;
     if (channel.residual_tests)
       tests = report::stored(*channel.residual_tests, info(channel.channel).unit);
@@ -359,6 +371,7 @@ StoredFit stored(const Result& result) {
   add_trust(fit, json);
   if (result.kind == ResultKind::fit) json.weights = weights(result);
   json.validity = validity(result, closed_loop);
+  json.decision = result.campaign.acceptance_bounds.decision;
   json.acceptance = stored(result.campaign.acceptance);
   for (const calib::ConditionScore& score : fit.conditions)
     json.conditions.push_back(stored(result, score, closed_loop));

@@ -34,6 +34,10 @@ inline std::vector<datasets::Use> every() {
   return {Use::fit, Use::validate, Use::diagnose, Use::ignore};
 }
 template <>
+inline std::vector<datasets::DecisionRule> every() {
+  return {datasets::DecisionRule::simple, datasets::DecisionRule::guard_band};
+}
+template <>
 inline std::vector<calib::StoppedIn> every() {  // but for `nothing`, which is null
   using calib::StoppedIn;
   return {StoppedIn::starts, StoppedIn::validation, StoppedIn::bootstrap, StoppedIn::profiles,
@@ -208,8 +212,10 @@ struct StoredLimit {
 struct StoredLimitCheck {
   std::string channel, metric;
   std::optional<double> value, limit, warn, tolerance_used;
+  Omittable<double> expanded_uncertainty;
   calib::Verdict verdict = calib::Verdict::pass;
-  RIGCAL_DESCRIBE(channel, metric, value, limit, warn, tolerance_used, verdict)
+  RIGCAL_DESCRIBE(channel, metric, value, limit, warn, tolerance_used, expanded_uncertainty,
+                  verdict)
 };
 
 /// Every metric of metrics/metric_table.hpp by its name; NaN where it does not exist.
@@ -256,8 +262,9 @@ struct StoredCondition {
   Later<std::vector<std::string>> warnings;
   Later<std::optional<std::string>> not_scored;
   std::optional<std::string> failure;
-  Keyed<StoredScore> metrics;  ///< by channel, as the two below
+  Keyed<StoredScore> metrics;  ///< by channel, as the three below
   Keyed<std::optional<StoredNoiseFloor>> noise_floor;
+  Omittable<Keyed<std::optional<StoredAgreement>>> expanded_uncertainty;  ///< of each score
   Keyed<std::optional<StoredResidualTests>> residual_tests;
   Later<std::vector<StoredLimitCheck>> limit_checks;
   Later<Keyed<calib::Verdict>> channel_verdicts;
@@ -265,8 +272,8 @@ struct StoredCondition {
   std::vector<std::string> reasons;
   RIGCAL_DESCRIBE(id, waveform, frequency_hz, amplitude_m, amplitude_v, leak_level, use,
                   temperature_k, date, samples, windows_s, notes, acceptance, warnings, not_scored,
-                  failure, metrics, noise_floor, residual_tests, limit_checks, channel_verdicts,
-                  verdict, reasons)
+                  failure, metrics, noise_floor, expanded_uncertainty, residual_tests, limit_checks,
+                  channel_verdicts, verdict, reasons)
 
   /// Of one channel; nothing where it has no limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;
@@ -336,6 +343,7 @@ struct StoredFit {
   Later<std::optional<double>> aic, bic;
   Omittable<std::vector<StoredWeight>> weights;
   StoredValidity validity;
+  Omittable<datasets::DecisionRule> decision;
   std::vector<StoredLimit> acceptance;
   std::vector<StoredCondition> conditions;
   std::vector<StoredGroup> groups;
@@ -350,8 +358,8 @@ struct StoredFit {
                   simulation_tolerance, parameters, correlation, rank, singular_values,
                   reduced_chi_square, independent_residuals, interval_advice, combinations,
                   lack_of_fit, between_repeats, basins, agreement, bootstrap, cross_validation, aic,
-                  bic, weights, validity, acceptance, conditions, groups, starts, best_start,
-                  failure_count, failures, warnings, provenance)
+                  bic, weights, validity, decision, acceptance, conditions, groups, starts,
+                  best_start, failure_count, failures, warnings, provenance)
 
   const StoredCondition* find(const std::string& condition) const;
 };

@@ -50,7 +50,7 @@ struct AssessmentScene {
     channel.agreement.emplace();
     channel.agreement->rho2 = rho2;
     score.channels = {channel};
-    judge(campaign.acceptance, score);
+    judge(campaign.acceptance, campaign.acceptance_bounds.decision, score);
     fit.conditions.push_back(score);
   }
 
@@ -60,7 +60,7 @@ struct AssessmentScene {
     score.checks.clear();
     score.reasons.clear();
     score.verdict.reset();
-    judge(campaign.acceptance, score);
+    judge(campaign.acceptance, campaign.acceptance_bounds.decision, score);
   }
 
   Assessment assessed() const { return assess(campaign, fit, fitted); }

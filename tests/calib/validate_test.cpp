@@ -13,6 +13,7 @@ namespace {
 using Catch::Contains;
 using Catch::WithinAbs;
 using Catch::WithinRel;
+using datasets::DecisionRule;
 using datasets::Scope;
 using datasets::Use;
 using datasets::Waveform;
@@ -48,7 +49,8 @@ ConditionScore scored(double rho2) {
   return score;
 }
 
-datasets::AcceptanceLimit limit(const std::string& metric, double fail, double warn) {
+datasets::AcceptanceLimit limit(const std::string& metric, double fail,
+                                std::optional<double> warn = std::nullopt) {
   return {datasets::Channel::position, metric, fail, warn};
 }
 
@@ -174,50 +176,91 @@ TEST_CASE("acceptance: FAIL beyond the limit, WARN between, PASS above both", "[
        {std::pair{0.98, Verdict::fail}, std::pair{0.992, Verdict::warn},
         std::pair{0.995, Verdict::pass}}) {
     ConditionScore score = scored(rho2);
-    judge(limits, score);
+    judge(limits, DecisionRule::simple, score);
     CHECK(score.verdict == verdict);
     CHECK(score.reasons.empty() == (verdict == Verdict::pass));
   }
   ConditionScore failing = scored(0.98);
-  judge(limits, failing);
+  judge(limits, DecisionRule::simple, failing);
   CHECK_THAT(failing.reasons.at(0), Contains("rho2 = 0.98") && Contains("0.99"));
 }
 
 TEST_CASE("acceptance: how much of a tolerance is used, and the worst of several limits",
           "[calib]") {
   ConditionScore score = scored(0.995);
-  judge({limit("rho2", 0.99, 0.993), limit("absolute_error_percent", 8.0, 6.0)}, score);
+  judge({limit("rho2", 0.99, 0.993), limit("absolute_error_percent", 8.0, 6.0)},
+        DecisionRule::simple, score);
   REQUIRE(score.checks.size() == 2);
   CHECK_THAT(score.checks[0].used, WithinRel(0.5, 1e-9));  // 0.005 of 0.01
   CHECK_THAT(score.checks[1].used, WithinRel(0.25, 1e-9));
   CHECK(score.verdict == Verdict::pass);
   for (const double worse : {1.0, 2.0}) {
     ConditionScore mixed = scored(0.995);
-    judge({limit("rho2", 0.99, 0.993), limit("absolute_error_percent", worse, 0.5)}, mixed);
+    judge({limit("rho2", 0.99, 0.993), limit("absolute_error_percent", worse, 0.5)},
+          DecisionRule::simple, mixed);
     CHECK(mixed.verdict == (worse < 2.0 ? Verdict::fail : Verdict::warn));  // 2 is on the limit
   }
 }
 
 TEST_CASE("acceptance: lower is better for errors, and no limit means no verdict", "[calib]") {
   ConditionScore score = scored(1.0);
-  judge({limit("absolute_error_percent", 1.0, 0.5)}, score);
+  judge({limit("absolute_error_percent", 1.0, 0.5)}, DecisionRule::simple, score);
   CHECK(score.verdict == Verdict::fail);
   CHECK_THAT(score.reasons.at(0), Contains("above 1"));
   ConditionScore unjudged = scored(0.1);
-  judge({}, unjudged);
+  judge({}, DecisionRule::simple, unjudged);
   CHECK_FALSE(unjudged.verdict.has_value());
+}
+
+TEST_CASE("acceptance: by the guard band a limit is kept by more than the uncertainty, or WARN",
+          "[calib]") {
+  const std::vector<datasets::AcceptanceLimit> limits{limit("rho2", 0.99)};
+  const auto judged = [&](double rho2, std::optional<double> uncertainty, DecisionRule rule) {
+    ConditionScore score = scored(rho2);
+    if (uncertainty) {
+      score.channels[0].expanded_uncertainty.emplace();
+      score.channels[0].expanded_uncertainty->rho2 = *uncertainty;
+    }
+    judge(limits, rule, score);
+    return score;
+  };
+  const auto guarded = [&](double rho2, std::optional<double> uncertainty) {
+    return judged(rho2, uncertainty, DecisionRule::guard_band);
+  };
+  CHECK(guarded(0.995, 0.004).verdict == Verdict::pass);
+  CHECK(guarded(0.995, 0.006).verdict == Verdict::warn);
+  CHECK(guarded(0.995, std::nullopt).verdict == Verdict::warn);
+  CHECK(guarded(0.98, 0.1).verdict == Verdict::fail);  // never taken for better than it is
+  CHECK(judged(0.995, 0.006, DecisionRule::simple).verdict == Verdict::pass);
+  const ConditionScore near = guarded(0.995, 0.006);
+  CHECK(near.checks.at(0).in_guard_band);
+  CHECK(near.checks.at(0).expanded_uncertainty == 0.006);
+  CHECK_THAT(near.reasons.at(0), Contains("keeps 0.99, but not by more than") && Contains("0.006"));
+  CHECK_THAT(guarded(0.995, std::nullopt).reasons.at(0), Contains("not known"));
+}
+
+TEST_CASE("acceptance: the guard band of an error lies below its limit", "[calib]") {
+  ConditionScore score = scored(1.0);
+  score.channels[0].expanded_uncertainty.emplace();
+  score.channels[0].expanded_uncertainty->absolute_error_percent = 0.5;
+  const double error = score.channels[0].agreement->absolute_error_percent;
+  for (const double allowed : {error + 0.4, error + 0.6}) {
+    ConditionScore each = score;
+    judge({limit("absolute_error_percent", allowed)}, DecisionRule::guard_band, each);
+    CHECK(each.verdict == (allowed < error + 0.5 ? Verdict::warn : Verdict::pass));
+  }
 }
 
 TEST_CASE("acceptance: what could not be simulated or evaluated fails", "[calib]") {
   const std::vector<datasets::AcceptanceLimit> limits{limit("rho2", 0.99, 0.995)};
   ConditionScore broken;
   broken.failure = "too many steps";
-  judge(limits, broken);
+  judge(limits, DecisionRule::simple, broken);
   CHECK(broken.verdict == Verdict::fail);
   ConditionScore constant = scored(1.0);
   constant.channels[0].agreement.reset();
   constant.channels[0].problem = "constant";
-  judge(limits, constant);
+  judge(limits, DecisionRule::simple, constant);
   CHECK(constant.verdict == Verdict::fail);
   CHECK_THAT(constant.reasons.at(0), Contains("cannot be evaluated") && Contains("constant"));
 }

@@ -223,6 +223,8 @@ def assert_same_condition(ours: rigcal.ScoredCondition, theirs: dict[str, Any],
         for name in ("gain_ratio", "phase_deg", "delay_s"):
             assert same(getattr(channel, name), scores[name]), f"{name} of {key}"
         assert channel.noise_floor == theirs["noise_floor"][key]
+        assert channel.expanded_uncertainty == theirs["expanded_uncertainty"][key]
+        assert channel.expanded_uncertainty is not None
         of_channel = [title for title in columns if title.startswith(f"measured_{key}_")]
         assert len(of_channel) == 1
         column = of_channel[0].removeprefix("measured_")

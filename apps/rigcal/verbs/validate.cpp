@@ -33,7 +33,7 @@ ExitCode run_validate(const ValidateRequest& options, const Invocation& invocati
     more_inputs.push_back(options.fit);
   }
   const auto records =
-      datasets::load_records(campaign, {Use::fit, Use::validate}, options.common.threads);
+      datasets::load_records(campaign, {Use::fit, Use::validate}, options.common.threads, true);
   calib::FitOptions settings =
       report::fit_options(campaign, options.common.threads, invocation.cancel);
   const report::Provenance provenance{invocation.command, settings.seed, recorded(options.common),

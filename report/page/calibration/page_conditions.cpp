@@ -10,22 +10,41 @@
 namespace rigcal::report {
 namespace {
 
+/// Of the scores of a channel; null where it is not known.
+const StoredAgreement* uncertainty_of(const StoredCondition& condition,
+                                      const std::string& channel) {
+  if (!condition.expanded_uncertainty) return nullptr;
+  const auto* found = find(*condition.expanded_uncertainty, channel);
+  return found != nullptr && found->has_value() ? &**found : nullptr;
+}
+
 Json score_rows(const StoredCondition& condition) {
   Json rows = Json::array();
   for (const auto& [channel, scores] : condition.metrics) {
     const std::string_view unit = channel_unit(channel);
     const auto* floor = find(condition.noise_floor, channel);
     const bool has_floor = floor != nullptr && floor->has_value();
+    const StoredAgreement* const uncertainty = uncertainty_of(condition, channel);
+    const auto with = [&](Json score, double metrics::Agreement::*metric, const auto& half) {
+      if (uncertainty != nullptr) score["uncertain"] = {{"half", half(uncertainty->*metric)}};
+      return score;
+    };
+    const auto plain = [](double half) { return shown_in(half, 1.0, 2); };
+    const auto in_unit = [&](double half) { return shown(half, unit, 2); };
+    using metrics::Agreement;
     rows.push_back(
         {{"channel", channel},
          {"badge", badge(condition.verdict_of(channel))},
-         {"rho2", shown_agreement(scores.rho2)},
-         {"r", shown_agreement(scores.r)},
-         {"ccc", shown_agreement(scores.ccc)},
-         {"error", shown_in(scores.absolute_error_percent, 1.0, 4)},
-         {"fit", shown_in(scores.nrmse_fit_percent, 1.0, 5)},
-         {"rmse", shown(scores.rmse, unit, 4)},
-         {"maximum", shown(scores.maximum_error, unit, 4)},
+         {"rho2", with(shown_agreement(scores.rho2), &Agreement::rho2, plain)},
+         {"r", with(shown_agreement(scores.r), &Agreement::r, plain)},
+         {"ccc", with(shown_agreement(scores.ccc), &Agreement::ccc, plain)},
+         {"error", with(shown_in(scores.absolute_error_percent, 1.0, 4),
+                        &Agreement::absolute_error_percent, plain)},
+         {"fit",
+          with(shown_in(scores.nrmse_fit_percent, 1.0, 5), &Agreement::nrmse_fit_percent, plain)},
+         {"rmse", with(shown(scores.rmse, unit, 4), &Agreement::rmse, in_unit)},
+         {"maximum",
+          with(shown(scores.maximum_error, unit, 4), &Agreement::maximum_error, in_unit)},
          {"floor", shown_agreement(has_floor ? std::optional((*floor)->rho2) : std::nullopt)},
          {"gain", shown_in(scores.gain_ratio, 1.0, 5)},
          {"phase", shown_in(scores.phase_deg, 1.0, 2)},
@@ -93,6 +112,9 @@ Json condition_view(const StoredCondition& condition, const Table& series,
   view["has_doubts"] = !condition.warnings.empty();
   view["scores"] = score_rows(condition);
   view["has_scores"] = !view["scores"].empty();
+  view["has_uncertainty"] = std::any_of(
+      condition.metrics.begin(), condition.metrics.end(),
+      [&](const auto& each) { return uncertainty_of(condition, each.first) != nullptr; });
   view["plots"] = Json::array();
   view["has_plots"] = false;
   if (!series.columns.empty() && !series.columns.front().empty()) {

@@ -167,6 +167,7 @@ Json headline_view(const StoredFit& fit) {
   view["aspects"] = assessment_view(fit);
   view["has_aspects"] = !view["aspects"].empty();
   view["has_rule"] = !fit.acceptance.empty();
+  view["guard_band"] = fit.decision == datasets::DecisionRule::guard_band;
   view["coverage"] = coverage_rows(fit.validity);
   view["levels"] = fmt::format("{}", fmt::join(fit.validity.leak_levels, "; "));
   view["has_levels"] = !fit.validity.leak_levels.empty();

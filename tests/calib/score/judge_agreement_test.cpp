@@ -28,11 +28,30 @@ TEST_CASE("agreement: a broken limit fails, of the validation in both aspects", 
   CHECK(scene.verdict() == Verdict::warn);
 }
 
+TEST_CASE("agreement: a limit that is kept within the guard band alone is a reservation",
+          "[calib]") {
+  AssessmentScene scene;
+  scene.campaign.acceptance_bounds.decision = datasets::DecisionRule::guard_band;
+  for (std::size_t i = 0; i < 2; ++i) {
+    scene.fit.conditions[i].channels[0].expanded_uncertainty.emplace();
+    scene.rejudge(i, 0.999);
+  }
+  CHECK(scene.verdict() == Verdict::pass);
+  scene.fit.conditions[1].channels[0].expanded_uncertainty->rho2 = 0.02;
+  scene.rejudge(1, 0.999);
+  CHECK(scene.verdict() == Verdict::warn);
+  const Reason* reason = find(scene.assessed().agreement, "guard_band");
+  REQUIRE(reason != nullptr);
+  CHECK(reason->subject == "other");
+  scene.rejudge(1, 0.992);  // between limit and warning limit
+  CHECK(find(scene.assessed().agreement, "limit_near") != nullptr);
+}
+
 TEST_CASE("agreement: a limit that cannot be evaluated fails", "[calib]") {
   AssessmentScene scene;
   scene.fit.conditions[0].channels[0].agreement.reset();
   scene.fit.conditions[0].checks.clear();
-  judge(scene.campaign.acceptance, scene.fit.conditions[0]);
+  judge(scene.campaign.acceptance, datasets::DecisionRule::simple, scene.fit.conditions[0]);
   CHECK(scene.verdict() == Verdict::fail);
   CHECK(find(scene.assessed().agreement, "limit_not_evaluable") != nullptr);
   AssessmentScene unrecorded;

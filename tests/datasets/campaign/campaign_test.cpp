@@ -127,6 +127,20 @@ TEST_CASE("load_campaign: a spread in degC is one in K", "[datasets]") {
   CHECK_THAT(campaign.channels.at(Channel::temperature).sd.value(), WithinAbs(0.5, 1e-12));
 }
 
+TEST_CASE("load_campaign: decision rule and uncertainty of a sensor", "[datasets]") {
+  const Campaign plain = load_text(kExample);
+  CHECK(plain.acceptance_bounds.decision == DecisionRule::simple);
+  CHECK(plain.channels.at(Channel::position).gain_sd == 0.0);
+  const Campaign guarded = load_text(
+      replaced(replaced(kExample, "absolute_error_percent = 1.0\n",
+                        "absolute_error_percent = 1.0\ndecision = \"guard_band\"\n"),
+               "sd = \"0.05 mm\"", "sd = \"0.05 mm\", gain_sd = 0.002, offset_sd = \"0.1 mm\""));
+  CHECK(guarded.acceptance_bounds.decision == DecisionRule::guard_band);
+  CHECK(guarded.acceptance.size() == plain.acceptance.size());
+  CHECK(guarded.channels.at(Channel::position).gain_sd == 0.002);
+  CHECK_THAT(guarded.channels.at(Channel::position).offset_sd, WithinRel(1e-4, kRounding));
+}
+
 TEST_CASE("load_campaign: acceptance limits", "[datasets]") {
   const Campaign campaign =
       load_text(replaced(kExample, "absolute_error_percent = 1.0\n",

@@ -128,6 +128,17 @@ TEST_CASE("scorecard_csv: gain, phase and delay in columns of their own", "[repo
   channel.delay_s = 0.25;
   result.fit.conditions[0].channels = {channel};
   const std::string text = result.scorecard();
-  CHECK(text.find("gain_ratio,phase_deg,delay_s,problem\n") != std::string::npos);
-  CHECK(text.rfind(",0.5,-30,0.25,\n") == text.size() - std::string(",0.5,-30,0.25,\n").size());
+  CHECK(text.find("gain_ratio,phase_deg,delay_s,problem,rho2_expanded_uncertainty,") !=
+        std::string::npos);
+  CHECK(text.ends_with(",0.5,-30,0.25,,,,,,,,\n"));
+}
+
+TEST_CASE("scorecard_csv: each score has its uncertainty at the end", "[report]") {
+  ThreeSamples result;
+  calib::ChannelScore channel;
+  channel.expanded_uncertainty.emplace();
+  channel.expanded_uncertainty->rho2 = 0.25;
+  channel.expanded_uncertainty->maximum_error = 0.5;
+  result.fit.conditions[0].channels = {channel};
+  CHECK(result.scorecard().ends_with(",0.25,0,0,0,0,0,0.5\n"));
 }

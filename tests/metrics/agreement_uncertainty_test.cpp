@@ -1,0 +1,158 @@
+#include "metrics/agreement_uncertainty.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+
+#include "metrics/distributions.hpp"
+#include "metrics/metric_table.hpp"
+
+namespace rigcal::metrics {
+namespace {
+
+using Catch::WithinRel;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<double> sine(std::size_t samples, double amplitude) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < samples; ++i)
+    values.push_back(amplitude * std::sin(2.0 * std::numbers::pi * 3.0 * static_cast<double>(i) /
+                                          static_cast<double>(samples)));
+  return values;
+}
+
+/// Repeats about a truth: each with a gain of its own, and noise with memory.
+struct Repeats {
+  std::vector<double> mean;
+  std::vector<std::vector<double>> deviations;
+};
+
+Repeats draw(const std::vector<double>& truth, int count, double gain_sd, double noise_sd,
+             std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  Repeats result{std::vector<double>(truth.size(), 0.0), {}};
+  for (int r = 0; r < count; ++r) {
+    const double gain = 1.0 + gain_sd * normal(random);
+    double noise = noise_sd * normal(random);
+    std::vector<double>& own = result.deviations.emplace_back();
+    for (const double y : truth) {
+      own.push_back(gain * y + noise);
+      noise = 0.95 * noise + noise_sd * std::sqrt(1.0 - 0.95 * 0.95) * normal(random);
+    }
+  }
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    for (const auto& own : result.deviations) result.mean[i] += own[i] / count;
+    for (auto& own : result.deviations) own[i] -= result.mean[i];
+  }
+  return result;
+}
+
+MeasuredMean measured(const Repeats& repeats) { return {repeats.mean, repeats.deviations}; }
+
+}  // namespace
+
+TEST_CASE("agreement_uncertainty: of a constant error it is t times the standard error",
+          "[metrics]") {
+  // Each repeat is the truth plus an offset: the RMSE of their mean is the mean offset.
+  const std::vector<double> truth = sine(300, 1.0);
+  const std::vector<double> offsets{0.10, 0.12, 0.11, 0.15, 0.12};
+  const double mean = 0.12;
+  Repeats repeats{truth, {}};
+  double squares = 0.0;
+  for (double& y : repeats.mean) y += mean;
+  for (const double offset : offsets) {
+    repeats.deviations.emplace_back(truth.size(), offset - mean);
+    squares += (offset - mean) * (offset - mean);
+  }
+  const auto found = agreement_uncertainty(measured(repeats), truth);
+  REQUIRE(found.has_value());
+  CHECK_THAT(found->rmse,
+             WithinRel(student_t_quantile(0.975, 4.0) * std::sqrt(squares / 4.0 / 5.0), 1e-9));
+  CHECK(found->rho2 < 1e-12);  // blind to an offset
+}
+
+TEST_CASE("agreement_uncertainty: the score of unlimited repeats is seldom worse than it allows",
+          "[metrics]") {
+  // A quarter of the draws has little but the gain of each repeat, a quarter little but noise.
+  std::mt19937_64 random(20261125);
+  const std::vector<double> truth = sine(400, 1.0);
+  std::vector<double> simulated = sine(400, 0.97);
+  for (double& s : simulated) s += 0.01;
+  const Agreement exact = agreement(truth, simulated);
+  constexpr int kDraws = 800;
+  std::vector<int> worse(kMetrics.size(), 0);
+  std::vector<double> widths(kMetrics.size(), 0.0);
+  std::vector<double> scatter(kMetrics.size(), 0.0);
+  for (int draw_number = 0; draw_number < kDraws; ++draw_number) {
+    const double gain_sd = draw_number % 4 == 0 ? 1e-4 : 0.01;
+    const double noise_sd = draw_number % 4 == 1 ? 1e-4 : 0.02;
+    const Repeats repeats = draw(truth, 5, gain_sd, noise_sd, random);
+    const Agreement found = agreement(repeats.mean, simulated);
+    const auto uncertainty = agreement_uncertainty(measured(repeats), simulated);
+    REQUIRE(uncertainty.has_value());
+    for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+      const auto score = kMetrics[m].value;
+      const double sign = kMetrics[m].higher_is_better ? -1.0 : 1.0;
+      const double distance = sign * (exact.*score - found.*score);  // above zero: worse than found
+      if (distance > (*uncertainty).*score) ++worse[m];
+      widths[m] += (*uncertainty).*score / kDraws;
+      scatter[m] += distance * distance / kDraws;
+    }
+  }
+  for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+    CAPTURE(kMetrics[m].name, worse[m], widths[m], std::sqrt(scatter[m]));
+    CHECK(worse[m] <= kDraws * 0.04);                // 2.5 % and its scatter
+    CHECK(widths[m] < 6.0 * std::sqrt(scatter[m]));  // and not for being boundless
+  }
+}
+
+TEST_CASE("agreement_uncertainty: a sensor's gain and offset", "[metrics]") {
+  const std::vector<double> truth = sine(300, 1.0);
+  Repeats repeats{truth, {}};
+  repeats.deviations.emplace_back(truth.size(), 1e-9);
+  repeats.deviations.emplace_back(truth.size(), -1e-9);
+  MeasuredMean with = measured(repeats);
+  with.gain_sd = 0.01;
+  const auto gain = agreement_uncertainty(with, truth);
+  REQUIRE(gain.has_value());
+  CHECK_THAT(gain->rmse, WithinRel(1.959964 * 0.01 / std::sqrt(2.0), 1e-5));
+  with.gain_sd = 0.0;
+  with.offset_sd = 0.02;
+  const auto offset = agreement_uncertainty(with, truth);
+  CHECK_THAT(offset->maximum_error, WithinRel(1.959964 * 0.02, 1e-5));
+  with.gain_sd = 0.01;
+  CHECK_THAT(agreement_uncertainty(with, truth)->rmse,
+             WithinRel(std::hypot(gain->rmse, offset->rmse), 1e-6));
+}
+
+TEST_CASE("agreement_uncertainty: where repeats lack samples the others speak", "[metrics]") {
+  const std::vector<double> truth = sine(100, 1.0);
+  Repeats repeats{truth, {}};
+  for (const double offset : {-0.1, 0.0, 0.1}) repeats.deviations.emplace_back(100, offset);
+  const auto whole = agreement_uncertainty(measured(repeats), truth);
+  // Where but one repeat has a sample there is no mean of the others.
+  repeats.deviations[0][0] = repeats.deviations[1][0] = kNan;
+  repeats.deviations[0][1] = kNan;
+  const auto part = agreement_uncertainty(measured(repeats), truth);
+  REQUIRE((whole && part));
+  CHECK(std::isfinite(part->rmse));
+  CHECK_THAT(part->rmse, WithinRel(whole->rmse, 0.05));
+  CHECK(part->rmse != whole->rmse);
+}
+
+TEST_CASE("agreement_uncertainty: one repeat and copies tell nothing", "[metrics]") {
+  const std::vector<double> truth = sine(100, 1.0);
+  Repeats repeats{truth, {}};
+  CHECK_FALSE(agreement_uncertainty(measured(repeats), truth).has_value());
+  repeats.deviations.emplace_back(100, 0.0);
+  CHECK_FALSE(agreement_uncertainty(measured(repeats), truth).has_value());
+  repeats.deviations.emplace_back(100, 0.0);
+  CHECK_FALSE(agreement_uncertainty(measured(repeats), truth).has_value());
+  repeats.deviations.back()[7] = 0.1;
+  CHECK(agreement_uncertainty(measured(repeats), truth).has_value());
+}
+
+}  // namespace rigcal::metrics
