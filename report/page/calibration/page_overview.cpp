@@ -46,6 +46,17 @@ std::size_t first_shown(const StoredCondition& condition, const std::vector<doub
                                   time_s.begin());
 }
 
+/// The parts of an id, between which a line may break: "square_", "10Hz_", "open".
+Json words_of(const std::string& id) {
+  Json words = Json::array();
+  for (std::size_t begin = 0; begin < id.size();) {
+    const std::size_t end = std::min(id.find('_', begin), id.size() - 1) + 1;
+    words.push_back(id.substr(begin, end - begin));
+    begin = end;
+  }
+  return words;
+}
+
 Plot small_plot(const StoredCondition& condition, const Table& series, const std::string& channel) {
   Plot plot;
   plot.title = fmt::format("{} of {}, measured and model", channel, condition.id);
@@ -130,7 +141,7 @@ Json overview_view(const Calibration& stored) {
   if (channel.empty()) return view;
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     const Plot plot = small_plot(conditions[i], *stored.series(i), channel);
-    view["cells"].push_back({{"id", conditions[i].id},
+    view["cells"].push_back({{"words", words_of(conditions[i].id)},
                              {"anchor", anchor(conditions[i].id)},
                              {"badge", badge(conditions[i].verdict)},
                              {"drawn", !plot.traces.empty()},
