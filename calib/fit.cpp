@@ -249,7 +249,8 @@ Fit validate(const Campaign& campaign, const std::vector<Record>& records,
                      "no condition has use = \"fit\" or \"validate\": expected at least one");
   }
   Budget budget = budget_of(campaign, options, began);
-  Fit result = score_at(campaign, records, conditions, values, options, budget);
+  Fit result = score_at(campaign, records, conditions, values, options, budget,
+                        origin != nullptr && origin->spread ? &*origin->spread : nullptr);
   finish(campaign, records, began, origin, result);
   return result;
 }

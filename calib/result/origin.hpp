@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 
 #include "calib/result/aspect.hpp"
+#include "calib/result/estimate_spread.hpp"
 
 namespace rigcal::calib {
 
@@ -11,6 +13,7 @@ namespace rigcal::calib {
 struct Origin {
   std::set<std::string> estimated_from;  ///< conditions whose records it was fitted to
   Aspect parameters;                     ///< as it judged them
+  std::optional<EstimateSpread> spread;  ///< of the values; none where it did not converge
 };
 
 }  // namespace rigcal::calib

@@ -1,6 +1,5 @@
 #include "calib/trust/prediction_band.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -11,12 +10,6 @@ namespace rigcal::calib {
 namespace {
 
 constexpr double kHalf95 = 1.96;
-
-/// R with R R^T = M, of a positive semidefinite matrix that rounding may have left without.
-Eigen::MatrixXd square_root(const Eigen::MatrixXd& m) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(m);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
 
 /// Sum of the covariances of all conditions and of the priors, in coordinates of `root`.
 Eigen::MatrixXd long_run_covariance(const Problem& problem, std::span<const double> z,

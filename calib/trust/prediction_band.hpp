@@ -7,22 +7,10 @@
 
 #include "calib/problem/problem.hpp"
 #include "calib/result/condition_score.hpp"
+#include "calib/result/estimate_spread.hpp"
 #include "calib/trust/uncertainty.hpp"
 
 namespace rigcal::calib {
-
-/// How uncertain the estimates of a fit are together, for who predicts with them.
-struct EstimateSpread {
-  /// One estimate, by which a condition finds those that act in it.
-  struct Estimate {
-    int index = 0;  ///< row of the plant's parameter table
-    datasets::Scope scope = datasets::Scope::rig;
-    std::string level;
-  };
-  std::vector<Estimate> estimates;
-  /// S with S S^T their covariance, SI. Shape (estimates, columns).
-  Eigen::MatrixXd root;
-};
 
 /// The covariance of a fit's estimates: that of the scatter of its residuals (sandwich), where
 /// there is one, else sigma^2 (J^T J)^-1; with the uncertainty of known values. It is widened, as a

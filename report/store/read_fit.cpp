@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "metrics/distributions.hpp"
 #include "report/json/json_node.hpp"
 #include "report/json/read_json.hpp"
 #include "report/store/json.hpp"
@@ -38,30 +39,45 @@ double undetermined_error(const StoredParameter& p, const JsonNode& node) {
   return calib::undetermined_sd(ci95, *p.lower, *p.upper);
 }
 
-/// Parameters of the rig with their covariance.
-void read_covariance(const StoredFit& stored, const JsonNode& root, model::PlantKind plant,
-                     EarlierFit& fit) {
+/// The estimates of a fit, nuisance parameters aside, with their covariance.
+struct Estimates {
+  std::vector<calib::EstimateSpread::Estimate> list;
+  Eigen::MatrixXd covariance;  ///< SI, by the larger of standard and robust error
+  double widened = 1.0;        ///< the most by which an interval is wider than by its error
+};
+
+/// Half of a 95 % interval in standard errors.
+double half_in_errors(const StoredParameter& p, double error) {
+  if (!p.ci95 || !std::isfinite(p.ci95->high - p.ci95->low)) return 0.0;
+  return 0.5 * (p.ci95->high - p.ci95->low) / error;
+}
+
+Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::PlantKind plant) {
   const std::vector<std::string>& names = stored.correlation.names;
   const auto& rows = stored.correlation.matrix;
   const std::vector<JsonNode> nodes = root["parameters"].items();
+  Estimates result;
   std::vector<std::optional<std::size_t>> places;  // in the matrix
   std::vector<double> errors;
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const StoredParameter& p = stored.parameters[i];
-    if (!p.fitted || p.nuisance || p.scope != Scope::rig) continue;
-    fit.indices.push_back(parameter_row(nodes[i]["name"], plant));
-    const auto place = std::find(names.begin(), names.end(), p.name);
+    if (!p.fitted || p.nuisance) continue;
+    result.list.push_back({parameter_row(nodes[i]["name"], plant), p.scope, p.level.value_or("")});
+    const auto place =
+        std::find(names.begin(), names.end(), parameter_label(p.name, p.scope, p.level));
     const auto error = error_of(p);
     const bool determined = error && place != names.end();
     places.push_back(determined ? std::optional(static_cast<std::size_t>(place - names.begin()))
                                 : std::nullopt);
     errors.push_back(determined ? *error : undetermined_error(p, nodes[i]));
+    if (determined && *error > 0.0)
+      result.widened = std::max(result.widened, half_in_errors(p, *error) / metrics::kNormal95);
   }
   const auto n = static_cast<Eigen::Index>(places.size());
-  fit.covariance = Eigen::MatrixXd::Zero(n, n);
+  result.covariance = Eigen::MatrixXd::Zero(n, n);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto at = static_cast<Eigen::Index>(i);
-    fit.covariance(at, at) = errors[i] * errors[i];
+    result.covariance(at, at) = errors[i] * errors[i];
     if (!places[i]) continue;
     const JsonNode matrix = root["correlation"]["matrix"];
     if (*places[i] >= rows.size()) matrix.fail("one row per name");
@@ -70,9 +86,25 @@ void read_covariance(const StoredFit& stored, const JsonNode& root, model::Plant
       if (!places[j]) continue;
       const double correlation = *places[j] < row.size() ? row[*places[j]] : std::nan("");
       if (std::isnan(correlation)) matrix.items()[*places[i]].fail("one number per name");
-      fit.covariance(at, static_cast<Eigen::Index>(j)) = correlation * errors[i] * errors[j];
+      result.covariance(at, static_cast<Eigen::Index>(j)) = correlation * errors[i] * errors[j];
     }
   }
+  return result;
+}
+
+void read_covariance(const StoredFit& stored, const JsonNode& root, model::PlantKind plant,
+                     EarlierFit& fit) {
+  const Estimates estimates = estimates_of(stored, root, plant);
+  std::vector<Eigen::Index> of_rig;
+  for (std::size_t i = 0; i < estimates.list.size(); ++i) {
+    if (estimates.list[i].scope != Scope::rig) continue;
+    of_rig.push_back(static_cast<Eigen::Index>(i));
+    fit.indices.push_back(estimates.list[i].index);
+  }
+  fit.covariance = estimates.covariance(of_rig, of_rig);
+  if (stored.status == calib::FitStatus::converged)
+    fit.spread = calib::EstimateSpread{
+        estimates.list, estimates.widened * calib::square_root(estimates.covariance)};
 }
 
 calib::Aspect aspect_of(const StoredAspect& stored) {

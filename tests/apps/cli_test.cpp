@@ -17,6 +17,24 @@ using nlohmann::json;
 
 namespace {
 
+/// The numbers of one column of a CSV file.
+std::vector<double> column(const std::string& csv, const std::string& title) {
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);
+  const auto fields = [](const std::string& text) {
+    std::vector<std::string> list;
+    std::istringstream stream(text);
+    for (std::string field; std::getline(stream, field, ',');) list.push_back(field);
+    return list;
+  };
+  const auto titles = fields(line);
+  const auto place = std::find(titles.begin(), titles.end(), title) - titles.begin();
+  std::vector<double> values;
+  while (std::getline(lines, line)) values.push_back(std::stod(fields(line).at(place)));
+  return values;
+}
+
 /// Bad input: exit 2, one line on stderr that says where and what, and no file.
 void check_bad_input(const CommandFolder& folder, const CommandFolder::Arguments& arguments,
                      const std::vector<std::string>& parts) {
@@ -526,6 +544,13 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
     CHECK_FALSE(folder.has("val/fitted.toml"));
     CHECK_THAT(validation.out, Contains("rigcal.validation/1"));
     check_complete(validation.out);
+    // Its band is the fit's, from what fit.json tells of errors and correlations.
+    const auto theirs = column(folder.read("out/residuals/square.csv"), "prediction_sd_position_m");
+    const auto ours = column(folder.read("val/residuals/square.csv"), "prediction_sd_position_m");
+    REQUIRE(theirs.size() == ours.size());
+    REQUIRE(theirs.size() > 300);
+    for (std::size_t i = 0; i < ours.size(); ++i)
+      CHECK_THAT(ours[i], Catch::WithinRel(theirs[i], 0.02));
   }
   {
     INFO("validation of what the fit does not cover is warned of");
@@ -542,6 +567,7 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
     CAPTURE(validation.err);
     CHECK(validation.exit_code == 0);
     CHECK_THAT(validation.out, Contains("All parameters as given."));
+    CHECK(folder.read("used/residuals/square.csv").find("prediction_sd") == std::string::npos);
   }
   {
     INFO("a verdict of FAIL is an exit code");
