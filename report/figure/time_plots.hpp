@@ -38,6 +38,9 @@ struct TimePlot {
 /// Refers to the columns of the table.
 std::vector<TimePlot> time_plots(const Table& table);
 
+/// The largest absolute value that is finite.
+double largest(const std::vector<double>& values);
+
 /// The whole record as a static picture.
 Plot picture(const TimePlot& plot, const Table& table, const std::string& condition);
 

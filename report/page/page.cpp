@@ -65,12 +65,6 @@ struct Part {
   std::string campaign;
 };
 
-StoredProvenance provenance_of(const Json& result, const std::string& file) {
-  StoredProvenance provenance;
-  read_into(JsonNode(result, file, "", file)["provenance"], provenance);
-  return provenance;
-}
-
 Part tables_fit_part(const StoredTablesFit& fit) {
   Part part;
   part.section = "calibration";
@@ -129,26 +123,25 @@ Part leak_table_part(const ReadFile& read, const std::string& where) {
   Part part;
   part.section = part.link = "leak-table";
   part.name = "Leak table";
-  part.campaign = stored.table.campaign;
-  part.headline = leak_table_headline(stored.table);
+  part.campaign = stored.result.campaign;
+  part.headline = leak_table_headline(stored);
   part.view["leak_table"] = leak_table_view(stored);
-  part.provenance = provenance_view(stored.table.provenance, part.name, "leak_table.json");
+  part.provenance = provenance_view(stored.result.provenance, part.name, "leak_table.json");
   part.nav = {{"leak-table", "Leak table"}};
   return part;
 }
 
 Part diagnosis_part(const ReadFile& read, const std::string& where) {
-  const Json diagnosis = load_json(read, where, "diagnosis.json");
+  const StoredDiagnosis diagnosis = load_diagnosis(read, where);
   Part part;
   part.section = part.link = "diagnosis";
   part.name = "Diagnosis";
-  part.campaign = text_of(diagnosis, "campaign");
-  part.synthetic = diagnosis.at("synthetic").get<bool>();
-  part.identity = identity_view(diagnosis.value("report", Json()));
+  part.campaign = diagnosis.campaign;
+  part.synthetic = diagnosis.synthetic;
+  part.identity = identity_view(diagnosis.report);
   part.headline = diagnosis_headline(diagnosis);
   part.view["diagnosis"] = diagnosis_view(diagnosis);
-  part.provenance =
-      provenance_view(provenance_of(diagnosis, "diagnosis.json"), part.name, "diagnosis.json");
+  part.provenance = provenance_view(diagnosis.provenance, part.name, "diagnosis.json");
   part.nav = {{"diagnosis", "Diagnosis"}};
   return part;
 }
@@ -158,13 +151,12 @@ Part parity_part(const ReadFile& read, const std::string& where) {
   Part part;
   part.section = part.link = "parity";
   part.name = "Parity residual";
-  part.campaign = text_of(stored.parity, "campaign");
-  part.synthetic = stored.parity.at("synthetic").get<bool>();
-  part.identity = identity_view(stored.parity.value("report", Json()));
-  part.headline = parity_headline(stored.parity);
+  part.campaign = stored.result.campaign;
+  part.synthetic = stored.result.synthetic;
+  part.identity = identity_view(stored.result.report);
+  part.headline = parity_headline(stored);
   part.view["parity"] = parity_view(stored);
-  part.provenance =
-      provenance_view(provenance_of(stored.parity, "parity.json"), part.name, "parity.json");
+  part.provenance = provenance_view(stored.result.provenance, part.name, "parity.json");
   part.nav = {{"parity", "Parity residual"}};
   return part;
 }
@@ -238,25 +230,24 @@ Part average_part(const ReadFile& read, const std::string& where) {
   part.section = "average";
   part.link = "repeatability";
   part.name = "Repeatability";
-  part.campaign = text_of(stored.average, "campaign");
-  part.synthetic = stored.average.at("synthetic").get<bool>();
-  part.headline = average_headline(stored.average);
+  part.campaign = stored.result.campaign;
+  part.synthetic = stored.result.synthetic;
+  part.headline = average_headline(stored);
   part.view["average"] = average_view(stored);
-  part.provenance =
-      provenance_view(provenance_of(stored.average, "average.json"), part.name, "average.json");
+  part.provenance = provenance_view(stored.result.provenance, part.name, "average.json");
   part.nav = {{"repeatability", "Repeatability"}, {"means", "Means"}};
   return part;
 }
 
 Part plan_part(const ReadFile& read, const std::string& where) {
-  const Json plan = load_json(read, where, "plan.json");
+  const StoredPlan plan = load_plan(read, where);
   Part part;
   part.section = part.link = "plan";
   part.name = "Plan";
-  part.campaign = text_of(plan, "campaign");
+  part.campaign = plan.campaign;
   part.headline = plan_headline(plan);
   part.view["plan"] = plan_view(plan);
-  part.provenance = provenance_view(provenance_of(plan, "plan.json"), part.name, "plan.json");
+  part.provenance = provenance_view(plan.provenance, part.name, "plan.json");
   part.nav = {{"plan", "Plan"}};
   return part;
 }
@@ -372,7 +363,7 @@ std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& rea
       }
     }
     if (has("leak_table.json")) add(leak_table_figures(load_leak_table(read, where)));
-    if (has("diagnosis.json")) add(diagnosis_figures(load_json(read, where, "diagnosis.json")));
+    if (has("diagnosis.json")) add(diagnosis_figures(load_diagnosis(read, where)));
     if (has("parity.json")) add(parity_figures(load_parity(read, where)));
     if (has("comparison.json")) {
       const StoredComparison comparison = load_comparison(read, where);
@@ -380,13 +371,8 @@ std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& rea
       for (const auto& [condition, table] : curves_of(read, where, comparison))
         add(overlay_figures(condition, table, names_of_results(comparison)), "overlay_");
     }
-    if (has("average.json")) {
-      const AverageFiles stored = load_average(read, where);
-      for (std::size_t i = 0; i < stored.series.size(); ++i)
-        add(average_figures(text_of(stored.average.at("records").at(i), "condition"),
-                            stored.series[i]));
-    }
-    if (has("plan.json")) add(plan_figures(load_json(read, where, "plan.json")));
+    if (has("average.json")) add(average_figures(load_average(read, where)));
+    if (has("plan.json")) add(plan_figures(load_plan(read, where)));
     if (has("batch.json")) add(batch_figures(load<StoredBatch>(read, where, "batch.json")));
   });
   std::vector<std::pair<fs::path, std::string>> files;
