@@ -35,7 +35,7 @@ std::vector<double> scaled(std::vector<double> values, double si) {
 
 }  // namespace
 
-double largest(const std::vector<double>& values) {
+double largest(std::span<const double> values) {
   double result = 0.0;
   for (const double value : values)
     if (std::isfinite(value)) result = std::max(result, std::abs(value));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,7 @@ struct TimePlot {
 std::vector<TimePlot> time_plots(const Table& table);
 
 /// The largest absolute value that is finite.
-double largest(const std::vector<double>& values);
+double largest(std::span<const double> values);
 
 /// The whole record as a static picture.
 Plot picture(const TimePlot& plot, const Table& table, const std::string& condition);

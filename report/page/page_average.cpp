@@ -197,4 +197,8 @@ Json average_view(const AverageFiles& stored) {
   return view;
 }
 
+void add_average(const AverageFiles& /*stored*/, Part& part) {
+  part.nav.emplace_back("means", "Means");
+}
+
 }  // namespace rigcal::report

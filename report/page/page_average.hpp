@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "report/page/page_parts.hpp"
+#include "report/page/section.hpp"
 #include "report/store/table.hpp"
 
 namespace rigcal::report {
@@ -20,5 +20,6 @@ Plot offset_plot(const StoredRecord& record);
 /// average.json: how the repeats of every condition agree.
 Json average_headline(const AverageFiles& stored);
 Json average_view(const AverageFiles& stored);
+void add_average(const AverageFiles& stored, Part& part);
 
 }  // namespace rigcal::report
