@@ -4,11 +4,15 @@
 
 #include "report/figure/time_plots.hpp"
 #include "report/page/calibration/page_agreement_figures.hpp"
+#include "report/page/calibration/score_columns.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
 namespace {
+
+/// Of a table of scores: channel, noise ceiling, gain, phase, delay.
+constexpr std::size_t kOtherColumns = 5;
 
 Json score_rows(const StoredCondition& condition) {
   Json rows = Json::array();
@@ -19,13 +23,7 @@ Json score_rows(const StoredCondition& condition) {
     rows.push_back(
         {{"channel", channel},
          {"badge", badge(condition.verdict_of(channel))},
-         {"rho2", shown_agreement(scores.rho2)},
-         {"r", shown_agreement(scores.r)},
-         {"ccc", shown_agreement(scores.ccc)},
-         {"error", shown_in(scores.absolute_error_percent, 1.0, 4)},
-         {"fit", shown_in(scores.nrmse_fit_percent, 1.0, 5)},
-         {"rmse", shown(scores.rmse, unit, 4)},
-         {"maximum", shown(scores.maximum_error, unit, 4)},
+         {"cells", score_cells(scores, unit)},
          {"floor", shown_agreement(has_floor ? std::optional((*floor)->rho2) : std::nullopt)},
          {"gain", shown_in(scores.gain_ratio, 1.0, 5)},
          {"phase", shown_in(scores.phase_deg, 1.0, 2)},
@@ -91,6 +89,8 @@ Json condition_view(const StoredCondition& condition, const Table& series,
   view["has_reasons"] = !condition.reasons.empty();
   view["doubts"] = texts_view(condition.warnings);
   view["has_doubts"] = !condition.warnings.empty();
+  view["metrics"] = score_titles();
+  view["score_columns"] = fmt::format("{}", view["metrics"].size() + kOtherColumns);
   view["scores"] = score_rows(condition);
   view["has_scores"] = !view["scores"].empty();
   view["plots"] = Json::array();
