@@ -7,10 +7,19 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "metrics/metric_table.hpp"
 #include "metrics/moments.hpp"
 
 namespace rigcal::metrics {
 namespace {
+
+static_assert(sizeof(Agreement) == kMetrics.size() * sizeof(double),
+              "a member of Agreement has no row in the table, or a row no member");
+
+/// The first rows of the table.
+constexpr std::size_t kOfMoments = 7;
+static_assert(kMetrics.size() >= kOfMoments && kMetrics[kOfMoments - 1].name == "maximum_error",
+              "a metric of its own has its row below those that agreement() computes together");
 
 using Signal = std::span<const double>;
 
@@ -149,13 +158,17 @@ double maximum_error(Signal measured, Signal simulated) {
 
 Agreement agreement(Signal measured, Signal simulated) {
   const Moments m = moments(measured, simulated, "agreement");
-  return {.rho2 = rho2(m),
-          .r = correlation(m),
-          .ccc = concordance(m),
-          .absolute_error_percent = absolute_error_percent(m),
-          .rmse = rmse(m),
-          .nrmse_fit_percent = nrmse_fit_percent(m),
-          .maximum_error = maximum_error(m)};
+  Agreement all{.rho2 = rho2(m),
+                .r = correlation(m),
+                .ccc = concordance(m),
+                .absolute_error_percent = absolute_error_percent(m),
+                .rmse = rmse(m),
+                .nrmse_fit_percent = nrmse_fit_percent(m),
+                .maximum_error = maximum_error(m)};
+  // Those that the moments do not tell are computed each for itself.
+  for (std::size_t i = kOfMoments; i < kMetrics.size(); ++i)
+    all.*kMetrics[i].value = kMetrics[i].compute(measured, simulated);
+  return all;
 }
 
 }  // namespace rigcal::metrics

@@ -15,6 +15,7 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 /// documentation are made from this row.
 struct MetricSpec {
   std::string_view name;     ///< as in the results
+  std::string_view title;    ///< of its column on the page
   std::string_view formula;  ///< one line; y measured, s simulated, e = y - s
   std::string_view unit;     ///< "1", "%", or "channel": that of the compared channel
   double Agreement::*value = nullptr;
@@ -25,18 +26,19 @@ struct MetricSpec {
 };
 
 inline constexpr std::array kMetrics{
-    MetricSpec{"rho2", "1 - var(e) / var(y)", "1", &Agreement::rho2, &rho2, true, -kUnbounded, 1.0},
-    MetricSpec{"r", "cov(y, s) / (std(y) std(s))", "1", &Agreement::r, &correlation, true, -1.0,
-               1.0},
-    MetricSpec{"ccc", "2 cov(y, s) / (var(y) + var(s) + (mean y - mean s)^2)", "1", &Agreement::ccc,
-               &concordance, true, -1.0, 1.0},
-    MetricSpec{"absolute_error_percent", "100 mean |e| / (max y - min y)", "%",
+    MetricSpec{"rho2", "rho2", "1 - var(e) / var(y)", "1", &Agreement::rho2, &rho2, true,
+               -kUnbounded, 1.0},
+    MetricSpec{"r", "R", "cov(y, s) / (std(y) std(s))", "1", &Agreement::r, &correlation, true,
+               -1.0, 1.0},
+    MetricSpec{"ccc", "ccc", "2 cov(y, s) / (var(y) + var(s) + (mean y - mean s)^2)", "1",
+               &Agreement::ccc, &concordance, true, -1.0, 1.0},
+    MetricSpec{"absolute_error_percent", "Error %", "100 mean |e| / (max y - min y)", "%",
                &Agreement::absolute_error_percent, &absolute_error_percent, false},
-    MetricSpec{"rmse", "sqrt(mean(e^2))", "channel", &Agreement::rmse, &rmse, false},
-    MetricSpec{"nrmse_fit_percent", "100 (1 - ||e|| / ||y - mean y||)", "%",
+    MetricSpec{"rmse", "RMSE", "sqrt(mean(e^2))", "channel", &Agreement::rmse, &rmse, false},
+    MetricSpec{"nrmse_fit_percent", "Fit %", "100 (1 - ||e|| / ||y - mean y||)", "%",
                &Agreement::nrmse_fit_percent, &nrmse_fit_percent, true, -kUnbounded, 100.0},
-    MetricSpec{"maximum_error", "max |e|", "channel", &Agreement::maximum_error, &maximum_error,
-               false},
+    MetricSpec{"maximum_error", "Largest", "max |e|", "channel", &Agreement::maximum_error,
+               &maximum_error, false},
 };
 
 /// The value of a metric where simulation and measurement are the same.

@@ -14,13 +14,6 @@ namespace {
 /// A line of a static picture has about two points per pixel.
 constexpr std::size_t kStaticPoints = 1200;
 
-double largest(const std::vector<double>& values) {
-  double result = 0.0;
-  for (const double value : values)
-    if (std::isfinite(value)) result = std::max(result, std::abs(value));
-  return result;
-}
-
 bool has_numbers(const std::vector<double>* values) {
   return values != nullptr && std::any_of(values->begin(), values->end(),
                                           [](double value) { return std::isfinite(value); });
@@ -41,6 +34,13 @@ std::vector<double> scaled(std::vector<double> values, double si) {
 }
 
 }  // namespace
+
+double largest(std::span<const double> values) {
+  double result = 0.0;
+  for (const double value : values)
+    if (std::isfinite(value)) result = std::max(result, std::abs(value));
+  return result;
+}
 
 std::vector<TimePlot> time_plots(const Table& table) {
   std::vector<TimePlot> plots;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,9 @@ struct TimePlot {
 /// What there is to be drawn: per channel the signals and the residual, flows, the valve command.
 /// Refers to the columns of the table.
 std::vector<TimePlot> time_plots(const Table& table);
+
+/// The largest absolute value that is finite.
+double largest(std::span<const double> values);
 
 /// The whole record as a static picture.
 Plot picture(const TimePlot& plot, const Table& table, const std::string& condition);

@@ -28,7 +28,8 @@
 //   };
 
 // NOLINTBEGIN(cppcoreguidelines-macro-usage): only a macro knows the name of a member
-#define RIGCAL_VISIT_MEMBER(member) visit(#member, self.member);
+#define RIGCAL_VISIT_MEMBER(member) \
+  rigcal::report::described::visit_member(visit, #member, self.member);
 #define RIGCAL_DESCRIBE(...)                                                    \
   template <typename Self, typename Visit>                                      \
   static void describe(Self& self, const Visit& visit) {                        \
@@ -51,6 +52,13 @@ struct Later : T {
   using T::operator=;
   Later() = default;
   Later(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
+};
+
+/// A struct whose keys stand among those of the one that holds it.
+template <typename T>
+struct Inlined : T {
+  Inlined() = default;
+  Inlined(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
 };
 
 /// Keys and values in their order.
@@ -101,6 +109,10 @@ template <typename T>
 inline constexpr bool is_keyed = false;
 template <typename T>
 inline constexpr bool is_keyed<Keyed<T>> = true;
+template <typename T>
+inline constexpr bool is_inlined = false;
+template <typename T>
+inline constexpr bool is_inlined<Inlined<T>> = true;
 
 /// Largest number of things that a result counts: sums of some hundred of them are whole numbers.
 inline constexpr long kMostCounted = 1'000'000'000;
@@ -109,6 +121,15 @@ struct Anything {
   template <typename T>
   void operator()(const char* /*name*/, const T& /*member*/) const {}
 };
+
+template <typename Visit, typename Member>
+void visit_member(const Visit& visit, const char* name, Member& member) {
+  if constexpr (is_inlined<std::remove_const_t<Member>>) {
+    Member::describe(member, visit);
+  } else {
+    visit(name, member);
+  }
+}
 
 template <typename T>
 concept Struct = requires(T& value) {
@@ -130,6 +151,11 @@ inline std::optional<double> finite(double value) {
 
 inline std::optional<double> finite(const std::optional<double>& value) {
   return value ? finite(*value) : std::nullopt;
+}
+
+/// A text; nothing where it is empty.
+inline std::optional<std::string> unless_empty(const std::string& text) {
+  return text.empty() ? std::nullopt : std::optional(text);
 }
 
 /// A value as JSON. Numbers that are not finite become null: JSON knows neither NaN nor infinity.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 
 // Values of a result in JSON that may be missing.
@@ -12,13 +11,6 @@ using Json = nlohmann::ordered_json;
 
 /// The text of a key, or an empty one where it is null or missing.
 std::string text_of(const Json& json, const std::string& key);
-std::optional<double> number_of(const Json& json, const std::string& key);
-
-/// A number of things, from 0 to 1e9, so that a few hundred of them can be added up.
-///
-/// @throws Json::exception  it is missing, or another number
-long count_at(const Json& json, const std::string& key);
-long as_count(const Json& number);
 
 /// @throws InputError  always
 [[noreturn]] void refuse_json(const std::string& where, const Json::exception& error);

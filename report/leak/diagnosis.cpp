@@ -7,11 +7,10 @@
 #include <map>
 
 #include "diagnosis/signal_name.hpp"
-#include "report/leak/leak_estimate_json.hpp"
+#include "report/leak/leak_estimate.hpp"
 #include "report/leak/leak_trend.hpp"
 #include "report/leak/machine_state.hpp"
 #include "report/store/csv_fields.hpp"
-#include "report/store/identity.hpp"
 #include "report/text/gathered_warnings.hpp"
 #include "report/text/text_table.hpp"
 
@@ -26,121 +25,6 @@ using diagnosis::SignalDiagnosis;
 using Align = TextTable::Align;
 
 constexpr std::size_t kSentenceColumns = 80;  ///< sentences read better so, whatever the terminal
-
-Json class_or_null(const std::optional<LeakClass>& leak_class) {
-  return leak_class ? Json(std::string(to_string(*leak_class))) : Json(nullptr);
-}
-
-Json diagnosed_json(const RecordDiagnosis& record) {
-  const bool ok = record.fit.ok();
-  const diagnosis::LeakEstimate& e = record.estimate;
-  const auto value = [&](double x) { return ok ? number(x) : Json(nullptr); };
-  Json json;
-  json["condition"] = record.condition;
-  json["repeat"] = record.repeat ? Json(*record.repeat) : Json(nullptr);
-  json["repeats_averaged"] = record.repeats;
-  json["signal"] = record.signal;
-  json["reference_repeats"] = record.reference_repeats;
-  json["is_reference"] = record.is_reference;
-  json["failure"] = ok ? Json(nullptr) : Json(record.fit.failure);
-  json.update(leak_estimate_json(e, record.leak_class, ok));
-  json["unbounded_leakage_coefficient"] = value(e.coefficient);
-  json["undecided"] = !record.leak_class.has_value();
-  json["explained_by_leak"] = ok ? Json(!record.unexplained) : Json(nullptr);
-  json["features"] = {{"mean_m", value(record.features.mean)},
-                      {"rms_m", value(record.features.rms)},
-                      {"std_m", value(record.features.std)}};
-  json["parity_rms_m"] = value(record.fit.parity_rms_m);
-  json["misfit_rms_m"] = value(record.fit.misfit_rms_m);
-  json["noise_rms_m"] = value(record.fit.noise_rms_m);
-  json["log_slope"] =
-      ok && e.share > 0.0 ? number(e.share_slope * e.coefficient / e.share) : Json(nullptr);
-  json["class_by_features"] = class_or_null(record.by_features);
-  json["class_by_features_of_other_signals"] = class_or_null(record.by_features_of_other_signals);
-  json["true_class"] = class_or_null(record.truth);
-  json["true_share_percent"] =
-      record.true_share ? number(kInPercent * *record.true_share) : Json(nullptr);
-  json["warnings"] = record.warnings;
-  return json;
-}
-
-Json confusion_json(const Accuracy& accuracy) {
-  Json json;
-  json["truth"] = Json::array();
-  for (const LeakClass each : datasets::kLeakClasses)
-    json["truth"].push_back(std::string(to_string(each)));
-  json["found"] = json["truth"];
-  json["found"].push_back("undecided");
-  json["counts"] = accuracy.confusion;
-  return json;
-}
-
-Json accuracy_json(const Accuracy& accuracy) {
-  const bool any = accuracy.records > 0;
-  Json json;
-  json["records"] = accuracy.records;
-  json["conditions"] = accuracy.conditions;
-  json["right"] = accuracy.right;
-  json["undecided"] = accuracy.undecided;
-  json["off_by_two_or_more"] = accuracy.off_by_two;
-  json["accuracy"] = any ? number(accuracy.accuracy) : Json(nullptr);
-  json["accuracy_ci95"] = any ? interval_json(accuracy.ci95) : Json(nullptr);
-  json["confusion"] = confusion_json(accuracy);
-  return json;
-}
-
-Json limit_json(const std::optional<DetectionLimit>& limit) {
-  return limit ? number(kLitresPerMinute * limit->leak_flow_m3_per_s) : Json(nullptr);
-}
-
-Json smallest_leak_json(const SignalDiagnosis& signal) {
-  Json json;
-  json["signal"] = signal.signal;
-  json["repeats_averaged"] = signal.repeats;
-  json["averaged"] = limit_json(signal.smallest_leak);
-  json["single"] = limit_json(signal.smallest_single_leak);
-  json["averaged_share_percent"] =
-      signal.smallest_leak ? number(kInPercent * signal.smallest_leak->share) : Json(nullptr);
-  json["repeat_sd_m"] = number(signal.errors.repeat_m);
-  json["healthy_leak_m"] = number(signal.errors.healthy_m);
-  json["reason"] = signal.reason.empty() ? Json(nullptr) : Json(signal.reason);
-  return json;
-}
-
-Json class_settings_json(const datasets::DiagnosisSettings& settings) {
-  Json json;
-  json["limits_percent"] = Json::object();
-  for (std::size_t i = 0; i < settings.limits.size(); ++i) {
-    json["limits_percent"][std::string(to_string(datasets::kLeakClasses[i]))] =
-        number(kInPercent * settings.limits[i]);
-  }
-  json["least_probability"] = settings.least_probability;
-  json["false_alarms"] = settings.false_alarms;
-  json["detection"] = settings.detection;
-  return json;
-}
-
-std::string drive_of(const datasets::Campaign& campaign, const TableLimit& limit) {
-  datasets::Condition condition;
-  condition.waveform = limit.waveform;
-  condition.frequency_hz = limit.frequency_hz;
-  condition.amplitude = limit.amplitude;
-  return diagnosis::signal_name(campaign, condition);
-}
-
-Json class_limit_json(const datasets::Campaign& campaign, const TableLimit& limit) {
-  Json json;
-  json["signal"] = drive_of(campaign, limit);
-  json["share_percent"] = number(limit.target_percent);
-  json["class"] = class_or_null(class_ending_at(campaign.diagnosis, limit.target_percent));
-  json["coefficients"] = numbers(limit.coefficients);
-  json["coefficients_ci95"] = Json::array();
-  for (const auto& range : limit.ranges_95) {
-    json["coefficients_ci95"].push_back(
-        range ? Json::array({number(range->low), number(range->high)}) : Json(nullptr));
-  }
-  return json;
-}
 
 std::string number_field(bool is_there, double value) {
   return is_there && std::isfinite(value) ? fmt::format("{}", value) : std::string();
@@ -305,54 +189,23 @@ std::string warning_lines(const diagnosis::Diagnosis& found) {
 
 }  // namespace
 
-std::string status_of(const DiagnosisResult& result) {
-  if (!result.reasons.empty()) return "declined";
-  return result.diagnosis.usable() ? "done" : "failed";
+LeakStatus status_of(const DiagnosisResult& result) {
+  if (!result.reasons.empty()) return LeakStatus::declined;
+  return result.diagnosis.usable() ? LeakStatus::done : LeakStatus::failed;
 }
 
-Json diagnosis_json(const DiagnosisResult& result) {
-  const diagnosis::Diagnosis& found = result.diagnosis;
-  Json json;
-  json["status"] = status_of(result);
-  json["schema"] = kDiagnosisSchema;
-  json["reasons"] = result.reasons;
-  json["campaign"] = result.campaign.name;
-  json["synthetic"] = result.campaign.synthetic;
-  json["report"] = identity_json(result.campaign);
-  json["settings"] = class_settings_json(result.campaign.diagnosis);
-  json["class_limits"] = Json::array();
-  for (const TableLimit& limit : result.class_limits)
-    json["class_limits"].push_back(class_limit_json(result.campaign, limit));
-  json["states"] = Json::array();
-  for (const diagnosis::MachineState& state : found.states)
-    json["states"].push_back(state_json(state));
-  json["trends"] = Json::array();
-  for (const diagnosis::LeakTrend& trend : found.trends)
-    json["trends"].push_back(leak_trend_json(trend));
-  json["records"] = Json::array();
-  for (const RecordDiagnosis& record : found.records)
-    json["records"].push_back(diagnosed_json(record));
-  const Json single = accuracy_json(found.single);
-  json["confusion"] = single["confusion"];
-  json["accuracy"] = single["accuracy"];
-  json["accuracy_ci95"] = single["accuracy_ci95"];
-  json["methods"] = {
-      {"fitted_leak_single", single},
-      {"fitted_leak_averaged", accuracy_json(found.averaged)},
-      {"features_leave_one_repeat_out", accuracy_json(found.features)},
-      {"features_leave_one_signal_out", accuracy_json(found.features_of_other_signals)}};
-  json["smallest_leak_l_per_min"] = Json::array();
-  for (const SignalDiagnosis& signal : found.signals)
-    json["smallest_leak_l_per_min"].push_back(smallest_leak_json(signal));
-  json["warnings"] = found.warnings;
-  json["provenance"] = json_of(stored(result.provenance));
-  return json;
+std::string drive_of(const datasets::Campaign& campaign, const TableLimit& limit) {
+  datasets::Condition condition;
+  condition.waveform = limit.waveform;
+  condition.frequency_hz = limit.frequency_hz;
+  condition.amplitude = limit.amplitude;
+  return diagnosis::signal_name(campaign, condition);
 }
 
 std::string diagnosis_csv(const DiagnosisResult& result) {
   std::string text;
-  if (const std::string status = status_of(result); status != "done") {
-    text = fmt::format("# status: {}: {}\n", status, fmt::join(result.reasons, "; "));
+  if (const LeakStatus status = status_of(result); status != LeakStatus::done) {
+    text = fmt::format("# status: {}: {}\n", to_string(status), fmt::join(result.reasons, "; "));
   }
   text +=
       "condition,repeat,signal,leakage_coefficient,ci95_low,ci95_high,leak_share_percent,"
@@ -368,8 +221,8 @@ std::string diagnosis_csv(const DiagnosisResult& result) {
 
 std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
   const diagnosis::Diagnosis& found = result.diagnosis;
-  const std::string status = status_of(result);
-  if (status == "declined") {
+  const LeakStatus status = status_of(result);
+  if (status == LeakStatus::declined) {
     std::string text = in_colour("declined: these records cannot be diagnosed", "31", style) + "\n";
     for (const std::string& reason : result.reasons) text += fmt::format("  - {}\n", reason);
     return text;
@@ -399,7 +252,10 @@ std::string diagnosis_text(const DiagnosisResult& result, const Style& style) {
                   "1", style) +
         "\n" + table;
   }
-  text += "\nstatus: " + in_colour(status, status == "done" ? "32" : "31", style) + "\n";
+  text +=
+      "\nstatus: " +
+      in_colour(std::string(to_string(status)), status == LeakStatus::done ? "32" : "31", style) +
+      "\n";
   text += warning_lines(found);
   if (result.campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
   return text;

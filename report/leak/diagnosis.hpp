@@ -5,13 +5,10 @@
 
 #include "diagnosis/diagnose.hpp"
 #include "report/leak/read_leak_table.hpp"
-#include "report/store/json.hpp"
-#include "report/store/stored_provenance.hpp"
+#include "report/store/stored_diagnosis.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {
-
-inline constexpr const char* kDiagnosisSchema = "rigcal.diagnosis/1";
 
 /// A diagnosis with all that its files are made from. Borrows everything.
 struct DiagnosisResult {
@@ -23,11 +20,14 @@ struct DiagnosisResult {
   std::vector<TableLimit> class_limits = {};
 };
 
-/// "done"; "declined" where it gives reasons; "failed" where no record could be diagnosed.
-std::string status_of(const DiagnosisResult& result);
+/// Declined where it gives reasons; failed where no record could be diagnosed.
+LeakStatus status_of(const DiagnosisResult& result);
 
-/// diagnosis.json as docs/diagnosis.md describes it; `status` comes first.
-Json diagnosis_json(const DiagnosisResult& result);
+/// "sine 0.1 Hz, 50.8 mm": the signal of an entry of the leak table.
+std::string drive_of(const datasets::Campaign& campaign, const TableLimit& limit);
+
+/// diagnosis.json.
+StoredDiagnosis stored(const DiagnosisResult& result);
 
 /// diagnosis.csv: one row per record.
 std::string diagnosis_csv(const DiagnosisResult& result);

@@ -85,7 +85,7 @@ StoredFeatures stored(const calib::FeatureRow& row) {
           .published_std = printed(Feature::std, 1.0),
           .coefficients_for_published_leak_flow = row.coefficients_for_leak_flow,
           .left_out_of_fit = row.printed.left_out,
-          .reason = row.printed.reason.empty() ? std::nullopt : std::optional(row.printed.reason)};
+          .reason = unless_empty(row.printed.reason)};
 }
 
 }  // namespace

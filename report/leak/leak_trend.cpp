@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "common/calendar.hpp"
-#include "report/leak/leak_estimate_json.hpp"
+#include "report/leak/leak_estimate.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -72,34 +72,28 @@ std::string trend_sentence(const LeakTrend& trend) {
   return sentence + next_limit_of(trend);
 }
 
-Json leak_trend_json(const LeakTrend& trend) {
-  const auto text = [](const std::string& x) { return x.empty() ? Json(nullptr) : Json(x); };
-  Json json;
-  json["leak_level"] = text(trend.leak_level);
-  json["specimen"] = text(trend.specimen);
-  json["sentence"] = trend_sentence(trend);
-  json["dates"] = trend.dates;
-  json["first_date"] = date_of(trend.first_day);
-  json["last_date"] = date_of(trend.last_day);
-  json["duty"] = trend.duty;
-  json["coefficient_per_day"] = number(trend.coefficient_per_day);
-  json["share_percent_per_day"] = number(kInPercent * trend.share_per_day);
-  json["share_percent_per_day_ci95"] = interval_json(trend.share_per_day_ci95, kInPercent);
-  json["p_value"] = number(trend.p);
-  json["significant"] = trend.significant;
-  json["chi_squared"] = number(trend.chi_squared);
-  json["freedom"] = number(trend.freedom);
-  json["widened"] = number(trend.widened);
-  json["next_limit"] = nullptr;
-  if (trend.next_class) {
-    json["next_limit"] = {
-        {"class", std::string(to_string(*trend.next_class))},
-        {"percent", number(kInPercent * trend.next_limit)},
-        {"reached", date_of(trend.reached_day)},
-        {"earliest", date_of(trend.earliest_day)},
-        {"latest", trend.latest_day ? Json(date_of(*trend.latest_day)) : Json(nullptr)}};
-  }
-  return json;
+StoredLeakTrend stored(const LeakTrend& trend) {
+  StoredLeakTrend told;
+  told.leak_level = unless_empty(trend.leak_level);
+  told.specimen = unless_empty(trend.specimen);
+  told.sentence = trend_sentence(trend);
+  told.dates = trend.dates;
+  told.first_date = date_of(trend.first_day);
+  told.last_date = date_of(trend.last_day);
+  told.duty = trend.duty;
+  told.coefficient_per_day = trend.coefficient_per_day;
+  told.share_percent_per_day = kInPercent * trend.share_per_day;
+  told.share_percent_per_day_ci95 = scaled(trend.share_per_day_ci95, kInPercent);
+  told.p_value = trend.p;
+  told.significant = trend.significant;
+  told.chi_squared = trend.chi_squared;
+  told.freedom = trend.freedom;
+  told.widened = trend.widened;
+  if (!trend.next_class) return told;
+  told.next_limit = {*trend.next_class, kInPercent * trend.next_limit, date_of(trend.reached_day),
+                     date_of(trend.earliest_day), std::nullopt};
+  if (trend.latest_day) told.next_limit->latest = date_of(*trend.latest_day);
+  return told;
 }
 
 }  // namespace rigcal::report

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "diagnosis/leak_trend.hpp"
-#include "report/store/json.hpp"
+#include "report/store/stored_diagnosis.hpp"
 
 namespace rigcal::report {
 
@@ -12,6 +12,6 @@ namespace rigcal::report {
 std::string trend_sentence(const diagnosis::LeakTrend& trend);
 
 /// Entry of `trends` in diagnosis.json.
-Json leak_trend_json(const diagnosis::LeakTrend& trend);
+StoredLeakTrend stored(const diagnosis::LeakTrend& trend);
 
 }  // namespace rigcal::report

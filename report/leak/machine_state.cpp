@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "report/leak/leak_estimate_json.hpp"
+#include "report/leak/leak_estimate.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -79,44 +79,30 @@ std::string state_sentence(const MachineState& state) {
   return text + limit_of(state.limit) + "." + agreement_of(state);
 }
 
-Json state_json(const MachineState& state) {
-  const bool ok = state.ok();
+StoredState stored(const MachineState& state) {
   const diagnosis::LeakEstimate& e = state.estimate;
-  const auto text = [](const std::string& x) { return x.empty() ? Json(nullptr) : Json(x); };
-  const auto name = [](datasets::LeakClass x) { return std::string(to_string(x)); };
-  Json json;
-  json["state"] = state.key.name();
-  json["leak_level"] = text(state.key.leak_level);
-  json["specimen"] = text(state.key.specimen);
-  json["date"] = text(state.key.date);
-  json["sentence"] = state_sentence(state);
-  json["failure"] = text(state.failure);
-  json["is_reference"] = state.is_reference;
-  json["conditions"] = Json::array();
-  for (const auto& member : state.members) json["conditions"].push_back(member.condition);
-  json["left_out"] = state.left_out;
-  json.update(leak_estimate_json(e, state.leak_class, ok));
+  StoredState told;
+  told.state = state.key.name();
+  told.leak_level = unless_empty(state.key.leak_level);
+  told.specimen = unless_empty(state.key.specimen);
+  told.date = unless_empty(state.key.date);
+  told.sentence = state_sentence(state);
+  told.failure = unless_empty(state.failure);
+  told.is_reference = state.is_reference;
+  for (const auto& member : state.members) told.conditions.push_back(member.condition);
+  told.left_out = state.left_out;
+  told.leak = stored(e, state.leak_class, state.ok());
+  told.duty = unless_empty(state.duty);
+  if (!state.ok()) return told;
   const double area = e.coefficient != 0.0 ? state.leak_area_m2 / e.coefficient : 0.0;
-  json["leak_area_m2"] = ok ? number(std::max(0.0, state.leak_area_m2)) : Json(nullptr);
-  json["leak_area_ci95_m2"] = ok ? interval_json(e.ci95, area) : Json(nullptr);
-  json["duty"] = text(state.duty);
-  json["nearest_limit"] = nullptr;
-  if (ok) {
-    json["nearest_limit"] = {
-        {"class", name(state.limit.above)},
-        {"percent", number(kInPercent * state.limit.limit)},
-        {"distance_percentage_points", number(kInPercent * state.limit.distance)},
-        {"on_limit", state.limit.on_limit}};
-  }
-  json["agreement"] = nullptr;
-  if (ok && state.members.size() > 1) {
-    json["agreement"] = {{"p", number(state.pooled.p)},
-                         {"chi_squared", number(state.pooled.chi_squared)},
-                         {"freedom", number(state.pooled.freedom)},
-                         {"widened", number(state.pooled.widened)},
-                         {"agree", !state.pooled.disagree}};
-  }
-  return json;
+  told.leak_area_m2 = std::max(0.0, state.leak_area_m2);
+  told.leak_area_ci95_m2 = scaled(e.ci95, area);
+  told.nearest_limit = {state.limit.above, kInPercent * state.limit.limit,
+                        kInPercent * state.limit.distance, state.limit.on_limit};
+  if (const diagnosis::PooledLeak& pooled = state.pooled; state.members.size() > 1)
+    told.agreement = {pooled.p, pooled.chi_squared, pooled.freedom, pooled.widened,
+                      !pooled.disagree};
+  return told;
 }
 
 }  // namespace rigcal::report

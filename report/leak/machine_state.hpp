@@ -3,7 +3,7 @@
 #include <string>
 
 #include "diagnosis/machine_state.hpp"
-#include "report/store/json.hpp"
+#include "report/store/stored_diagnosis.hpp"
 
 namespace rigcal::report {
 
@@ -13,6 +13,6 @@ namespace rigcal::report {
 std::string state_sentence(const diagnosis::MachineState& state);
 
 /// Entry of `states` of diagnosis.json.
-Json state_json(const diagnosis::MachineState& state);
+StoredState stored(const diagnosis::MachineState& state);
 
 }  // namespace rigcal::report

@@ -21,59 +21,59 @@ using Align = TextTable::Align;
 
 constexpr int kTextDigits = 3;
 
-Json or_null(const std::optional<double>& value) { return value ? number(*value) : Json(nullptr); }
-
 const ParitySignal* signal_of(const ParityResult& result, const ParityRecord& record) {
   for (const ParitySignal& signal : result.parity.signals)
     if (signal.signal == record.signal) return &signal;
   return nullptr;
 }
 
-/// Whether a record exceeds a threshold; null where there is none.
-Json exceeds(const std::optional<double>& threshold, double value) {
-  return threshold ? Json(value > *threshold) : Json(nullptr);
+/// Whether a record exceeds a threshold; nothing where there is none.
+std::optional<bool> exceeds(const std::optional<double>& threshold, double value) {
+  return threshold ? std::optional(value > *threshold) : std::nullopt;
 }
 
-Json record_json(const ParityResult& result, const ParityRecord& record) {
+/// Compared with a threshold that it has no part in.
+bool is_judged(const ParitySignal* signal, const ParityRecord& record) {
+  return record.failure.empty() && signal != nullptr && signal->threshold_m &&
+         !record.sets_threshold;
+}
+
+StoredParityRecord stored(const ParityResult& result, const ParityRecord& record) {
   const bool ok = record.failure.empty();
   const ParitySignal* signal = signal_of(result, record);
-  const bool judged = ok && signal != nullptr && signal->threshold_m && !record.sets_threshold;
-  const datasets::Condition& condition = *result.campaign.find(record.condition);
-  const auto value = [&](double x) { return ok ? number(x) : Json(nullptr); };
-  Json json;
-  json["condition"] = record.condition;
-  json["repeat"] = record.repeat ? Json(*record.repeat) : Json(nullptr);
-  json["signal"] = record.signal;
-  json["leak_level"] = condition.leak_level ? Json(*condition.leak_level) : Json(nullptr);
-  json["healthy"] = record.is_healthy;
-  json["sets_threshold"] = record.sets_threshold;
-  json["reference_records"] = record.reference_records;
-  json["failure"] = ok ? Json(nullptr) : Json(record.failure);
-  json["peak_m"] = value(record.peak_m);
-  json["alarm"] = judged ? Json(record.alarm) : Json(nullptr);
-  json["time_to_alarm_s"] = judged && record.alarm ? number(record.alarm_time_s) : Json(nullptr);
-  json["features"] = {{"mean_m", value(record.features.mean)},
-                      {"rms_m", value(record.features.rms)},
-                      {"std_m", value(record.features.std)}};
-  const diagnosis::FeatureThresholds none;
-  const diagnosis::FeatureThresholds& limits = ok && signal ? signal->features : none;
-  json["exceeds"] = {{"mean_m", exceeds(limits.mean, record.features.mean)},
-                     {"rms_m", exceeds(limits.rms, record.features.rms)},
-                     {"std_m", exceeds(limits.std, record.features.std)}};
-  return json;
+  const auto value = [&](double x) { return ok ? std::optional(x) : std::nullopt; };
+  StoredParityRecord told;
+  told.condition = record.condition;
+  told.repeat = record.repeat;
+  told.signal = record.signal;
+  told.leak_level = result.campaign.find(record.condition)->leak_level;
+  told.healthy = record.is_healthy;
+  told.sets_threshold = record.sets_threshold;
+  told.reference_records = record.reference_records;
+  told.failure = unless_empty(record.failure);
+  told.peak_m = value(record.peak_m);
+  if (is_judged(signal, record)) {
+    told.alarm = record.alarm;
+    if (record.alarm) told.time_to_alarm_s = record.alarm_time_s;
+  }
+  told.features = {value(record.features.mean), value(record.features.rms),
+                   value(record.features.std)};
+  if (ok && signal != nullptr) {
+    const diagnosis::FeatureThresholds& limits = signal->features;
+    told.exceeds = {exceeds(limits.mean, record.features.mean),
+                    exceeds(limits.rms, record.features.rms),
+                    exceeds(limits.std, record.features.std)};
+  }
+  return told;
 }
 
-Json signal_json(const ParitySignal& signal) {
-  Json json;
-  json["signal"] = signal.signal;
-  json["window_s"] = number(signal.window_s);
-  json["healthy_records"] = signal.healthy_records;
-  json["threshold_m"] = or_null(signal.threshold_m);
-  json["feature_thresholds"] = {{"mean_m", or_null(signal.features.mean)},
-                                {"rms_m", or_null(signal.features.rms)},
-                                {"std_m", or_null(signal.features.std)}};
-  json["reason"] = signal.reason.empty() ? Json(nullptr) : Json(signal.reason);
-  return json;
+StoredParitySignal stored(const ParitySignal& signal) {
+  return {signal.signal,
+          signal.window_s,
+          signal.healthy_records,
+          signal.threshold_m,
+          {signal.features.mean, signal.features.rms, signal.features.std},
+          unless_empty(signal.reason)};
 }
 
 std::string repeat_name(const ParityRecord& record) {
@@ -155,42 +155,38 @@ std::string check_text(const ParityResult& result) {
 
 }  // namespace
 
-std::string status_of(const ParityResult& result) {
-  if (!result.reasons.empty()) return "declined";
-  return result.parity.usable() ? "done" : "failed";
+LeakStatus status_of(const ParityResult& result) {
+  if (!result.reasons.empty()) return LeakStatus::declined;
+  return result.parity.usable() ? LeakStatus::done : LeakStatus::failed;
 }
 
-Json parity_json(const ParityResult& result) {
-  Json json;
-  json["status"] = status_of(result);
-  json["schema"] = kParitySchema;
-  json["reasons"] = result.reasons;
-  json["campaign"] = result.campaign.name;
-  json["synthetic"] = result.campaign.synthetic;
-  json["report"] = identity_json(result.campaign);
-  json["false_alarm_probability"] = number(result.false_alarm);
-  json["signals"] = Json::array();
-  for (const ParitySignal& signal : result.parity.signals)
-    json["signals"].push_back(signal_json(signal));
-  json["records"] = Json::array();
+StoredParity stored(const ParityResult& result) {
+  StoredParity file;
+  file.status = status_of(result);
+  file.reasons = result.reasons;
+  file.campaign = result.campaign.name;
+  file.synthetic = result.campaign.synthetic;
+  file.report = identity_json(result.campaign);
+  file.false_alarm_probability = result.false_alarm;
+  for (const ParitySignal& signal : result.parity.signals) file.signals.push_back(stored(signal));
   for (const ParityCondition& condition : result.parity.conditions)
     for (const ParityRecord& record : condition.records)
-      json["records"].push_back(record_json(result, record));
+      file.records.push_back(stored(result, record));
   const diagnosis::FalseAlarmCheck& check = result.parity.check;
-  json["false_alarm_check"] = {{"records", check.records},
-                               {"alarms", check.alarms},
-                               {"expected", number(result.false_alarm * check.records)},
-                               {"p_value", check.records > 0 ? number(check.p) : Json(nullptr)}};
-  json["warnings"] = result.parity.warnings;
-  json["provenance"] = json_of(stored(result.provenance));
-  return json;
+  file.false_alarm_check = {check.records, check.alarms, result.false_alarm * check.records,
+                            check.records > 0 ? std::optional(check.p) : std::nullopt};
+  file.warnings = result.parity.warnings;
+  file.provenance = stored(result.provenance);
+  return file;
 }
 
 std::string parity_csv(const ParityResult& result) {
   std::string text;
-  if (const std::string status = status_of(result); status != "done")
-    text =
-        csv_comment(fmt::format("status: {}: {}", status, fmt::join(result.reasons, "; "))) + "\n";
+  if (const LeakStatus status = status_of(result); status != LeakStatus::done) {
+    text = csv_comment(
+               fmt::format("status: {}: {}", to_string(status), fmt::join(result.reasons, "; "))) +
+           "\n";
+  }
   text += csv_row({"condition", "repeat", "signal", "leak_level", "healthy", "sets_threshold",
                    "peak_m", "threshold_m", "alarm", "time_to_alarm_s", "feature_mean_m",
                    "feature_rms_m", "feature_std_m", "failure"});
@@ -198,7 +194,7 @@ std::string parity_csv(const ParityResult& result) {
     for (const ParityRecord& record : condition.records) {
       const bool ok = record.failure.empty();
       const ParitySignal* signal = signal_of(result, record);
-      const bool judged = ok && signal != nullptr && signal->threshold_m && !record.sets_threshold;
+      const bool judged = is_judged(signal, record);
       const auto value = [&](double x) { return ok ? csv_number(x) : std::string(); };
       text += csv_row({csv_text(record.condition), repeat_name(record), csv_text(record.signal),
                        csv_text(result.campaign.find(record.condition)->leak_level.value_or("")),
@@ -224,9 +220,9 @@ std::vector<ResultFile> parity_series(const ParityResult& result) {
 }
 
 std::string parity_text(const ParityResult& result, const Style& style) {
-  const std::string status = status_of(result);
+  const LeakStatus status = status_of(result);
   std::string text;
-  if (status == "declined") {
+  if (status == LeakStatus::declined) {
     text = "declined: these records have no parity residual\n";
     for (const std::string& reason : result.reasons) text += fmt::format("  - {}\n", reason);
     return text;
@@ -241,7 +237,7 @@ std::string parity_text(const ParityResult& result, const Style& style) {
         text += fmt::format("{} {}: {}\n", record.condition, repeat_name(record), record.failure);
   for (const std::string& warning : result.parity.warnings)
     text += wrapped("warning: " + warning, style.columns, 2) + "\n";
-  text += "status: " + status + "\n";
+  text += fmt::format("status: {}\n", to_string(status));
   if (result.campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
   return text;
 }

@@ -5,13 +5,10 @@
 
 #include "diagnosis/parity.hpp"
 #include "report/store/folder.hpp"
-#include "report/store/json.hpp"
-#include "report/store/stored_provenance.hpp"
+#include "report/store/stored_parity.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {
-
-inline constexpr const char* kParitySchema = "rigcal.parity/1";
 
 /// Parity residuals with all that their files are made from. Borrows everything.
 struct ParityResult {
@@ -22,11 +19,11 @@ struct ParityResult {
   const Provenance& provenance;
 };
 
-/// "done"; "declined" where it gives reasons; "failed" where no residual could be made.
-std::string status_of(const ParityResult& result);
+/// Declined where it gives reasons; failed where no residual could be made.
+LeakStatus status_of(const ParityResult& result);
 
-/// parity.json as docs/parity.md describes it.
-Json parity_json(const ParityResult& result);
+/// parity.json.
+StoredParity stored(const ParityResult& result);
 
 /// parity.csv: one row per record.
 std::string parity_csv(const ParityResult& result);

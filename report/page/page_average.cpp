@@ -5,11 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/error.hpp"
-#include "datasets/campaign/condition_id.hpp"
 #include "datasets/record.hpp"
 #include "report/figure/decimate.hpp"
-#include "report/store/result_files.hpp"
+#include "report/figure/time_plots.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -17,23 +15,9 @@ namespace {
 
 constexpr std::size_t kAveragePoints = 300;
 
-double size_of(const std::vector<double>& values) {
-  double result = 0.0;
-  for (const double value : values)
-    if (std::isfinite(value)) result = std::max(result, std::abs(value));
-  return result;
-}
-
-std::string offsets_text(const Json& record) {
-  if (record.at("repeats").get<int>() < 2) return "–";
-  const auto offset_s = number_of(record, "offset_range_s");
-  return offset_s ? fmt::format("{:.2g} ms", 1e3 * *offset_s) : std::string("–");
-}
-
-long outliers_of(const Json& record) {
-  const Json& reports = record.at("repeat_reports");
-  return std::count_if(reports.begin(), reports.end(),
-                       [](const Json& report) { return report.at("outlier").get<bool>(); });
+std::string offsets_text(const StoredRecord& record) {
+  if (record.repeats < 2 || !record.offset_range_s) return "–";
+  return fmt::format("{:.2g} ms", 1e3 * *record.offset_range_s);
 }
 
 bool is_measured(const std::string& channel) {
@@ -41,54 +25,38 @@ bool is_measured(const std::string& channel) {
   return known && datasets::info(*known).is_output;
 }
 
-Json agreement_rows(const Json& record) {
+Json agreement_rows(const StoredRecord& record) {
   Json rows = Json::array();
-  for (const auto& [channel, found] : record.at("channels").items()) {
+  for (const auto& [channel, found] : record.channels) {
     if (!is_measured(channel)) continue;  // a command is what it was told to be
-    const std::string unit = text_of(found, "unit");
-    const Json& floor = found.at("noise_floor");
-    rows.push_back(
-        {{"condition", text_of(record, "condition")},
-         {"channel", channel},
-         {"samples", fmt::format("{}", record.at("samples").get<long>())},
-         {"repeats", fmt::format("{}", found.at("repeats").get<int>())},
-         {"sd", shown(found.at("pooled_sd"), unit, 3)},
-         {"sd_of_mean", shown(found.at("sd_of_mean"), unit, 3)},
-         {"rho2", shown_agreement(floor.is_object() ? floor.at("rho2") : Json())},
-         {"error",
-          shown_in(floor.is_object() ? floor.at("absolute_error_percent") : Json(), 1.0, 3)},
-         {"offsets", offsets_text(record)},
-         {"outliers", fmt::format("{}", outliers_of(record))}});
+    const auto floor = [&](double StoredNoiseFloor::*value) -> Number {
+      return found.noise_floor ? std::optional((*found.noise_floor).*value) : std::nullopt;
+    };
+    rows.push_back({{"condition", record.condition},
+                    {"channel", channel},
+                    {"samples", fmt::format("{}", record.samples)},
+                    {"repeats", fmt::format("{}", found.repeats)},
+                    {"sd", shown(found.pooled_sd, found.unit, 3)},
+                    {"sd_of_mean", shown(found.sd_of_mean, found.unit, 3)},
+                    {"rho2", shown_agreement(floor(&StoredNoiseFloor::rho2))},
+                    {"error", shown_in(floor(&StoredNoiseFloor::absolute_error_percent), 1.0, 3)},
+                    {"offsets", offsets_text(record)},
+                    {"outliers", fmt::format("{}", record.outliers())}});
   }
   return rows;
 }
 
-Json warning_texts(const Json& average, const char* key) {
-  Json list = Json::array();
-  for (const Json& record : average.at("records"))
-    for (const Json& text : record.at(key))
-      list.push_back(fmt::format("{}: {}", text_of(record, "condition"), text.get<std::string>()));
+/// What is said of every record, with its condition.
+std::vector<std::string> texts_of(const StoredAverage& average,
+                                  std::vector<std::string> StoredRecord::*texts) {
+  std::vector<std::string> list;
+  for (const StoredRecord& record : average.records)
+    for (const std::string& text : record.*texts)
+      list.push_back(fmt::format("{}: {}", record.condition, text));
   return list;
 }
 
 }  // namespace
-
-AverageFiles load_average(const ReadFile& read, const std::string& where) {
-  AverageFiles stored{load_json(read, where, "average.json"), {}};
-  const ReadFile own = files_of_run(read, stored.average, where, "average.json");
-  for (const Json& record : stored.average.at("records")) {
-    const std::string id = text_of(record, "condition");
-    if (!datasets::is_condition_id(id))
-      throw InputError({(std::filesystem::path(where) / "average.json").string()},
-                       fmt::format("key 'condition' of a record: found \"{}\", expected {}",
-                                   id.substr(0, 40), datasets::condition_id_rule()));
-    const std::string name = "averaged/" + id + ".csv";
-    const auto text = own(name);
-    stored.series.push_back(
-        text ? parse_table(*text, (std::filesystem::path(where) / name).string()) : Table{});
-  }
-  return stored;
-}
 
 std::vector<Figure> average_figures(const std::string& condition, const Table& series) {
   std::vector<Figure> figures;
@@ -117,12 +85,12 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
     double si = 1.0;
     Plot plot = plot_of(
         fmt::format("{} of {}, mean and standard deviation of its repeats", words, condition),
-        words, size_of(*mean), si);
+        words, largest(*mean), si);
     Trace line = empty_trace(Trace::Kind::line, "measured", "mean");
     line.x = times;
     line.y = thinned(*mean, thin);
     for (double& value : line.y) value /= si;
-    const bool scatter = sd != nullptr && size_of(*sd) > 0.0;
+    const bool scatter = sd != nullptr && largest(*sd) > 0.0;
     if (scatter) {
       Trace band = empty_trace(Trace::Kind::band, "measured", "sd of repeats");
       band.x = times;
@@ -138,7 +106,7 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
     if (!scatter) continue;
     Plot spread = plot_of(
         fmt::format("{} of {}, standard deviation of its repeats over time", words, condition),
-        "sd of " + words, size_of(*sd), si);
+        "sd of " + words, largest(*sd), si);
     spread.height = 130.0;
     Trace trace = empty_trace(Trace::Kind::line, "residual");
     trace.x = times;
@@ -150,9 +118,17 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
   return figures;
 }
 
-Plot offset_plot(const Json& record) {
+std::vector<Figure> average_figures(const AverageFiles& stored) {
+  std::vector<Figure> figures;
+  for (std::size_t i = 0; i < stored.series.size(); ++i)
+    for (Figure& figure : average_figures(stored.result.records[i].condition, stored.series[i]))
+      figures.push_back(std::move(figure));
+  return figures;
+}
+
+Plot offset_plot(const StoredRecord& record) {
   Plot plot;
-  plot.title = fmt::format("offset of each repeat of {}", text_of(record, "condition"));
+  plot.title = fmt::format("offset of each repeat of {}", record.condition);
   plot.x_label = "repeat";
   plot.y_label = "offset [ms]";
   plot.width = 620.0;
@@ -160,26 +136,25 @@ Plot offset_plot(const Json& record) {
   plot.whole_x = true;
   plot.levels = {0.0};
   Trace points = empty_trace(Trace::Kind::points, "residual");
-  for (const Json& report : record.at("repeat_reports")) {
-    const auto offset_s = number_of(report, "offset_s");
+  for (const StoredRepeat& repeat : record.repeat_reports) {
     points.x.push_back(static_cast<double>(points.x.size() + 1));
-    points.y.push_back(offset_s ? 1e3 * *offset_s : std::nan(""));
+    points.y.push_back(repeat.offset_s ? 1e3 * *repeat.offset_s : std::nan(""));
   }
   if (points.x.size() > 1) plot.traces = {std::move(points)};
   return plot;
 }
 
-Json average_headline(const Json& average) {
-  const Json& records = average.at("records");
+Json average_headline(const AverageFiles& stored) {
+  const std::vector<StoredRecord>& records = stored.result.records;
   long outliers = 0;
   long repeats = 0;
   double offset_s = 0.0;
-  for (const Json& record : records) {
-    outliers += outliers_of(record);
-    repeats += record.at("repeats").get<long>();
-    offset_s = std::max(offset_s, number_of(record, "offset_range_s").value_or(0.0));
+  for (const StoredRecord& record : records) {
+    outliers += record.outliers();
+    repeats += record.repeats;
+    offset_s = std::max(offset_s, record.offset_range_s.value_or(0.0));
   }
-  const Json warnings = warning_texts(average, "warnings");
+  const std::vector<std::string> warnings = texts_of(stored.result, &StoredRecord::warnings);
   const bool doubtful = outliers > 0 || !warnings.empty();
   Json view = make_headline(
       "AVERAGED", doubtful ? "!" : "✓", doubtful ? "warn" : "good",
@@ -190,7 +165,7 @@ Json average_headline(const Json& average) {
   if (outliers > 0)
     add_reason(view, fmt::format("{} repeat{} named outlier", outliers, outliers == 1 ? "" : "s"),
                "repeatability");
-  for (const Json& text : warnings) add_reason(view, text.get<std::string>(), "repeatability");
+  for (const std::string& text : warnings) add_reason(view, text, "repeatability");
   return view;
 }
 
@@ -198,29 +173,32 @@ Json average_view(const AverageFiles& stored) {
   Json view;
   view["rows"] = Json::array();
   view["records"] = Json::array();
-  const Json& records = stored.average.at("records");
+  const std::vector<StoredRecord>& records = stored.result.records;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    const Json& record = records.at(i);
-    for (Json& row : agreement_rows(record)) view["rows"].push_back(std::move(row));
-    const std::string id = text_of(record, "condition");
+    for (Json& row : agreement_rows(records[i])) view["rows"].push_back(std::move(row));
+    const std::string& id = records[i].condition;
     Json figures = Json::array();
     for (const Figure& figure : average_figures(id, stored.series[i]))
       figures.push_back({{"svg_html", svg(figure.plot)}});
-    const Plot offsets = offset_plot(record);
+    const Plot offsets = offset_plot(records[i]);
     view["records"].push_back({{"condition", id},
                                {"open", i == 0 || records.size() <= kFew},
                                {"figures", std::move(figures)},
                                {"has_offsets", !offsets.traces.empty()},
                                {"offsets_html", offsets.traces.empty() ? "" : svg(offsets)}});
   }
-  view["warnings"] = warning_texts(stored.average, "warnings");
+  view["warnings"] = texts_of(stored.result, &StoredRecord::warnings);
   view["has_warnings"] = !view["warnings"].empty();
   view["few_warnings"] = view["warnings"].size() <= kFew;
   view["warning_count"] = fmt::format("{}", view["warnings"].size());
-  view["notes"] = warning_texts(stored.average, "notes");
+  view["notes"] = texts_of(stored.result, &StoredRecord::notes);
   view["has_notes"] = !view["notes"].empty();
   view["note_count"] = fmt::format("{}", view["notes"].size());
   return view;
+}
+
+void add_average(const AverageFiles& /*stored*/, Part& part) {
+  part.nav.emplace_back("means", "Means");
 }
 
 }  // namespace rigcal::report

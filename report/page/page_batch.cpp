@@ -1,3 +1,5 @@
+#include "report/page/page_batch.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,7 +8,6 @@
 
 #include "common/calendar.hpp"
 #include "report/batch/batch.hpp"
-#include "report/page/page_parts.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -198,6 +199,17 @@ std::vector<Figure> batch_figures(const StoredBatch& batch) {
     }
   }
   return figures;
+}
+
+StoredBatch load_batch(const ReadFile& read, const std::string& where) {
+  return load<StoredBatch>(read, where, "batch.json");
+}
+
+void add_batch(const StoredBatch& batch, Part& part) {
+  part.campaign = batch.folder;
+  part.synthetic = std::any_of(batch.rigs.begin(), batch.rigs.end(),
+                               [](const StoredRig& rig) { return rig.synthetic; });
+  part.nav.emplace_back("rig-trends", "Trends");
 }
 
 }  // namespace rigcal::report

@@ -84,7 +84,7 @@ Json leak_cell(const StoredLeakEntry& entry) {
   if (!entry.published_coefficient) return cell;
   cell["published_coefficient"] = shown_in(*entry.published_coefficient, 1.0, 6);
   cell["error"] = error_text(entry.relative_error_percent);
-  cell["share"] = shown_in(json_of(entry.share_at_published_percent), 1.0, 3);
+  cell["share"] = shown_in(entry.share_at_published_percent, 1.0, 3);
   const auto& range = entry.share_by_rounding_percent;
   cell["has_range"] = range.has_value();
   if (range) {
@@ -313,7 +313,8 @@ void put_texts(Json& view, const std::string& key, const std::vector<std::string
 
 }  // namespace
 
-Json leak_table_headline(const StoredLeakTable& table) {
+Json leak_table_headline(const LeakTableFiles& stored) {
+  const StoredLeakTable& table = stored.result;
   Json view = make_headline("LEAK TABLE", "○", "none", leak_sentence(table));
   for (const StoredLeakEntry& entry : table.entries) {
     if (entry.grade == calib::LeakGrade::outlier) add_reason(view, noted(entry), "leak-table");
@@ -323,8 +324,8 @@ Json leak_table_headline(const StoredLeakTable& table) {
 
 std::vector<Figure> leak_table_figures(const LeakTableFiles& stored) {
   std::vector<Figure> figures;
-  if (stored.table.summary.published > 0)
-    figures.push_back({"leak_table", agreement_plot(stored.table.entries)});
+  if (stored.result.summary.published > 0)
+    figures.push_back({"leak_table", agreement_plot(stored.result.entries)});
   if (stored.levels.empty()) return figures;
   figures.push_back({"leak_levels", levels_plot(stored.levels)});
   figures.push_back({"leak_positions", positions_plot(stored.levels)});
@@ -334,7 +335,7 @@ std::vector<Figure> leak_table_figures(const LeakTableFiles& stored) {
 }
 
 Json leak_table_view(const LeakTableFiles& stored) {
-  const StoredLeakTable& table = stored.table;
+  const StoredLeakTable& table = stored.result;
   const std::vector<double> targets = targets_of(table.entries);
   const bool published = table.summary.published > 0;
   Json view;
@@ -345,7 +346,7 @@ Json leak_table_view(const LeakTableFiles& stored) {
   view["rows"] = leak_rows(table.entries, targets);
   view["has_published"] = published;
   if (published) {
-    view["share_rms"] = shown_in(json_of(table.summary.share_rms_percent), 1.0, 3);
+    view["share_rms"] = shown_in(table.summary.share_rms_percent, 1.0, 3);
     view["plot_html"] = svg(agreement_plot(table.entries));
   }
   std::vector<std::string> notes;
@@ -377,15 +378,13 @@ Json leak_table_view(const LeakTableFiles& stored) {
   }
   view["assumptions"] = Json::array();
   for (const StoredAssumption& each : table.assumptions) {
-    view["assumptions"].push_back({{"name", each.key},
-                                   {"value", shown(json_of(each.value), each.unit, 5)},
-                                   {"source", each.source}});
+    view["assumptions"].push_back(
+        {{"name", each.key}, {"value", shown(each.value, each.unit, 5)}, {"source", each.source}});
   }
   view["combinations"] = Json::array();
   for (const StoredCombination& each : table.fixed_combinations) {
-    view["combinations"].push_back({{"formula", each.formula},
-                                    {"value", shown_in(json_of(each.value), 1.0, 5)},
-                                    {"unit", each.unit}});
+    view["combinations"].push_back(
+        {{"formula", each.formula}, {"value", shown_in(each.value, 1.0, 5)}, {"unit", each.unit}});
   }
   view["has_combinations"] = !table.fixed_combinations.empty();
   return view;

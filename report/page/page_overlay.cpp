@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
+#include "datasets/campaign/condition_id.hpp"
 #include "datasets/record.hpp"
+#include "report/figure/time_plots.hpp"
+#include "report/store/result_files.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -14,13 +16,6 @@ namespace {
 
 /// In the order of the results; from the sixth on they come again.
 constexpr std::array kResultStyles{"model", "residual", "servo", "leak", "reference"};
-
-double largest_of(const std::vector<double>& values) {
-  double result = 0.0;
-  for (const double value : values)
-    if (std::isfinite(value)) result = std::max(result, std::abs(value));
-  return result;
-}
 
 Plot time_plot(const std::string& title, const std::string& y_label, double height) {
   Plot plot;
@@ -30,6 +25,12 @@ Plot time_plot(const std::string& title, const std::string& y_label, double heig
   plot.width = 620.0;
   plot.height = height;
   return plot;
+}
+
+std::vector<std::string> names_of_results(const StoredComparison& comparison) {
+  std::vector<std::string> names;
+  for (const StoredComparedResult& result : comparison.results) names.push_back(result.name);
+  return names;
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ std::vector<Figure> overlay_figures(const std::string& condition, const Table& c
     if (measured == nullptr) continue;
     std::string words(about.key);
     std::replace(words.begin(), words.end(), '_', ' ');
-    const ReadableUnit unit = readable_unit(largest_of(*measured), about.unit);
+    const ReadableUnit unit = readable_unit(largest(*measured), about.unit);
     std::vector<Trace> models;
     std::vector<Trace> residuals;
     double largest_residual = 0.0;
@@ -60,7 +61,7 @@ std::vector<Figure> overlay_figures(const std::string& condition, const Table& c
         model.y.push_back((*simulated)[i] / unit.si);
         residual.y.push_back((*measured)[i] - (*simulated)[i]);
       }
-      largest_residual = std::max(largest_residual, largest_of(residual.y));
+      largest_residual = std::max(largest_residual, largest(residual.y));
       models.push_back(std::move(model));
       residuals.push_back(std::move(residual));
     }
@@ -101,6 +102,51 @@ Json overlays_view(const std::vector<std::pair<std::string, Table>>& curves,
                     {"figures", std::move(figures)}});
   }
   return view;
+}
+
+ComparisonFiles load_comparison_files(const ReadFile& read, const std::string& where) {
+  ComparisonFiles files{load_comparison(read, where), {}};
+  const ReadFile own = files_of_run(read, files.result.provenance, where, "comparison.json");
+  auto& curves = files.curves;
+  for (const StoredComparedCondition& condition : files.result.conditions) {
+    const std::string& id = condition.id;
+    const auto same = [&](const auto& each) { return each.first == id; };
+    if (!datasets::is_condition_id(id) || std::any_of(curves.begin(), curves.end(), same)) continue;
+    const std::string name = "overlay/" + id + ".csv";
+    if (const auto text = own(name))
+      curves.emplace_back(id, parse_table(*text, (std::filesystem::path(where) / name).string()));
+  }
+  return files;
+}
+
+Json comparison_headline(const ComparisonFiles& files) { return comparison_headline(files.result); }
+
+Json comparison_view(const ComparisonFiles& files) {
+  Json view = comparison_view(files.result);
+  view["overlays"] = overlays_view(files.curves, names_of_results(files.result));
+  view["has_overlays"] = !view["overlays"].empty();
+  return view;
+}
+
+std::vector<Figure> comparison_figures(const ComparisonFiles& files) {
+  std::vector<Figure> figures = comparison_figures(files.result);
+  for (const auto& [condition, table] : files.curves)
+    for (Figure& figure : overlay_figures(condition, table, names_of_results(files.result)))
+      figures.push_back({"overlay_" + figure.name, std::move(figure.plot)});
+  return figures;
+}
+
+void add_comparison(const ComparisonFiles& files, Part& part) {
+  for (const StoredComparedResult& result : files.result.results) {
+    part.campaign += (part.campaign.empty() ? "" : ", ") + result.name;
+    part.synthetic = part.synthetic || result.synthetic;
+  }
+  const auto has = [&](const char* what) { return part.view["comparison"].at(what).get<bool>(); };
+  part.nav = {{"results", "Results"}, {"estimates", "Parameters"}, {"models", "Models"}};
+  if (has("has_trends")) part.nav.emplace_back("trends", "Trend");
+  if (has("has_conditions")) part.nav.emplace_back("scores", "Scores");
+  if (has("has_overlays")) part.nav.emplace_back("curves", "Curves");
+  part.nav.emplace_back("records", "Records");
 }
 
 }  // namespace rigcal::report

@@ -13,17 +13,16 @@ constexpr double kMillimetres = 1e3;
 constexpr std::size_t kPoints = 1200;  ///< of one line of a picture
 constexpr int kLengthDigits = 3;
 
-const Json* signal_of(const Json& parity, const Json& record) {
-  for (const Json& signal : parity.at("signals"))
-    if (signal.at("signal") == record.at("signal")) return &signal;
+const StoredParitySignal* signal_of(const StoredParity& parity, const std::string& name) {
+  for (const StoredParitySignal& signal : parity.signals)
+    if (signal.signal == name) return &signal;
   return nullptr;
 }
 
 /// What is told of the repeats of one condition together.
 struct Summary {
   std::string condition, level;
-  std::vector<const Json*> records;
-  const Json* signal = nullptr;
+  const StoredParitySignal* signal = nullptr;
   bool healthy = false;
   bool reference = false;  ///< its records set the threshold
   int judged = 0;
@@ -33,27 +32,25 @@ struct Summary {
   std::string failure;
 };
 
-std::vector<Summary> summaries(const Json& parity) {
+std::vector<Summary> summaries(const StoredParity& parity) {
   std::vector<Summary> list;
-  for (const Json& record : parity.at("records")) {
-    const std::string name = text_of(record, "condition");
-    if (list.empty() || list.back().condition != name) {
+  for (const StoredParityRecord& record : parity.records) {
+    if (list.empty() || list.back().condition != record.condition) {
       Summary& fresh = list.emplace_back();
-      fresh.condition = name;
-      fresh.level = text_of(record, "leak_level");
-      fresh.signal = signal_of(parity, record);
-      fresh.healthy = record.at("healthy").get<bool>();
+      fresh.condition = record.condition;
+      fresh.level = record.leak_level.value_or("");
+      fresh.signal = signal_of(parity, record.signal);
+      fresh.healthy = record.healthy;
     }
     Summary& own = list.back();
-    own.records.push_back(&record);
-    if (!text_of(record, "failure").empty()) own.failure = text_of(record, "failure");
-    own.reference = own.reference || record.at("sets_threshold").get<bool>();
-    own.largest_m = std::max(own.largest_m, number_of(record, "peak_m").value_or(0.0));
-    if (!record.at("alarm").is_boolean()) continue;
+    if (record.failure) own.failure = *record.failure;
+    own.reference = own.reference || record.sets_threshold;
+    own.largest_m = std::max(own.largest_m, record.peak_m.value_or(0.0));
+    if (!record.alarm) continue;
     ++own.judged;
-    if (!record.at("alarm").get<bool>()) continue;
+    if (!*record.alarm) continue;
     ++own.alarms;
-    const double at_s = record.at("time_to_alarm_s").get<double>();
+    const double at_s = record.time_to_alarm_s.value_or(0.0);
     own.first_s = std::min(own.first_s.value_or(at_s), at_s);
   }
   return list;
@@ -110,16 +107,15 @@ Plot alarm_plot(const Summary& summary, const Table& series) {
   plot.y_label = "moving rms [mm]";
   plot.height = 160.0;
   add_lines(series, "moving_rms", "model", "each repeat", plot);
-  if (summary.signal != nullptr)
-    if (const auto threshold = number_of(*summary.signal, "threshold_m"))
-      plot.levels.push_back(kMillimetres * *threshold);
+  if (summary.signal != nullptr && summary.signal->threshold_m)
+    plot.levels.push_back(kMillimetres * *summary.signal->threshold_m);
   return plot;
 }
 
-std::string sentence_of(const Json& parity, const std::vector<Summary>& list) {
-  const std::string status = text_of(parity, "status");
-  if (status == "declined") return "These records have no parity residual.";
-  if (status != "done") return "No parity residual could be made: nothing below may be used.";
+std::string sentence_of(const StoredParity& parity, const std::vector<Summary>& list) {
+  if (parity.status == LeakStatus::declined) return "These records have no parity residual.";
+  if (parity.status == LeakStatus::failed)
+    return "No parity residual could be made: nothing below may be used.";
   int judged = 0;
   int alarmed = 0;
   for (const Summary& each : list) {
@@ -130,21 +126,25 @@ std::string sentence_of(const Json& parity, const std::vector<Summary>& list) {
   return fmt::format(
       "{} of {} conditions raise an alarm; a healthy record does with a probability "
       "of {:g} %.",
-      alarmed, judged, 100.0 * parity.at("false_alarm_probability").get<double>());
+      alarmed, judged, 100.0 * parity.false_alarm_probability);
+}
+
+std::string check_sentence(const StoredFalseAlarmCheck& check) {
+  if (check.records == 0)
+    return "No healthy record is left to check the thresholds with: all of them set one.";
+  return fmt::format(
+      "Of {} healthy records that set no threshold {} raise{} an alarm; {:.3g} would be expected.",
+      check.records, check.alarms, check.alarms == 1 ? "s" : "", check.expected.value_or(0.0));
 }
 
 }  // namespace
 
-Json parity_headline(const Json& parity) {
+Json parity_headline(const ParityFiles& stored) {
+  const StoredParity& parity = stored.result;
   const auto list = summaries(parity);
   const std::string sentence = sentence_of(parity, list);
-  if (text_of(parity, "status") != "done") {
-    Json view = make_headline(text_of(parity, "status") == "declined" ? "DECLINED" : "FAILED", "✕",
-                              "bad", sentence);
-    for (const Json& reason : parity.at("reasons"))
-      add_reason(view, reason.get<std::string>(), "parity");
-    return view;
-  }
+  if (parity.status != LeakStatus::done)
+    return headline_without_result(parity.status, sentence, parity.reasons, "parity");
   const bool judged =
       std::any_of(list.begin(), list.end(), [](const Summary& each) { return each.judged > 0; });
   const bool alarm =
@@ -164,7 +164,7 @@ Json parity_headline(const Json& parity) {
 
 std::vector<Figure> parity_figures(const ParityFiles& stored) {
   std::vector<Figure> figures;
-  for (const Summary& each : summaries(stored.parity)) {
+  for (const Summary& each : summaries(stored.result)) {
     const auto series = stored.series.find(each.condition);
     if (series == stored.series.end()) continue;
     figures.push_back({each.condition + "_parity", residual_plot(each, series->second)});
@@ -174,25 +174,28 @@ std::vector<Figure> parity_figures(const ParityFiles& stored) {
 }
 
 Json parity_view(const ParityFiles& stored) {
-  const Json& parity = stored.parity;
+  const StoredParity& parity = stored.result;
   const auto list = summaries(parity);
+  const auto millimetres = [](const std::optional<double>& metres) {
+    return shown_in(metres, 1.0 / kMillimetres, kLengthDigits);
+  };
   Json view;
   view["sentence"] = sentence_of(parity, list);
-  view["done"] = text_of(parity, "status") == "done";
-  view["reasons"] = parity.at("reasons");
-  view["rate"] = fmt::format("{:g}", 100.0 * parity.at("false_alarm_probability").get<double>());
+  view["done"] = parity.status == LeakStatus::done;
+  view["reasons"] = parity.reasons;
+  view["rate"] = fmt::format("{:g}", 100.0 * parity.false_alarm_probability);
   view["conditions"] = Json::array();
   view["pictures"] = Json::array();
   for (const Summary& each : list) {
-    const Json threshold = each.signal == nullptr ? Json() : each.signal->at("threshold_m");
     view["conditions"].push_back(
         {{"condition", each.condition},
          {"level", each.level},
          {"healthy", each.healthy},
          {"badge", alarm_badge(each)},
-         {"largest", shown_in(Json(each.largest_m), 1.0 / kMillimetres, kLengthDigits)},
-         {"threshold", shown_in(threshold, 1.0 / kMillimetres, kLengthDigits)},
-         {"first", shown_in(each.first_s ? Json(*each.first_s) : Json(), 1.0, kLengthDigits)},
+         {"largest", millimetres(each.largest_m)},
+         {"threshold",
+          millimetres(each.signal != nullptr ? each.signal->threshold_m : std::nullopt)},
+         {"first", shown_in(each.first_s, 1.0, kLengthDigits)},
          {"failure", each.failure},
          {"failed", !each.failure.empty()}});
     const auto series = stored.series.find(each.condition);
@@ -204,34 +207,19 @@ Json parity_view(const ParityFiles& stored) {
   }
   view["has_conditions"] = !view["conditions"].empty();
   view["signals"] = Json::array();
-  for (const Json& signal : parity.at("signals")) {
-    const auto millimetres = [&](const Json& value) {
-      return shown_in(value, 1.0 / kMillimetres, kLengthDigits);
-    };
-    const Json& features = signal.at("feature_thresholds");
-    view["signals"].push_back(
-        {{"signal", text_of(signal, "signal")},
-         {"window", shown_in(signal.at("window_s"), 1.0, kLengthDigits)},
-         {"healthy", fmt::format("{}", signal.at("healthy_records").get<int>())},
-         {"threshold", millimetres(signal.at("threshold_m"))},
-         {"mean", millimetres(features.at("mean_m"))},
-         {"rms", millimetres(features.at("rms_m"))},
-         {"std", millimetres(features.at("std_m"))},
-         {"reason", text_of(signal, "reason")}});
+  for (const StoredParitySignal& signal : parity.signals) {
+    view["signals"].push_back({{"signal", signal.signal},
+                               {"window", shown_in(signal.window_s, 1.0, kLengthDigits)},
+                               {"healthy", fmt::format("{}", signal.healthy_records)},
+                               {"threshold", millimetres(signal.threshold_m)},
+                               {"mean", millimetres(signal.feature_thresholds.mean_m)},
+                               {"rms", millimetres(signal.feature_thresholds.rms_m)},
+                               {"std", millimetres(signal.feature_thresholds.std_m)},
+                               {"reason", signal.reason.value_or("")}});
   }
-  const Json& check = parity.at("false_alarm_check");
-  const int checked = check.at("records").get<int>();
-  view["check"] =
-      checked == 0
-          ? std::string(
-                "No healthy record is left to check the thresholds with: all of them set one.")
-          : fmt::format(
-                "Of {} healthy records that set no threshold {} raise{} an alarm; {:.3g} "
-                "would be expected.",
-                checked, check.at("alarms").get<int>(),
-                check.at("alarms").get<int>() == 1 ? "s" : "", check.at("expected").get<double>());
-  view["warnings"] = parity.at("warnings");
-  view["has_warnings"] = !view["warnings"].empty();
+  view["check"] = check_sentence(parity.false_alarm_check);
+  view["warnings"] = parity.warnings;
+  view["has_warnings"] = !parity.warnings.empty();
   return view;
 }
 

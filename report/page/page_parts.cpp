@@ -87,6 +87,14 @@ void add_reason(Json& headline, const std::string& text, const std::string& link
   headline["more"] = headline["more"].get<int>() + 1;
 }
 
+Json headline_without_result(LeakStatus status, const std::string& sentence,
+                             const std::vector<std::string>& reasons, const std::string& link) {
+  Json view =
+      make_headline(status == LeakStatus::declined ? "DECLINED" : "FAILED", "✕", "bad", sentence);
+  for (const std::string& reason : reasons) add_reason(view, reason, link);
+  return view;
+}
+
 std::string grade_words(const std::optional<calib::Identifiability>& grade) {
   if (grade == calib::Identifiability::not_identifiable) return "not identifiable";
   return grade ? std::string(to_string(*grade)) : std::string();

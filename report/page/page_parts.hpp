@@ -13,10 +13,9 @@
 #include "report/store/stored.hpp"
 #include "report/store/table.hpp"
 
-// What the templates of report/page/ show, section by section, from the stored results alone. A
-// function that takes the JSON of a result file throws nlohmann::json::exception where it is not
-// one. Texts are plain: the template engine escapes them. A key that ends in _html holds markup
-// made here.
+// What the templates of report/page/ show, section by section, from the stored results alone.
+// Texts are plain: the template engine escapes them. A key that ends in _html holds markup made
+// here.
 
 namespace rigcal::report {
 
@@ -28,8 +27,6 @@ struct Number {
   Number(const std::optional<double>& number) : value(number) {
     if (value && std::isnan(*value)) value.reset();
   }
-  Number(const Json& json)
-      : value(json.is_number() ? std::optional(json.get<double>()) : std::nullopt) {}
   // NOLINTEND(google-explicit-constructor)
 };
 
@@ -39,10 +36,6 @@ struct Interval {
   // NOLINTBEGIN(google-explicit-constructor): each is such an interval
   Interval(const std::optional<Range>& range) : ends(range) {
     if (ends && !(std::isfinite(ends->low) && std::isfinite(ends->high))) ends.reset();
-  }
-  Interval(const Json& pair) {
-    if (pair.is_array() && pair.at(0).is_number() && pair.at(1).is_number())
-      ends = {pair.at(0).get<double>(), pair.at(1).get<double>()};
   }
   // NOLINTEND(google-explicit-constructor)
   double half_width() const { return 0.5 * (ends->high - ends->low); }
@@ -105,6 +98,10 @@ Json make_headline(const std::string& word, const std::string& mark, const std::
 /// Adds a reason that leads to a section (`link` its id, or empty); only the first three are shown.
 void add_reason(Json& headline, const std::string& text, const std::string& link);
 
+/// The headline of a result that looks for leaks and is not done, with the reasons that it gives.
+Json headline_without_result(LeakStatus status, const std::string& sentence,
+                             const std::vector<std::string>& reasons, const std::string& link);
+
 /// What the campaign states about the test and its report; {"there": false} where nothing.
 ///
 /// @param identity  `report` of a result
@@ -161,21 +158,21 @@ struct Figure {
 std::vector<Figure> condition_figures(const StoredCondition& condition, const Table& series);
 /// Those of the other results, likewise.
 std::vector<Figure> leak_table_figures(const LeakTableFiles& stored);
-std::vector<Figure> diagnosis_figures(const Json& diagnosis);
+std::vector<Figure> diagnosis_figures(const StoredDiagnosis& diagnosis);
 std::vector<Figure> parity_figures(const ParityFiles& stored);
 std::vector<Figure> comparison_figures(const StoredComparison& comparison);
 std::vector<Figure> batch_figures(const StoredBatch& batch);
 
 /// leak_table.json against what was published.
-Json leak_table_headline(const StoredLeakTable& table);
+Json leak_table_headline(const LeakTableFiles& stored);
 Json leak_table_view(const LeakTableFiles& stored);
 
 /// diagnosis.json: classes, their probabilities, and how often they are right.
-Json diagnosis_headline(const Json& diagnosis);
-Json diagnosis_view(const Json& diagnosis);
+Json diagnosis_headline(const StoredDiagnosis& diagnosis);
+Json diagnosis_view(const StoredDiagnosis& diagnosis);
 
 /// parity.json: alarms, thresholds, and the residuals.
-Json parity_headline(const Json& parity);
+Json parity_headline(const ParityFiles& stored);
 Json parity_view(const ParityFiles& stored);
 
 /// comparison.json: estimates, scores and records side by side, and the leak's trend.

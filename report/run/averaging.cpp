@@ -5,8 +5,8 @@
 #include "datasets/prepare/load_record.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/csv.hpp"
+#include "report/store/json.hpp"
 #include "report/store/result_files.hpp"
-#include "report/store/stored_provenance.hpp"
 
 namespace rigcal::report {
 
@@ -26,28 +26,26 @@ std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaig
   return records;
 }
 
-Json write_average(const std::filesystem::path& out, int threads,
-                   const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
-                   Provenance provenance) {
+StoredAverage write_average(const std::filesystem::path& out, int threads,
+                            const datasets::Campaign& campaign,
+                            const std::vector<datasets::Record>& records, Provenance provenance) {
   provenance.inputs = hash_inputs(campaign, records);
-  Json json;
-  json["schema"] = "rigcal.average/1";
-  json["campaign"] = campaign.name;
-  json["synthetic"] = campaign.synthetic;
-  json["records"] = Json::array();
+  StoredAverage average;
+  average.campaign = campaign.name;
+  average.synthetic = campaign.synthetic;
   std::vector<ResultFile> files;
   for (const datasets::Record& record : records) {
     files.push_back(
         {std::filesystem::path("averaged") / (record.condition + ".csv"), averaged_csv(record)});
-    json["records"].push_back(record_json(*campaign.find(record.condition), record));
+    average.records.push_back(stored(*campaign.find(record.condition), record));
   }
   files.push_back({"repeatability.csv", repeatability_csv(records)});
-  json["provenance"] = json_of(stored(provenance));
-  name_files(files, json);
-  files.push_back({"average.json", json_text(json)});
+  average.provenance = stored(provenance);
+  name_files(files, average.provenance);
+  files.push_back({"average.json", json_text(json_of(average))});
   add_page(out, threads, files);
   write_results(out, files, provenance.inputs);
-  return json;
+  return average;
 }
 
 }  // namespace rigcal::report

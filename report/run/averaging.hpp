@@ -6,7 +6,7 @@
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
 #include "report/store/folder.hpp"
-#include "report/store/json.hpp"
+#include "report/store/stored_record.hpp"
 
 namespace rigcal::report {
 
@@ -22,8 +22,8 @@ std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaig
 /// @param provenance  but for the inputs
 /// @return            average.json
 /// @throws WriteError, UsageError  as write_results()
-Json write_average(const std::filesystem::path& out, int threads,
-                   const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
-                   Provenance provenance);
+StoredAverage write_average(const std::filesystem::path& out, int threads,
+                            const datasets::Campaign& campaign,
+                            const std::vector<datasets::Record>& records, Provenance provenance);
 
 }  // namespace rigcal::report

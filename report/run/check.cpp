@@ -8,23 +8,34 @@
 
 #include "datasets/checks/short_records.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "report/store/stored_record.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {
+namespace {
+
+/// What `check --json` prints.
+struct StoredCheck {
+  std::string campaign;
+  bool synthetic = false;
+  std::vector<StoredRecord> records;
+  std::vector<std::string> without_record;
+  RIGCAL_DESCRIBE(campaign, synthetic, records, without_record)
+};
+
+}  // namespace
 
 Check check(const datasets::Campaign& campaign, const std::function<void(datasets::Record)>& keep) {
-  Json json;
-  json["campaign"] = campaign.name;
-  json["synthetic"] = campaign.synthetic;
-  json["records"] = Json::array();
-  json["without_record"] = Json::array();
+  StoredCheck told;
+  told.campaign = campaign.name;
+  told.synthetic = campaign.synthetic;
   std::vector<std::string> texts;               // per condition
   std::vector<datasets::RecordLength> lengths;  // of those with a record
   std::vector<std::size_t> places;              // of these, in `texts`
   for (const datasets::Condition& condition : campaign.conditions) {
     if (!condition.has_record()) {
       texts.push_back(fmt::format("{}: {}, no record\n", condition.id, to_string(condition.use)));
-      json["without_record"].push_back(condition.id);
+      told.without_record.push_back(condition.id);
       continue;
     }
     // One record at a time is in memory.
@@ -32,18 +43,18 @@ Check check(const datasets::Campaign& campaign, const std::function<void(dataset
     lengths.push_back({&condition, datasets::seconds_of(record)});
     places.push_back(texts.size());
     texts.push_back(record_text(condition, record));
-    json["records"].push_back(record_json(condition, record));
+    told.records.push_back(stored(condition, record));
     if (keep) keep(std::move(record));
   }
   const std::vector<std::string> warnings = datasets::short_records(lengths);
   for (std::size_t i = 0; i < warnings.size(); ++i) {
     if (warnings[i].empty()) continue;
     texts[places[i]] += fmt::format("  warning: {}\n", warnings[i]);
-    json["records"][i]["warnings"].push_back(warnings[i]);
+    told.records[i].warnings.push_back(warnings[i]);
   }
   std::string text = fmt::format("{}", fmt::join(texts, ""));
   if (campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
-  return {std::move(text), std::move(json)};
+  return {std::move(text), json_of(told)};
 }
 
 }  // namespace rigcal::report

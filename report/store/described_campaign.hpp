@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "datasets/campaign/campaign.hpp"
+#include "datasets/campaign/diagnosis_settings.hpp"
 #include "report/json/described.hpp"
 
 // The enumerations of a campaign, as results name them.
@@ -14,6 +15,19 @@ inline std::vector<datasets::Waveform> every() {
   std::vector<datasets::Waveform> all;
   for (const auto& [name, waveform] : datasets::waveforms()) all.push_back(waveform);
   return all;
+}
+template <>
+inline std::vector<datasets::Scope> every() {
+  return {datasets::Scope::rig, datasets::Scope::leak_level, datasets::Scope::condition};
+}
+template <>
+inline std::vector<datasets::Use> every() {
+  using datasets::Use;
+  return {Use::fit, Use::validate, Use::diagnose, Use::ignore};
+}
+template <>
+inline std::vector<datasets::LeakClass> every() {
+  return {datasets::kLeakClasses.begin(), datasets::kLeakClasses.end()};
 }
 
 }  // namespace rigcal::report

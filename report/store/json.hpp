@@ -17,23 +17,11 @@ namespace rigcal::report {
 /// Keeps the order in which keys are put in.
 using Json = nlohmann::ordered_json;
 
-/// A number, or null where it is not finite: JSON knows neither NaN nor infinity.
-Json number(double value);
-Json number(const std::optional<double>& value);
-/// A list of such.
-Json numbers(const std::vector<double>& values);
-
-/// `correlation` of a result: names of the estimates and the matrix, shape (names)^2.
-Json correlation_json(const std::vector<std::string>& names, const Eigen::MatrixXd& correlation);
-
 /// Text of a JSON file: two blanks of indentation, final newline, numbers that read back to the
 /// same bits. Bytes that are not UTF-8 are replaced.
 std::string json_text(const Json& json);
 /// The same on one line.
 std::string json_line(const Json& json);
-
-/// A record as `check` and `average` tell of it: sampling, repeats, noise of each channel.
-Json record_json(const datasets::Condition& condition, const datasets::Record& record);
 
 /// The parameter table of a plant.
 Json parameters_json(model::PlantKind plant);

@@ -16,12 +16,6 @@ std::string planned_name(const datasets::Campaign& campaign,
   return parameter.level.empty() ? std::string(key) : fmt::format("{} ({})", key, parameter.level);
 }
 
-Json deviations(const std::vector<std::optional<double>>& values) {
-  Json list = Json::array();
-  for (const auto& value : values) list.push_back(number(value));
-  return list;
-}
-
 std::string percent_or_dash(const std::optional<double>& sd, double value) {
   if (!sd || value == 0.0) return "-";
   return fmt::format("{:.3g}", 100.0 * *sd / std::abs(value));
@@ -37,41 +31,29 @@ void add_plan_row(TextTable& table, const std::string& label, const calib::Plan&
 
 }  // namespace
 
-Json plan_json(const datasets::Campaign& campaign, const calib::Plan& plan,
-               const Provenance& provenance) {
+std::string StoredPlannedParameter::label() const {
+  return level ? fmt::format("{} ({})", name, *level) : name;
+}
+
+StoredPlan stored(const datasets::Campaign& campaign, const calib::Plan& plan,
+                  const Provenance& provenance) {
   const auto table = model::parameter_table(campaign.rig.plant);
-  Json json;
-  json["schema"] = "rigcal.plan/1";
-  json["campaign"] = campaign.name;
-  json["parameters"] = Json::array();
+  StoredPlan file;
+  file.campaign = campaign.name;
   for (std::size_t j = 0; j < plan.parameters.size(); ++j) {
     const calib::FittedParameter& p = plan.parameters[j];
     const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
-    Json entry;
-    entry["name"] = std::string(spec.name);
-    entry["unit"] = std::string(spec.unit);
-    entry["scope"] = std::string(to_string(p.scope));
-    entry["level"] = p.level.empty() ? Json(nullptr) : Json(p.level);
-    entry["nuisance"] = p.nuisance;
-    entry["value"] = number(p.value);
-    entry["sd_recorded"] = number(plan.recorded[j]);
-    entry["sd_all"] = number(plan.all[j]);
-    entry["remedy"] = plan.remedies[j].empty() ? Json(nullptr) : Json(plan.remedies[j]);
-    json["parameters"].push_back(std::move(entry));
+    file.parameters.push_back({std::string(spec.name), std::string(spec.unit), p.scope,
+                               unless_empty(p.level), p.nuisance, p.value, plan.recorded[j],
+                               plan.all[j], unless_empty(plan.remedies[j])});
   }
-  json["records"] = Json::array();
   for (const calib::PlannedRecord& record : plan.records) {
-    Json entry;
-    entry["condition"] = record.condition;
-    entry["recorded"] = record.recorded;
-    entry["problem"] = record.problem.empty() ? Json(nullptr) : Json(record.problem);
-    entry["sd_alone"] = deviations(record.alone);
-    entry["sd_without"] = deviations(record.without);
-    json["records"].push_back(std::move(entry));
+    file.records.push_back({record.condition, record.recorded, unless_empty(record.problem),
+                            record.alone, record.without});
   }
-  json["messages"] = plan.messages;
-  json["provenance"] = json_of(stored(provenance));
-  return json;
+  file.messages = plan.messages;
+  file.provenance = stored(provenance);
+  return file;
 }
 
 std::string plan_text(const datasets::Campaign& campaign, const calib::Plan& plan,

@@ -3,14 +3,12 @@
 #include <string>
 
 #include "calib/trust/plan.hpp"
-#include "report/store/json.hpp"
-#include "report/store/stored_provenance.hpp"
+#include "report/store/stored_plan.hpp"
 
 namespace rigcal::report {
 
-/// plan.json (docs/command-line.md).
-Json plan_json(const datasets::Campaign& campaign, const calib::Plan& plan,
-               const Provenance& provenance);
+StoredPlan stored(const datasets::Campaign& campaign, const calib::Plan& plan,
+                  const Provenance& provenance);
 
 /// Table of relative standard deviations per record, and what is wanting, for the terminal.
 ///

@@ -18,23 +18,6 @@ std::vector<InputFile> hashed(const std::vector<ResultFile>& files) {
   return named;
 }
 
-ReadFile only(const ReadFile& read, const std::vector<InputFile>& named, const std::string& where,
-              const std::string& file) {
-  return [&read, named, where, file](const std::filesystem::path& path) {
-    auto text = read(path);
-    const auto found = std::find_if(named.begin(), named.end(), [&](const InputFile& each) {
-      return each.path == path.generic_string();
-    });
-    if (text && found != named.end() && sha256_of_text(*text) != found->sha256)
-      throw InputError(
-          {(std::filesystem::path(where) / path).string()},
-          fmt::format("is not the file that {} was written with: it is of another run, "
-                      "or was changed; make the result again",
-                      file));
-    return text;
-  };
-}
-
 }  // namespace
 
 void name_files(std::vector<InputFile> named, const std::vector<ResultFile>& files,
@@ -47,22 +30,22 @@ void name_files(const std::vector<ResultFile>& files, StoredProvenance& provenan
   name_files({}, files, provenance);
 }
 
-void name_files(const std::vector<ResultFile>& files, Json& result) {
-  result["provenance"]["files"] = json_of(hashed(files));
-}
-
 ReadFile files_of_run(const ReadFile& read, const StoredProvenance& provenance,
                       const std::string& where, const std::string& file) {
-  return only(read, provenance.files.value_or(std::vector<InputFile>()), where, file);
-}
-
-ReadFile files_of_run(const ReadFile& read, const Json& result, const std::string& where,
-                      const std::string& file) {
-  std::vector<InputFile> named;
-  const auto provenance = result.find("provenance");
-  if (provenance != result.end() && provenance->contains("files"))
-    read_into(JsonNode(provenance->at("files"), file, "provenance.files", file), named);
-  return only(read, named, where, file);
+  return [&read, named = provenance.files.value_or(std::vector<InputFile>()), where,
+          file](const std::filesystem::path& path) {
+    auto text = read(path);
+    const auto found = std::find_if(named.begin(), named.end(), [&](const InputFile& each) {
+      return each.path == path.generic_string();
+    });
+    if (text && found != named.end() && sha256_of_text(*text) != found->sha256)
+      throw InputError(
+          {(std::filesystem::path(where) / path).string()},
+          fmt::format("is not the file that {} was written with: it is of another run, "
+                      "or was changed; make the result again",
+                      file));
+    return text;
+  };
 }
 
 }  // namespace rigcal::report

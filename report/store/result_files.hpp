@@ -1,6 +1,5 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -17,7 +16,6 @@ void name_files(const std::vector<ResultFile>& files, StoredProvenance& provenan
 /// @param named  of files that are written already, which come first
 void name_files(std::vector<InputFile> named, const std::vector<ResultFile>& files,
                 StoredProvenance& provenance);
-void name_files(const std::vector<ResultFile>& files, Json& result);
 
 /// Reads the files of a result's own run.
 ///
@@ -28,7 +26,5 @@ void name_files(const std::vector<ResultFile>& files, Json& result);
 /// @return        throws InputError where a file is not the one that the result names
 ReadFile files_of_run(const ReadFile& read, const StoredProvenance& provenance,
                       const std::string& where, const std::string& file);
-ReadFile files_of_run(const ReadFile& read, const Json& result, const std::string& where,
-                      const std::string& file);
 
 }  // namespace rigcal::report

@@ -37,6 +37,12 @@ void require_id(const std::string& id, const char* key, const std::string& file)
                                        id.substr(0, 40), datasets::condition_id_rule()));
 }
 
+void require_length(std::size_t found, std::size_t expected, const char* list,
+                    const std::string& file) {
+  if (found == expected) return;
+  throw InputError({file}, fmt::format("{}: found {} entries, expected {}", list, found, expected));
+}
+
 }  // namespace
 
 ReadFile files_in(const std::filesystem::path& folder) {
@@ -99,8 +105,8 @@ std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read
 
 LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
   LeakTableFiles stored{load<StoredLeakTable>(read, where, "leak_table.json"), {}};
-  const ReadFile own = files_of_run(read, stored.table.provenance, where, "leak_table.json");
-  for (const StoredFeatures& feature : stored.table.features) {
+  const ReadFile own = files_of_run(read, stored.result.provenance, where, "leak_table.json");
+  for (const StoredFeatures& feature : stored.result.features) {
     const std::string name = "levels/" + level_file(feature.level);
     if (const auto series = own(name))
       stored.levels.emplace_back(feature.level, parse_table(*series, path_in(where, name)));
@@ -109,18 +115,49 @@ LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where) {
 }
 
 ParityFiles load_parity(const ReadFile& read, const std::string& where) {
-  ParityFiles stored;
-  stored.parity = load_json(read, where, "parity.json");
-  const ReadFile own = files_of_run(read, stored.parity, where, "parity.json");
-  for (const Json& record : stored.parity.at("records")) {
-    const std::string condition = text_of(record, "condition");
-    require_id(condition, "condition", path_in(where, "parity.json"));
-    if (stored.series.contains(condition)) continue;
-    const std::string name = "parity/" + condition + ".csv";
+  ParityFiles stored{load<StoredParity>(read, where, "parity.json"), {}};
+  const ReadFile own = files_of_run(read, stored.result.provenance, where, "parity.json");
+  for (const StoredParityRecord& record : stored.result.records) {
+    require_id(record.condition, "condition", path_in(where, "parity.json"));
+    if (stored.series.contains(record.condition)) continue;
+    const std::string name = "parity/" + record.condition + ".csv";
     if (const auto series = own(name))
-      stored.series.emplace(condition, parse_table(*series, path_in(where, name)));
+      stored.series.emplace(record.condition, parse_table(*series, path_in(where, name)));
   }
   return stored;
+}
+
+StoredDiagnosis load_diagnosis(const ReadFile& read, const std::string& where) {
+  auto diagnosis = load<StoredDiagnosis>(read, where, "diagnosis.json");
+  for (const StoredClassLimit& limit : diagnosis.class_limits) {
+    require_length(limit.coefficients_ci95.size(), limit.coefficients.size(),
+                   "coefficients_ci95 of class_limits", path_in(where, "diagnosis.json"));
+  }
+  return diagnosis;
+}
+
+AverageFiles load_average(const ReadFile& read, const std::string& where) {
+  AverageFiles stored{load<StoredAverage>(read, where, "average.json"), {}};
+  const ReadFile own = files_of_run(read, stored.result.provenance, where, "average.json");
+  for (const StoredRecord& record : stored.result.records) {
+    require_id(record.condition, "condition", path_in(where, "average.json"));
+    const std::string name = "averaged/" + record.condition + ".csv";
+    const auto text = own(name);
+    stored.series.push_back(text ? parse_table(*text, path_in(where, name)) : Table{});
+  }
+  return stored;
+}
+
+StoredPlan load_plan(const ReadFile& read, const std::string& where) {
+  auto plan = load<StoredPlan>(read, where, "plan.json");
+  for (StoredPlannedRecord& record : plan.records) {
+    for (auto* list : {&record.sd_alone, &record.sd_without}) {
+      if (list->empty()) list->resize(plan.parameters.size());  // nothing is known of the record
+      require_length(list->size(), plan.parameters.size(), "sd_alone or sd_without of a record",
+                     path_in(where, "plan.json"));
+    }
+  }
+  return plan;
 }
 
 std::string plain_name(const std::string& text) {

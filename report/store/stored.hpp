@@ -11,8 +11,12 @@
 #include <variant>
 #include <vector>
 
+#include "report/store/stored_diagnosis.hpp"
 #include "report/store/stored_fit.hpp"
 #include "report/store/stored_leak_table.hpp"
+#include "report/store/stored_parity.hpp"
+#include "report/store/stored_plan.hpp"
+#include "report/store/stored_record.hpp"
 #include "report/store/stored_tables_fit.hpp"
 #include "report/store/table.hpp"
 
@@ -53,17 +57,28 @@ std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read
 
 /// A leak table, and the series of its features by level.
 struct LeakTableFiles {
-  StoredLeakTable table;
+  StoredLeakTable result;
   std::vector<std::pair<std::string, Table>> levels;
 };
 LeakTableFiles load_leak_table(const ReadFile& read, const std::string& where);
 
 /// Parity residuals, and the series of each condition, by its id.
 struct ParityFiles {
-  Json parity;
+  StoredParity result;
   std::map<std::string, Table> series;
 };
 ParityFiles load_parity(const ReadFile& read, const std::string& where);
+
+StoredDiagnosis load_diagnosis(const ReadFile& read, const std::string& where);
+
+/// An average, and the mean of each record, shape (records); empty where it is missing.
+struct AverageFiles {
+  StoredAverage result;
+  std::vector<Table> series;
+};
+AverageFiles load_average(const ReadFile& read, const std::string& where);
+
+StoredPlan load_plan(const ReadFile& read, const std::string& where);
 
 /// A result in JSON, whose schema is that of the name of its file.
 Json load_json(const ReadFile& read, const std::string& where, const std::string& name);

@@ -18,10 +18,6 @@ namespace {
 
 using datasets::Scope;
 
-std::optional<std::string> unless_empty(const std::string& text) {
-  return text.empty() ? std::nullopt : std::optional(text);
-}
-
 Range range_of(const std::pair<double, double>& ends) { return {ends.first, ends.second}; }
 
 std::optional<Range> range_of(const std::optional<std::pair<double, double>>& ends) {

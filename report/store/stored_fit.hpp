@@ -11,6 +11,7 @@
 #include "report/store/described_campaign.hpp"
 #include "report/store/result.hpp"
 #include "report/store/stored_provenance.hpp"
+#include "report/store/stored_record.hpp"
 #include "report/store/stored_residual_tests.hpp"
 
 // fit.json and validation.json, as docs/command-line.md describes them. SI; a name ends in its
@@ -23,15 +24,6 @@ inline std::vector<model::PlantKind> every() {
   std::vector<model::PlantKind> all;
   for (const std::string& name : model::plant_names()) all.push_back(*model::plant_from_name(name));
   return all;
-}
-template <>
-inline std::vector<datasets::Scope> every() {
-  return {datasets::Scope::rig, datasets::Scope::leak_level, datasets::Scope::condition};
-}
-template <>
-inline std::vector<datasets::Use> every() {
-  using datasets::Use;
-  return {Use::fit, Use::validate, Use::diagnose, Use::ignore};
 }
 template <>
 inline std::vector<datasets::DecisionRule> every() {
@@ -239,11 +231,6 @@ struct StoredScore : StoredAgreement {
     visit("delay_s", self.delay_s);
     visit("problem", self.problem);
   }
-};
-
-struct StoredNoiseFloor {
-  double rho2 = 0.0, ccc = 0.0, absolute_error_percent = 0.0;
-  RIGCAL_DESCRIBE(rho2, ccc, absolute_error_percent)
 };
 
 struct StoredCondition {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/apps/cli_fixture.hpp"
+#include "tests/apps/schema.hpp"
 #include "tests/report/stored_fixture.hpp"
 
 using namespace rigcal::test;
@@ -453,6 +454,7 @@ TEST_CASE("average: mean, sd and count, and the repeatability", "[apps]") {
              Contains("noise_floor_rho2") && Contains("\nsine,position,m,2,"));
   const json average = json::parse(folder.read("out/average.json"));
   CHECK(average["schema"] == "rigcal.average/1");
+  CHECK(violations(average, "average") == "");
   CHECK(average["records"].size() == 2);
   const std::string page = folder.read("out/report.html");
   CHECK_THAT(page, Contains("id=\"repeatability\"") && Contains("mean and standard deviation"));

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/cli_fixture.hpp"
+#include "tests/apps/schema.hpp"
 
 namespace rigcal::test {
 namespace {
@@ -29,6 +30,7 @@ use = "fit"
   CAPTURE(outcome.err);
   REQUIRE(outcome.exit_code == 0);
   const auto json = nlohmann::json::parse(folder.read("out/plan.json"));
+  CHECK(violations(json, "plan") == "");
   REQUIRE(json["records"].size() == 3);
   CHECK(json["records"][2]["recorded"] == false);
   REQUIRE(json["parameters"].size() == 2);

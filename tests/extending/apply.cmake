@@ -1,7 +1,7 @@
 # Lays an example of docs/extending over the sources: cmake -DROOT=... -DEXAMPLE=... -DTREE=... -DGIT=... -P apply.cmake
 # TREE then holds the example's own files and changed copies of those that its patch touches, of which there may be two.
 file(REMOVE_RECURSE ${TREE})
-file(GLOB_RECURSE own RELATIVE ${EXAMPLE} ${EXAMPLE}/*.hpp ${EXAMPLE}/*.cpp)
+file(GLOB_RECURSE own RELATIVE ${EXAMPLE} ${EXAMPLE}/*.hpp ${EXAMPLE}/*.cpp ${EXAMPLE}/*.html)
 foreach(file IN LISTS own)
   if(EXISTS ${ROOT}/${file})
     message(FATAL_ERROR "${EXAMPLE}/${file} would replace a file of the sources: say in change.patch what changes in it")

@@ -1,5 +1,6 @@
 """What the examples of docs/extending add is there and right. usage: examples_test.py RIGCAL EXAMPLES EXAMPLE"""
 import csv
+import json
 import math
 import pathlib
 import shutil
@@ -16,7 +17,8 @@ class Example(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
-        shutil.copy(EXAMPLES / EXAMPLE / "campaign.toml", self.folder)
+        for file in [*(EXAMPLES / EXAMPLE).glob("*.toml"), *(EXAMPLES / EXAMPLE).glob("*.json")]:
+            shutil.copy(file, self.folder)
 
     def run_rigcal(self, *arguments):
         return subprocess.run([RIGCAL, *arguments], cwd=self.folder, capture_output=True, text=True, check=False)
@@ -94,7 +96,41 @@ class Dat(Example):
         self.assertIn("run_1.dat:52:1: 'none' in column 'x_mm' is not a finite number", done.stderr)
 
 
+class Service(Example):
+    def test_is_on_the_page_and_among_the_figures(self):
+        done = self.run_rigcal("report", ".", "--figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = (self.folder / "report.html").read_text(encoding="utf-8")
+        for part in ["<title>SERVICED – shake table – Service</title>", '<a href="#service">Service</a>',
+                     "Last on 2026-02-17, at 655.5 h: oil changed &amp; filtered.", "service_log --rig 7"]:
+            self.assertIn(part, page)
+        self.assertTrue((self.folder / "figures" / "service.svg").exists())
+
+    def test_is_refused_with_its_key(self):
+        text = (self.folder / "service.json").read_text(encoding="utf-8")
+        (self.folder / "service.json").write_text(text.replace("655.5", '"many"'), encoding="utf-8")
+        done = self.run_rigcal("report", ".")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("key 'entries[1].operating_hours': found \"many\"", done.stderr)
+
+    def test_is_named_where_there_is_nothing(self):
+        (self.folder / "service.json").unlink()
+        self.assertIn("plan.json or service.json; expected a result folder", self.run_rigcal("report", ".").stderr)
+
+
+class MeanError(Example):
+    def test_is_computed_stored_and_shown(self):
+        told = json.loads(self.run_rigcal().stdout)
+        self.assertEqual(told["scores"]["mean_error_percent"], 5.0)
+        self.assertEqual(told["scores"]["rho2"], 1.0)  # which is blind to it
+        self.assertIn("mean_error_percent", told["schema"]["required"])
+        self.assertEqual(told["titles"][-1]["title"], "Mean error %")
+        self.assertEqual(told["cells"][-1], {"exact": "5", "text": "5"})
+        self.assertEqual(len(told["titles"]), len(told["cells"]))
+
+
 if __name__ == "__main__":
-    suite = {"triangle": Triangle, "first_order": FirstOrder, "dat": Dat}[EXAMPLE]
+    suite = {"triangle": Triangle, "first_order": FirstOrder, "dat": Dat, "service": Service,
+             "mean_error": MeanError}[EXAMPLE]
     result = unittest.TextTestRunner().run(unittest.defaultTestLoader.loadTestsFromTestCase(suite))
     sys.exit(0 if result.wasSuccessful() and result.testsRun > 0 else 1)

@@ -1,10 +1,13 @@
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "common/error.hpp"
 #include "report/comparison/comparison.hpp"
 #include "report/json/read_json.hpp"
 #include "report/leak/read_leak_table.hpp"
 #include "report/page/page.hpp"
+#include "report/page/section.hpp"
 #include "report/store/json.hpp"
 #include "tests/fuzz/fuzz.hpp"
 #include "tests/report/stored_fixture.hpp"
@@ -38,14 +41,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     read_or_refuse([&] { read_truth(file, plant); });
     read_or_refuse([&] { read_leak_table(file, plant); });
   }
-  for (const std::string kind :
-       {"fit.json", "residual_tests.json", "leak_table.json", "diagnosis.json", "parity.json",
-        "comparison.json", "batch.json", "average.json", "plan.json"}) {
+  std::vector<std::string> kinds{"residual_tests.json"};
+  for (const Section& section : sections())
+    kinds.insert(kinds.end(), section.files.begin(), section.files.end());
+  for (const std::string& kind : kinds) {
     const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
       if (path == kind) return text;
       // What lies beside what is read is whole.
       if (path == "fit.json" && kind == "residual_tests.json") return test::stored_result().dump();
-      if (path == "residual_tests.json" && kind == "fit.json") return test::kNoCurves;
+      if (path == "residual_tests.json" && (kind == "fit.json" || kind == "validation.json"))
+        return test::kNoCurves;
       if (path.extension() == ".csv") return "time_s,position_residual_m\n0,1\n";
       return std::nullopt;
     };

@@ -25,6 +25,7 @@ TEST_CASE("kMetrics: names as in the results, unit at the end of the name", "[me
     CAPTURE(metric.name);
     CHECK(metric.name.ends_with("_percent") == (metric.unit == "%"));
     CHECK(std::set<std::string_view>{"1", "%", "channel"}.count(metric.unit) == 1);
+    CHECK_FALSE(metric.title.empty());
     CHECK_FALSE(metric.formula.empty());
     CHECK(metric.formula.find('\n') == std::string_view::npos);
   }

@@ -15,14 +15,15 @@ ExitCode run_average(const CampaignOptions& options, const Invocation& invocatio
   const datasets::Campaign campaign = load(options);
   const report::HeldFolder held(options.out);
   const std::vector<datasets::Record> records = report::averaged_records(campaign);
-  const report::Json json = report::write_average(options.out, options.threads, campaign, records,
-                                                  {invocation.command, 1, recorded(options), {}});
+  const report::StoredAverage average =
+      report::write_average(options.out, options.threads, campaign, records,
+                            {invocation.command, 1, recorded(options), {}});
   std::string text = report::repeatability_text(campaign, records, terminal_style());
   text +=
       fmt::format("files: {} {} {} {}\n", (options.out / "average.json").string(),
                   (options.out / "repeatability.csv").string(),
                   (options.out / "averaged" / "").string(), (options.out / "report.html").string());
-  print(options.print, text, json);
+  print(options.print, text, report::json_of(average));
   return ExitCode::done;
 }
 

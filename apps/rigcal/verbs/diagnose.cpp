@@ -17,6 +17,7 @@
 #include "report/leak/diagnosis.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/json.hpp"
 #include "report/store/validity.hpp"
 
 namespace rigcal::app {
@@ -122,7 +123,7 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
 }
 
 ExitCode write_diagnosis(const DiagnoseRequest& options, const report::DiagnosisResult& result) {
-  const report::Json json = report::diagnosis_json(result);
+  const report::Json json = report::json_of(report::stored(result));
   std::vector<report::ResultFile> files{{"diagnosis.csv", report::diagnosis_csv(result)},
                                         {"diagnosis.json", report::json_text(json)}};
   add_page(options.common.out, options.common.threads, files);
@@ -133,7 +134,8 @@ ExitCode write_diagnosis(const DiagnoseRequest& options, const report::Diagnosis
                   (options.common.out / "diagnosis.csv").string(),
                   (options.common.out / "report.html").string());
   print(options.common.print, text, json);
-  return report::status_of(result) == "done" ? ExitCode::done : ExitCode::no_result;
+  return report::status_of(result) == report::LeakStatus::done ? ExitCode::done
+                                                               : ExitCode::no_result;
 }
 
 ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocation) {

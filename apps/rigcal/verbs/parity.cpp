@@ -27,10 +27,11 @@ struct ParityRequest {
 };
 
 ExitCode write_parity(const ParityRequest& options, const report::ParityResult& result) {
-  report::Json json = report::parity_json(result);
+  report::StoredParity parity = report::stored(result);
   std::vector<report::ResultFile> files = report::parity_series(result);
   files.push_back({"parity.csv", report::parity_csv(result)});
-  report::name_files(files, json);
+  report::name_files(files, parity.provenance);
+  const report::Json json = report::json_of(parity);
   files.push_back({"parity.json", report::json_text(json)});
   add_page(options.common.out, options.common.threads, files);
   report::write_results(options.common.out, files, result.provenance.inputs);
@@ -41,7 +42,8 @@ ExitCode write_parity(const ParityRequest& options, const report::ParityResult& 
                   (options.common.out / "parity/").string(),
                   (options.common.out / "report.html").string());
   print(options.common.print, text, json);
-  return report::status_of(result) == "done" ? ExitCode::done : ExitCode::no_result;
+  return report::status_of(result) == report::LeakStatus::done ? ExitCode::done
+                                                               : ExitCode::no_result;
 }
 
 ExitCode run_parity(const ParityRequest& options, const Invocation& invocation) {

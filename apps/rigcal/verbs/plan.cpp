@@ -10,6 +10,7 @@
 #include "datasets/prepare/load_record.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
+#include "report/store/json.hpp"
 #include "report/store/plan.hpp"
 
 namespace rigcal::app {
@@ -40,7 +41,7 @@ ExitCode run_plan(const PlanRequest& options, const Invocation& invocation) {
                                       report::hash_inputs(campaign, records, more_inputs)};
   const calib::Plan plan =
       calib::plan(campaign, records, earlier ? &earlier->values : nullptr, options.common.threads);
-  const report::Json json = report::plan_json(campaign, plan, provenance);
+  const report::Json json = report::json_of(report::stored(campaign, plan, provenance));
   std::vector<report::ResultFile> files{{"plan.json", report::json_text(json)}};
   add_page(options.common.out, options.common.threads, files);
   report::write_results(options.common.out, files, provenance.inputs);

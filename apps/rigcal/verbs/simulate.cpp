@@ -57,7 +57,7 @@ report::Json json_of(const SimulationTask& task, const model::Simulation& simula
   json["samples"] = task.time_s.size();
   json["steps"] = simulation.steps;
   json["failed_at_s"] =
-      simulation.ok() ? report::Json(nullptr) : report::number(simulation.failed_at_s);
+      simulation.ok() ? report::Json(nullptr) : report::json_of(simulation.failed_at_s);
   json["reason"] = simulation.ok() ? report::Json(nullptr) : report::Json(simulation.reason);
   return json;
 }

@@ -37,13 +37,6 @@ std::vector<double> counted(const std::vector<double>& values, const std::vector
   return kept;
 }
 
-double largest_size(std::span<const double> values) {
-  double result = 0.0;
-  for (const double value : values)
-    if (std::isfinite(value)) result = std::max(result, std::abs(value));
-  return result;
-}
-
 bool all_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
@@ -126,8 +119,7 @@ Response response_of(std::optional<double> frequency_hz, const Table& series,
     return {{}, "Gain and phase: not told of signals with gaps."};
   ResponseCurves curves;
   curves.of = fmt::format("{} over {}", spaced(std::string(about.key)), drive->name);
-  set_gain_unit(curves, about.unit, drive->unit, largest_size(cut(measured)),
-                largest_size(cut(*input)));
+  set_gain_unit(curves, about.unit, drive->unit, largest(cut(measured)), largest(cut(*input)));
   const auto step = equal_steps(cut(*time_s));
   if (!step) return {{}, "Gain and phase: the samples are not equidistant."};
   if (frequency_hz) {
@@ -185,7 +177,7 @@ std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
     ChannelAgreement found;
     found.channel = std::string(about.key);
     const std::string words = spaced(found.channel);
-    const ReadableUnit both = readable_unit(std::max(largest_size(y), largest_size(s)), about.unit);
+    const ReadableUnit both = readable_unit(std::max(largest(y), largest(s)), about.unit);
     const ReadableUnit rest = readable_unit(moments.sd, about.unit);
     const auto name_of = [](const ReadableUnit& unit) {
       return std::string(unit.name.empty() ? "1" : unit.name);

@@ -4,6 +4,7 @@
 
 #include "report/figure/time_plots.hpp"
 #include "report/page/calibration/page_agreement_figures.hpp"
+#include "report/page/calibration/score_columns.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
@@ -18,33 +19,19 @@ const StoredAgreement* uncertainty_of(const StoredCondition& condition,
   return found != nullptr && found->has_value() ? &**found : nullptr;
 }
 
+/// Of a table of scores: channel, noise ceiling, gain, phase, delay.
+constexpr std::size_t kOtherColumns = 5;
+
 Json score_rows(const StoredCondition& condition) {
   Json rows = Json::array();
   for (const auto& [channel, scores] : condition.metrics) {
     const std::string_view unit = channel_unit(channel);
     const auto* floor = find(condition.noise_floor, channel);
     const bool has_floor = floor != nullptr && floor->has_value();
-    const StoredAgreement* const uncertainty = uncertainty_of(condition, channel);
-    const auto with = [&](Json score, double metrics::Agreement::*metric, const auto& half) {
-      if (uncertainty != nullptr) score["uncertain"] = {{"half", half(uncertainty->*metric)}};
-      return score;
-    };
-    const auto plain = [](double half) { return shown_in(half, 1.0, 2); };
-    const auto in_unit = [&](double half) { return shown(half, unit, 2); };
-    using metrics::Agreement;
     rows.push_back(
         {{"channel", channel},
          {"badge", badge(condition.verdict_of(channel))},
-         {"rho2", with(shown_agreement(scores.rho2), &Agreement::rho2, plain)},
-         {"r", with(shown_agreement(scores.r), &Agreement::r, plain)},
-         {"ccc", with(shown_agreement(scores.ccc), &Agreement::ccc, plain)},
-         {"error", with(shown_in(scores.absolute_error_percent, 1.0, 4),
-                        &Agreement::absolute_error_percent, plain)},
-         {"fit",
-          with(shown_in(scores.nrmse_fit_percent, 1.0, 5), &Agreement::nrmse_fit_percent, plain)},
-         {"rmse", with(shown(scores.rmse, unit, 4), &Agreement::rmse, in_unit)},
-         {"maximum",
-          with(shown(scores.maximum_error, unit, 4), &Agreement::maximum_error, in_unit)},
+         {"cells", score_cells(scores, uncertainty_of(condition, channel), unit)},
          {"floor", shown_agreement(has_floor ? std::optional((*floor)->rho2) : std::nullopt)},
          {"gain", shown_in(scores.gain_ratio, 1.0, 5)},
          {"phase", shown_in(scores.phase_deg, 1.0, 2)},
@@ -110,6 +97,8 @@ Json condition_view(const StoredCondition& condition, const Table& series,
   view["has_reasons"] = !condition.reasons.empty();
   view["doubts"] = texts_view(condition.warnings);
   view["has_doubts"] = !condition.warnings.empty();
+  view["metrics"] = score_titles();
+  view["score_columns"] = fmt::format("{}", view["metrics"].size() + kOtherColumns);
   view["scores"] = score_rows(condition);
   view["has_scores"] = !view["scores"].empty();
   view["has_uncertainty"] = std::any_of(

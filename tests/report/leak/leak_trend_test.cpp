@@ -62,11 +62,12 @@ TEST_CASE("trend_sentence: none", "[report]") {
         "0.003): -3.0 to 6.0 percentage points of the servo flow in 30 days at sine 1 Hz.");
 }
 
-TEST_CASE("leak_trend_json: shares in percent, dates in words", "[report]") {
-  const auto json = report::leak_trend_json(rising());
-  CHECK(json["share_percent_per_day"] == 0.2);
-  CHECK(json["last_date"] == "2026-03-02");
-  CHECK(json["next_limit"]["class"] == "medium");
-  CHECK(json["next_limit"]["percent"] == 10.0);
-  CHECK(json["next_limit"]["latest"] == "2026-03-28");
+TEST_CASE("leak_trend: shares in percent, dates in words", "[report]") {
+  const report::StoredLeakTrend told = report::stored(rising());
+  CHECK(told.share_percent_per_day == 0.2);
+  CHECK(told.last_date == "2026-03-02");
+  REQUIRE(told.next_limit);
+  CHECK(told.next_limit->class_ == datasets::LeakClass::medium);
+  CHECK(told.next_limit->percent == 10.0);
+  CHECK(told.next_limit->latest == "2026-03-28");
 }

@@ -68,17 +68,21 @@ TEST_CASE("state_sentence: no leak, no verdict, the reference", "[report]") {
   CHECK_THAT(report::state_sentence(state), Contains("healthy reference"));
 }
 
-TEST_CASE("state_json: numbers of a verdict, null without one", "[report]") {
+TEST_CASE("machine_state: numbers of a verdict, nothing without one", "[report]") {
   MachineState state = leaking();
-  const auto json = report::state_json(state);
-  CHECK(json["class"] == "medium");
-  CHECK(json["leak_share_percent"] == 15.0);
-  CHECK(json["leak_area_ci95_m2"][0].get<double>() == Approx(0.45 * 4e-6));
-  CHECK(json["nearest_limit"]["distance_percentage_points"].get<double>() == Approx(5.0));
-  CHECK(json["agreement"]["agree"] == true);
+  const report::StoredState told = report::stored(state);
+  CHECK(told.leak.class_ == datasets::LeakClass::medium);
+  CHECK(told.leak.leak_share_percent == 15.0);
+  CHECK(told.leak_area_ci95_m2->low == Approx(0.45 * 4e-6));
+  CHECK(told.nearest_limit->distance_percentage_points == Approx(5.0));
+  CHECK(told.agreement->agree);
+  const auto json = report::json_of(told);
+  CHECK(json["class"] == "medium");  // among the keys of the state itself
+  CHECK(json["class_probabilities"]["medium"] == 0.98);
   state.failure = "it did not run";
-  const auto failed = report::state_json(state);
+  const auto failed = report::json_of(report::stored(state));
   CHECK(failed["class"].is_null());
+  CHECK(failed["class_probabilities"]["medium"].is_null());
   CHECK(failed["leak_share_percent"].is_null());
   CHECK(failed["nearest_limit"].is_null());
   CHECK(failed["failure"] == "it did not run");

@@ -104,10 +104,17 @@ TEST_CASE("page: what each record tells of each parameter", "[report]") {
   CHECK_THAT(html, Contains("1 of 2 records exist; all together determine 1 of 2 parameters."));
   CHECK_THAT(html, Contains("bulk_modulus_pa is not determined: add a pressure"));
   CHECK_THAT(html, Contains("2 fast (planned)") && Contains("From all records but one (2)"));
-  const auto figures = plan_figures(stored_plan());
+  const auto figures = plan_figures(as<StoredPlan>(stored_plan(), "folder", "plan.json"));
   REQUIRE(figures.size() == 1);  // nothing tells of the other
   REQUIRE(figures[0].plot.traces.size() == 2);
   CHECK(figures[0].plot.traces[0].upper[0] == Approx(25.0));  // (0.4 / 0.8)^2
   CHECK(figures[0].plot.traces[1].upper[0] == Approx(64.0));
   CHECK(figures[0].plot.traces[0].style != figures[0].plot.traces[1].style);
+  // A record of which nothing is known says nothing of any parameter; half a list is none.
+  Json json = stored_plan();
+  json["records"][1]["sd_alone"] = json["records"][1]["sd_without"] = Json::array();
+  CHECK_THAT(page_with("plan.json", json), Contains("2 fast (planned)"));
+  json["records"][1]["sd_alone"] = {0.5};
+  CHECK_THROWS_WITH(page_with("plan.json", json),
+                    Contains("plan.json") && Contains("found 1 entries, expected 2"));
 }

@@ -16,9 +16,10 @@ TEST_CASE("averaging: records of all conditions that are not ignored", "[report]
   REQUIRE(records.size() == 2);
   CHECK(records[1].condition == campaign.conditions[2].id);
   const auto out = rig.folder / "out";
-  const Json json = write_average(out, 1, campaign, records, {"rigcal average", 1, {}, {}});
-  CHECK(json["records"].size() == 2);
-  CHECK(json["provenance"]["files"][0]["path"] == "averaged/" + campaign.conditions[0].id + ".csv");
+  const StoredAverage average =
+      write_average(out, 1, campaign, records, {"rigcal average", 1, {}, {}});
+  CHECK(average.records.size() == 2);
+  CHECK(average.provenance.files->front().path == "averaged/" + campaign.conditions[0].id + ".csv");
   for (const char* file : {"repeatability.csv", "average.json", "report.html"})
     CHECK(std::filesystem::exists(out / file));
   for (datasets::Condition& condition : campaign.conditions) condition.repeats.clear();

@@ -5,8 +5,7 @@
 
 #include "report/batch/batch.hpp"
 #include "report/store/json.hpp"
-#include "report/store/stored_fit.hpp"
-#include "report/store/stored_leak_table.hpp"
+#include "report/store/stored.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace rigcal::report;
@@ -60,7 +59,11 @@ TEST_CASE("schema: files in docs/schema are those of the types", "[report]") {
   check_schema<StoredFit>("result", {{"anyOf",
                                       {{{"properties", {{"starts", {{"minItems", 1}}}}}},
                                        {{"properties", {{"cost", {{"type", "null"}}}}}}}}});
+  check_schema<StoredAverage>("average");
   check_schema<StoredBatch>("batch");
   check_schema<StoredComparison>("comparison");
+  check_schema<StoredDiagnosis>("diagnosis");
   check_schema<StoredLeakTable>("leak_table");
+  check_schema<StoredParity>("parity");
+  check_schema<StoredPlan>("plan");
 }

@@ -1,0 +1,118 @@
+#include "report/leak/diagnosis.hpp"
+#include "report/leak/leak_estimate.hpp"
+#include "report/leak/leak_trend.hpp"
+#include "report/leak/machine_state.hpp"
+#include "report/store/identity.hpp"
+
+namespace rigcal::report {
+namespace {
+
+StoredDiagnosedRecord stored(const diagnosis::RecordDiagnosis& record) {
+  const bool ok = record.fit.ok();
+  const diagnosis::LeakEstimate& e = record.estimate;
+  const auto value = [&](double x) { return ok ? std::optional(x) : std::nullopt; };
+  StoredDiagnosedRecord told;
+  told.condition = record.condition;
+  told.repeat = record.repeat;
+  told.repeats_averaged = record.repeats;
+  told.signal = record.signal;
+  told.reference_repeats = record.reference_repeats;
+  told.is_reference = record.is_reference;
+  if (!ok) told.failure = record.fit.failure;
+  told.leak = report::stored(e, record.leak_class, ok);
+  told.unbounded_leakage_coefficient = value(e.coefficient);
+  told.undecided = !record.leak_class.has_value();
+  if (ok) told.explained_by_leak = !record.unexplained;
+  told.features = {value(record.features.mean), value(record.features.rms),
+                   value(record.features.std)};
+  told.parity_rms_m = value(record.fit.parity_rms_m);
+  told.misfit_rms_m = value(record.fit.misfit_rms_m);
+  told.noise_rms_m = value(record.fit.noise_rms_m);
+  if (ok && e.share > 0.0) told.log_slope = e.share_slope * e.coefficient / e.share;
+  told.class_by_features = record.by_features;
+  told.class_by_features_of_other_signals = record.by_features_of_other_signals;
+  told.true_class = record.truth;
+  if (record.true_share) told.true_share_percent = kInPercent * *record.true_share;
+  told.warnings = record.warnings;
+  return told;
+}
+
+StoredAccuracy stored(const diagnosis::Accuracy& accuracy) {
+  StoredAccuracy told;
+  told.records = accuracy.records;
+  told.conditions = accuracy.conditions;
+  told.right = accuracy.right;
+  told.undecided = accuracy.undecided;
+  told.off_by_two_or_more = accuracy.off_by_two;
+  if (accuracy.records > 0) {
+    told.accuracy = accuracy.accuracy;
+    told.accuracy_ci95 = scaled(accuracy.ci95);
+  }
+  StoredConfusion& confusion = told.confusion;
+  for (std::size_t i = 0; i < StoredConfusion::kClasses; ++i)
+    confusion.truth[i] = confusion.found[i] = to_string(datasets::kLeakClasses[i]);
+  confusion.found.back() = "undecided";
+  confusion.counts = accuracy.confusion;
+  return told;
+}
+
+StoredSmallestLeak stored(const diagnosis::SignalDiagnosis& signal) {
+  const auto flow = [](const std::optional<diagnosis::DetectionLimit>& limit) {
+    return limit ? std::optional(kLitresPerMinute * limit->leak_flow_m3_per_s) : std::nullopt;
+  };
+  StoredSmallestLeak told;
+  told.signal = signal.signal;
+  told.repeats_averaged = signal.repeats;
+  told.averaged = flow(signal.smallest_leak);
+  told.single = flow(signal.smallest_single_leak);
+  if (const auto& limit = signal.smallest_leak)
+    told.averaged_share_percent = kInPercent * limit->share;
+  told.repeat_sd_m = signal.errors.repeat_m;
+  told.healthy_leak_m = signal.errors.healthy_m;
+  told.reason = unless_empty(signal.reason);
+  return told;
+}
+
+StoredDiagnosisSettings stored(const datasets::DiagnosisSettings& settings) {
+  StoredDiagnosisSettings told{
+      {}, settings.least_probability, settings.false_alarms, settings.detection};
+  for (std::size_t i = 0; i < settings.limits.size(); ++i) {
+    told.limits_percent.emplace_back(to_string(datasets::kLeakClasses[i]),
+                                     kInPercent * settings.limits[i]);
+  }
+  return told;
+}
+
+}  // namespace
+
+StoredDiagnosis stored(const DiagnosisResult& result) {
+  const diagnosis::Diagnosis& found = result.diagnosis;
+  const datasets::Campaign& campaign = result.campaign;
+  StoredDiagnosis file;
+  file.status = status_of(result);
+  file.reasons = result.reasons;
+  file.campaign = campaign.name;
+  file.synthetic = campaign.synthetic;
+  file.report = identity_json(campaign);
+  file.settings = stored(campaign.diagnosis);
+  for (const TableLimit& limit : result.class_limits) {
+    file.class_limits.push_back({drive_of(campaign, limit), limit.target_percent,
+                                 class_ending_at(campaign.diagnosis, limit.target_percent),
+                                 limit.coefficients, limit.ranges_95});
+  }
+  for (const auto& state : found.states) file.states.push_back(stored(state));
+  for (const auto& trend : found.trends) file.trends.push_back(stored(trend));
+  for (const auto& record : found.records) file.records.push_back(stored(record));
+  file.methods = {stored(found.single), stored(found.averaged), stored(found.features),
+                  stored(found.features_of_other_signals)};
+  const StoredAccuracy& single = file.methods.fitted_leak_single;
+  file.confusion = single.confusion;
+  file.accuracy = single.accuracy;
+  file.accuracy_ci95 = single.accuracy_ci95;
+  for (const auto& signal : found.signals) file.smallest_leak_l_per_min.push_back(stored(signal));
+  file.warnings = found.warnings;
+  file.provenance = stored(result.provenance);
+  return file;
+}
+
+}  // namespace rigcal::report

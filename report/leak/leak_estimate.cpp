@@ -1,0 +1,34 @@
+#include "report/leak/leak_estimate.hpp"
+
+#include <algorithm>
+#include <string>
+
+namespace rigcal::report {
+
+Range scaled(const std::pair<double, double>& range, double scale) {
+  return {scale * range.first, scale * range.second};
+}
+
+StoredLeak stored(const diagnosis::LeakEstimate& estimate,
+                  const std::optional<datasets::LeakClass>& leak_class, bool ok) {
+  StoredLeak leak;
+  for (std::size_t i = 0; i < diagnosis::kClassCount; ++i) {
+    leak.class_probabilities.emplace_back(
+        to_string(datasets::kLeakClasses[i]),
+        ok ? std::optional(estimate.probability[i]) : std::nullopt);
+  }
+  if (!ok) return leak;
+  leak.leakage_coefficient = std::max(0.0, estimate.coefficient);
+  leak.ci95 = scaled(estimate.ci95);
+  leak.standard_error = estimate.standard_error;
+  leak.leak_share_percent = kInPercent * estimate.share;
+  leak.leak_share_ci95_percent = scaled(estimate.share_ci95, kInPercent);
+  if (const auto& limit = estimate.share_upper_limit)
+    leak.leak_share_upper_limit_percent = kInPercent * *limit;
+  leak.leak_flow_l_per_min = kLitresPerMinute * estimate.leak_flow_m3_per_s;
+  leak.leak_detected = estimate.leak_detected;
+  leak.class_ = leak_class;
+  return leak;
+}
+
+}  // namespace rigcal::report

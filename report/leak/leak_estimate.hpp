@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <utility>
+
+#include "diagnosis/leak/leak_estimate.hpp"
+#include "report/store/stored_leak.hpp"
+
+namespace rigcal::report {
+
+inline constexpr double kLitresPerMinute = 60e3;  ///< per m3/s
+inline constexpr double kInPercent = 100.0;
+
+/// Both ends times `scale`.
+Range scaled(const std::pair<double, double>& range, double scale = 1.0);
+
+/// Coefficient, share, flow and class of a leak, of a record or of a state; nothing where there is
+/// no estimate (`ok` false).
+StoredLeak stored(const diagnosis::LeakEstimate& estimate,
+                  const std::optional<datasets::LeakClass>& leak_class, bool ok);
+
+}  // namespace rigcal::report

@@ -1,0 +1,31 @@
+#include "report/page/calibration/page_calibration.hpp"
+#include "report/page/page_average.hpp"
+#include "report/page/page_batch.hpp"
+#include "report/page/page_overlay.hpp"
+#include "report/page/page_plan.hpp"
+#include "report/page/section.hpp"
+
+namespace rigcal::report {
+
+const std::vector<Section>& sections() {
+  static const std::vector<Section> rows{
+      {"calibration", {"fit.json", "validation.json"}, calibration_part, calibration_figures},
+      section({"leak_table.json", "leak_table", "leak-table", "Leak table"}, load_leak_table,
+              leak_table_headline, leak_table_view, leak_table_figures),
+      section({"diagnosis.json", "diagnosis", "diagnosis", "Diagnosis"}, load_diagnosis,
+              diagnosis_headline, diagnosis_view, diagnosis_figures),
+      section({"parity.json", "parity", "parity", "Parity residual"}, load_parity, parity_headline,
+              parity_view, parity_figures),
+      section({"comparison.json", "comparison", "results", "Comparison"}, load_comparison_files,
+              comparison_headline, comparison_view, comparison_figures, add_comparison),
+      section({"batch.json", "batch", "rigs", "Batch"}, load_batch, batch_headline, batch_view,
+              batch_figures, add_batch),
+      section({"average.json", "average", "repeatability", "Repeatability"}, load_average,
+              average_headline, average_view, average_figures, add_average),
+      section({"plan.json", "plan", "plan", "Plan"}, load_plan, plan_headline, plan_view,
+              plan_figures),
+  };
+  return rows;
+}
+
+}  // namespace rigcal::report

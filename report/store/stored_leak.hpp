@@ -1,0 +1,59 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "report/json/described.hpp"
+#include "report/store/described_campaign.hpp"
+
+// What results that look for leaks in records have in common.
+
+namespace rigcal::report {
+
+/// How such a result ended: `declined` where the records cannot tell, `failed` where nothing came
+/// of any of them.
+enum class LeakStatus { done, declined, failed };
+
+inline std::string_view to_string(LeakStatus status) {
+  switch (status) {
+    case LeakStatus::done:
+      return "done";
+    case LeakStatus::declined:
+      return "declined";
+    case LeakStatus::failed:
+      break;
+  }
+  return "failed";
+}
+
+template <>
+inline std::vector<LeakStatus> every() {
+  return {LeakStatus::done, LeakStatus::declined, LeakStatus::failed};
+}
+
+/// Something for each feature of the source paper (Table 4), of a position residual.
+template <typename T>
+struct ByFeature {
+  T mean_m{}, rms_m{}, std_m{};
+  RIGCAL_DESCRIBE(mean_m, rms_m, std_m)
+};
+
+/// A leak and its class; nothing where it could not be estimated.
+struct StoredLeak {
+  std::optional<double> leakage_coefficient;
+  std::optional<Range> ci95;  ///< of the coefficient
+  std::optional<double> standard_error;
+  std::optional<double> leak_share_percent;  ///< of the servo flow
+  std::optional<Range> leak_share_ci95_percent;
+  std::optional<double> leak_share_upper_limit_percent;
+  std::optional<double> leak_flow_l_per_min;
+  std::optional<bool> leak_detected;
+  std::optional<datasets::LeakClass> class_;  ///< nothing: undecided
+  Keyed<std::optional<double>> class_probabilities;
+  RIGCAL_DESCRIBE(leakage_coefficient, ci95, standard_error, leak_share_percent,
+                  leak_share_ci95_percent, leak_share_upper_limit_percent, leak_flow_l_per_min,
+                  leak_detected, class_, class_probabilities)
+};
+
+}  // namespace rigcal::report

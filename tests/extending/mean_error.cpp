@@ -1,0 +1,21 @@
+#include <cstdio>
+#include <vector>
+
+#include "report/page/calibration/score_columns.hpp"
+#include "report/store/json.hpp"
+#include "report/store/stored_fit.hpp"
+
+// Prints the scores of a simulation that is off by one throughout, as results hold them and as the
+// page shows them.
+
+int main() {
+  const std::vector<double> measured{0.0, 10.0, 20.0, 10.0};
+  std::vector<double> simulated = measured;
+  for (double& value : simulated) value -= 1.0;
+  rigcal::report::StoredAgreement scores{rigcal::metrics::agreement(measured, simulated)};
+  const rigcal::report::Json json{{"scores", rigcal::report::json_of(scores)},
+                                  {"schema", rigcal::report::schema_of<decltype(scores)>()},
+                                  {"titles", rigcal::report::score_titles()},
+                                  {"cells", rigcal::report::score_cells(scores, "m")}};
+  std::fputs(rigcal::report::json_text(json).c_str(), stdout);
+}
