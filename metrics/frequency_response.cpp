@@ -85,11 +85,22 @@ class Harmonics {
                  static_cast<Eigen::Index>(2 * numbers.size() + 1)) {
     for (Eigen::Index i = 0; i < columns_.rows(); ++i) {
       const double turns = (time_s[static_cast<std::size_t>(i)] - time_s.front()) * frequency_hz;
+      const double angle = 2.0 * std::numbers::pi * turns;
+      // Powers of one number: a sine and a cosine of each harmonic would take most of the time.
+      const double c = std::cos(angle);
+      const double s = std::sin(angle);
+      double cosine = 1.0;
+      double sine = 0.0;
       columns_(i, 0) = 1.0;
+      int at = 0;
       for (std::size_t k = 0; k < numbers.size(); ++k) {
-        const double angle = 2.0 * std::numbers::pi * turns * numbers[k];
-        columns_(i, static_cast<Eigen::Index>(2 * k + 1)) = std::cos(angle);
-        columns_(i, static_cast<Eigen::Index>(2 * k + 2)) = std::sin(angle);
+        for (; at < numbers[k]; ++at) {
+          const double next = cosine * c - sine * s;
+          sine = sine * c + cosine * s;
+          cosine = next;
+        }
+        columns_(i, static_cast<Eigen::Index>(2 * k + 1)) = cosine;
+        columns_(i, static_cast<Eigen::Index>(2 * k + 2)) = sine;
       }
     }
     solver_.compute(columns_.transpose() * columns_);

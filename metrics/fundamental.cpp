@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <vector>
 
 #include "metrics/moments.hpp"
 
@@ -67,8 +69,26 @@ Vector3 regressors(double time_s, double frequency_hz) {
   return {wide(std::sin(angle)), wide(std::cos(angle)), 1.0L};
 }
 
+/// What the times alone tell: signals of one record share it.
+struct Basis {
+  std::vector<Vector3> rows;
+  Matrix3 normal = Matrix3::Zero();
+  Vector3 eigenvalues;
+
+  Basis(std::span<const double> time_s, double frequency_hz) {
+    rows.reserve(time_s.size());
+    for (const double t : time_s) {
+      rows.push_back(regressors(t, frequency_hz));
+      normal += rows.back() * rows.back().transpose();
+    }
+    eigenvalues =
+        Eigen::SelfAdjointEigenSolver<Matrix3>(normal, Eigen::EigenvaluesOnly).eigenvalues();
+  }
+};
+
+/// @param basis  of the same times and frequency, or empty: it is made where it is needed
 Fundamental fit(std::span<const double> time_s, std::span<const double> signal,
-                std::string_view name, double frequency_hz) {
+                std::string_view name, double frequency_hz, std::optional<Basis>& basis) {
   check(time_s, signal, name, frequency_hz);
   const Range range = finite_range(signal, "fundamental", name);
   const std::size_t begin = window_begin(time_s, frequency_hz);
@@ -80,22 +100,18 @@ Fundamental fit(std::span<const double> time_s, std::span<const double> signal,
                     n, name, 1.0 / frequency_hz));
   if (range.constant()) return {};
 
-  Matrix3 normal = Matrix3::Zero();
+  if (!basis) basis.emplace(time_s.subspan(begin), frequency_hz);
   Vector3 right = Vector3::Zero();
-  for (std::size_t i = begin; i < signal.size(); ++i) {
-    const Vector3 x = regressors(time_s[i], frequency_hz);
-    normal += x * x.transpose();
+  for (std::size_t i = 0; i < n; ++i) {
     // The offset belongs to c, but it would cost the digits of a and b.
-    right += x * (wide(signal[i]) - wide(signal[begin]));
+    right += basis->rows[i] * (wide(signal[begin + i]) - wide(signal[begin]));
   }
-  const Eigen::SelfAdjointEigenSolver<Matrix3> spectrum(normal, Eigen::EigenvaluesOnly);
-  const Vector3& eigenvalues = spectrum.eigenvalues();
-  if (eigenvalues[0] < 1e-9L * eigenvalues[2])
+  if (basis->eigenvalues[0] < 1e-9L * basis->eigenvalues[2])
     throw std::invalid_argument(
         fmt::format("fundamental: the {} samples of the {} signal in whole periods of {} s cannot "
                     "tell this frequency from an offset, expected more per period",
                     n, name, 1.0 / frequency_hz));
-  const Vector3 solution = normal.ldlt().solve(right);
+  const Vector3 solution = basis->normal.ldlt().solve(right);
   const Extended amplitude = std::hypot(solution[0], solution[1]);
   // Rounding alone; its phase would look like one.
   if (amplitude < 1e-12L * range.peak_to_peak()) return {};
@@ -104,8 +120,9 @@ Fundamental fit(std::span<const double> time_s, std::span<const double> signal,
 }
 
 Fundamental existing_fundamental(std::span<const double> time_s, std::span<const double> signal,
-                                 std::string_view name, double frequency_hz) {
-  const Fundamental result = fit(time_s, signal, name, frequency_hz);
+                                 std::string_view name, double frequency_hz,
+                                 std::optional<Basis>& basis) {
+  const Fundamental result = fit(time_s, signal, name, frequency_hz, basis);
   if (result.amplitude == 0.0)
     throw std::domain_error(fmt::format(
         "fundamental: the {} signal has no component at {} Hz, so that neither gain nor "
@@ -118,14 +135,16 @@ Fundamental existing_fundamental(std::span<const double> time_s, std::span<const
 
 Fundamental fundamental(std::span<const double> time_s, std::span<const double> signal,
                         double frequency_hz) {
-  return fit(time_s, signal, "given", frequency_hz);
+  std::optional<Basis> basis;
+  return fit(time_s, signal, "given", frequency_hz, basis);
 }
 
 FundamentalComparison compare_fundamentals(std::span<const double> time_s,
                                            std::span<const double> measured,
                                            std::span<const double> simulated, double frequency_hz) {
-  const Fundamental from = existing_fundamental(time_s, measured, "measured", frequency_hz);
-  const Fundamental to = existing_fundamental(time_s, simulated, "simulated", frequency_hz);
+  std::optional<Basis> basis;
+  const Fundamental from = existing_fundamental(time_s, measured, "measured", frequency_hz, basis);
+  const Fundamental to = existing_fundamental(time_s, simulated, "simulated", frequency_hz, basis);
   const double phase_rad = std::remainder(to.phase_rad - from.phase_rad, 2.0 * std::numbers::pi);
   double phase_deg = phase_rad * 180.0 / std::numbers::pi;
   if (phase_deg <= -180.0) phase_deg = 180.0;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/problem/repeat_inputs.hpp"
 #include "calib/trust/known_uncertainty.hpp"
 #include "metrics/distributions.hpp"
 
@@ -61,19 +60,17 @@ bool start_is_known(const ProblemCondition& condition) {
   return condition.condition->waveform == datasets::Waveform::recorded;
 }
 
-/// Scores of a unit of each cause in one condition, shape (directions, causes).
-MatrixXd cause_scores(const Problem& problem, std::size_t condition, std::span<const double> z,
-                      const MatrixXd& jacobian, const std::vector<int>& indices) {
-  MatrixXd result = MatrixXd::Zero(jacobian.cols(), static_cast<Index>(indices.size()) + 1);
-  const auto values = problem.values_at(condition, z);
-  const MatrixXd felt = known_sensitivities(problem, condition, z, indices);
-  for (std::size_t p = 0; p < indices.size() && felt.size() > 0; ++p) {
+/// Scores of a unit of each cause in one condition, the start last; shape (directions, causes).
+MatrixXd cause_scores(CauseEffects& effects, std::size_t condition, const MatrixXd& jacobian) {
+  const ProblemCondition& own = effects.problem().conditions[condition];
+  const std::vector<double> values = effects.values(condition);
+  MatrixXd result = MatrixXd::Zero(jacobian.cols(), static_cast<Index>(values.size()) + 1);
+  const MatrixXd& felt = effects.of(condition);
+  for (std::size_t p = 0; p < values.size() && felt.size() > 0; ++p) {
     const auto column = static_cast<Index>(p);
-    result.col(column) = jacobian.transpose() * felt.col(column) *
-                         values.value[static_cast<std::size_t>(indices[p])];
+    result.col(column) = jacobian.transpose() * felt.col(column) * values[p];
   }
-  if (!start_is_known(problem.conditions[condition]))
-    result.rightCols(1) = -jacobian.transpose() * slopes(problem.conditions[condition]);
+  if (!start_is_known(own)) result.rightCols(1) = -jacobian.transpose() * slopes(own);
   return result;
 }
 
@@ -88,13 +85,13 @@ std::vector<datasets::ParameterSetting> declared_in(const Problem& problem, std:
   return result;
 }
 
-/// Change of the weighted outputs per unit of a cause: relative, of the start per second.
-VectorXd effect_of(const Problem& problem, std::size_t condition, std::span<const double> z,
-                   const std::string& cause) {
-  if (cause == "start") return -slopes(problem.conditions[condition]);
-  const int index = model::parameter_index(problem.campaign->rig.plant, cause);
-  const MatrixXd felt = known_sensitivities(problem, condition, z, {index});
-  return felt.size() > 0 ? VectorXd(felt.col(0)) : VectorXd();
+/// Change of the weighted outputs per unit of a cause: SI, of the start per second.
+VectorXd effect_of(CauseEffects& effects, std::size_t condition, const std::string& cause) {
+  const auto& causes = effects.causes();
+  const auto found = std::find(causes.begin(), causes.end(), cause);
+  if (found == causes.end()) return -slopes(effects.problem().conditions[condition]);
+  const MatrixXd& felt = effects.of(condition);
+  return felt.size() > 0 ? VectorXd(felt.col(found - causes.begin())) : VectorXd();
 }
 
 /// Squares of deviations along a direction, and by what noise they would be as large on average.
@@ -204,18 +201,10 @@ bool rests_on_repeats(const RepeatVariance& repeats, const RobustVariance& robus
   return exceedance(repeats, robust) < kPoolingLevel;
 }
 
-std::optional<LikelyDifference> likely_difference(const Problem& problem, std::span<const double> z,
+std::optional<LikelyDifference> likely_difference(CauseEffects& effects,
                                                   const std::vector<ScoreRows>& rows,
                                                   const std::vector<MatrixXd>& scores) {
-  std::vector<std::string> causes;
-  std::vector<int> indices;
-  for (const char* key : {"supply_pressure", "bulk_modulus"}) {
-    const int index = model::parameter_index(problem.campaign->rig.plant, key);
-    const auto* setting = problem.campaign->setting(index);
-    if (index < 0 || (setting != nullptr && setting->between_repeats)) continue;
-    causes.emplace_back(key);
-    indices.push_back(index);
-  }
+  std::vector<std::string> causes = effects.causes();
   causes.emplace_back("start");
   const auto count = static_cast<Index>(causes.size());
   VectorXd explained = VectorXd::Zero(count);  // of the squares of all scores
@@ -223,7 +212,7 @@ std::optional<LikelyDifference> likely_difference(const Problem& problem, std::s
   double all = 0.0;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     if (scores[i].cols() == 0) continue;
-    const MatrixXd unit = cause_scores(problem, i, z, rows[i].jacobian, indices);
+    const MatrixXd unit = cause_scores(effects, i, rows[i].jacobian);
     all += scores[i].squaredNorm();
     for (Index c = 0; c < count; ++c) {
       const double square = unit.col(c).squaredNorm();
@@ -239,15 +228,15 @@ std::optional<LikelyDifference> likely_difference(const Problem& problem, std::s
                           std::sqrt(explained(best) / size(best)), explained(best) / all};
 }
 
-double difference_by_noise(const Problem& problem, std::span<const double> z,
-                           const std::string& cause) {
+double difference_by_noise(CauseEffects& effects, const std::string& cause) {
+  const Problem& problem = effects.problem();
   double ratios = 0.0;
   double freedom = 0.0;
   for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
     const MatrixXd deviations =
-        repeat_deviations(problem.conditions[i], explained_by_inputs(problem, i, z));
+        repeat_deviations(problem.conditions[i], effects.explained_by_inputs(i));
     if (deviations.rows() < kStretches || deviations.cols() < 2) continue;
-    const VectorXd direction = effect_of(problem, i, z, cause);
+    const VectorXd direction = effect_of(effects, i, cause);
     if (direction.size() != deviations.rows() || !(direction.squaredNorm() > 0.0)) continue;
     const AlongCause found = along(direction, deviations);
     if (!(found.noise > 0.0)) continue;  // repeats that are equal, or differ by this alone

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/problem/problem.hpp"
+#include "calib/trust/cause_effects.hpp"
 #include "calib/trust/sandwich.hpp"
 
 namespace rigcal::calib {
@@ -75,7 +76,7 @@ struct LikelyDifference {
 ///
 /// @param rows    as for score_scatter(), of all conditions
 /// @param scores  of repeat_scores(), of all conditions
-std::optional<LikelyDifference> likely_difference(const Problem& problem, std::span<const double> z,
+std::optional<LikelyDifference> likely_difference(CauseEffects& effects,
                                                   const std::vector<ScoreRows>& rows,
                                                   const std::vector<Eigen::MatrixXd>& scores);
 
@@ -83,7 +84,6 @@ std::optional<LikelyDifference> likely_difference(const Problem& problem, std::s
 /// noise: F of the deviations along it against those of twenty stretches of what is left of them,
 /// over all conditions. Whether the mean fits the model does not matter here, as it does for the
 /// residuals against which rests_on_repeats() holds the repeats.
-double difference_by_noise(const Problem& problem, std::span<const double> z,
-                           const std::string& cause);
+double difference_by_noise(CauseEffects& effects, const std::string& cause);
 
 }  // namespace rigcal::calib

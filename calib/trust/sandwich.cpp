@@ -110,44 +110,46 @@ Innovations innovations(const ChannelRows& rows, const Autoregression& noise,
   return result;
 }
 
-/// Autoregressions of all channels, corrected for what the fit has removed.
+/// The noise of one channel, before what the fit has removed is known.
+struct ChannelNoise {
+  std::size_t condition = 0;
+  Index channel = 0;
+  std::vector<double> gamma;
+  Autoregression noise;
+};
+
+/// Autoregressions of all channels, corrected for what the fit has removed. The rows of a channel
+/// are taken twice: those of all of them at once would be the most memory that a fit holds.
 std::vector<std::vector<Autoregression>> noise_models(const std::vector<ScoreRows>& rows,
                                                       const MatrixXd& priors) {
-  struct ChannelNoise {
-    std::size_t condition;
-    ChannelRows rows;
-    std::vector<double> gamma;
-    Autoregression noise;
-    std::size_t order = 0;
-  };
   std::vector<ChannelNoise> channels;
+  MatrixXd total = priors;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (Index k = 0; k < rows[i].channels; ++k) {
-      ChannelNoise& each = channels.emplace_back();
-      each.condition = i;
-      each.rows = channel_rows(rows[i], k);
-      const auto samples = static_cast<std::size_t>(each.rows.samples());
+      const ChannelRows own = channel_rows(rows[i], k);
+      const auto samples = static_cast<std::size_t>(own.samples());
       const int lags = std::min<int>(kMostLags, static_cast<int>(samples / 10));
-      each.gamma = metrics::autocovariance({each.rows.residual.data(), samples}, lags);
-      each.noise = metrics::fit_autoregression(each.gamma, static_cast<double>(samples));
-      each.order = each.noise.phi.size();
+      auto gamma = metrics::autocovariance({own.residual.data(), samples}, lags);
+      auto noise = metrics::fit_autoregression(gamma, static_cast<double>(samples));
+      total += expected(own, noise);
+      gamma.resize(noise.phi.size() + 1);
+      channels.push_back({i, k, std::move(gamma), std::move(noise)});
     }
   }
-  MatrixXd total = priors;
-  for (const ChannelNoise& each : channels) total += expected(each.rows, each.noise);
-  for (ChannelNoise& each : channels) {
-    std::vector<double> gamma(each.gamma.begin(),
-                              each.gamma.begin() + 1 + static_cast<std::ptrdiff_t>(each.order));
-    const auto removed = bias(each.rows, each.noise, total, static_cast<Index>(each.order));
-    // More than half taken away: the fit has left too little to tell the noise by.
-    if (!(removed.front() < 0.5 * (gamma.front() + removed.front()))) continue;
-    for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
-    // Far from an optimum residuals are not the noise that the correction supposes.
-    if (!metrics::is_autocovariance(gamma)) continue;
-    each.noise = metrics::fit_autoregression(gamma, static_cast<double>(each.rows.samples()));
-  }
   std::vector<std::vector<Autoregression>> result(rows.size());
-  for (const ChannelNoise& each : channels) result[each.condition].push_back(each.noise);
+  for (ChannelNoise& each : channels) {
+    const ChannelRows own = channel_rows(rows[each.condition], each.channel);
+    std::vector<double>& gamma = each.gamma;
+    const auto removed = bias(own, each.noise, total, static_cast<Index>(gamma.size()) - 1);
+    // More than half taken away: the fit has left too little to tell the noise by.
+    if (removed.front() < 0.5 * (gamma.front() + removed.front())) {
+      for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
+      // Far from an optimum residuals are not the noise that the correction supposes.
+      if (metrics::is_autocovariance(gamma))
+        each.noise = metrics::fit_autoregression(gamma, static_cast<double>(own.samples()));
+    }
+    result[each.condition].push_back(std::move(each.noise));
+  }
   return result;
 }
 

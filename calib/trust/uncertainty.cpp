@@ -185,8 +185,9 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
         result.correlation(j, k) = std::clamp(inverse(j, k) / scale, -1.0, 1.0);
     }
   }
-  auto difference = likely_difference(problem, optimum.z, scores, repeats);
-  if (difference) difference->p = difference_by_noise(problem, optimum.z, difference->cause);
+  CauseEffects effects(problem, optimum.z);
+  auto difference = likely_difference(effects, scores, repeats);
+  if (difference) difference->p = difference_by_noise(effects, difference->cause);
   if (difference && (difference->p < kDifferenceLevel || result.repeats_differ()))
     result.difference = difference;
   return result;

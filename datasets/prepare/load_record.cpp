@@ -207,4 +207,9 @@ std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use
   return records;
 }
 
+void drop_deviations(std::vector<Record>& records) {
+  for (Record& record : records)
+    for (auto& [channel, series] : record.channels) series.deviations = {};
+}
+
 }  // namespace rigcal::datasets

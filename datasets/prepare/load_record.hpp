@@ -34,4 +34,7 @@ Record load_record(const Campaign& campaign, const Condition& condition,
 std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use>& uses,
                                  int threads, bool keep_deviations = false);
 
+/// Drops the single repeats that load_records() kept.
+void drop_deviations(std::vector<Record>& records);
+
 }  // namespace rigcal::datasets

@@ -38,6 +38,11 @@ Excursion excursion(const std::vector<double>& x, std::size_t begin, std::size_t
   return result;
 }
 
+/// That of a single sample.
+double off_line(const std::vector<double>& x, std::size_t i) {
+  return std::abs(x[i] - (x[i - 1] + 0.5 * (x[i + 1] - x[i - 1])));
+}
+
 /// Median of the differences of neighbours that are not zero: where a converter is coarser than the
 /// noise, its step.
 double typical_step(const std::vector<double>& x) {
@@ -48,12 +53,43 @@ double typical_step(const std::vector<double>& x) {
   return steps.empty() ? 0.0 : median(std::move(steps));
 }
 
+/// Excursion that counts against one sample's typical one, whose median `off` is.
+double limit_by(double off) { return kDeviations * off / kMedianOfNormal; }
+
 double limit_of(const std::vector<double>& x) {
   std::vector<double> off;
   off.reserve(x.size());
-  for (std::size_t i = 1; i + 1 < x.size(); ++i)
-    off.push_back(std::abs(excursion(x, i, 1).farthest));
-  return std::max(kDeviations * median(std::move(off)) / kMedianOfNormal, kSteps * typical_step(x));
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) off.push_back(off_line(x, i));
+  return std::max(limit_by(median(std::move(off))), kSteps * typical_step(x));
+}
+
+/// Whether on each side two samples agree, against how far a run lies off them: if not, it is part
+/// of an edge or an oscillation.
+bool stands_alone(const std::vector<double>& x, std::size_t begin, std::size_t length, double off) {
+  const std::size_t after = begin + length;
+  const auto [low, high] = std::minmax({x[begin - 2], x[begin - 1], x[after], x[after + 1]});
+  return std::abs(off) > kNeighbourFactor * (high - low);
+}
+
+/// The largest excursion of runs that stand alone; 0 where none does.
+double largest_alone(const std::vector<double>& x) {
+  double largest = 0.0;
+  for (std::size_t i = 2; i + 3 < x.size(); ++i) {
+    for (std::size_t length = 1; length <= kLongestRun; ++length) {
+      const double off = std::abs(excursion(x, i, length).least);
+      if (off > largest && stands_alone(x, i, length, off)) largest = off;
+    }
+  }
+  return largest;
+}
+
+/// Whether no excursion up to this one is a spike, as counting tells: more than half of the samples
+/// lie so far off that the median does. Most records have no spike, and counting takes a tenth of
+/// what medians do.
+bool is_usual(const std::vector<double>& x, double largest) {
+  std::size_t far = 0;
+  for (std::size_t i = 1; i + 1 < x.size(); ++i) far += limit_by(off_line(x, i)) >= largest ? 1 : 0;
+  return 2 * far > x.size();
 }
 
 }  // namespace
@@ -61,18 +97,16 @@ double limit_of(const std::vector<double>& x) {
 std::vector<Spike> find_spikes(const std::vector<double>& x) {
   std::vector<Spike> spikes;
   if (x.size() < kFewestForSpikes) return spikes;
+  if (is_usual(x, largest_alone(x))) return spikes;
   const double limit = limit_of(x);
   if (!(limit > 0.0)) return spikes;
   for (std::size_t i = 2; i + 3 < x.size(); ++i) {
     for (std::size_t length = 1; length <= kLongestRun; ++length) {
       const Excursion off = excursion(x, i, length);
       if (std::abs(off.least) <= limit) continue;
-      // On each side two samples must agree, or the run is part of an edge or an oscillation.
-      const std::size_t after = i + length;
-      const auto [low, high] = std::minmax({x[i - 2], x[i - 1], x[after], x[after + 1]});
-      if (std::abs(off.least) <= kNeighbourFactor * (high - low)) continue;
+      if (!stands_alone(x, i, length, off.least)) continue;
       spikes.push_back({i, length, off.farthest});
-      i = after;
+      i += length;
       break;
     }
   }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <charconv>
 #include <cmath>
 
 #include "report/figure/plot_scene.hpp"
@@ -9,6 +11,27 @@
 
 namespace rigcal::report {
 namespace {
+
+/// As "{:.1f}" writes it, but for a path of ten thousand points. What may be half way between two
+/// tenths is left to fmt, which knows all digits.
+void put_tenths(std::string& out, double value) {
+  constexpr double kLargest = 1e9;
+  constexpr double kNearHalf = 1e-3;
+  const double tenths = 10.0 * std::abs(value);
+  const double whole = tenths < kLargest ? std::floor(tenths) : tenths;
+  const double rest = tenths - whole;
+  if (!(tenths < kLargest) || std::abs(rest - 0.5) < kNearHalf) {
+    out += fmt::format("{:.1f}", value);
+    return;
+  }
+  const int rounded = static_cast<int>(whole) + (rest > 0.5 ? 1 : 0);
+  if (std::signbit(value)) out += '-';
+  std::array<char, 12> digits{};
+  out.append(digits.data(),
+             std::to_chars(digits.data(), digits.data() + digits.size(), rounded / 10).ptr);
+  out += '.';
+  out += static_cast<char>('0' + rounded % 10);
+}
 
 /// One decimal of a pixel tells more than a screen shows.
 void put_path(std::string& out, const Shape& shape, const char* css, const char* end) {
@@ -19,7 +42,10 @@ void put_path(std::string& out, const Shape& shape, const char* css, const char*
       pen_down = false;
       continue;
     }
-    out += fmt::format("{}{:.1f} {:.1f}", pen_down ? 'L' : 'M', point.x, point.y);
+    out += pen_down ? 'L' : 'M';
+    put_tenths(out, point.x);
+    out += ' ';
+    put_tenths(out, point.y);
     pen_down = true;
   }
   out += end;

@@ -13,6 +13,7 @@
 #include "apps/rigcal/outcome.hpp"
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/verb.hpp"
+#include "common/memory.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/kept_tasks.hpp"
@@ -61,8 +62,8 @@ void help(const datasets::Campaign& campaign, const std::vector<datasets::Record
 
 ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options.common);
-  const auto records = datasets::load_records(
-      campaign, {datasets::Use::fit, datasets::Use::validate}, options.common.threads, true);
+  auto records = datasets::load_records(campaign, {datasets::Use::fit, datasets::Use::validate},
+                                        options.common.threads, true);
   calib::FitOptions settings =
       report::fit_options(campaign, options.common.threads, invocation.cancel);
   apply(options.choices, settings);
@@ -104,6 +105,9 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
     settings.beside = std::ref(beside);
     fit = calib::fit(campaign, records, settings);
   }
+  // Files and page are not made from them, and need as much memory again.
+  datasets::drop_deviations(records);
+  give_freed_memory_back();
   const ExitCode code =
       write_and_print(options.common, {report::ResultKind::fit, campaign, records, fit, provenance},
                       options.choices.strict);

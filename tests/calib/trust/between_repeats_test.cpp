@@ -185,7 +185,9 @@ TEST_CASE("between repeats: starts at different times are named, a mixture is no
   for (Index r = 0; r < 4; ++r)
     deviations.col(r).setConstant(-3.0 * late_s[static_cast<std::size_t>(r)] / sd);
   const MatrixXd scores = repeat_scores(rows.jacobian, deviations);
-  const auto found = likely_difference(problem, problem.start(), {rows}, {scores});
+  const std::vector<double> start = problem.start();
+  CauseEffects effects(problem, start);
+  const auto found = likely_difference(effects, {rows}, {scores});
   REQUIRE(found.has_value());
   CHECK(found->cause == "start");
   CHECK_THAT(found->sd, WithinRel(1e-3 * std::sqrt(14.0 / 3.0), 1e-9));
@@ -198,7 +200,7 @@ TEST_CASE("between repeats: starts at different times are named, a mixture is no
     VectorXd across = VectorXd::Unit(3, r) - along(r) * along;
     mixture.col(r) += scores.col(0).norm() * across.normalized();
   }
-  CHECK_FALSE(likely_difference(problem, problem.start(), {rows}, {mixture}));
+  CHECK_FALSE(likely_difference(effects, {rows}, {mixture}));
 }
 
 /// Five repeats per condition of a rig whose supply pressure differs by 2 % from run to run.
@@ -282,7 +284,12 @@ TEST_CASE("difference by noise: F along the direction of a cause", "[calib]") {
       if (index == setting.index) setting.value = value;
   }
   const Problem problem = problem_of(twin, rig.records);
-  CHECK(difference_by_noise(problem, problem.start(), "supply_pressure") < 1e-6);
+  const auto p_of = [](const Problem& of) {
+    const std::vector<double> start = of.start();
+    CauseEffects effects(of, start);
+    return difference_by_noise(effects, "supply_pressure");
+  };
+  CHECK(p_of(problem) < 1e-6);
 
   // Noise alone: of 40 campaigns about a tenth is below a tenth.
   int below = 0;
@@ -300,7 +307,7 @@ TEST_CASE("difference by noise: F along the direction of a cause", "[calib]") {
       for (auto& report : record.repeat_reports) report.shifted_s = 0.0;
     }
     const Problem noisy = problem_of(twin, records);
-    below += difference_by_noise(noisy, noisy.start(), "supply_pressure") < 0.1 ? 1 : 0;
+    below += p_of(noisy) < 0.1 ? 1 : 0;
   }
   CHECK(below >= 1);  // 4 of 40 expected; 0 or more than 10 have probabilities of 1.5 % and 0.2 %
   CHECK(below <= 10);
