@@ -46,7 +46,7 @@ StoredAccuracy stored(const diagnosis::Accuracy& accuracy) {
   told.off_by_two_or_more = accuracy.off_by_two;
   if (accuracy.records > 0) {
     told.accuracy = accuracy.accuracy;
-    told.accuracy_ci95 = scaled(accuracy.ci95);
+    told.accuracy_ci95 = scaled_ends(accuracy.ci95);
   }
   StoredConfusion& confusion = told.confusion;
   for (std::size_t i = 0; i < StoredConfusion::kClasses; ++i)

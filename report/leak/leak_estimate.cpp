@@ -5,7 +5,7 @@
 
 namespace rigcal::report {
 
-Range scaled(const std::pair<double, double>& range, double scale) {
+Range scaled_ends(const std::pair<double, double>& range, double scale) {
   return {scale * range.first, scale * range.second};
 }
 
@@ -19,10 +19,10 @@ StoredLeak stored(const diagnosis::LeakEstimate& estimate,
   }
   if (!ok) return leak;
   leak.leakage_coefficient = std::max(0.0, estimate.coefficient);
-  leak.ci95 = scaled(estimate.ci95);
+  leak.ci95 = scaled_ends(estimate.ci95);
   leak.standard_error = estimate.standard_error;
   leak.leak_share_percent = kInPercent * estimate.share;
-  leak.leak_share_ci95_percent = scaled(estimate.share_ci95, kInPercent);
+  leak.leak_share_ci95_percent = scaled_ends(estimate.share_ci95, kInPercent);
   if (const auto& limit = estimate.share_upper_limit)
     leak.leak_share_upper_limit_percent = kInPercent * *limit;
   leak.leak_flow_l_per_min = kLitresPerMinute * estimate.leak_flow_m3_per_s;

@@ -83,7 +83,7 @@ StoredLeakTrend stored(const LeakTrend& trend) {
   told.duty = trend.duty;
   told.coefficient_per_day = trend.coefficient_per_day;
   told.share_percent_per_day = kInPercent * trend.share_per_day;
-  told.share_percent_per_day_ci95 = scaled(trend.share_per_day_ci95, kInPercent);
+  told.share_percent_per_day_ci95 = scaled_ends(trend.share_per_day_ci95, kInPercent);
   told.p_value = trend.p;
   told.significant = trend.significant;
   told.chi_squared = trend.chi_squared;

@@ -96,7 +96,7 @@ StoredState stored(const MachineState& state) {
   if (!state.ok()) return told;
   const double area = e.coefficient != 0.0 ? state.leak_area_m2 / e.coefficient : 0.0;
   told.leak_area_m2 = std::max(0.0, state.leak_area_m2);
-  told.leak_area_ci95_m2 = scaled(e.ci95, area);
+  told.leak_area_ci95_m2 = scaled_ends(e.ci95, area);
   told.nearest_limit = {state.limit.above, kInPercent * state.limit.limit,
                         kInPercent * state.limit.distance, state.limit.on_limit};
   if (const diagnosis::PooledLeak& pooled = state.pooled; state.members.size() > 1)

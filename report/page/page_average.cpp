@@ -29,8 +29,9 @@ Json agreement_rows(const StoredRecord& record) {
   Json rows = Json::array();
   for (const auto& [channel, found] : record.channels) {
     if (!is_measured(channel)) continue;  // a command is what it was told to be
+    const std::optional<StoredNoiseFloor>& noise_floor = found.noise_floor;
     const auto floor = [&](double StoredNoiseFloor::*value) -> Number {
-      return found.noise_floor ? std::optional((*found.noise_floor).*value) : std::nullopt;
+      return noise_floor ? std::optional((*noise_floor).*value) : std::nullopt;
     };
     rows.push_back({{"condition", record.condition},
                     {"channel", channel},

@@ -60,6 +60,30 @@ std::vector<Colour> every() {
 }
 }  // namespace rigcal::report
 
+namespace {
+
+/// One whose part says what it is itself.
+struct Holder {
+  int number = 0;
+  Inlined<Part> part;
+  bool last = false;
+  RIGCAL_DESCRIBE(number, part, last)
+};
+
+}  // namespace
+
+TEST_CASE("described: keys of an inlined struct are among the others", "[report]") {
+  Holder holder;
+  holder.part.name = "a";
+  holder.part.colour = Colour::green;
+  const Json json = json_of(holder);
+  CHECK(json.dump() == R"({"number":0,"name":"a","colour":"green","last":false})");
+  Holder read;
+  read_into(JsonNode(json, "a.json", "", "a.json"), read);
+  CHECK(read.part.colour == Colour::green);
+  CHECK(schema_of<Holder>()["required"].dump() == R"(["number","name","colour","last"])");
+}
+
 TEST_CASE("described: members are keys in their order", "[report]") {
   CHECK(json_of(kWhole).dump() ==
         R"({"count":3,"value":0.1,"class":true,"maybe":null,"range":[-1.0,2.0],)"
