@@ -14,8 +14,6 @@ namespace {
 
 namespace py = pybind11;
 
-using Self = FittedParameter;
-
 void bind_bootstrap(py::module_& module) {
   using calib::BootstrapSpread;
   py::class_<BootstrapSpread>(module, "BootstrapSpread",
@@ -54,6 +52,7 @@ void bind_profile(py::module_& module) {
 }  // namespace
 
 void bind_fitted_parameters(py::module_& module) {
+  using Self = FittedParameter;
   bind_bootstrap(module);
   bind_profile(module);
   py::class_<Self> parameter(module, "FittedParameter",
