@@ -16,13 +16,14 @@
 #include <cstring>
 #include <fstream>
 #include <mutex>
+#include <new>
 
 namespace rigcal {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// AddressSanitizer reserves terabytes of addresses, which no limit of them allows.
+/// AddressSanitizer reserves terabytes of address space, beyond any limit.
 #if defined(__SANITIZE_ADDRESS__)
 constexpr bool kLimitsMemory = false;
 #elif defined(__has_feature)
@@ -35,7 +36,7 @@ constexpr bool kLimitsMemory = true;
 constexpr bool kLimitsMemory = true;
 #endif
 
-/// What the process has of addresses.
+/// Size of the address space of this process.
 std::size_t address_bytes() {
   std::size_t pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
@@ -44,7 +45,7 @@ std::size_t address_bytes() {
 
 void limit(decltype(RLIMIT_AS) resource, std::size_t most) {
   const rlimit both{most, most};
-  ::setrlimit(resource, &both);  // one below that is in force already is as good
+  ::setrlimit(resource, &both);  // fails where a lower limit is in force, which is as good
 }
 
 bool write_all(int descriptor, const char* bytes, std::size_t count) {
@@ -58,15 +59,17 @@ bool write_all(int descriptor, const char* bytes, std::size_t count) {
   return true;
 }
 
-/// The child's part: never returns.
+/// The child's part: never returns. An exception ends it here, before it could unwind a copy of the
+/// parent's stack and remove the parent's files.
 [[noreturn]] void work_in_child(const std::function<std::string()>& work,
                                 const Confinement& confinement, std::size_t addresses, pid_t parent,
-                                int out) {
-  // The parent decides what a signal from the terminal means, and what it ends this goes with it.
+                                int out) noexcept {
+  std::set_new_handler(nullptr);  // that of the parent may remove its files; `work` sees bad_alloc
+  // The parent handles signals from the terminal; this process ends with it.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (::getppid() != parent) ::_exit(1);  // it was gone before that
+  if (::getppid() != parent) ::_exit(1);  // the parent ended before prctl()
   const int nothing = ::open("/dev/null", O_RDWR);
   if (nothing >= 0) {
     ::dup2(nothing, STDOUT_FILENO);
@@ -99,7 +102,7 @@ pid_t start_child(const std::function<std::string()>& work, const Confinement& c
   throw ConfinedFailure(fmt::format("no process for it: {}", std::strerror(error)));
 }
 
-/// All that the child writes; false if it is not done by the deadline.
+/// Appends all that the child writes; false if it has not finished by the deadline.
 bool read_until(Clock::time_point deadline, int descriptor, std::string& text) {
   std::array<char, std::size_t{1} << 16> block;
   for (;;) {

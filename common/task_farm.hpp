@@ -11,13 +11,13 @@
 
 namespace rigcal {
 
-/// Equal pieces of work whose results are bytes.
+/// Independent tasks whose results are bytes.
 struct FarmJob {
   std::string name;       ///< "profiles"; the same job is run once at most
-  std::string state;      ///< bytes of what its tasks rest on: where it differs, so do results
+  std::string state;      ///< serialised inputs of its tasks: another state, other results
   std::size_t count = 0;  ///< of tasks
   int lanes = 1;          ///< tasks at a time in each process
-  std::map<std::size_t, std::string> known = {};  ///< results that need not be made again
+  std::map<std::size_t, std::string> known = {};  ///< results that exist already
 };
 
 /// The first process has ended without this job.

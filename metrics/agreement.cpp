@@ -124,37 +124,20 @@ double maximum_error(const Moments& m) { return to_double(m.maximum_residual, "m
 
 }  // namespace
 
-double rho2(Signal measured, Signal simulated) {
-  return rho2(moments(measured, simulated, "rho2"));
+double rho2(Signal m, Signal s) { return rho2(moments(m, s, "rho2")); }
+double unexplained_variance(Signal m, Signal s) {
+  return unexplained_variance(moments(m, s, "unexplained_variance"));
 }
-
-double unexplained_variance(Signal measured, Signal simulated) {
-  return unexplained_variance(moments(measured, simulated, "unexplained_variance"));
+double correlation(Signal m, Signal s) { return correlation(moments(m, s, "correlation")); }
+double concordance(Signal m, Signal s) { return concordance(moments(m, s, "concordance")); }
+double absolute_error_percent(Signal m, Signal s) {
+  return absolute_error_percent(moments(m, s, "absolute_error_percent"));
 }
-
-double correlation(Signal measured, Signal simulated) {
-  return correlation(moments(measured, simulated, "correlation"));
+double rmse(Signal m, Signal s) { return rmse(moments(m, s, "rmse")); }
+double nrmse_fit_percent(Signal m, Signal s) {
+  return nrmse_fit_percent(moments(m, s, "nrmse_fit_percent"));
 }
-
-double concordance(Signal measured, Signal simulated) {
-  return concordance(moments(measured, simulated, "concordance"));
-}
-
-double absolute_error_percent(Signal measured, Signal simulated) {
-  return absolute_error_percent(moments(measured, simulated, "absolute_error_percent"));
-}
-
-double rmse(Signal measured, Signal simulated) {
-  return rmse(moments(measured, simulated, "rmse"));
-}
-
-double nrmse_fit_percent(Signal measured, Signal simulated) {
-  return nrmse_fit_percent(moments(measured, simulated, "nrmse_fit_percent"));
-}
-
-double maximum_error(Signal measured, Signal simulated) {
-  return maximum_error(moments(measured, simulated, "maximum_error"));
-}
+double maximum_error(Signal m, Signal s) { return maximum_error(moments(m, s, "maximum_error")); }
 
 Agreement agreement(Signal measured, Signal simulated) {
   const Moments m = moments(measured, simulated, "agreement");

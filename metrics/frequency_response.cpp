@@ -49,7 +49,7 @@ struct Products {
 /// Complex regression of Y on U: the variance of H is that of what is left, over the input's power,
 /// half of it in either direction. Bendat and Piersol, Random Data, 4th ed., Wiley 2010, 9.2.
 ///
-/// @param independent  as many pairs as tell of the scatter
+/// @param independent  effective number of independent pairs
 ResponsePoint point_of(double frequency_hz, const Products& sums, double independent) {
   constexpr double kDegrees = 180.0 / std::numbers::pi;
   ResponsePoint point;
@@ -59,7 +59,7 @@ ResponsePoint point_of(double frequency_hz, const Products& sums, double indepen
   point.phase_deg = std::arg(ratio) * kDegrees;
   point.coherence = std::min(1.0, std::norm(sums.cross) / (sums.input * sums.output));
   point.independent = independent;
-  if (independent < 2.0) return point;
+  if (independent < 2.0 || point.coherence == 0.0) return point;
   const double freedom = 2.0 * (independent - 1.0);
   const double relative = student_t_quantile(0.975, freedom) *
                           std::sqrt((1.0 - point.coherence) / (point.coherence * freedom));

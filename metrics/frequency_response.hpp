@@ -22,11 +22,11 @@ struct ResponsePoint {
   double coherence = 1.0;    ///< |S_uy|^2 / (S_uu S_yy), in [0, 1]; 1 where there is one pair alone
   double independent = 1.0;  ///< pairs, as many as would be independent
   /// By Student's t with 2 (pairs - 1) degrees of freedom; nothing with fewer than two pairs, which
-  /// tell no scatter.
+  /// show no scatter, and nothing at coherence 0, where the interval has no upper end.
   std::optional<ResponseInterval> interval;
 };
 
-/// Below this coherence a frequency response is not told: half of what the output does there is of
+/// Below this coherence no frequency response is reported: about half of the output comes from
 /// something else. Tischler and Remple, Aircraft and Rotorcraft System Identification, 2nd ed.,
 /// AIAA 2012, chapter 7.
 inline constexpr double kLeastCoherence = 0.6;

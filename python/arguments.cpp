@@ -39,6 +39,10 @@ std::optional<double> positive(const char* name, std::optional<double> value) {
   return value;
 }
 
+void require_path(const char* name, const std::optional<std::filesystem::path>& path) {
+  if (path && path->empty()) throw py::value_error(fmt::format("{}: found an empty path", name));
+}
+
 int thread_count(const std::optional<Integer>& threads) {
   if (threads) return count("threads", *threads, 1, report::kMostThreads);
   const unsigned found = std::thread::hardware_concurrency();

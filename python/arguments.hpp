@@ -4,6 +4,8 @@
 #include <pybind11/stl.h>
 
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,8 +13,8 @@
 
 namespace rigcal::python {
 
-/// Whatever Python takes for a whole number: int, numpy.int64... One that is too large or negative
-/// is to be a ValueError that names the argument, so that it is converted later.
+/// Whatever Python takes for a whole number: int, numpy.int64... Converted by whole_number(), so
+/// that one out of range is a ValueError that names the argument.
 struct Integer {
   pybind11::object value;
 };
@@ -27,18 +29,42 @@ int count(const char* name, const Integer& integer, int lowest, int highest);
 /// @throws pybind11::value_error  naming the argument
 std::optional<double> positive(const char* name, std::optional<double> value);
 
+/// @throws pybind11::value_error  the path is empty, naming the argument
+void require_path(const char* name, const std::optional<std::filesystem::path>& path);
+
 /// Threads: as many as the machine has, unless told.
 int thread_count(const std::optional<Integer>& threads);
 
 /// name="value unit" of each entry of a dict.
 ///
-/// @throws pybind11::type_error  a value is no text and no number
+/// @throws pybind11::type_error  a value is neither text nor number
 std::vector<std::string> assignments(const std::optional<pybind11::dict>& values);
 
-/// Text that may hold the name of a file: bytes that are no UTF-8 as os.fsdecode() writes them.
+/// Text that may contain a file name: bytes that are not UTF-8 become what os.fsdecode() makes of
+/// them.
 pybind11::str decoded(std::string_view text);
 
-/// "name=value" as Python writes it, for the call that a result was made by.
+/// Getter of a property that is a field of a member, or of what a member points to.
+template <typename Self, typename Member, typename Value>
+auto field(Member Self::*member, Value Member::*value) {
+  return [=](const Self& self) { return (self.*member).*value; };
+}
+template <typename Self, typename Member, typename Value>
+auto field(std::shared_ptr<const Member> Self::*member, Value Member::*value) {
+  return [=](const Self& self) { return (*(self.*member)).*value; };
+}
+
+/// The same of an enumerator, as its name.
+template <typename Self, typename Value>
+auto named(Value Self::*value) {
+  return [=](const Self& self) { return to_string(self.*value); };
+}
+template <typename Self, typename Member, typename Holder, typename Value>
+auto named(Member Self::*member, Value Holder::*value) {
+  return [get = field(member, value)](const Self& self) { return to_string(get(self)); };
+}
+
+/// "name=value" in Python's notation, for the call recorded in a result.
 std::string written(const char* name, const pybind11::handle& value);
 
 }  // namespace rigcal::python

@@ -9,8 +9,8 @@
 
 namespace rigcal::python {
 
-/// Numbers of a result as a NumPy array, which cannot be written to and keeps the result alive:
-/// nothing is copied.
+/// Numbers of a result as a read-only NumPy array that shares their memory and keeps the result
+/// alive.
 template <typename T>
 pybind11::array_t<T> view(std::shared_ptr<const void> owner, const T* data, std::size_t size) {
   auto* const kept = new std::shared_ptr<const void>(std::move(owner));
@@ -26,7 +26,7 @@ pybind11::array_t<T> view(std::shared_ptr<const void> owner, const std::vector<T
   return view(std::move(owner), values.data(), values.size());
 }
 
-/// None for what is not there at all.
+/// None if there are no values.
 template <typename T>
 std::optional<pybind11::array_t<T>> view_or_none(std::shared_ptr<const void> owner,
                                                  const std::vector<T>& values) {

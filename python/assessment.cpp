@@ -17,7 +17,7 @@ void bind_assessment(py::module_& module) {
   using calib::Reason;
   py::class_<Reason>(module, "Reason", "One reason of an aspect.")
       .def_property_readonly(
-          "state", [](const Reason& self) { return to_string(self.state); },
+          "state", named(&Reason::state),
           "What it speaks for: \"pass\", \"reservation\", \"fail\" or \"not_assessed\".")
       .def_readonly("code", &Reason::code, "\"limit_broken\", \"lack_of_fit\"...: docs/report.md")
       .def_readonly("subject", &Reason::subject, "Condition or parameter; empty: the whole result.")
@@ -32,7 +32,7 @@ void bind_assessment(py::module_& module) {
            [](const Reason& self) { return fmt::format("<rigcal.Reason {}>", self.code); });
   py::class_<Aspect>(module, "Aspect", "One of the four things that are judged apart.")
       .def_property_readonly(
-          "state", [](const Aspect& self) { return to_string(self.state); },
+          "state", named(&Aspect::state),
           "That of its gravest reason: \"pass\", \"reservation\", \"fail\" or \"not_assessed\".")
       .def_readonly("reasons", &Aspect::reasons, "The gravest first.")
       .def("__repr__", [](const Aspect& self) {

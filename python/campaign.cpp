@@ -4,12 +4,9 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <cmath>
 #include <filesystem>
 #include <optional>
 #include <vector>
-
-#include "python/arguments.hpp"
 
 namespace rigcal::python {
 namespace {
@@ -21,10 +18,6 @@ struct Parameter {
   datasets::ParameterSetting setting;
   model::ParameterSpec spec;
 };
-
-std::optional<double> none_where_nan(double value) {
-  return std::isnan(value) ? std::nullopt : std::optional(value);
-}
 
 std::vector<Parameter> campaign_parameters(const Campaign& self) {
   const auto table = model::parameter_table(self.campaign.rig.plant);
@@ -38,8 +31,8 @@ CampaignPtr load_campaign(const std::filesystem::path& campaign,
                           const std::optional<std::filesystem::path>& data,
                           const std::optional<py::dict>& set,
                           const std::optional<std::vector<std::string>>& free) {
-  if (campaign.empty()) throw py::value_error("campaign: found an empty path");
-  if (data && data->empty()) throw py::value_error("data: found an empty path");
+  require_path("campaign", campaign);
+  require_path("data", data);
   if (free && free->empty())
     throw py::value_error("free: found an empty list, expected names of parameters, or None");
   auto loaded = std::make_shared<Campaign>();
@@ -60,38 +53,28 @@ CampaignPtr load_campaign(const std::filesystem::path& campaign,
 
 void bind_parameter(py::module_& module) {
   using model::ParameterSpec;
-  py::class_<Parameter>(module, "Parameter", "A parameter that the campaign gives; SI.")
+  py::class_<Parameter> parameter(module, "Parameter", "A parameter that the campaign gives; SI.");
+  bind_spec(parameter);
+  parameter
+      .def_property_readonly("meaning", field(&Parameter::spec, &model::ParameterSpec::meaning),
+                             "In one line.")
+      .def_property_readonly("start",
+                             field(&Parameter::setting, &datasets::ParameterSetting::value),
+                             "The known value, or where the fit starts, in `unit`.")
       .def_property_readonly(
-          "key", [](const Parameter& self) { return self.spec.key; },
-          "Name in the campaign file: \"bulk_modulus\".")
-      .def_property_readonly(
-          "name", [](const Parameter& self) { return self.spec.name; },
-          "Name in results, with its unit: \"bulk_modulus_pa\".")
-      .def_property_readonly(
-          "symbol", [](const Parameter& self) { return self.spec.symbol; },
-          "Symbol in the equations.")
-      .def_property_readonly(
-          "unit", [](const Parameter& self) { return self.spec.unit; },
-          "SI unit; \"1\" of a number.")
-      .def_property_readonly(
-          "meaning", [](const Parameter& self) { return self.spec.meaning; }, "In one line.")
-      .def_property_readonly(
-          "start", [](const Parameter& self) { return self.setting.value; },
-          "The known value, or where the fit starts, in `unit`.")
-      .def_property_readonly(
-          "lower", [](const Parameter& self) { return none_where_nan(self.setting.lower); },
+          "lower", [](const Parameter& self) { return none_if_nan(self.setting.lower); },
           "Bound of the fit, in `unit`; None of a known value.")
       .def_property_readonly(
-          "upper", [](const Parameter& self) { return none_where_nan(self.setting.upper); },
+          "upper", [](const Parameter& self) { return none_if_nan(self.setting.upper); },
           "Bound of the fit, in `unit`; None of a known value.")
-      .def_property_readonly(
-          "free", [](const Parameter& self) { return self.setting.fit; }, "Whether it is fitted.")
-      .def_property_readonly(
-          "scope", [](const Parameter& self) { return to_string(self.setting.scope); },
-          "For whom one value holds: \"rig\", \"leak_level\" or \"condition\".")
-      .def_property_readonly(
-          "nuisance", [](const Parameter& self) { return self.setting.nuisance; },
-          "Fitted, but of no interest itself: validation estimates it again.")
+      .def_property_readonly("free", field(&Parameter::setting, &datasets::ParameterSetting::fit),
+                             "Whether it is fitted.")
+      .def_property_readonly("scope",
+                             named(&Parameter::setting, &datasets::ParameterSetting::scope),
+                             "For whom one value holds: \"rig\", \"leak_level\" or \"condition\".")
+      .def_property_readonly("nuisance",
+                             field(&Parameter::setting, &datasets::ParameterSetting::nuisance),
+                             "Fitted, but of no interest itself: validation estimates it again.")
       .def_property_readonly(
           "prior",
           [](const Parameter& self) -> std::optional<std::pair<double, double>> {
@@ -110,12 +93,10 @@ void bind_condition(py::module_& module) {
   py::class_<Condition>(module, "Condition",
                         "A signal at a leak level, recorded once or several times; SI.")
       .def_readonly("id", &Condition::id, "Its name in campaign and results.")
-      .def_property_readonly(
-          "use", [](const Condition& self) { return to_string(self.use); },
-          "\"fit\", \"validate\", \"diagnose\" or \"ignore\".")
-      .def_property_readonly(
-          "waveform", [](const Condition& self) { return to_string(self.waveform); },
-          "\"sine\", \"square\", \"recorded\"...")
+      .def_property_readonly("use", named(&Condition::use),
+                             "\"fit\", \"validate\", \"diagnose\" or \"ignore\".")
+      .def_property_readonly("waveform", named(&Condition::waveform),
+                             "\"sine\", \"square\", \"recorded\"...")
       .def_readonly("frequency_hz", &Condition::frequency_hz, "[Hz]; of a chirp, where it begins.")
       .def_readonly("amplitude", &Condition::amplitude,
                     "[m], or [V] where no controller is in the loop.")
@@ -137,20 +118,19 @@ CampaignClass bind_campaign(py::module_& module) {
       module, "Campaign",
       "A campaign file, checked and in SI. load() makes it; it does not change.");
   campaign
-      .def_property_readonly(
-          "name", [](const Campaign& self) { return self.campaign.name; }, "As the file says.")
-      .def_property_readonly(
-          "file", [](const Campaign& self) { return self.campaign.file; },
-          "Path of the campaign file.")
+      .def_property_readonly("name", field(&Campaign::campaign, &datasets::Campaign::name),
+                             "As the file says.")
+      .def_property_readonly("file", field(&Campaign::campaign, &datasets::Campaign::file),
+                             "Path of the campaign file.")
       .def_property_readonly(
           "plant", [](const Campaign& self) { return to_string(self.campaign.rig.plant); },
           "\"load_pressure\" or \"two_chamber\".")
-      .def_property_readonly(
-          "synthetic", [](const Campaign& self) { return self.campaign.synthetic; },
-          "Whether its records were made by `rigcal synthesize`.")
-      .def_property_readonly(
-          "conditions", [](const Campaign& self) { return self.campaign.conditions; },
-          "In the order of the file.")
+      .def_property_readonly("synthetic",
+                             field(&Campaign::campaign, &datasets::Campaign::synthetic),
+                             "Whether its records were made by `rigcal synthesize`.")
+      .def_property_readonly("conditions",
+                             field(&Campaign::campaign, &datasets::Campaign::conditions),
+                             "In the order of the file.")
       .def_property_readonly("parameters", &campaign_parameters,
                              "Those that the file gives, in its order, with the changes of `set` "
                              "and `free`.")

@@ -2,10 +2,13 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cmath>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "datasets/campaign/campaign.hpp"
+#include "python/arguments.hpp"
 #include "report/run/campaign_choice.hpp"
 
 namespace rigcal::python {
@@ -18,6 +21,25 @@ struct Campaign {
 };
 using CampaignPtr = std::shared_ptr<Campaign>;
 using CampaignClass = pybind11::class_<Campaign, CampaignPtr>;
+
+/// What the table of the plant says of a parameter, for a class with a `spec`.
+template <typename Parameter>
+void bind_spec(pybind11::class_<Parameter>& parameter) {
+  parameter
+      .def_property_readonly("key", field(&Parameter::spec, &model::ParameterSpec::key),
+                             "Name in the campaign file: \"bulk_modulus\".")
+      .def_property_readonly("name", field(&Parameter::spec, &model::ParameterSpec::name),
+                             "Name in results, with its unit: \"bulk_modulus_pa\".")
+      .def_property_readonly("symbol", field(&Parameter::spec, &model::ParameterSpec::symbol),
+                             "Symbol in the equations.")
+      .def_property_readonly("unit", field(&Parameter::spec, &model::ParameterSpec::unit),
+                             "SI unit; \"1\" for a plain number.");
+}
+
+/// None for what is not known.
+inline std::optional<double> none_if_nan(double value) {
+  return std::isnan(value) ? std::nullopt : std::optional(value);
+}
 
 // Each adds the classes of one kind of result, and to Campaign the methods that lead to them.
 CampaignClass bind_campaign(pybind11::module_& module);

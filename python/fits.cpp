@@ -13,7 +13,6 @@
 #include "calib/fit.hpp"
 #include "common/suggest.hpp"
 #include "datasets/prepare/load_record.hpp"
-#include "python/arguments.hpp"
 #include "python/arrays.hpp"
 #include "python/fit_result.hpp"
 #include "python/interruptible.hpp"
@@ -34,7 +33,8 @@ using datasets::Use;
 
 // ---- making them
 
-/// Raises what a signal brought; of Ctrl-C an exception that holds what was found by then.
+/// Raises what the signal handler raised; Ctrl-C becomes an exception that holds the best fit so
+/// far.
 [[noreturn]] void raise_interrupted(const std::exception_ptr& raised, const FitResultPtr& found) {
   try {
     std::rethrow_exception(raised);
@@ -48,7 +48,7 @@ using datasets::Use;
   }
 }
 
-/// Runs `work`, which sets the fit, and tells `progress` meanwhile.
+/// Runs `work`, which makes the fit, and reports to `progress` meanwhile.
 FitResultPtr made(const std::optional<py::function>& progress,
                   const std::function<FitResultPtr(Progress&, std::atomic<bool>&)>& work) {
   std::atomic<bool> cancel{false};
@@ -60,7 +60,7 @@ FitResultPtr made(const std::optional<py::function>& progress,
   return found;
 }
 
-/// The arguments of a call that are not what they would be by themselves.
+/// A call as text, without arguments that have their default.
 class Call {
  public:
   explicit Call(std::string name) : text_(std::move(name) + "(") {}
@@ -150,7 +150,7 @@ FitResultPtr validate(const CampaignPtr& self, const std::optional<EarlierArgume
                       const std::optional<py::function>& progress) {
   const int thread_number = thread_count(threads);
   const fs::path* const file = fit ? std::get_if<fs::path>(&*fit) : nullptr;
-  if (file != nullptr && file->empty()) throw py::value_error("fit: found an empty path");
+  if (file != nullptr) require_path("fit", *file);
   std::string call = self->call + ".validate(";
   if (file != nullptr) call += written("fit", decoded(file->string()));
   if (fit && file == nullptr) call += std::get<FitResultPtr>(*fit)->provenance.command;
@@ -215,7 +215,7 @@ py::dict scored_conditions(const FitResultPtr& self) {
 
 std::vector<fs::path> write(const FitResult& self, const fs::path& out,
                             const std::optional<Integer>& threads) {
-  if (out.empty()) throw py::value_error("out: found an empty path");
+  require_path("out", out);
   const int thread_number = thread_count(threads);
   const py::gil_scoped_release released;
   const report::HeldFolder held(out);
@@ -247,9 +247,8 @@ void bind_start(py::module_& module) {
   using calib::StartReport;
   py::class_<StartReport>(module, "Start", "One start of a fit.")
       .def_readonly("number", &StartReport::number, "From 1.")
-      .def_property_readonly(
-          "status", [](const StartReport& self) { return to_string(self.status); },
-          "\"converged\", \"stopped\" or \"failed\".")
+      .def_property_readonly("status", named(&StartReport::status),
+                             "\"converged\", \"stopped\" or \"failed\".")
       .def_readonly("message", &StartReport::message, "In words.")
       .def_readonly("start_values", &StartReport::start_values, "SI, one for each unknown.")
       .def_readonly("end_values", &StartReport::end_values,
@@ -276,20 +275,17 @@ void bind_result(py::module_& module) {
       .def_property_readonly(
           "status", [](const Self& self) { return to_string(report::status_of(self.fit)); },
           "\"converged\", \"stopped\" (the best so far) or \"failed\".")
-      .def_property_readonly(
-          "message", [](const Self& self) { return self.fit.message; },
-          "In words: why it stopped, what is not to be trusted.")
+      .def_property_readonly("message", field(&Self::fit, &calib::Fit::message),
+                             "In words: why it stopped, what is not to be trusted.")
       .def_property_readonly(
           "verdict",
           [](const Self& self) {
             return self.fit.verdict ? std::optional(to_string(*self.fit.verdict)) : std::nullopt;
           },
           "\"PASS\", \"WARN\" or \"FAIL\"; None where nothing was judged.")
-      .def_property_readonly(
-          "assessment", [](const Self& self) { return self.fit.assessment; },
-          "The four aspects that the verdict follows from.")
-      .def_property_readonly(
-          "warnings", [](const Self& self) { return self.fit.warnings; }, "In words.")
+      .def_property_readonly("assessment", field(&Self::fit, &calib::Fit::assessment),
+                             "The four aspects that the verdict follows from.")
+      .def_property_readonly("warnings", field(&Self::fit, &calib::Fit::warnings), "In words.")
       .def_property_readonly("parameters", &result_parameters, "Fitted and known ones.")
       .def("parameter", &parameter_of, py::arg("key"), py::arg("level") = py::none(),
            R"(One parameter.
@@ -311,42 +307,37 @@ Raises:
             return self.fit.rank > 0 ? std::optional(self.fit.reduced_chi_square) : std::nullopt;
           },
           "Twice the cost over the degrees of freedom: about 1 if the noise is all that is left.")
+      .def_property_readonly("residual_count", field(&Self::fit, &calib::Fit::residual_count),
+                             "That count.")
+      .def_property_readonly("evaluations", field(&Self::fit, &calib::Fit::evaluations),
+                             "Of all residuals.")
+      .def_property_readonly("wall_seconds", field(&Self::fit, &calib::Fit::wall_seconds), "[s]")
       .def_property_readonly(
-          "residual_count", [](const Self& self) { return self.fit.residual_count; }, "That count.")
-      .def_property_readonly(
-          "evaluations", [](const Self& self) { return self.fit.evaluations; }, "Of all residuals.")
-      .def_property_readonly(
-          "wall_seconds", [](const Self& self) { return self.fit.wall_seconds; }, "[s]")
-      .def_property_readonly(
-          "simulation_tolerance", [](const Self& self) { return self.fit.tolerance; },
+          "simulation_tolerance", field(&Self::fit, &calib::Fit::tolerance),
           "Local error per step of the simulations, over the peak of each state.")
-      .def_property_readonly(
-          "correlation_names", [](const Self& self) { return self.fit.correlation_names; },
-          "Of the rows and columns of `correlation`.")
+      .def_property_readonly("correlation_names", field(&Self::fit, &calib::Fit::correlation_names),
+                             "Of the rows and columns of `correlation`.")
       .def_property_readonly(
           "correlation", [](const Self& self) { return array_of(self.fit.correlation); },
           "Of the estimates that have a standard error, shape (names, names).")
-      .def_property_readonly(
-          "rank", [](const Self& self) { return self.fit.rank; },
-          "Of the scaled Jacobian at the optimum.")
+      .def_property_readonly("rank", field(&Self::fit, &calib::Fit::rank),
+                             "Of the scaled Jacobian at the optimum.")
       .def_property_readonly(
           "singular_values",
           [](const FitResultPtr& self) { return view(self, self->fit.singular_values); },
           "Of the same, shape (unknowns).")
       .def_property_readonly(
-          "combinations", [](const Self& self) { return self.fit.combinations; },
+          "combinations", field(&Self::fit, &calib::Fit::combinations),
           "What the records fix where they do not fix single parameters, in words.")
-      .def_property_readonly(
-          "interval_advice", [](const Self& self) { return self.fit.interval_advice; },
-          "Which interval to believe, and why, in words.")
-      .def_property_readonly(
-          "starts", [](const Self& self) { return self.fit.starts; }, "One report for each.")
-      .def_property_readonly(
-          "best_start", [](const Self& self) { return self.fit.best_start; },
-          "Number of the start that counts.")
-      .def_property_readonly(
-          "bootstrap_replicates", [](const Self& self) { return self.fit.bootstrap_replicates; },
-          "That converged.")
+      .def_property_readonly("interval_advice", field(&Self::fit, &calib::Fit::interval_advice),
+                             "Which interval to believe, and why, in words.")
+      .def_property_readonly("starts", field(&Self::fit, &calib::Fit::starts),
+                             "One report for each.")
+      .def_property_readonly("best_start", field(&Self::fit, &calib::Fit::best_start),
+                             "Number of the start that counts.")
+      .def_property_readonly("bootstrap_replicates",
+                             field(&Self::fit, &calib::Fit::bootstrap_replicates),
+                             "That converged.")
       .def("json", &json_of_result,
            R"(Contents of the fit.json, or validation.json, that write() would write.
 
@@ -400,8 +391,8 @@ Args:
     max_time: stops the fit, bootstrap and all [s]; None: the campaign's limit, or none
     max_evaluations: stops it after so many evaluations of all conditions
     threads: None: as many as the machine has; results do not depend on it
-    progress: called with an Iteration or Pieces, from any thread; what it raises ends the fit and
-        is raised here
+    progress: called with an Iteration or Pieces, from any thread; an exception there ends the
+        fit and is raised here
 
 Raises:
     InputError: a recording is wrong, nothing is free...

@@ -14,8 +14,6 @@ namespace {
 
 namespace py = pybind11;
 
-using Self = FittedParameter;
-
 void bind_bootstrap(py::module_& module) {
   using calib::BootstrapSpread;
   py::class_<BootstrapSpread>(module, "BootstrapSpread",
@@ -54,22 +52,15 @@ void bind_profile(py::module_& module) {
 }  // namespace
 
 void bind_fitted_parameters(py::module_& module) {
+  using Self = FittedParameter;
   bind_bootstrap(module);
   bind_profile(module);
-  py::class_<Self>(module, "FittedParameter", "One parameter of a result, fitted or known; SI.")
-      .def_property_readonly(
-          "key", [](const Self& self) { return self.spec.key; },
-          "Name in the campaign file: \"bulk_modulus\".")
-      .def_property_readonly(
-          "name", [](const Self& self) { return self.spec.name; },
-          "With its unit: \"bulk_modulus_pa\".")
-      .def_property_readonly(
-          "symbol", [](const Self& self) { return self.spec.symbol; }, "Symbol in the equations.")
-      .def_property_readonly(
-          "unit", [](const Self& self) { return self.spec.unit; }, "SI unit; \"1\" of a number.")
-      .def_property_readonly(
-          "scope", [](const Self& self) { return to_string(self.value.scope); },
-          "For whom it holds: \"rig\", \"leak_level\" or \"condition\".")
+  py::class_<Self> parameter(module, "FittedParameter",
+                             "One parameter of a result, fitted or known; SI.");
+  bind_spec(parameter);
+  parameter
+      .def_property_readonly("scope", named(&Self::value, &calib::FittedParameter::scope),
+                             "For whom it holds: \"rig\", \"leak_level\" or \"condition\".")
       .def_property_readonly(
           "level",
           [](const Self& self) -> std::optional<std::string> {
@@ -77,11 +68,10 @@ void bind_fitted_parameters(py::module_& module) {
             return self.value.level;
           },
           "Its leak level or condition; None of the rig.")
-      .def_property_readonly(
-          "value", [](const Self& self) { return self.value.value; }, "In `unit`.")
-      .def_property_readonly(
-          "start", [](const Self& self) { return self.value.start; },
-          "Where the fit began, in `unit`.")
+      .def_property_readonly("value", field(&Self::value, &calib::FittedParameter::value),
+                             "In `unit`.")
+      .def_property_readonly("start", field(&Self::value, &calib::FittedParameter::start),
+                             "Where the fit began, in `unit`.")
       .def_property_readonly(
           "lower",
           [](const Self& self) {
@@ -94,31 +84,27 @@ void bind_fitted_parameters(py::module_& module) {
             return self.value.fitted ? std::optional(self.value.upper) : std::nullopt;
           },
           "Bound of the fit, in `unit`; None of a known value.")
+      .def_property_readonly("fitted", field(&Self::value, &calib::FittedParameter::fitted),
+                             "False of a known value.")
+      .def_property_readonly("nuisance", field(&Self::value, &calib::FittedParameter::nuisance),
+                             "Fitted, but of no interest itself.")
       .def_property_readonly(
-          "fitted", [](const Self& self) { return self.value.fitted; }, "False of a known value.")
-      .def_property_readonly(
-          "nuisance", [](const Self& self) { return self.value.nuisance; },
-          "Fitted, but of no interest itself.")
-      .def_property_readonly(
-          "standard_error", [](const Self& self) { return self.value.standard_error; },
+          "standard_error", field(&Self::value, &calib::FittedParameter::standard_error),
           "As if the residuals were independent, in `unit`; None where the records do not\n"
           "determine it.")
-      .def_property_readonly(
-          "robust_standard_error",
-          [](const Self& self) { return self.value.robust_standard_error; },
-          "From the scatter of the residuals themselves, in `unit`; or None.")
-      .def_property_readonly(
-          "ci95", [](const Self& self) { return self.value.ci95; },
-          "95 % interval (low, high), in `unit`; or None.")
+      .def_property_readonly("robust_standard_error",
+                             field(&Self::value, &calib::FittedParameter::robust_standard_error),
+                             "From the scatter of the residuals themselves, in `unit`; or None.")
+      .def_property_readonly("ci95", field(&Self::value, &calib::FittedParameter::ci95),
+                             "95 % interval (low, high), in `unit`; or None.")
       .def_property_readonly(
           "ci95_from",
           [](const Self& self) {
             return self.value.ci95 ? std::optional(to_string(self.value.interval)) : std::nullopt;
           },
           "What the interval rests on: \"standard_error\", \"robust_standard_error\"...; or None.")
-      .def_property_readonly(
-          "bootstrap", [](const Self& self) { return self.value.bootstrap; },
-          "Its spread, where the fit was asked for one.")
+      .def_property_readonly("bootstrap", field(&Self::value, &calib::FittedParameter::bootstrap),
+                             "Its spread, where the fit was asked for one.")
       .def_property_readonly(
           "profile",
           [](const Self& self) -> std::shared_ptr<calib::Profile> {
@@ -126,9 +112,8 @@ void bind_fitted_parameters(py::module_& module) {
             return std::make_shared<calib::Profile>(*self.value.profile);
           },
           "Its profile likelihood, where the fit was asked for one.")
-      .def_property_readonly(
-          "at_bound", [](const Self& self) { return self.value.at_bound; },
-          "Whether the estimate lies at one of its bounds.")
+      .def_property_readonly("at_bound", field(&Self::value, &calib::FittedParameter::at_bound),
+                             "Whether the estimate lies at one of its bounds.")
       .def_property_readonly(
           "identifiability",
           [](const Self& self) {
@@ -137,7 +122,7 @@ void bind_fitted_parameters(py::module_& module) {
           },
           "\"identified\", \"weak\", \"bounded\" or \"not_identifiable\"; None of a known value.")
       .def_property_readonly(
-          "reason", [](const Self& self) { return self.value.reason; },
+          "reason", field(&Self::value, &calib::FittedParameter::reason),
           "In words: why it has no error, why it is weak, at which bound it lies.")
       .def("__repr__", [](const Self& self) {
         return fmt::format("<rigcal.FittedParameter {}{}: {:g} {}>", self.spec.key,

@@ -6,11 +6,10 @@
 
 namespace rigcal::python {
 
-/// Runs long work in a thread of its own, without the interpreter's lock, while this one looks
-/// whether a signal has come: then `cancel` becomes true, and the work is waited for.
+/// Runs long work in its own thread, without the GIL, while this thread checks for signals. A
+/// signal sets `cancel`; the work is waited for all the same.
 ///
-/// @return  what the handler of the signal raised, KeyboardInterrupt as a rule; null: no signal
-/// came
+/// @return  what the signal handler raised, usually KeyboardInterrupt; null without a signal
 /// @throws  what the work threw, unless a signal came first
 std::exception_ptr run_interruptibly(std::atomic<bool>& cancel, const std::function<void()>& work);
 

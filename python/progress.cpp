@@ -8,8 +8,7 @@ namespace rigcal::python {
 
 namespace py = pybind11;
 
-/// Only who holds the interpreter's lock touches `raised_` while the fit runs: no lock beside it,
-/// which two threads could wait for crosswise.
+/// The GIL guards `raised_` while the fit runs: a second lock could deadlock with it.
 template <typename Event>
 void Progress::tell(const Event& event) {
   const py::gil_scoped_acquire acquired;

@@ -11,7 +11,7 @@
 
 namespace rigcal::python {
 
-/// What a fit tells of one iteration.
+/// Progress of one iteration.
 struct Iteration {
   int start = 1;
   int iteration = 0;
@@ -19,24 +19,24 @@ struct Iteration {
   double relative_change = 0.0;
 };
 
-/// What a fit tells of the work beside it.
+/// Progress of other work of a fit.
 struct Pieces {
   std::string work;
   int done = 0;
   int all = 0;
 };
 
-/// Tells a function of Python how far a fit is, from whatever thread. What it raises ends the fit.
+/// Reports the progress of a fit to a Python function, from any thread. An exception ends the fit.
 class Progress {
  public:
   /// @param cancel  becomes true when the function raises; borrowed
   Progress(std::optional<pybind11::function> function, std::atomic<bool>& cancel)
       : function_(std::move(function)), cancel_(cancel) {}
 
-  /// Has the fit call this one, if there is a function.
+  /// Makes the fit report here, if there is a function.
   void attach(calib::FitOptions& settings);
 
-  /// Throws what the function raised, if it did. With the interpreter's lock.
+  /// Throws what the function raised, if anything. Needs the GIL.
   void rethrow() const;
 
  private:

@@ -2,7 +2,6 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -11,7 +10,6 @@
 #include <vector>
 
 #include "datasets/checks/short_records.hpp"
-#include "python/arguments.hpp"
 #include "python/arrays.hpp"
 #include "python/campaign.hpp"
 #include "report/run/averaging.hpp"
@@ -40,10 +38,6 @@ struct Checked {
   std::string text;
 };
 
-std::optional<double> none_if_nan(double value) {
-  return std::isnan(value) ? std::nullopt : std::optional(value);
-}
-
 py::dict channels_of(const RecordPtr& record) {
   py::dict channels;
   for (const auto& [channel, series] : record->channels) {
@@ -55,6 +49,7 @@ py::dict channels_of(const RecordPtr& record) {
 }
 
 py::dict average(const Campaign& self, const std::optional<fs::path>& out) {
+  require_path("out", out);
   std::vector<Record> records;
   const std::string call =
       self.call + ".average(" + (out ? written("out", decoded(out->string())) : "") + ")";
@@ -94,12 +89,10 @@ Checked check(const Campaign& self) {
 
 void bind_channel(py::module_& module) {
   py::class_<RecordedChannel>(module, "Channel", "Mean over the repeats of one channel; SI.")
-      .def_property_readonly(
-          "key", [](const RecordedChannel& self) { return self.about.key; },
-          "Name in campaign and results: \"position\".")
-      .def_property_readonly(
-          "unit", [](const RecordedChannel& self) { return self.about.unit; },
-          "SI unit of mean and sd: \"m\".")
+      .def_property_readonly("key", field(&RecordedChannel::about, &datasets::ChannelInfo::key),
+                             "Name in campaign and results: \"position\".")
+      .def_property_readonly("unit", field(&RecordedChannel::about, &datasets::ChannelInfo::unit),
+                             "SI unit of mean and sd: \"m\".")
       .def_property_readonly(
           "repeats", [](const RecordedChannel& self) { return self.series->repeats; },
           "How many carry this channel.")

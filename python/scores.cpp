@@ -93,20 +93,18 @@ void bind_limit_check(py::module_& module) {
       .def_readonly("value", &LimitCheck::value, "None where it does not exist, see `words`.")
       .def_readonly("limit", &LimitCheck::limit, "Beyond it: FAIL.")
       .def_readonly("warn", &LimitCheck::warn, "Between it and the limit: WARN.")
-      .def_property_readonly(
-          "verdict", [](const LimitCheck& self) { return to_string(self.verdict); },
-          "\"PASS\", \"WARN\" or \"FAIL\".")
+      .def_property_readonly("verdict", named(&LimitCheck::verdict),
+                             "\"PASS\", \"WARN\" or \"FAIL\".")
       .def_readonly("words", &LimitCheck::words, "Why WARN or FAIL; empty for PASS.");
 }
 
 void bind_scored_channel(py::module_& module) {
   py::class_<ScoredChannel>(module, "ScoredChannel",
                             "How well the model agrees with one channel of a condition; SI.")
-      .def_property_readonly(
-          "key", [](const ScoredChannel& self) { return self.about.key; }, "\"position\"...")
-      .def_property_readonly(
-          "unit", [](const ScoredChannel& self) { return self.about.unit; },
-          "SI unit of the arrays.")
+      .def_property_readonly("key", field(&ScoredChannel::about, &datasets::ChannelInfo::key),
+                             "\"position\"...")
+      .def_property_readonly("unit", field(&ScoredChannel::about, &datasets::ChannelInfo::unit),
+                             "SI unit of the arrays.")
       .def_property_readonly(
           "measured",
           [](const ScoredChannel& self) { return view(self.condition, self.measured()); },
@@ -126,14 +124,13 @@ void bind_scored_channel(py::module_& module) {
                              "Of each of `metrics`, 95 %, by repeats and sensor; None with fewer\n"
                              "than two repeats.")
       .def_property_readonly(
-          "gain_ratio", [](const ScoredChannel& self) { return self.score.gain_ratio; },
+          "gain_ratio", field(&ScoredChannel::score, &calib::ChannelScore::gain_ratio),
           "Simulated over measured amplitude of the fundamental; None where there is none.")
-      .def_property_readonly(
-          "phase_deg", [](const ScoredChannel& self) { return self.score.phase_deg; },
-          "Of the fundamental [degrees]; or None.")
-      .def_property_readonly(
-          "delay_s", [](const ScoredChannel& self) { return self.score.delay_s; },
-          "Of the fundamental [s]; or None.")
+      .def_property_readonly("phase_deg",
+                             field(&ScoredChannel::score, &calib::ChannelScore::phase_deg),
+                             "Of the fundamental [degrees]; or None.")
+      .def_property_readonly("delay_s", field(&ScoredChannel::score, &calib::ChannelScore::delay_s),
+                             "Of the fundamental [s]; or None.")
       .def_property_readonly(
           "problem", [](const ScoredChannel& self) { return none_if_empty(self.score.problem); },
           "Why a metric does not exist, in words; or None.")
@@ -151,11 +148,10 @@ void bind_scores(py::module_& module) {
   py::class_<Self>(module, "ScoredCondition",
                    "How well the model agrees with the record of a condition; SI. Its arrays\n"
                    "cannot be written to.")
-      .def_property_readonly(
-          "id", [](const Self& self) { return self.score->id; }, "Of the condition.")
-      .def_property_readonly(
-          "use", [](const Self& self) { return to_string(self.score->use); },
-          "\"fit\" or \"validate\".")
+      .def_property_readonly("id", field(&Self::score, &calib::ConditionScore::id),
+                             "Of the condition.")
+      .def_property_readonly("use", named(&Self::score, &calib::ConditionScore::use),
+                             "\"fit\" or \"validate\".")
       .def_property_readonly(
           "verdict",
           [](const Self& self) {
@@ -163,22 +159,20 @@ void bind_scores(py::module_& module) {
                                        : std::nullopt;
           },
           "\"PASS\", \"WARN\" or \"FAIL\"; None without limits.")
-      .def_property_readonly(
-          "reasons", [](const Self& self) { return self.score->reasons; },
-          "Of WARN and FAIL, in words.")
-      .def_property_readonly(
-          "checks", [](const Self& self) { return self.score->checks; }, "Of every limit.")
-      .def_property_readonly(
-          "warnings", [](const Self& self) { return self.score->data_warnings; },
-          "What is doubtful about the recording, in words.")
+      .def_property_readonly("reasons", field(&Self::score, &calib::ConditionScore::reasons),
+                             "Of WARN and FAIL, in words.")
+      .def_property_readonly("checks", field(&Self::score, &calib::ConditionScore::checks),
+                             "Of every limit.")
+      .def_property_readonly("warnings", field(&Self::score, &calib::ConditionScore::data_warnings),
+                             "What is doubtful about the recording, in words.")
       .def_property_readonly(
           "failure", [](const Self& self) { return none_if_empty(self.score->failure); },
           "Why it could not be simulated, in words; or None.")
       .def_property_readonly(
           "not_scored", [](const Self& self) { return none_if_empty(self.score->not_scored); },
           "Why it was not scored, in words; or None.")
-      .def_property_readonly(
-          "samples", [](const Self& self) { return self.score->samples; }, "That count.")
+      .def_property_readonly("samples", field(&Self::score, &calib::ConditionScore::samples),
+                             "That count.")
       .def_property_readonly(
           "time_s", [](const Self& self) { return view(self.score, self.score->time_s); },
           "Shape (samples of the whole record) [s].")

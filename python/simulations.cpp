@@ -11,7 +11,6 @@
 
 #include "common/error.hpp"
 #include "common/suggest.hpp"
-#include "python/arguments.hpp"
 #include "python/arrays.hpp"
 #include "python/campaign.hpp"
 #include "python/interruptible.hpp"
@@ -97,6 +96,7 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const std::optional<st
 
 py::object simulate(const Campaign& self, const std::optional<std::string>& condition,
                     const std::optional<Integer>& threads, const std::optional<fs::path>& out) {
+  require_path("out", out);
   const int count = thread_count(threads);
   std::vector<SimulatedPtr> results;
   std::atomic<bool> cancel{false};
@@ -117,20 +117,18 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
       "A simulated condition; SI. Its arrays cannot be written to; they are empty where it could\n"
       "not be simulated.");
   simulation.def_readonly("condition", &Simulated::condition, "Id of the condition.")
-      .def_property_readonly(
-          "status", [](const Simulated& self) { return to_string(self.simulation.status); },
-          "\"ok\", or why there is none.")
-      .def_property_readonly(
-          "reason", [](const Simulated& self) { return self.simulation.reason; },
-          "Why it failed, in words; empty if it did not.")
+      .def_property_readonly("status", named(&Simulated::simulation, &model::Simulation::status),
+                             "\"ok\", or why there is none.")
+      .def_property_readonly("reason", field(&Simulated::simulation, &model::Simulation::reason),
+                             "Why it failed, in words; empty if it did not.")
       .def_property_readonly(
           "failed_at_s",
           [](const Simulated& self) {
             return self.simulation.ok() ? std::nullopt : std::optional(self.simulation.failed_at_s);
           },
           "Where it ended [s]; None if it did not fail.")
-      .def_property_readonly(
-          "steps", [](const Simulated& self) { return self.simulation.steps; }, "Of the solver.")
+      .def_property_readonly("steps", field(&Simulated::simulation, &model::Simulation::steps),
+                             "Of the solver.")
       .def_property_readonly(
           "time_s", [](const SimulatedPtr& self) { return view(self, self->time_s); },
           "Shape (samples) [s].")

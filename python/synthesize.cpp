@@ -8,7 +8,6 @@
 #include <limits>
 #include <optional>
 
-#include "python/arguments.hpp"
 #include "python/campaign.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/provenance.hpp"
@@ -21,7 +20,7 @@ namespace fs = std::filesystem;
 
 fs::path synthesize(const Campaign& self, const fs::path& out, const Integer& seed,
                     const std::optional<Integer>& threads) {
-  if (out.empty()) throw py::value_error("out: found an empty path");
+  require_path("out", out);
   const std::uint64_t number =
       whole_number("seed", seed, 0, std::numeric_limits<std::uint64_t>::max());
   const int thread_number = thread_count(threads);

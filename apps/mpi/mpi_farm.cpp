@@ -17,19 +17,18 @@
 #include "common/bytes.hpp"
 #include "common/task_farm.hpp"
 
-// Loaded by `rigcal` where mpirun or srun has started it (apps/rigcal/processes.cpp), so that the
-// program itself depends on no MPI.
+// Loaded by `rigcal` if mpirun or srun started it (apps/rigcal/processes.cpp), so that the program
+// itself does not depend on MPI.
 //
-// Every process runs the same program on the same inputs and comes to the same jobs. The first one
-// leads: it hands out tasks, gathers results and gives all of them to each process that asks. No
-// process waits for another but in a job, or in the end; one that comes late finds the results
-// there. Only the main thread of a process calls MPI.
+// Every process runs the same program on the same inputs and reaches the same jobs. The first one
+// leads: it hands out tasks, collects the results and sends all of them to every process that asks.
+// Processes wait for each other only within a job and at the end; a late one finds the results
+// ready. Only main threads call MPI.
 
 namespace rigcal {
 namespace {
 
-/// How long a process that has nothing to say sleeps between two looks: MPI's own waiting would
-/// take a whole processor.
+/// Sleep between two polls of an idle process: MPI's own waiting would occupy a whole processor.
 constexpr auto kPause = std::chrono::microseconds(300);
 constexpr int kTag = 1;
 
@@ -90,7 +89,7 @@ Slot make(const TaskFarm::Task& task, std::size_t index) {
   try {
     slot.result = task(index);
   } catch (...) {
-    slot.threw = true;  // made once more by whoever needs the results, to throw there
+    slot.threw = true;  // whoever needs the results runs it again, to throw there
   }
   return slot;
 }

@@ -17,10 +17,13 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCampaignFile = "campaign.toml";
 
-/// Hash of a file as it is now; empty where there is none.
+/// Hash of a file as it is now; nothing where none can be read.
 std::optional<std::string> hash_of(const fs::path& file) {
-  if (!fs::exists(file)) return std::nullopt;
-  return sha256_of_file(file);
+  try {
+    return sha256_of_file(file);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
 }
 
 /// Relative record paths start at the campaign file's folder wherever the command runs.
@@ -46,15 +49,15 @@ ChildEnd diagnose_rig(const BatchRig& rig, const RigTask& task, const std::atomi
 
 std::vector<BatchRig> find_rigs(const fs::path& folder, const fs::path& out) {
   std::vector<BatchRig> rigs;
-  std::error_code none;  // --out need not be there yet
+  std::error_code none;  // --out need not be there yet, and a link may lead nowhere
   auto entry =
       fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied);
   for (; entry != fs::recursive_directory_iterator(); ++entry) {
-    if (entry->is_directory() && fs::equivalent(entry->path(), out, none)) {
+    if (entry->is_directory(none) && fs::equivalent(entry->path(), out, none)) {
       entry.disable_recursion_pending();
       continue;
     }
-    if (entry->path().filename() != kCampaignFile || !entry->is_regular_file()) continue;
+    if (entry->path().filename() != kCampaignFile || !entry->is_regular_file(none)) continue;
     const fs::path parent = entry->path().parent_path();
     std::string name = parent.lexically_relative(folder).generic_string();
     if (name.empty() || name == ".") name = fs::canonical(folder).filename().generic_string();

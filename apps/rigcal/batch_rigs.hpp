@@ -17,8 +17,8 @@ struct BatchRig {
   std::string folder;              ///< of its results, relative to --out
 };
 
-/// Every campaign.toml beneath `folder`, by the names of their folders; links are not followed, and
-/// nothing beneath `out` counts. One that lies in `folder` itself has the name of that folder.
+/// Every campaign.toml beneath `folder`, sorted by the name of its folder; links are not followed,
+/// and `out` is skipped. One in `folder` itself has the name of that folder.
 ///
 /// @throws UsageError  there is none, or two would have the same folder of results
 std::vector<BatchRig> find_rigs(const std::filesystem::path& folder,

@@ -18,7 +18,7 @@
 namespace rigcal::app {
 namespace {
 
-/// What is kept of a child's stderr: its end.
+/// How much of the end of a child's stderr is kept.
 constexpr std::size_t kMostKept = 16'384;
 constexpr int kLookEvery_ms = 50;
 
@@ -49,7 +49,7 @@ class Descriptor {
   throw WriteError(fmt::format("{}: {}", what, std::generic_category().message(errno)));
 }
 
-/// Only what is safe between fork and exec in a process of several threads.
+/// Calls only what is safe between fork and exec in a process with several threads.
 [[noreturn]] void become(char* const* arguments, char* const* environment, int err, int null,
                          pid_t parent) {
   ::setpgid(0, 0);  // a terminal's signal is for the parent, which passes it on once
@@ -61,7 +61,7 @@ class Descriptor {
   ::_exit(static_cast<int>(ExitCode::internal));
 }
 
-/// Reads to the end of the pipe, which is that of the child.
+/// Reads until the child closes its end of the pipe.
 std::string read_all(int pipe, pid_t child, const std::atomic<bool>& cancel) {
   std::string text;
   bool told = false;

@@ -8,19 +8,19 @@
 
 namespace rigcal::app {
 
-/// How a run of this program in a process of its own ended.
+/// How a child process of this program ended.
 struct ChildEnd {
   ExitCode code = ExitCode::internal;
-  std::string error;  ///< the message that it ended with, on one line; empty where there was none
+  std::string error;  ///< its last error message, on one line; empty if there was none
   double seconds = 0.0;
 };
 
-/// Runs `rigcal` with these arguments in a process of its own, so that not even a crash or want of
-/// memory there ends this one, and waits for it. What it prints is dropped, but for its error. It
-/// is no process of MPI, even where this one is. When `cancel` becomes true, and when this process
-/// ends, it is told by SIGTERM. May be called from several threads at a time.
+/// Runs `rigcal` with these arguments in a child process, so that a crash or lack of memory there
+/// does not end this one, and waits for it. Of its output only the error message is kept. It is not
+/// an MPI process, even if this one is. It gets SIGTERM when `cancel` becomes true or this process
+/// ends. Thread-safe.
 ///
-/// @throws WriteError  no process can be made
+/// @throws WriteError  no process can be started
 ChildEnd run_child(const std::vector<std::string>& arguments, const std::atomic<bool>& cancel);
 
 }  // namespace rigcal::app

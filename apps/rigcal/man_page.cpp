@@ -2,31 +2,16 @@
 
 #include "apps/rigcal/manual.hpp"
 #include "report/store/provenance.hpp"
+#include "report/text/escape.hpp"
 
 namespace rigcal::app {
 namespace {
 
-/// Text of which roff takes nothing for a request: a hyphen is the one of a command line.
+/// Text in which roff sees no request; a hyphen is that of a command line.
 std::string roff(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '\\':
-        escaped += "\\e";
-        break;
-      case '-':
-        escaped += "\\-";
-        break;
-      case '\'':
-        escaped += "\\(aq";
-        break;
-      case '"':
-        escaped += "\\(dq";
-        break;
-      default:
-        escaped += c;
-    }
-  }
+  using Row = std::pair<char, std::string_view>;
+  const std::string escaped = report::replaced(
+      text, std::array{Row{'\\', "\\e"}, Row{'-', "\\-"}, Row{'\'', "\\(aq"}, Row{'"', "\\(dq"}});
   return escaped.starts_with('.') ? "\\&" + escaped : escaped;
 }
 

@@ -52,17 +52,17 @@ std::unique_ptr<TaskFarm> launched_processes() {
   const fs::path file = module_file();
   if (file.empty())
     throw UsageError(
-        fmt::format("this is one of several processes of mpirun, and {} is not there: expected a "
-                    "rigcal that was built where MPI is (docs/many-rigs.md), or one process",
+        fmt::format("started as one of several MPI processes, but {} is missing: expected a rigcal "
+                    "that was built with MPI (docs/many-rigs.md), or a single process",
                     kModule));
   // Open MPI loads parts of its own, which look for its symbols.
   void* const module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
   if (module == nullptr)
-    throw UsageError(fmt::format("{}: it cannot be loaded: {}", file.string(), ::dlerror()));
+    throw UsageError(fmt::format("{}: cannot be loaded: {}", file.string(), ::dlerror()));
   using MakeFarm = TaskFarm* (*)();
   const auto make = reinterpret_cast<MakeFarm>(::dlsym(module, "rigcal_mpi_farm"));
   if (make == nullptr)
-    throw UsageError(fmt::format("{}: it is no module of rigcal: {}", file.string(), ::dlerror()));
+    throw UsageError(fmt::format("{}: is not a module of rigcal: {}", file.string(), ::dlerror()));
   return std::unique_ptr<TaskFarm>(make());
 }
 

@@ -18,10 +18,7 @@ constexpr double kLoosenessNearOptimum = 10.0;
 double prior_cost(const Problem& problem, std::span<const double> z) {
   double cost = 0.0;
   for (std::size_t j = 0; j < z.size(); ++j) {
-    const auto& prior = problem.map.unknowns()[j].prior;
-    if (!prior) continue;
-    const double residual =
-        (problem.map.to_physical(static_cast<int>(j), z[j]) - prior->mean) / prior->sd;
+    const double residual = problem.map.prior_residual(static_cast<int>(j), z[j]);
     cost += 0.5 * residual * residual;
   }
   return cost;
@@ -193,13 +190,11 @@ Linearisation linearise(const Problem& problem, const Evaluation& evaluation) {
   }
   for (Eigen::Index j = 0; j < unknowns; ++j) {
     const auto u = static_cast<std::size_t>(j);
-    const auto& prior = problem.map.unknowns()[u].prior;
-    if (!prior) continue;
+    if (!problem.map.unknowns()[u].prior) continue;
     const int unknown = static_cast<int>(j);
     Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, unknowns + 1);
-    row(0, j) = problem.map.slope(unknown, evaluation.z[u]) / prior->sd;
-    row(0, unknowns) =
-        (problem.map.to_physical(unknown, evaluation.z[u]) - prior->mean) / prior->sd;
+    row(0, j) = problem.map.prior_slope(unknown, evaluation.z[u]);
+    row(0, unknowns) = problem.map.prior_residual(unknown, evaluation.z[u]);
     total.add(row);
   }
   return {total.get().leftCols(unknowns), total.get().col(unknowns)};

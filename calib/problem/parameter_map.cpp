@@ -158,4 +158,14 @@ double ParameterMap::slope(int unknown, double z) const {
   return interval_of(unknowns_[static_cast<std::size_t>(unknown)]).slope(z);
 }
 
+double ParameterMap::prior_residual(int unknown, double z) const {
+  const auto& prior = unknowns_[static_cast<std::size_t>(unknown)].prior;
+  return prior ? prior->residual(to_physical(unknown, z)) : 0.0;
+}
+
+double ParameterMap::prior_slope(int unknown, double z) const {
+  const auto& prior = unknowns_[static_cast<std::size_t>(unknown)].prior;
+  return prior ? slope(unknown, z) / prior->sd : 0.0;
+}
+
 }  // namespace rigcal::calib

@@ -69,6 +69,9 @@ class ParameterMap {
   double to_unit(int unknown, double value) const;
   /// d value / d z
   double slope(int unknown, double z) const;
+  /// Residual of the prior of an unknown, and d residual / d z; zero where it has none.
+  double prior_residual(int unknown, double z) const;
+  double prior_slope(int unknown, double z) const;
 
  private:
   std::vector<Unknown> unknowns_;

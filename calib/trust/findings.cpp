@@ -55,7 +55,7 @@ void warn_of_priors(const Problem& problem, const std::vector<FittedParameter>& 
   constexpr double kFar = 3.0;  // standard deviations: one in 370 by chance
   const auto warn = [&](const std::string& name, double value, const datasets::Prior& prior,
                         std::string_view unit, const char* what) {
-    const double pull = std::abs(value - prior.mean) / prior.sd;
+    const double pull = std::abs(prior.residual(value));
     if (pull <= kFar) return;
     fit.warnings.push_back(
         fmt::format("{}: {} {:.4g} {}, {:.2g} standard deviations of its prior from {:.4g} {}",

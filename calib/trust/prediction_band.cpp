@@ -17,13 +17,7 @@ Eigen::MatrixXd long_run_covariance(const Problem& problem, std::span<const doub
   const Eigen::MatrixXd& root = uncertainty.root;
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(root.cols(), root.cols());
   for (const ScoreScatter& each : uncertainty.scatter) sum += each.covariance;
-  for (std::size_t j = 0; j < z.size(); ++j) {
-    const auto& prior = problem.map.unknowns()[j].prior;
-    if (!prior) continue;
-    const auto row = root.row(static_cast<Eigen::Index>(j));
-    const double weight = problem.map.slope(static_cast<int>(j), z[j]) / prior->sd;
-    sum += weight * weight * row.transpose() * row;
-  }
+  add_prior_information(problem, z, root, sum);
   return sum;
 }
 

@@ -96,7 +96,8 @@ class Follower {
       if (solved.status != FitStatus::converged) return std::nullopt;
     }
     if (!evaluator.best().ok) return std::nullopt;
-    const double cost = evaluator.best().cost + prior_cost(value);
+    const double prior = problem_.map.prior_residual(static_cast<int>(unknown_), z);
+    const double cost = evaluator.best().cost + 0.5 * prior * prior;
     const double found = 2.0 * (cost - optimum_.cost) / threshold_;
     points_[z] = {found, evaluator.best().z};
     return found;
@@ -126,13 +127,6 @@ class Follower {
       return std::abs(a.first - z) < std::abs(b.first - z);
     });
     return best->second.others;
-  }
-
-  double prior_cost(double value) const {
-    const auto& prior = problem_.map.unknowns()[unknown_].prior;
-    if (!prior) return 0.0;
-    const double residual = (value - prior->mean) / prior->sd;
-    return 0.5 * residual * residual;
   }
 
   const Problem& problem_;

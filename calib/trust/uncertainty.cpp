@@ -51,20 +51,6 @@ std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span
   return result;
 }
 
-/// J^T J of the priors in coordinates of `root`.
-Eigen::MatrixXd prior_information(const Problem& problem, std::span<const double> z,
-                                  const Eigen::MatrixXd& root) {
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(root.cols(), root.cols());
-  for (std::size_t j = 0; j < z.size(); ++j) {
-    const auto& prior = problem.map.unknowns()[j].prior;
-    if (!prior) continue;
-    const auto row = static_cast<Eigen::Index>(j);
-    const double weight = problem.map.slope(static_cast<int>(j), z[j]) / prior->sd;
-    sum += weight * weight * root.row(row).transpose() * root.row(row);
-  }
-  return sum;
-}
-
 std::string null_reason(const Problem& problem, const std::vector<std::size_t>& members,
                         std::size_t unknown) {
   std::vector<std::string> partners;
@@ -78,6 +64,16 @@ std::string null_reason(const Problem& problem, const std::vector<std::size_t>& 
 }
 
 }  // namespace
+
+void add_prior_information(const Problem& problem, std::span<const double> z,
+                           const Eigen::MatrixXd& root, Eigen::MatrixXd& sum) {
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const double weight = problem.map.prior_slope(static_cast<int>(j), z[j]);
+    if (weight == 0.0) continue;
+    const auto row = root.row(static_cast<Eigen::Index>(j));
+    sum += weight * weight * row.transpose() * row;
+  }
+}
 
 bool Uncertainty::repeats_differ() const {
   const auto least = std::min_element(repeats_p.begin(), repeats_p.end());
@@ -111,7 +107,8 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   result.spread = inverse_lengths.asDiagonal() * V * lengths.asDiagonal();
   result.root = root;
   result.known = known_uncertainty(problem, optimum.z, rows, root, threads);
-  const Eigen::MatrixXd priors = prior_information(problem, optimum.z, root);
+  Eigen::MatrixXd priors = Eigen::MatrixXd::Zero(root.cols(), root.cols());
+  add_prior_information(problem, optimum.z, root, priors);
   std::vector<ScoreRows> scores;
   std::vector<Eigen::MatrixXd> repeats;
   Eigen::VectorXd coherent = Eigen::VectorXd::Zero(n);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,10 @@ struct Uncertainty {
   /// (Bonferroni).
   bool repeats_differ() const;
 };
+
+/// Adds J^T J of the priors, in coordinates of `root`.
+void add_prior_information(const Problem& problem, std::span<const double> z,
+                           const Eigen::MatrixXd& root, Eigen::MatrixXd& sum);
 
 /// Standard errors from the Gauss-Newton matrix, sigma^2 (J^T J)^-1, at all unknowns, those at a
 /// bound included. sigma^2 is the larger of 1 (the noise is known) and the reduced chi-square (the

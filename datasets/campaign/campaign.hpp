@@ -29,6 +29,9 @@ std::string_view to_string(Scope scope);
 struct Prior {
   double mean = 0.0;
   double sd = 0.0;
+
+  /// How far a value is from the mean, in standard deviations.
+  double residual(double value) const { return (value - mean) / sd; }
 };
 
 /// One entry of [rig.parameters] or [rig.controller], in SI.

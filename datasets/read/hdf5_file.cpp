@@ -23,8 +23,8 @@ constexpr unsigned kMostMembers = 1000;
 
 constexpr std::array kUnitAttributes{"unit", "units", "Unit", "Units", "unit_string"};
 
-/// Attributes that tell the distance of samples, and whether in seconds or as a rate in hertz. The
-/// first is that of NI's TDMS waveforms, which npTDMS writes.
+/// Attributes with the sample interval in seconds or the sampling rate in hertz. npTDMS writes the
+/// first, for NI's TDMS waveforms.
 struct ClockAttribute {
   const char* name;
   bool is_rate;
@@ -36,13 +36,13 @@ constexpr std::array kClockAttributes{ClockAttribute{"wf_increment", false},
                                       ClockAttribute{"sampling_rate", true},
                                       ClockAttribute{"sampling_frequency", true},
                                       ClockAttribute{"fs", true}};
-/// Of the first sample, beside "wf_increment".
+/// Time of the first sample, stored beside "wf_increment".
 constexpr const char* kStartAttribute = "wf_start_offset";
 
-/// Names of the links of a group, and whether each is a hard one.
+/// Names of the hard links of a group.
 using Links = std::vector<std::string>;
 
-/// Called by HDF5: nothing may be thrown through it but what ends the process.
+/// Called by HDF5, which is C: must not throw.
 herr_t note_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void* links) {
   auto& list = *static_cast<Links*>(links);
   if (list.size() >= kMostObjects) return 1;
@@ -50,7 +50,7 @@ herr_t note_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void
   return 0;
 }
 
-/// What numbers are no numbers, in words; empty of numbers.
+/// What a type is instead of numeric, in words; empty if it is numeric.
 std::string kind_of(hid_t type) {
   switch (H5Tget_class(type)) {
     case H5T_INTEGER:
@@ -75,7 +75,7 @@ std::string kind_of(hid_t type) {
   }
 }
 
-/// Sizes as far as they are possible; false if their product overflows.
+/// Appends the sizes; false if the product of all dimensions overflows.
 bool append_dims(const std::vector<hsize_t>& sizes, std::vector<std::size_t>& dims) {
   constexpr std::size_t kMost = std::numeric_limits<std::int64_t>::max();
   std::size_t count = 1;
@@ -88,7 +88,7 @@ bool append_dims(const std::vector<hsize_t>& sizes, std::vector<std::size_t>& di
   return true;
 }
 
-/// Takes the arrays out of a type of cells: their shape goes to `dims`, what they hold is returned.
+/// Element type of cells that are arrays, whose shape is appended to `dims`; any other type itself.
 Hdf5Id element_type(Hdf5Id type, Hdf5Series& series) {
   if (H5Tget_class(type.get()) != H5T_ARRAY) return type;
   const int rank = H5Tget_array_ndims(type.get());
@@ -135,8 +135,8 @@ std::size_t dims_of_dataset(const Hdf5Series& series) {
   return series.dims.size() - series.cell_dims;
 }
 
-/// Which numbers of a selection are wanted: cells of `width` numbers follow each other, and of
-/// all these first, first + stride, ...
+/// Which numbers of a selection are wanted: it consists of cells of `width` numbers each, of which
+/// numbers first, first + stride, ... count.
 struct CellChoice {
   std::size_t cells = 1;
   std::size_t width = 1;
@@ -217,7 +217,7 @@ std::size_t Hdf5Series::element_count() const {
 
 Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // it would print its errors
-  H5PLset_loading_state(0);                     // no code from folders that a variable names
+  H5PLset_loading_state(0);                     // no plugins from a path in the environment
   file_ = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file_)
     fail(fmt::format("is truncated or damaged, or no HDF5 file (HDF5: {}); copy or save it again",
@@ -312,7 +312,7 @@ void Hdf5File::require_readable(hid_t dataset, const std::string& column) const 
   const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
   if (!plan) fail(fmt::format("is damaged at '{}' (HDF5: {})", column, hdf5_reason()));
   if (H5Pget_layout(plan.get()) == H5D_VIRTUAL || H5Pget_external_count(plan.get()) > 0)
-    fail(fmt::format("'{}' is kept in another file; expected numbers in this one", column));
+    fail(fmt::format("'{}' is stored in another file; expected numbers in this one", column));
   for (int i = 0; i < H5Pget_nfilters(plan.get()); ++i) {
     std::array<char, 40> name{};
     unsigned flags = 0;
@@ -321,10 +321,10 @@ void Hdf5File::require_readable(hid_t dataset, const std::string& column) const 
                                                &values, nullptr, name.size(), name.data(), nullptr);
     if (filter >= 0 && H5Zfilter_avail(filter) > 0) continue;
     name.back() = '\0';
-    fail(fmt::format(
-        "'{}' is packed by the filter {} ({}), which HDF5 does not have of itself; save "
-        "it with gzip, or unpacked",
-        column, filter, is_printable(name.data()) ? name.data() : "?"));
+    fail(
+        fmt::format("'{}' is compressed by the filter {} ({}), which is not built into HDF5; save "
+                    "it with gzip, or uncompressed",
+                    column, filter, is_printable(name.data()) ? name.data() : "?"));
   }
   H5D_space_status_t status = H5D_SPACE_STATUS_ERROR;
   if (H5Dget_space_status(dataset, &status) >= 0 && status == H5D_SPACE_STATUS_NOT_ALLOCATED)

@@ -10,7 +10,7 @@
 
 namespace rigcal::datasets {
 
-/// An identifier of HDF5, closed when it goes.
+/// Owns an HDF5 identifier.
 class Hdf5Id {
  public:
   Hdf5Id() = default;
@@ -46,11 +46,11 @@ struct Hdf5Series {
   std::string kind;                ///< what it is, if no numbers: "a text"; else empty
   std::vector<std::string> units;  ///< one for all, one per line of the last dimension, or none
 
-  /// Readers make sure that it does not overflow.
+  /// Cannot overflow: the dimensions were checked when they were read.
   std::size_t element_count() const;
 };
 
-/// Samples at equal distances, as an attribute tells them: "/run1/position@wf_increment".
+/// Equidistant samples, described by an attribute: "/run1/position@wf_increment".
 struct Hdf5Clock {
   std::string path;
   std::string series;  ///< whose samples it counts; empty: the attribute is that of a group
@@ -65,10 +65,10 @@ struct Hdf5Line {
   std::vector<std::size_t> fixed;
 };
 
-/// Reads HDF5 files. The library can crash, or run for ever, on a single damaged byte: only to be
-/// used by run_confined(), and by one thread of a process.
+/// Reads HDF5 files. A single damaged byte can crash or hang the library: use it only within
+/// run_confined(), from one thread.
 ///
-/// Links are followed if they are hard ones: no other file is opened.
+/// Follows hard links only, so that no other file is opened.
 class Hdf5File {
  public:
   /// @throws InputError  HDF5 cannot open it; more than 200 000 objects
@@ -79,7 +79,8 @@ class Hdf5File {
   const std::vector<Hdf5Clock>& clocks() const { return clocks_; }
 
   /// Numbers of a series whose kind is empty.
-  /// @throws InputError  damaged, never written, packed by an unknown filter, kept in another file,
+  /// @throws InputError  damaged, never written, compressed by an unknown filter, stored in another
+  /// file,
   ///                     or an integer that a double cannot hold
   std::vector<double> numbers(const Hdf5Series& series, const Hdf5Line& line,
                               const std::string& column) const;

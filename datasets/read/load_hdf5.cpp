@@ -81,9 +81,16 @@ class Hdf5Columns {
         fail(fmt::format("'{}' has {} rows, but '{}' has {}; expected as many", column,
                          table[i].size(), first, rows));
     }
-    for (std::size_t i = 0; i < table.size(); ++i)
-      if (const Hdf5Clock* clock = find_clock(request.columns[i]))
-        table[i] = samples_of(*clock, first.empty() ? std::nullopt : std::optional(rows), first);
+    for (std::size_t i = 0; i < table.size(); ++i) {
+      const Hdf5Clock* clock = find_clock(request.columns[i]);
+      if (clock == nullptr) continue;
+      table[i] = samples_of(*clock, first.empty() ? std::nullopt : std::optional(rows), first);
+      so_far_ += table[i].size();
+      if (first.empty()) {
+        first = request.columns[i];
+        rows = table[i].size();
+      }
+    }
     if (!request.time_column.empty()) check_time(request, table);
     return table;
   }
@@ -205,7 +212,7 @@ class Hdf5Columns {
       if (series.path == clock.series && !clock.series.empty()) count = series.element_count();
     if (!rows && clock.series.empty())
       fail(
-          fmt::format("'{}' tells the distance of samples, but of no dataset; expected another "
+          fmt::format("'{}' gives a sample interval, but of no dataset; expected another "
                       "column beside it",
                       clock.path));
     if (rows && count != *rows)

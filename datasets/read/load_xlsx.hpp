@@ -9,12 +9,12 @@
 namespace rigcal::datasets {
 
 /// Whether a file is to be read as a workbook of Excel: by its name (.xlsx, .xlsm), or by the first
-/// bytes of a ZIP archive or of an older or encrypted workbook, which is refused in words.
+/// bytes of a ZIP archive, or of an older or encrypted workbook, which is then refused.
 bool is_xlsx_file(const FileStart& start);
 
-/// Every column that has a name: of the first sheet by that name, of the others with their sheet's.
+/// Every column with a name; names of other sheets than the first begin with that of the sheet.
 ///
-/// @throws InputError  no workbook, damaged
+/// @throws InputError  not a workbook, or damaged
 std::vector<RecordColumn> xlsx_record_columns(const std::filesystem::path& path);
 
 /// Reads columns of an .xlsx workbook, strictly.
@@ -22,18 +22,18 @@ std::vector<RecordColumn> xlsx_record_columns(const std::filesystem::path& path)
 /// The first row of a sheet that holds something, and does not begin with "#", is its header; a row
 /// of nothing but units may follow. A column is asked for by its name in the header, with its unit
 /// or without ("x [mm]", "x"), on the first sheet or on that which is named, "Sheet2!x". Numbers
-/// are those that are stored, not as they are shown, in no way of any language; of a formula the
-/// number that it last gave. Everything else in a wanted column is an error: a gap before its last
+/// are read as stored, not as displayed, whatever the locale; a formula counts as its last result.
+/// Everything else in a wanted column is an error: a gap before its last
 /// row, text, truth values, errors such as #DIV/0!, dates and times of day, merged cells, time that
 /// does not increase, columns of different lengths. At most 12 million numbers are read.
 ///
-/// libzip and Expat read in a process of its own, with limits of memory and time.
+/// libzip and Expat run in a child process with limits on memory and time.
 ///
 /// @throws InputError  file, sheet and cell, what was found and what was expected
 /// @throws std::invalid_argument  the time column is not among the columns
 RecordTable load_xlsx_record(const std::filesystem::path& path, const RecordRequest& request);
 
-/// What to do about a workbook without columns.
+/// What a workbook without columns lacks.
 inline constexpr std::string_view kHowToSaveXlsx =
     "expected a sheet with names in its first row and numbers below them";
 

@@ -22,8 +22,8 @@ class XlsxArchive {
   const std::string& name() const { return name_; }
   bool has(const std::string& part) const;
 
-  /// Hands over what a part inflates to, block by block, until `take` returns false. Read to the
-  /// end, its checksum is right.
+  /// Passes the inflated bytes of a part to `take`, block by block, until it returns false. At the
+  /// end the checksum is verified.
   ///
   /// @throws InputError  no such part, damaged, encrypted, or of more than `most_bytes`
   void read(const std::string& part, std::uint64_t most_bytes,

@@ -10,7 +10,7 @@
 
 namespace rigcal::datasets {
 
-/// What a cell holds. A formula is what it last gave.
+/// What a cell holds; a formula counts as its last result.
 enum class XlsxKind { number, date, text, truth, error, no_result };
 
 struct XlsxCell {
@@ -20,7 +20,7 @@ struct XlsxCell {
   std::string text;  ///< as it is stored
 };
 
-/// Cells that are shown as one, of which only the first holds a value.
+/// Cells displayed as one, of which only the first holds a value.
 struct XlsxMerged {
   std::string range;  ///< "B2:B4"
   std::size_t first_row = 0, first_column = 0, last_row = 0, last_column = 0;
@@ -32,8 +32,8 @@ struct XlsxMerged {
 /// "C17"; rows and columns count from 1.
 std::string xlsx_address(std::size_t row, std::size_t column);
 
-/// An .xlsx workbook (ECMA-376, SpreadsheetML), read strictly and without any setting of the
-/// machine. Only to be used by run_confined(): it is as robust as the libraries that it rests on.
+/// An .xlsx workbook (ECMA-376, SpreadsheetML), read strictly, whatever the locale. Use it
+/// only within run_confined(): damaged files may crash the libraries beneath it.
 class XlsxBook {
  public:
   struct Sheet {
@@ -48,7 +48,7 @@ class XlsxBook {
   /// Worksheets in their order, at least one.
   const std::vector<Sheet>& sheets() const { return sheets_; }
 
-  /// Hands over the cells of a sheet that hold something, row by row, until `take` returns false.
+  /// Passes every cell with content to `take`, row by row, until it returns false.
   ///
   /// @return merged cells, if it was read to its end
   /// @throws InputError  damaged, or cells that are not in their order

@@ -20,7 +20,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Of a cell in the header: line breaks, which are common there, count as blanks.
+/// Text of a header cell; line breaks, which are common there, count as blanks.
 std::string on_one_line(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -31,8 +31,8 @@ std::string on_one_line(std::string_view text) {
   return result;
 }
 
-/// The unit that a cell in the row below the header is, "mm", "[mm]" or "(mm)"; empty for "-".
-/// Nothing if it is none.
+/// The unit in a cell below the header, "mm", "[mm]" or "(mm)"; empty for "-". Nothing if the text
+/// is not a unit.
 std::optional<std::string> unit_in(std::string_view text) {
   if (text.size() > 2 &&
       ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')')))
@@ -79,7 +79,7 @@ struct SheetHeader {
 /// Finds the header while the cells of a sheet pass by.
 class HeaderFinder {
  public:
-  /// Whether it is known what the header is: the cell belongs to the rows of numbers.
+  /// Whether the header is complete, so that the cell belongs to the rows of numbers.
   bool is_past(const XlsxCell& cell) {
     if (cell.row != row_) finish_row();
     row_ = cell.row;
@@ -101,7 +101,7 @@ class HeaderFinder {
     cells_.clear();
   }
 
-  /// Cells of the row below the header, if it was none of units: they are numbers, or should be.
+  /// Cells of the row below the header, unless they were units.
   std::vector<XlsxCell> take_rows() { return std::exchange(rows_, {}); }
   const SheetHeader& header() const { return header_; }
 
@@ -289,7 +289,7 @@ class SheetReader {
 
   std::string hint(const XlsxCell& cell) const {
     return cell.row == first_row_ && cell.kind == XlsxKind::text
-               ? "; below the header may stand a row of nothing but units, such as mm, bar or -"
+               ? "; the row below the header may hold units only, such as mm, bar or -"
                : "";
   }
 

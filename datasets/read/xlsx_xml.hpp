@@ -22,7 +22,7 @@ class XmlAttributes {
   const char** pairs_;
 };
 
-/// What is to be done with the elements of a part, in their order.
+/// Receives the elements of a part, in their order.
 class XmlHandler {
  public:
   XmlHandler() = default;
@@ -39,8 +39,9 @@ class XmlHandler {
 
 /// Reads a part of a workbook as XML, by Expat.
 ///
-/// @throws InputError  as XlsxArchive::read; no XML, or XML with a document type, which may define
-///                     entities without end and is none of a workbook
+/// @throws InputError  as XlsxArchive::read; not XML, or with a document type, which no workbook
+/// has
+///                     and which may define endless entities
 void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t most_bytes,
               XmlHandler& handler);
 

@@ -137,7 +137,7 @@ class SizedEquations final : public Equations {
   /// Of one step from the importer: one that asks for more does not end.
   static constexpr long kMostSteps = 5'000'000;
 
-  /// Terms whose parameter an importer may change from zero are there from the begin.
+  /// Terms whose parameter an importer may change from zero are there from the beginning.
   static Layout exported_layout(const ExportedRig& rig) {
     const std::vector<int> parameters = exported_parameters(rig);
     return layout_of(rig.rig, rig.values, parameters, Plant::kStates, true);

@@ -10,13 +10,13 @@
 
 namespace rigcal::model {
 
-/// An input over one step: a straight line from its value at the begin.
+/// An input over one step: a straight line from its value at the beginning.
 struct Ramp {
   double value = 0.0;
   double slope_per_s = 0.0;
 };
 
-/// What acts on a rig from outside; the tank pressure where its plant has one.
+/// External inputs of a rig; the tank pressure counts if its plant has one.
 struct RigInputs {
   Ramp drive;  ///< reference [m], or command of the valve [V]
   Ramp external_force_n;
@@ -24,21 +24,21 @@ struct RigInputs {
   Ramp tank_pressure_pa;
 };
 
-/// What co-simulation keeps from step to step beside the states.
+/// What co-simulation keeps between steps besides the states.
 struct StepMemory {
   double planned_step_s = 0.0;  ///< 0: none yet
   std::vector<double> peak;     ///< shape (states): largest size of each so far
 };
 
-/// The equations of a rig, whatever its plant and number of states. Time counts from the begin of
-/// a step.
+/// The equations of a rig, whatever its plant and number of states. Time counts from the
+/// beginning of a step.
 class Equations {
  public:
   virtual ~Equations() = default;
 
   virtual const Layout& layout() const = 0;
 
-  /// What holds from now on. `length_s` is how long the slopes of the inputs do; > 0.
+  /// Sets parameters and inputs; the slopes of the inputs hold for `length_s` > 0.
   virtual void set(const ParameterValues& values, const RigInputs& inputs, double length_s) = 0;
 
   virtual std::vector<double> initial() const = 0;
@@ -55,14 +55,14 @@ class Equations {
   /// The states from one time of the step to another.
   ///
   /// @param tolerance  local error per step over the running peak of each state
-  /// @throws std::runtime_error  the step size vanishes, or states are not finite any more
+  /// @throws std::runtime_error  the step size vanishes, or a state is no longer finite
   virtual void advance(std::vector<double>& x, StepMemory& memory, double from_s, double to_s,
                        double tolerance) const = 0;
 };
 
 std::unique_ptr<Equations> make_equations(const ExportedRig& rig);
 
-/// A state as other simulators are told of it.
+/// A state as the model description presents it.
 struct StateDescription {
   std::string name;     ///< that of the output where it is one
   std::string unit;     ///< SI, as in a ParameterSpec

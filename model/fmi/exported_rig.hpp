@@ -21,11 +21,11 @@ struct ExportedRig {
 /// nor sensors, which stand beside the rig.
 std::vector<int> exported_parameters(const ExportedRig& rig);
 
-/// Whether a parameter may be changed while the rig runs; not where it starts from, nor how often
-/// its controller samples.
+/// Whether a parameter may be changed while the rig runs: not initial values, nor the sampling time
+/// of the controller.
 bool is_tunable(const ParameterSpec& spec);
 
-/// Inputs of an FMU beside its drive, with the parameter that each replaces.
+/// Whether an input of the FMU takes the place of a parameter.
 bool is_input(const ParameterSpec& spec);
 
 /// Name of the file in the resources of an FMU.

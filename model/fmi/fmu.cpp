@@ -1,5 +1,5 @@
-// The functions of FMI 2.0. Each hands over to an FmuInstance; what goes wrong there is logged and
-// returned as fmi2Error.
+// The functions of FMI 2.0, each a call of an FmuInstance. Exceptions are logged and become
+// fmi2Error.
 
 #include <algorithm>
 #include <cmath>
@@ -30,7 +30,7 @@ void log(const fmi2CallbackFunctions& callbacks, const std::string& name,
                      "%s", message.c_str());
 }
 
-/// What a function does with its instance; logs what goes wrong.
+/// Runs `action` on the instance; an exception is logged and becomes fmi2Error.
 template <typename Action>
 fmi2Status call(fmi2Component c, const char* function, const Action& action) {
   if (c == nullptr) return fmi2Error;
@@ -70,7 +70,7 @@ std::string folder_of(const char* uri) {
   return path;
 }
 
-/// What there is nothing of in this FMU: no variable is an integer, a boolean or a string.
+/// For the types that no variable of this FMU has: integer, boolean and string.
 fmi2Status none(fmi2Component c, const char* function, std::size_t count) {
   return call(c, function, [&](FmuInstance&) {
     if (count > 0) throw std::runtime_error("every variable of this FMU is real");
@@ -79,14 +79,12 @@ fmi2Status none(fmi2Component c, const char* function, std::size_t count) {
 
 fmi2Status unsupported(fmi2Component c, const char* function) {
   return call(c, function, [](FmuInstance&) {
-    throw std::runtime_error("the model description says that this FMU cannot do so");
+    throw std::runtime_error("not supported, as the model description says");
   });
 }
 
 void copy(const std::vector<double>& from, double* to, std::size_t count) {
-  if (count != from.size())
-    throw std::runtime_error("found room for " + std::to_string(count) + " numbers, expected " +
-                             std::to_string(from.size()));
+  rigcal::model::require_size(count, from.size());
   std::copy(from.begin(), from.end(), to);
 }
 

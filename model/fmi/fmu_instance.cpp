@@ -63,6 +63,12 @@ InstanceState start_of(const ExportedRig& rig) {
 
 }  // namespace
 
+void require_size(std::size_t count, std::size_t expected) {
+  if (count != expected)
+    throw std::runtime_error("found room for " + std::to_string(count) + " numbers, expected " +
+                             std::to_string(expected));
+}
+
 FmuInstance::FmuInstance(const std::filesystem::path& resources, const std::string& guid,
                          bool exchange)
     : rig_(read_exported_rig(resources / kRigFile)), exchange_(exchange) {
@@ -118,14 +124,10 @@ void FmuInstance::reset() { restore(start_of(rig_)); }
 
 double FmuInstance::real(unsigned reference) {
   if (reference < kInputReference + kInputCount) return input(reference).value;
-  if (reference >= kParameterReference) {
-    const unsigned index = reference - kParameterReference;
-    if (std::find(parameters_.begin(), parameters_.end(), static_cast<int>(index)) !=
-        parameters_.end())
-      return state_.values.value[index];
-  } else if (state_.phase == Phase::instantiated) {
-    throw std::runtime_error("states and outputs are there from initialization mode on");
-  } else {
+  if (const auto row = parameter_row(reference)) return state_.values.value[*row];
+  if (reference < kParameterReference) {
+    if (state_.phase == Phase::instantiated)
+      throw std::runtime_error("states and outputs are there from initialization mode on");
     refresh();
     const std::size_t states = state_.x.size();
     std::vector<double> x = state_.x;
@@ -154,10 +156,9 @@ void FmuInstance::set_real(unsigned reference, double value) {
     stale_ = true;
     return;
   }
-  const auto index = static_cast<int>(reference) - static_cast<int>(kParameterReference);
-  if (std::find(parameters_.begin(), parameters_.end(), index) == parameters_.end())
-    throw std::runtime_error(what + ": no input or parameter has it");
-  const ParameterSpec& spec = parameter_table(rig_.rig.plant)[static_cast<std::size_t>(index)];
+  const auto row = parameter_row(reference);
+  if (!row) throw std::runtime_error(what + ": no input or parameter has it");
+  const ParameterSpec& spec = parameter_table(rig_.rig.plant)[*row];
   const std::string key(spec.key);
   require_finite(value, key);
   if (value < spec.lower || value > spec.upper)
@@ -168,7 +169,7 @@ void FmuInstance::set_real(unsigned reference, double value) {
   } else {
     require_phase({Phase::instantiated, Phase::initialization});
   }
-  state_.values.value[static_cast<std::size_t>(index)] = value;
+  state_.values.value[*row] = value;
   stale_ = true;
 }
 
@@ -292,10 +293,13 @@ void FmuInstance::require_phase(std::initializer_list<Phase> allowed) const {
                            expected);
 }
 
-void FmuInstance::require_size(std::size_t count, std::size_t expected) const {
-  if (count != expected)
-    throw std::runtime_error("found room for " + std::to_string(count) + " numbers, expected " +
-                             std::to_string(expected));
+std::optional<std::size_t> FmuInstance::parameter_row(unsigned reference) const {
+  if (reference < kParameterReference) return std::nullopt;
+  const std::size_t row = reference - kParameterReference;
+  const bool known = std::any_of(parameters_.begin(), parameters_.end(), [row](int index) {
+    return static_cast<std::size_t>(index) == row;
+  });
+  return known ? std::optional(row) : std::nullopt;
 }
 
 Ramp& FmuInstance::input(unsigned reference) {

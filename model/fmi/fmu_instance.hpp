@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,8 +34,11 @@ struct InstanceState {
   StepMemory memory;
 };
 
-/// One instance of an FMU, for either interface. Every method throws std::runtime_error, in words,
-/// where an importer asks for what is not to be had; the instance is then as it was.
+/// Refuses an importer's array of another length.
+void require_size(std::size_t count, std::size_t expected);
+
+/// One instance of an FMU, for either interface. A method that cannot do what the importer asks
+/// throws std::runtime_error with the reason, and leaves the instance as it was.
 class FmuInstance {
  public:
   /// @param guid  that of the importer's model description
@@ -72,8 +76,9 @@ class FmuInstance {
 
  private:
   void require_phase(std::initializer_list<Phase> allowed) const;
-  void require_size(std::size_t count, std::size_t expected) const;
   Ramp& input(unsigned reference);
+  /// Row in the table of parameters; nothing if no exported parameter has this reference.
+  std::optional<std::size_t> parameter_row(unsigned reference) const;
   double next_tick_s(const InstanceState& state) const;
   /// Within how much of a time a tick is at that time.
   double slack_s(const InstanceState& state, double time_s) const;

@@ -10,7 +10,7 @@
 
 namespace rigcal::model {
 
-// Where the right-hand side of a rig has kinks, told by quantities that change sign there.
+// Quantities that change sign where the right-hand side of a rig has a kink.
 
 /// @param spool_v  valve signal after its dynamics
 /// @param dx       derivative at x

@@ -10,7 +10,7 @@ namespace rigcal::report {
 /// The sources by their paths within sources/, sorted.
 const std::map<std::string_view, std::string_view>& fmu_sources();
 
-/// The shared library that is made of them.
+/// The shared library compiled from them.
 std::string_view fmu_library();
 
 }  // namespace rigcal::report

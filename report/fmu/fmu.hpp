@@ -12,11 +12,11 @@ namespace rigcal::report {
 struct FmuRequest {
   std::string name;        ///< of the rig, for people
   std::string identifier;  ///< for C: letters, digits and "_", no digit first
-  model::ExportedRig rig;  ///< its guid is put in
-  double start_s = 0.0;    ///< of the experiment that is proposed
+  model::ExportedRig rig;  ///< its GUID is filled in
+  double start_s = 0.0;    ///< of the default experiment
   double stop_s = 1.0;
   double step_s = 1e-3;
-  /// What the documentation tells of where the values come from: label and words.
+  /// Where the values come from, for the documentation: label and words.
   std::vector<std::pair<std::string, std::string>> origin;
 };
 

@@ -4,7 +4,7 @@
 
 namespace rigcal::report {
 
-/// A unit of the model as products of powers of SI base units.
+/// A unit of the model as a product of powers of SI base units.
 struct BaseUnits {
   std::string_view unit;  ///< as in a ParameterSpec
   int kg = 0;

@@ -153,16 +153,21 @@ TEST_CASE("batch: one rig that fails does not hide, and does not stop the others
   write_rigs(folder, "lab_a", "2026-03-01", "0.5");
   folder.write("lab_a/bench_1/campaign.toml", replaced(folder.read("lab_a/bench_1/campaign.toml"),
                                                        "use = \"fit\"", "use = \"fid\""));
+  std::filesystem::create_directories(folder.work() / "out/lab/bench_2/fit.json");
+  std::filesystem::create_symlink("loop", folder.work() / "lab_a/loop");
   const Outcome outcome = folder.run({"batch", "lab_a", "--out", "out"});
   CAPTURE(outcome.out, outcome.err);
-  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.exit_code == 5);
   const json batch = batch_of(folder, "out");
   CHECK(violations(batch, "batch") == "");
   CHECK(batch["rigs"][0]["status"].is_null());
   CHECK_THAT(batch["rigs"][0]["message"].get<std::string>(),
              Contains("campaign.toml:") && Contains("fid"));
-  CHECK(batch["rigs"][1]["status"] == "converged");
-  CHECK_THAT(outcome.out, Contains("1 no result") && Contains("bench_1: ") && Contains("fid"));
+  CHECK(batch["rigs"][0]["exit_code"] == 2);
+  CHECK(batch["rigs"][1]["exit_code"] == 5);
+  CHECK_THAT(batch["rigs"][1]["message"].get<std::string>(), Contains("fit.json"));
+  CHECK(batch["rigs"][2]["status"] == "converged");
+  CHECK_THAT(outcome.out, Contains("2 no result") && Contains("bench_1: ") && Contains("fid"));
   CHECK_THAT(folder.read("out/report.html"), Contains("INCOMPLETE"));
 }
 

@@ -374,6 +374,9 @@ TEST_CASE("export: an FMU says in words what it refuses", "[apps]") {
   double value = 0.0;
   CHECK(RIGCAL_FMI2(library, fmi2GetReal)(run.component, &unknown, 1, &value) == fmi2Error);
   CHECK_THAT(run.messages(), Contains("no variable has the value reference 99"));
+  const fmi2ValueReference largest = 0x80000000U;  // beyond the largest int
+  CHECK(RIGCAL_FMI2(library, fmi2SetReal)(run.component, &largest, 1, &value) == fmi2Error);
+  CHECK_THAT(run.messages(), Contains("2147483648: no input or parameter has it"));
   CHECK(run.step(0.0, 0.01) == fmi2OK);
 
   FmuRun exchange(fmu, library, fmi2ModelExchange);

@@ -80,6 +80,7 @@ TEST_CASE("init: a folder stands for the recordings in it", "[apps]") {
   const CommandFolder folder;
   write_campaign(folder);
   folder.write("records/notes.txt", "measured on a Monday");
+  std::filesystem::create_symlink("loop.csv", folder.work() / "records/loop.csv");
   REQUIRE(folder.run({"init", "records", "--out", "new"}).exit_code == 0);
   REQUIRE(folder
               .run({"init", "records/sine_1.csv", "records/sine_2.csv", "records/square_1.csv",
@@ -156,6 +157,10 @@ TEST_CASE("init: what it refuses", "[apps]") {
   const Outcome missing = folder.run({"init", "records/none.csv"});
   CHECK(missing.exit_code == 2);
   CHECK_THAT(missing.err, Contains("records/none.csv: cannot be opened"));
+  std::filesystem::create_symlink("loop.csv", folder.work() / "loop.csv");
+  const Outcome loop = folder.run({"init", "loop.csv"});
+  CHECK(loop.exit_code == 2);
+  CHECK_THAT(loop.err, Contains("loop.csv: cannot be opened"));
   folder.write("odd.csv", "a,b\n1,2\n");
   CHECK_THAT(folder.run({"init", "odd.csv"}).err, Contains("odd.csv: no column looks like a time"));
   CHECK_FALSE(folder.has("rigcal-out/campaign.toml"));

@@ -155,6 +155,15 @@ inline const FittedParameter& parameter(const Fit& fit, std::string_view key,
   throw std::runtime_error("no parameter " + std::string(key) + " " + level);
 }
 
+/// Mass and valve gain unknown, one square wave.
+inline Twin one_square() {
+  Twin twin;
+  twin.free("mass", 80.0, 10.0, 500.0);
+  twin.free("valve_gain", 0.04e-3, 0.01e-3, 0.2e-3);
+  twin.add("square", datasets::Waveform::square, 2.0, 0.01);
+  return twin;
+}
+
 /// The problem of all conditions of a twin.
 inline Problem problem_of(const Twin& twin, const std::vector<datasets::Record>& records) {
   std::vector<const datasets::Condition*> conditions;

@@ -1,6 +1,7 @@
 #include "common/confined.hpp"
 
 #include <poll.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -11,6 +12,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -68,6 +72,29 @@ TEST_CASE("confined: a crash ends the child alone", "[common]") {
     CHECK_THROWS_WITH(run_confined(crash, {}), Contains("it crashed"));
   }
   CHECK_THROWS_AS(run_confined([]() -> std::string { ::_exit(3); }, {}), ConfinedFailure);
+}
+
+TEST_CASE("confined: what the work throws unwinds nothing of the parent", "[common]") {
+  // Shared with the child, whose copy of any other variable nobody would see.
+  auto* const unwound = static_cast<std::atomic<int>*>(
+      ::mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0));
+  REQUIRE(unwound != MAP_FAILED);
+  struct Witness {
+    std::atomic<int>& count;
+    ~Witness() { ++count; }
+  };
+  const auto parent_frame = [&](const std::function<std::string()>& work) {
+    const Witness witness{*unwound};
+    return run_confined(work, {});
+  };
+  CHECK_THROWS_WITH(parent_frame([]() -> std::string { throw std::length_error("too long"); }),
+                    Contains("it crashed"));
+  CHECK(*unwound == 1);  // here, and not in the child
+  const auto before = std::set_new_handler([] { ::_exit(0); });
+  CHECK(run_confined([] { return std::get_new_handler() == nullptr ? "none" : "the parent's"; },
+                     {}) == "none");
+  std::set_new_handler(before);
+  ::munmap(unwound, 4096);
 }
 
 TEST_CASE("confined: what never ends is ended", "[common]") {

@@ -72,6 +72,19 @@ Values with_noise(Values values, double sd, unsigned seed) {
 
 }  // namespace
 
+TEST_CASE("periodic_response: an output that owes nothing to the input has no interval",
+          "[metrics]") {
+  const Values time_s = even_times(128, 1.0 / 64.0);  // two periods, to the last bit
+  const auto wave = [](double t) { return std::sin(2.0 * std::numbers::pi * (t - std::floor(t))); };
+  const Values input = values_at(time_s, wave);
+  const Values output = values_at(time_s, [&](double t) { return t < 1.0 ? wave(t) : -wave(t); });
+  const auto points = periodic_response(time_s, input, output, 1.0);
+  REQUIRE(points.size() == 1);
+  CHECK(points[0].coherence == 0.0);
+  CHECK(points[0].gain == 0.0);
+  CHECK_FALSE(points[0].interval.has_value());
+}
+
 TEST_CASE("periodic_response: a square wave through a first-order lag, at its odd harmonics",
           "[metrics]") {
   const double f = 2.0;

@@ -110,6 +110,10 @@ def test_empty_arguments(data: pathlib.Path) -> None:
     for arguments in ({"campaign": ""}, {"data": ""}, {"free": []}):
         with pytest.raises(ValueError, match=next(iter(arguments))):
             rigcal.load(**{"campaign": data / "campaign.toml", **arguments})
+    campaign = rigcal.load(data / "campaign.toml")
+    for method in (campaign.average, campaign.simulate):
+        with pytest.raises(ValueError, match="out: found an empty path"):
+            method(out="")
 
 
 @pytest.mark.parametrize(

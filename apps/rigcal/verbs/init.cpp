@@ -4,10 +4,12 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
+#include "common/error.hpp"
 #include "common/file.hpp"
 #include "datasets/draft/draft_campaign.hpp"
 #include "datasets/read/record_reader.hpp"
@@ -33,15 +35,21 @@ std::size_t count_of(const std::string& text, const std::string& part) {
 std::vector<std::filesystem::path> with_folders_opened(
     const std::vector<std::filesystem::path>& paths) {
   std::vector<std::filesystem::path> files;
+  std::error_code error;  // a link may lead nowhere
   for (const auto& path : paths) {
-    if (!std::filesystem::is_directory(path)) {
+    if (!std::filesystem::is_directory(path, error)) {
       require_regular_file(path, fmt::format("a recording ({})", datasets::record_format_names()));
       files.push_back(path);
       continue;
     }
     const std::size_t before = files.size();
-    for (const auto& entry : std::filesystem::directory_iterator(path)) {
-      if (entry.is_regular_file() && datasets::has_record_name(entry.path()))
+    const std::filesystem::directory_iterator entries(path, error);
+    if (error)
+      throw InputError(
+          {path.string()},
+          fmt::format("cannot be opened: {}; expected a folder of recordings", error.message()));
+    for (const auto& entry : entries) {
+      if (entry.is_regular_file(error) && datasets::has_record_name(entry.path()))
         files.push_back(entry.path());
     }
     if (files.size() == before) {

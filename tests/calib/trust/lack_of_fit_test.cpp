@@ -16,14 +16,6 @@ using Catch::WithinRel;
 using datasets::Channel;
 using datasets::Waveform;
 
-Twin one_square() {
-  Twin twin;
-  twin.free("mass", 80.0, 10.0, 500.0);
-  twin.free("valve_gain", 0.04e-3, 0.01e-3, 0.2e-3);
-  twin.add("square", Waveform::square, 2.0, 0.01);
-  return twin;
-}
-
 /// Records of five repeats with AR(1) noise, as averaging would give them.
 std::vector<datasets::Record> repeated(Twin twin, double rho, std::uint64_t seed) {
   const double sd = twin.noise_sd_m;

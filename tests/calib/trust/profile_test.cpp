@@ -20,19 +20,11 @@ using Catch::WithinRel;
 using datasets::Scope;
 using datasets::Waveform;
 
-Twin twin_far_off() {
-  Twin twin;
-  twin.free("mass", 80.0, 10.0, 500.0);
-  twin.free("valve_gain", 0.04e-3, 0.01e-3, 0.2e-3);
-  twin.add("square", Waveform::square, 2.0, 0.01);
-  return twin;
-}
-
 }  // namespace
 
 TEST_CASE("profile: where the cost is all but quadratic it ends where the interval does",
           "[calib]") {
-  const Twin twin = twin_far_off();
+  const Twin twin = one_square();
   FitOptions options;
   options.profiles = true;
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), options);
@@ -49,7 +41,7 @@ TEST_CASE("profile: where the cost is all but quadratic it ends where the interv
 }
 
 TEST_CASE("profile: an open one makes a parameter not identifiable", "[calib]") {
-  Twin twin = twin_far_off();
+  Twin twin = one_square();
   twin.free("bulk_modulus", 700e6, 300e6, 1500e6);
   twin.campaign.conditions[0].waveform = Waveform::sine;
   twin.campaign.conditions[0].frequency_hz = 0.5;
@@ -65,7 +57,7 @@ TEST_CASE("profile: an open one makes a parameter not identifiable", "[calib]") 
 
 TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of the parameter",
           "[calib]") {
-  Twin twin = twin_far_off();
+  Twin twin = one_square();
   const auto records = twin.records(250, 500.0, 3);
   const Problem problem = problem_of(twin, records);
   Fit found = fit(twin.campaign, records, {});
@@ -95,7 +87,7 @@ TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of
 
 TEST_CASE("profile: what a prior alone tells ends where the prior does", "[calib]") {
   // Valve gain and discharge coefficient act as their product.
-  Twin twin = twin_far_off();
+  Twin twin = one_square();
   twin.free("discharge_coefficient", 0.6, 0.1, 1.0).prior = datasets::Prior{0.6, 0.02};
   FitOptions options;
   options.profiles = true;
@@ -110,7 +102,7 @@ TEST_CASE("profile: what a prior alone tells ends where the prior does", "[calib
 }
 
 TEST_CASE("profile: without an interval it ends where the cost says 95 %", "[calib]") {
-  const Twin twin = twin_far_off();
+  const Twin twin = one_square();
   const auto records = twin.records(250, 500.0, 3);
   const Problem problem = problem_of(twin, records);
   const Fit found = fit(twin.campaign, records, {});
@@ -135,7 +127,7 @@ TEST_CASE("profile: without an interval it ends where the cost says 95 %", "[cal
 }
 
 TEST_CASE("profile: a lower cost than that of the fit is told", "[calib]") {
-  const Twin twin = twin_far_off();
+  const Twin twin = one_square();
   const auto records = twin.records(250, 500.0, 3);
   const Problem problem = problem_of(twin, records);
   Fit found = fit(twin.campaign, records, {});
@@ -157,7 +149,7 @@ TEST_CASE("profile: a lower cost than that of the fit is told", "[calib]") {
 
 TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
   // Along what the records do not tell at all the cost is as flat as simulations can be.
-  Twin twin = twin_far_off();
+  Twin twin = one_square();
   twin.free("discharge_coefficient", 0.6, 0.1, 1.0);
   FitOptions options;
   options.profiles = true;
@@ -173,7 +165,7 @@ TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
 }
 
 TEST_CASE("intervals: which of them to use", "[calib]") {
-  const Twin twin = twin_far_off();
+  const Twin twin = one_square();
   const auto records = twin.records(250, 500.0, 3);
   const Problem problem =
       make_problem(twin.campaign, records, {&twin.campaign.conditions[0]}, false, nullptr);
@@ -216,7 +208,7 @@ TEST_CASE("intervals: which of them to use", "[calib]") {
 
 TEST_CASE("bootstrap: its spread is that of the noise, the same for any number of threads",
           "[calib]") {
-  const Twin twin = twin_far_off();
+  const Twin twin = one_square();
   const auto records = twin.records(250, 500.0, 3);
   FitOptions options;
   options.bootstrap = test::kSanitized ? 40 : 100;
@@ -245,7 +237,7 @@ TEST_CASE("bootstrap: blocks grow with the memory of the noise", "[calib]") {
 }
 
 TEST_CASE("fit: records that contradict a prior are told of", "[calib]") {
-  Twin twin = twin_far_off();
+  Twin twin = one_square();
   twin.setting("mass").prior = datasets::Prior{60.0, 1.0};
   twin.setting("damping").prior = datasets::Prior{2.0 * twin.setting("damping").value, 10.0};
   const Fit found = fit(twin.campaign, twin.records(250, 500.0, 3), {});
@@ -263,7 +255,7 @@ TEST_CASE("fit: records that contradict a prior are told of", "[calib]") {
 }
 
 TEST_CASE("cross-validation: of one condition there is none", "[calib]") {
-  Twin twin = twin_far_off();
+  Twin twin = one_square();
   REQUIRE(twin.campaign.conditions.size() == 1);
   FitOptions options;
   options.cross_validate = true;
@@ -273,7 +265,7 @@ TEST_CASE("cross-validation: of one condition there is none", "[calib]") {
 }
 
 TEST_CASE("cross-validation: each condition is predicted from the others", "[calib]") {
-  Twin twin = twin_far_off();
+  Twin twin = one_square();
   twin.add("sine", Waveform::sine, 3.0, 0.01);
   twin.add("leaking", Waveform::square, 1.0, 0.01, "leak");
   twin.level_leakage = {{"leak", 0.5}};

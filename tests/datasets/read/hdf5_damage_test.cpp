@@ -1,15 +1,14 @@
 #include <sys/resource.h>
 
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "common/error.hpp"
 #include "datasets/read/load_hdf5.hpp"
 #include "tests/datasets/hdf5_fixture.hpp"
+#include "tests/datasets/reading.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -17,7 +16,6 @@ namespace rigcal::test {
 namespace {
 
 namespace fs = std::filesystem;
-using datasets::hdf5_record_columns;
 using datasets::load_hdf5_record;
 
 /// A small file with all that is read: vectors, packed chunks, a table, attributes.
@@ -33,24 +31,12 @@ std::string small_hdf5(const TemporaryFolder& folder) {
   return text_of(folder / "small.h5");
 }
 
-enum class Hdf5Ending { values, refused, other };
-
-Hdf5Ending hdf5_ending(const fs::path& path) {
-  try {
-    hdf5_record_columns(path);
-    const auto table =
-        load_hdf5_record(path, {{"/run/t", "/run/packed(:,2)", "/run/table.y"}, "/run/t"});
-    for (const auto& column : table.columns)
-      for (const double value : column)
-        if (!std::isfinite(value)) return Hdf5Ending::other;
-    return Hdf5Ending::values;
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    const bool has_words = message.size() > path.string().size() + 10 &&
-                           message.starts_with(path.string() + ": ") &&
-                           message.find('\n') == std::string::npos;
-    return has_words ? Hdf5Ending::refused : Hdf5Ending::other;
-  }
+Ending hdf5_ending(const fs::path& path) {
+  return ending_of(path, [&] {
+    datasets::hdf5_record_columns(path);
+    return all_finite(
+        load_hdf5_record(path, {{"/run/t", "/run/packed(:,2)", "/run/table.y"}, "/run/t"}).columns);
+  });
 }
 
 }  // namespace
@@ -58,20 +44,9 @@ Hdf5Ending hdf5_ending(const fs::path& path) {
 TEST_CASE("damaged HDF5: a changed byte gives numbers or is refused", "[datasets]") {
   const TemporaryFolder folder;
   const std::string whole = small_hdf5(folder);
-  REQUIRE(hdf5_ending(folder / "small.h5") == Hdf5Ending::values);
-  std::size_t values = 0;
-  std::size_t refused = 0;
-  for (std::size_t at = 0; at < whole.size(); at += kSanitized ? 173 : 41) {
-    for (const int change : {0x80, 0xFF, 0x01}) {
-      std::string damaged = whole;
-      damaged[at] = static_cast<char>(damaged[at] ^ change);
-      fs::remove(folder / "damaged.h5");  // to write into it anew would wait for the disk
-      const Hdf5Ending ending = hdf5_ending(folder.write("damaged.h5", damaged));
-      if (ending == Hdf5Ending::other) FAIL_CHECK("byte " << at << " changed by " << change);
-      values += ending == Hdf5Ending::values ? 1 : 0;
-      refused += ending == Hdf5Ending::refused ? 1 : 0;
-    }
-  }
+  REQUIRE(hdf5_ending(folder / "small.h5") == Ending::values);
+  const auto [values, refused] =
+      damage(folder, "damaged.h5", whole, kSanitized ? 173 : 41, {0x80, 0xFF, 0x01}, hdf5_ending);
   CHECK(values > 0);
   CHECK(refused > 0);
   rusage children{};
@@ -84,7 +59,7 @@ TEST_CASE("damaged HDF5: cut anywhere, it is refused", "[datasets]") {
   const std::string whole = small_hdf5(folder);
   for (std::size_t bytes = 0; bytes < whole.size(); bytes += kSanitized ? 499 : 97) {
     CAPTURE(bytes, whole.size());
-    CHECK(hdf5_ending(folder.write("cut.h5", whole.substr(0, bytes))) == Hdf5Ending::refused);
+    CHECK(hdf5_ending(folder.write("cut.h5", whole.substr(0, bytes))) == Ending::refused);
   }
 }
 

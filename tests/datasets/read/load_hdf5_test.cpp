@@ -7,9 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "common/error.hpp"
-#include "datasets/read/record_reader.hpp"
 #include "tests/datasets/hdf5_fixture.hpp"
+#include "tests/datasets/reading.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace rigcal;
@@ -18,24 +17,6 @@ using namespace rigcal::test;
 using Catch::Contains;
 
 namespace {
-
-using Numbers = std::vector<double>;
-using Table = std::vector<Numbers>;
-
-Table hdf5_table(const std::filesystem::path& path, const std::vector<std::string>& columns,
-                 const std::string& time = "") {
-  return load_hdf5_record(path, {columns, time}).columns;
-}
-
-std::string hdf5_message(const std::filesystem::path& path, const std::vector<std::string>& columns,
-                         const std::string& time = "") {
-  try {
-    hdf5_table(path, columns, time);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 std::vector<std::string> hdf5_names(const std::filesystem::path& path) {
   std::vector<std::string> names;
@@ -60,7 +41,7 @@ TEST_CASE("load_hdf5: datasets, lines of matrices and columns of tables", "[data
     file.table("/run1/table", {{"t", {0, 1, 2}}, {"x mm", {4, 5, 6}}});
     file.array("/run1/data.old", {1, 1, 1});
   }
-  CHECK(hdf5_table(
+  CHECK(read_columns(
             path,
             {"/run1/time", "run1/position", "/run1/column", "/run1/data(:,2)", "/run1/rows(2,:)",
              "/deep(:,1,2)", "/packed( : , 2 )", "/run1/table.x mm", "/run1/data.old"},
@@ -109,12 +90,12 @@ TEST_CASE("load_hdf5: numbers of any size and byte order", "[datasets]") {
   }
   for (const auto& [name, type] : types) {
     CAPTURE(name);
-    CHECK(hdf5_table(path, {"/" + name}) == Table{{1, 100, 7}});
+    CHECK(read_columns(path, {"/" + name}) == Table{{1, 100, 7}});
   }
-  CHECK(hdf5_table(path, {"/i12", "/f2"}) == Table{{-2048, 2047, -1}, {0.5, -2.25, 1024}});
-  CHECK(hdf5_table(path, {"/tenth"})[0][0] == static_cast<double>(0.1F));
-  CHECK(hdf5_table(path, {"/most"}) == Table{{9007199254740992.0, -9007199254740992.0}});
-  CHECK_THAT(hdf5_message(path, {"/beyond"}),
+  CHECK(read_columns(path, {"/i12", "/f2"}) == Table{{-2048, 2047, -1}, {0.5, -2.25, 1024}});
+  CHECK(read_columns(path, {"/tenth"})[0][0] == static_cast<double>(0.1F));
+  CHECK(read_columns(path, {"/most"}) == Table{{9007199254740992.0, -9007199254740992.0}});
+  CHECK_THAT(read_refusal(path, {"/beyond"}),
              Contains("row 2 of '/beyond' is 9007199254740993, more than a double can hold"));
 }
 
@@ -142,10 +123,10 @@ TEST_CASE("load_hdf5: arrays in the cells of a table, as pandas writes them", "[
     H5Sclose(space);
     H5Dclose(set);
   }
-  CHECK(hdf5_table(path, {"/df.index", "/df.values_block_0(:,2)"}, "/df.index") ==
+  CHECK(read_columns(path, {"/df.index", "/df.values_block_0(:,2)"}, "/df.index") ==
         Table{{0, 1}, {2, 5}});
-  CHECK(hdf5_table(path, {"/df.values_block_0(2,:)"}) == Table{{4, 5, 6}});
-  CHECK_THAT(hdf5_message(path, {"/df"}),
+  CHECK(read_columns(path, {"/df.values_block_0(2,:)"}) == Table{{4, 5, 6}});
+  CHECK_THAT(read_refusal(path, {"/df"}),
              Contains("'/df' is a table; expected one of its columns, such as '/df.index'"));
 }
 
@@ -188,22 +169,26 @@ TEST_CASE("load_hdf5: time by the distance of samples", "[datasets]") {
     file.array("/log/y", {4, 5, 6});
     file.number("/log", "sample_rate", 1000.0);
     file.array("/log/short", {4, 5});
+    file.number("/log/short", "dt", 0.5);
     file.array("/log/none", {4, 5});
     file.number("/log/none", "dt", 0.0);  // tells nothing
   }
-  CHECK(hdf5_table(path, {"/log/x@wf_increment", "/log/x"}, "/log/x@wf_increment") ==
+  CHECK(read_columns(path, {"/log/x@wf_increment", "/log/x"}, "/log/x@wf_increment") ==
         Table{{10, 10.25, 10.5}, {1, 2, 3}});
-  CHECK(hdf5_table(path, {"log@sample_rate", "log/y"}, "log@sample_rate") ==
+  CHECK(read_columns(path, {"log@sample_rate", "log/y"}, "log@sample_rate") ==
         Table{{0, 0.001, 0.002}, {4, 5, 6}});
   const auto columns = hdf5_record_columns(path);
   CHECK(std::count(columns.begin(), columns.end(),
                    RecordColumn{"/log/x@wf_increment", "s", true, false}) == 1);
   CHECK(std::count_if(columns.begin(), columns.end(),
-                      [](const RecordColumn& column) { return column.is_time; }) == 2);
-  CHECK_THAT(hdf5_message(path, {"/log/x@wf_increment", "/log/short"}),
+                      [](const RecordColumn& column) { return column.is_time; }) == 3);
+  CHECK_THAT(read_refusal(path, {"/log/x@wf_increment", "/log/short"}),
              Contains("'/log/x@wf_increment' counts the 3 samples of its dataset, but "
                       "'/log/short' has 2"));
-  CHECK_THAT(hdf5_message(path, {"/log@sample_rate"}), Contains("expected another column"));
+  CHECK_THAT(read_refusal(path, {"/log/x@wf_increment", "/log/short@dt"}),
+             Contains("'/log/short@dt' counts the 2 samples of its dataset, but "
+                      "'/log/x@wf_increment' has 3"));
+  CHECK_THAT(read_refusal(path, {"/log@sample_rate"}), Contains("expected another column"));
 }
 
 TEST_CASE("load_hdf5: what is no column of numbers", "[datasets]") {
@@ -257,11 +242,11 @@ TEST_CASE("load_hdf5: what is no column of numbers", "[datasets]") {
       {{"/run/refs"}, "'/run/refs' is a reference; expected numbers"}};
   for (const Case& each : cases) {
     CAPTURE(each.columns);
-    CHECK_THAT(hdf5_message(path, each.columns), Contains("run.h5: ") && Contains(each.part));
+    CHECK_THAT(read_refusal(path, each.columns), Contains("run.h5: ") && Contains(each.part));
   }
-  CHECK_THAT(hdf5_message(path, {"/run/back"}, "/run/back"),
+  CHECK_THAT(read_refusal(path, {"/run/back"}, "/run/back"),
              Contains("time '/run/back' does not increase: row 3 is 1 after 1"));
-  CHECK_THROWS_AS(hdf5_table(path, {"/run/t"}, "/run/position"), std::invalid_argument);
+  CHECK_THROWS_AS(read_columns(path, {"/run/t"}, "/run/position"), std::invalid_argument);
 }
 
 TEST_CASE("load_hdf5: no other file is opened, and no foreign filter loaded", "[datasets]") {
@@ -288,19 +273,22 @@ TEST_CASE("load_hdf5: no other file is opened, and no foreign filter loaded", "[
     const Hdf5Writer other(folder.path() / "other.h5");
     other.array("/x", {5, 6, 7});
   }
-  CHECK_THAT(hdf5_message(path, {"/link"}), Contains("unknown dataset '/link'"));
-  CHECK_THAT(hdf5_message(path, {"/soft"}), Contains("unknown dataset '/soft'"));
-  CHECK_THAT(hdf5_message(path, {"/outside"}), Contains("'/outside' is kept in another file"));
+  CHECK_THAT(read_refusal(path, {"/link"}), Contains("unknown dataset '/link'"));
+  CHECK_THAT(read_refusal(path, {"/soft"}), Contains("unknown dataset '/soft'"));
+  CHECK_THAT(read_refusal(path, {"/outside"}), Contains("'/outside' is stored in another file"));
   CHECK(hdf5_names(path) == std::vector<std::string>{"/outside", "/t"});
 }
 
 TEST_CASE("load_hdf5: what is no HDF5 file", "[datasets]") {
   const TemporaryFolder folder;
-  CHECK_THAT(hdf5_message(folder.write("a.h5", "t,x\n0,1\n"), {"/t"}),
+  CHECK_THAT(read_refusal(folder.write("a.h5", "t,x\n0,1\n"), {"/t"}),
              Contains("a.h5: is truncated or damaged, or no HDF5 file"));
-  CHECK_THAT(hdf5_message(folder.write("b.h5", ""), {"/t"}), Contains("b.h5: "));
-  CHECK_THAT(hdf5_message(folder.path() / "none.h5", {"/t"}), Contains("cannot be opened"));
-  CHECK_THAT(hdf5_message(folder.path(), {"/t"}), Contains("is a folder; expected an HDF5 file"));
+  CHECK_THAT(read_refusal(folder.write("b.h5", ""), {"/t"}), Contains("b.h5: "));
+  CHECK_THAT(read_refusal(folder.path() / "none.h5", {"/t"}), Contains("cannot be opened"));
+  CHECK_THAT(message_when([&] {
+               load_hdf5_record(folder.path(), {{"/t"}, ""});
+             }),
+             Contains("is a folder; expected an HDF5 file"));
   {
     const Hdf5Writer file(folder.path() / "data.bin");
     file.array("/t", {0, 1, 2});

@@ -18,6 +18,7 @@
 #include "datasets/synthetic/noise.hpp"
 #include "tests/datasets/campaign_fixture.hpp"
 #include "tests/datasets/mat_fixture.hpp"
+#include "tests/datasets/reading.hpp"
 
 using namespace rigcal;
 using namespace rigcal::datasets;
@@ -26,15 +27,8 @@ using Catch::Contains;
 
 namespace {
 
-using Numbers = std::vector<double>;
-
 std::string message_of(const std::filesystem::path& path, const MatRequest& request) {
-  try {
-    load_mat(path, request);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return message_when([&] { load_mat(path, request); });
 }
 
 /// Message of reading one column `name` of a file that holds these variables.

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/error.hpp"
-#include "datasets/read/record_reader.hpp"
+#include "tests/datasets/reading.hpp"
 #include "tests/datasets/xlsx_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -19,29 +18,11 @@ using Catch::Contains;
 
 namespace {
 
-using Numbers = std::vector<double>;
-using Table = std::vector<Numbers>;
-
-Table xlsx_table(const std::filesystem::path& path, const std::vector<std::string>& columns,
-                 const std::string& time = "") {
-  return load_xlsx_record(path, {columns, time}).columns;
-}
-
-std::string xlsx_message(const std::filesystem::path& path, const std::vector<std::string>& columns,
-                         const std::string& time = "") {
-  try {
-    xlsx_table(path, columns, time);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
 /// Message of reading "t" and "x" from a first sheet of these rows.
-std::string xlsx_message(const XlsxRows& rows, const std::string& behind = "") {
+std::string refusal_of_sheet(const XlsxRows& rows, const std::string& behind = "") {
   const TemporaryFolder folder;
   write_zip(folder.path() / "a.xlsx", xlsx_parts({{"Log", sheet_xml(rows, behind)}}));
-  return xlsx_message(folder.path() / "a.xlsx", {"t", "x"}, "t");
+  return read_refusal(folder.path() / "a.xlsx", {"t", "x"}, "t");
 }
 
 }  // namespace
@@ -68,7 +49,7 @@ TEST_CASE("load_xlsx: what libxlsxwriter writes", "[datasets]") {
     }
     REQUIRE(workbook_close(book) == LXW_NO_ERROR);
   }
-  CHECK(xlsx_table(path, {"t", "x", "Pressures, side A!p", "x [mm]", "'Log'!x"}, "t") ==
+  CHECK(read_columns(path, {"t", "x", "Pressures, side A!p", "x [mm]", "'Log'!x"}, "t") ==
         Table{{0.0, 0.125, 0.25},
               {0.3125, 0.3125 + 1, 0.3125 + 2},
               {7.5, 8.5, 9.5},
@@ -96,7 +77,7 @@ TEST_CASE("load_xlsx: comments, header, a row of units, shared and rich texts", 
          {},
          {no_cell(), cell("a note below")}}},
        {"B", {{raw_cell("<c t=\"s\"><v>1</v></c>")}, {cell(5)}, {cell(6)}}}});
-  CHECK(xlsx_table(path, {"t", "p A", "p A (bar)", "B!x"}, "t") ==
+  CHECK(read_columns(path, {"t", "p A", "p A (bar)", "B!x"}, "t") ==
         Table{{0, 1}, {1.5, 2.5}, {1.5, 2.5}, {5, 6}});
   CHECK(xlsx_record_columns(path) == std::vector<RecordColumn>{{"t", "ms", false, false},
                                                                {"p A (bar)", "MPa", false, false},
@@ -114,10 +95,10 @@ TEST_CASE("load_xlsx: numbers as they are stored, in any locale", "[datasets]") 
                       {raw_cell("<c r=\"@\" t=\"n\"><v>0.29999999999999999</v></c>"),
                        raw_cell("<c r=\"@\"><f>A3*2</f><v>-12</v></c>")}}}});
   const Table expected{{0.1, 0.3}, {1.2345678901234567e-7, -12}};
-  CHECK(xlsx_table(path, {"t", "x"}, "t") == expected);
+  CHECK(read_columns(path, {"t", "x"}, "t") == expected);
   for (const char* locale : {"de_DE.UTF-8", "C.UTF-8"}) {
     if (std::setlocale(LC_ALL, locale) == nullptr) continue;  // not on this machine
-    CHECK(xlsx_table(path, {"t", "x"}, "t") == expected);
+    CHECK(read_columns(path, {"t", "x"}, "t") == expected);
   }
   std::setlocale(LC_ALL, "C");
 }
@@ -152,30 +133,31 @@ TEST_CASE("load_xlsx: what is no number is named with its cell", "[datasets]") {
       {"<c r=\"@\" t=\"inlineStr\"><is><t>1.5</t></is></c>", "Log!B3 is the text '1.5'"}};
   for (const Case& each : cases) {
     CAPTURE(each.xml);
-    CHECK_THAT(xlsx_message(third(raw_cell(each.xml))),
+    CHECK_THAT(refusal_of_sheet(third(raw_cell(each.xml))),
                Contains("a.xlsx: ") && Contains(each.part));
   }
-  CHECK_THAT(xlsx_message(third(no_cell()),
-                          "<mergeCells count=\"1\"><mergeCell ref=\"B2:B3\"/></mergeCells>"),
+  CHECK_THAT(refusal_of_sheet(third(no_cell()),
+                              "<mergeCells count=\"1\"><mergeCell ref=\"B2:B3\"/></mergeCells>"),
              Contains("Log!B3 belongs to the merged cells B2:B3, of which the first alone"));
 }
 
 TEST_CASE("load_xlsx: rows and headers that do not fit", "[datasets]") {
   const auto header = std::vector<XlsxFixtureCell>{cell("t"), cell("x")};
   const std::vector<XlsxFixtureCell> row{cell(0), cell(1)};
-  CHECK_THAT(xlsx_message({header}), Contains("Log: no rows below the header in row 1"));
-  CHECK_THAT(xlsx_message(XlsxRows{}), Contains("Log is empty; expected a header"));
-  CHECK_THAT(xlsx_message({row, row}), Contains("Log!B1 and the rest of its row are numbers"));
-  CHECK_THAT(xlsx_message({header, {}, row}), Contains("Log!A2 is empty"));
-  CHECK_THAT(xlsx_message({header, row, {}, {cell(1), cell(1)}}), Contains("Log!A3 is empty"));
-  CHECK_THAT(xlsx_message({header, row, {cell(1)}}), Contains("Log!B3 is empty"));
-  CHECK_THAT(xlsx_message({header, row, row}),
+  CHECK_THAT(refusal_of_sheet({header}), Contains("Log: no rows below the header in row 1"));
+  CHECK_THAT(refusal_of_sheet(XlsxRows{}), Contains("Log is empty; expected a header"));
+  CHECK_THAT(refusal_of_sheet({row, row}), Contains("Log!B1 and the rest of its row are numbers"));
+  CHECK_THAT(refusal_of_sheet({header, {}, row}), Contains("Log!A2 is empty"));
+  CHECK_THAT(refusal_of_sheet({header, row, {}, {cell(1), cell(1)}}), Contains("Log!A3 is empty"));
+  CHECK_THAT(refusal_of_sheet({header, row, {cell(1)}}), Contains("Log!B3 is empty"));
+  CHECK_THAT(refusal_of_sheet({header, row, row}),
              Contains("Log!A3 is 0 after 0: time 't' does not increase"));
-  CHECK_THAT(xlsx_message({header, {cell("s"), cell("open")}, row}),
-             Contains("Log!A2 is the text 's'; expected a number; below the header may stand"));
-  CHECK_THAT(xlsx_message({{cell("t"), cell("y")}, row}),
+  CHECK_THAT(refusal_of_sheet({header, {cell("s"), cell("open")}, row}),
+             Contains("Log!A2 is the text 's'; expected a number; the row below the header may "
+                      "hold units only"));
+  CHECK_THAT(refusal_of_sheet({{cell("t"), cell("y")}, row}),
              Contains("Log row 1: unknown column 'x'") && Contains("known: t, y"));
-  CHECK_THAT(xlsx_message({{cell("t"), cell("x"), cell("x")}, row}),
+  CHECK_THAT(refusal_of_sheet({{cell("t"), cell("x"), cell("x")}, row}),
              Contains("Log: columns B1 and C1 are both named 'x'; expected one"));
 }
 
@@ -188,34 +170,37 @@ TEST_CASE("load_xlsx: sheets by their names", "[datasets]") {
     return result;
   };
   write_xlsx(path, {{"One", sheet(1, 2)}, {"it's!", sheet(10, 2)}, {"Short", sheet(5, 1)}});
-  CHECK(xlsx_table(path, {"One!t", "'it''s!'!wow!x", "wow!x", "it's!!t"}, "One!t") ==
+  CHECK(read_columns(path, {"One!t", "'it''s!'!wow!x", "wow!x", "it's!!t"}, "One!t") ==
         Table{{0, 1}, {10, 11}, {1, 2}, {0, 1}});
   const auto columns = xlsx_record_columns(path);
   REQUIRE(columns.size() == 6);
   CHECK(columns[3].name == "'it''s!'!wow!x");
-  CHECK(xlsx_table(path, {columns[3].name}) == Table{{10, 11}});
-  CHECK_THAT(xlsx_message(path, {"t", "Short!t"}),
+  CHECK(read_columns(path, {columns[3].name}) == Table{{10, 11}});
+  CHECK_THAT(read_refusal(path, {"t", "Short!t"}),
              Contains("'Short!t' has 1 rows, but 't' has 2; expected as many"));
-  CHECK_THAT(xlsx_message(path, {"Shrt!t"}),
+  CHECK_THAT(read_refusal(path, {"Shrt!t"}),
              Contains("unknown column 'Shrt!t'") && Contains("unknown sheet 'Shrt'; did you mean "
                                                              "'Short'?"));
-  CHECK_THROWS_AS(xlsx_table(path, {"t"}, "x"), std::invalid_argument);
+  CHECK_THROWS_AS(read_columns(path, {"t"}, "x"), std::invalid_argument);
 }
 
 TEST_CASE("load_xlsx: what is no workbook", "[datasets]") {
   const TemporaryFolder folder;
   const auto message = [&](const std::string& name, const std::string& content) {
-    return xlsx_message(folder.write(name, content), {"t"});
+    return read_refusal(folder.write(name, content), {"t"});
   };
   CHECK_THAT(message("a.xlsx", "t,x\n0,1\n"), Contains("a.xlsx: is no .xlsx file"));
   CHECK_THAT(message("b.xlsx", ""), Contains("is no .xlsx file"));
   CHECK_THAT(message("c.xls", "\xD0\xCF\x11\xE0\xA1\xB1\x1A\xE1" + std::string(100, '\0')),
              Contains("the format before 2007 (.xls), or an encrypted one"));
-  CHECK_THAT(xlsx_message(folder.path(), {"t"}), Contains("is a folder; expected an .xlsx file"));
-  CHECK_THAT(xlsx_message(folder.path() / "none.xlsx", {"t"}), Contains("cannot be opened"));
+  CHECK_THAT(message_when([&] {
+               load_xlsx_record(folder.path(), {{"t"}, ""});
+             }),
+             Contains("is a folder; expected an .xlsx file"));
+  CHECK_THAT(read_refusal(folder.path() / "none.xlsx", {"t"}), Contains("cannot be opened"));
   const auto archive = [&](const std::vector<std::pair<std::string, std::string>>& files) {
     write_zip(folder.path() / "z.xlsx", files);
-    return xlsx_message(folder.path() / "z.xlsx", {"t"});
+    return read_refusal(folder.path() / "z.xlsx", {"t"});
   };
   CHECK_THAT(archive({{"mimetype", "application/vnd.oasis.opendocument.spreadsheet"}}),
              Contains("is a ZIP archive, but no .xlsx workbook"));

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "common/error.hpp"
 #include "datasets/read/load_mat.hpp"
+#include "tests/datasets/reading.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 // Files put together byte by byte, after "MAT-File Format" of The MathWorks.
@@ -85,12 +85,7 @@ std::string deflated(const std::string& text) {
 
 std::string refusal(const std::string& content) {
   const TemporaryFolder folder;
-  try {
-    load_mat(folder.write("a.mat", content), {{"x"}, ""});
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "no error";
+  return message_when([&] { load_mat(folder.write("a.mat", content), {{"x"}, ""}); });
 }
 
 const Level5Writer kLittle{};

@@ -1,14 +1,13 @@
 #include <sys/resource.h>
 
 #include <catch2/catch.hpp>
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
 
-#include "common/error.hpp"
 #include "datasets/read/load_xlsx.hpp"
+#include "tests/datasets/reading.hpp"
 #include "tests/datasets/xlsx_fixture.hpp"
 #include "tests/support/sanitized.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -19,22 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 using datasets::load_xlsx_record;
 
-enum class XlsxEnding { values, refused, other };
-
-XlsxEnding xlsx_ending(const fs::path& path) {
-  try {
+Ending xlsx_ending(const fs::path& path) {
+  return ending_of(path, [&] {
     datasets::xlsx_record_columns(path);
-    for (const auto& column : load_xlsx_record(path, {{"t", "x"}, "t"}).columns)
-      for (const double value : column)
-        if (!std::isfinite(value)) return XlsxEnding::other;
-    return XlsxEnding::values;
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    const bool has_words = message.size() > path.string().size() + 10 &&
-                           message.starts_with(path.string() + ": ") &&
-                           message.find('\n') == std::string::npos;
-    return has_words ? XlsxEnding::refused : XlsxEnding::other;
-  }
+    return all_finite(load_xlsx_record(path, {{"t", "x"}, "t"}).columns);
+  });
 }
 
 std::string small_xlsx(const TemporaryFolder& folder, bool squeezed) {
@@ -58,20 +46,11 @@ TEST_CASE("damaged XLSX: a changed byte gives numbers or is refused", "[datasets
   const bool squeezed = GENERATE(true, false);
   const TemporaryFolder folder;
   const std::string whole = small_xlsx(folder, squeezed);
-  REQUIRE(xlsx_ending(folder / "small.xlsx") == XlsxEnding::values);
-  std::size_t refused = 0;
-  for (std::size_t at = 0; at < whole.size(); at += kSanitized ? 67 : 13) {
-    for (const int change : {0x80, 0x01}) {
-      std::string damaged = whole;
-      damaged[at] = static_cast<char>(damaged[at] ^ change);
-      fs::remove(folder / "damaged.xlsx");  // to write into it anew would wait for the disk
-      const XlsxEnding ending = xlsx_ending(folder.write("damaged.xlsx", damaged));
-      if (ending == XlsxEnding::other) FAIL_CHECK("byte " << at << " changed by " << change);
-      refused += ending == XlsxEnding::refused ? 1 : 0;
-    }
-  }
+  REQUIRE(xlsx_ending(folder / "small.xlsx") == Ending::values);
+  const Endings count =
+      damage(folder, "damaged.xlsx", whole, kSanitized ? 67 : 13, {0x80, 0x01}, xlsx_ending);
   // What has no checksum are names, sizes and dates in the directory of the archive.
-  CHECK(refused > 0);
+  CHECK(count.refused > 0);
 }
 
 TEST_CASE("damaged XLSX: cut anywhere, it is refused", "[datasets]") {
@@ -79,7 +58,7 @@ TEST_CASE("damaged XLSX: cut anywhere, it is refused", "[datasets]") {
   const std::string whole = small_xlsx(folder, true);
   for (std::size_t bytes = 0; bytes < whole.size(); bytes += kSanitized ? 199 : 29) {
     CAPTURE(bytes, whole.size());
-    CHECK(xlsx_ending(folder.write("cut.xlsx", whole.substr(0, bytes))) == XlsxEnding::refused);
+    CHECK(xlsx_ending(folder.write("cut.xlsx", whole.substr(0, bytes))) == Ending::refused);
   }
 }
 
