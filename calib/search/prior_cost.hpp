@@ -15,7 +15,7 @@ class PriorCost final : public ceres::SizedCostFunction<1, 1> {
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
     const double z = parameters[0][0];
-    residuals[0] = (map_.to_physical(unknown_, z) - prior_.mean) / prior_.sd;
+    residuals[0] = prior_.residual(map_.to_physical(unknown_, z));
     if (jacobians != nullptr && jacobians[0] != nullptr)
       jacobians[0][0] = map_.slope(unknown_, z) / prior_.sd;
     return true;

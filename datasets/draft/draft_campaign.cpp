@@ -552,7 +552,9 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
   text +=
       "\n[averaging]\n"
       "align = \"correlate\"  # or \"none\" if all repeats share one trigger\n"
-      "\n# [acceptance]  # what PASS means\n# rho2 = 0.99\n# absolute_error_percent = 1.0\n";
+      "\n# [acceptance]  # what PASS means\n# rho2 = 0.99\n# absolute_error_percent = 1.0\n"
+      "# decision = \"guard_band\"  # PASS where a limit is kept by more than the score is "
+      "uncertain\n";
   for (const FileGroup& group : groups) {
     const FileColumns own = columns_of(group.files.front());
     text += fmt::format("\n[[condition]]\nid = {}\n", toml_quoted(group.id));
