@@ -120,7 +120,7 @@ class Processes(unittest.TestCase):
         done = subprocess.run(["mpirun", "-n", "2", elsewhere / "rigcal", "check", self.campaign], capture_output=True,
                               text=True, check=False, env=ENVIRONMENT, timeout=60)
         self.assertEqual(done.returncode, 2)
-        self.assertIn("rigcal_mpi.so is not there", done.stderr)
+        self.assertIn("rigcal_mpi.so is missing", done.stderr)
 
 
 if __name__ == "__main__":

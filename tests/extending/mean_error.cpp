@@ -16,6 +16,6 @@ int main() {
   const rigcal::report::Json json{{"scores", rigcal::report::json_of(scores)},
                                   {"schema", rigcal::report::schema_of<decltype(scores)>()},
                                   {"titles", rigcal::report::score_titles()},
-                                  {"cells", rigcal::report::score_cells(scores, "m")}};
+                                  {"cells", rigcal::report::score_cells(scores, nullptr, "m")}};
   std::fputs(rigcal::report::json_text(json).c_str(), stdout);
 }
