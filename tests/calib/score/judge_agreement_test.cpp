@@ -40,7 +40,8 @@ TEST_CASE("agreement: a limit that is kept within the guard band alone is a rese
   scene.fit.conditions[1].channels[0].expanded_uncertainty->rho2 = 0.02;
   scene.rejudge(1, 0.999);
   CHECK(scene.verdict() == Verdict::warn);
-  const Reason* reason = find(scene.assessed().agreement, "guard_band");
+  const Assessment assessed = scene.assessed();
+  const Reason* reason = find(assessed.agreement, "guard_band");
   REQUIRE(reason != nullptr);
   CHECK(reason->subject == "other");
   scene.rejudge(1, 0.992);  // between limit and warning limit
