@@ -79,28 +79,17 @@ std::vector<Enum> every();
 
 namespace described {
 
-template <typename T>
-inline constexpr bool is_optional = false;
-template <typename T>
-inline constexpr bool is_optional<std::optional<T>> = true;
-template <typename T>
-inline constexpr bool is_omittable = false;
-template <typename T>
-inline constexpr bool is_omittable<Omittable<T>> = true;
-template <typename T>
-inline constexpr bool is_later = false;
-template <typename T>
-inline constexpr bool is_later<Later<T>> = true;
+/// Whether T is made of a template: is_a<std::optional<int>, std::optional>.
+template <typename T, template <typename...> typename Of>
+inline constexpr bool is_a = false;
+template <template <typename...> typename Of, typename... Arguments>
+inline constexpr bool is_a<Of<Arguments...>, Of> = true;
 template <typename T>
 struct LaterOf;
 template <typename T>
 struct LaterOf<Later<T>> {
   using Type = T;
 };
-template <typename T>
-inline constexpr bool is_vector = false;
-template <typename T>
-inline constexpr bool is_vector<std::vector<T>> = true;
 template <typename T>
 inline constexpr bool is_array = false;
 template <typename T, std::size_t N>
@@ -109,10 +98,6 @@ template <typename T>
 inline constexpr bool is_keyed = false;
 template <typename T>
 inline constexpr bool is_keyed<Keyed<T>> = true;
-template <typename T>
-inline constexpr bool is_inlined = false;
-template <typename T>
-inline constexpr bool is_inlined<Inlined<T>> = true;
 
 /// Largest number of things that a result counts: sums of some hundred of them are whole numbers.
 inline constexpr long kMostCounted = 1'000'000'000;
@@ -124,7 +109,7 @@ struct Anything {
 
 template <typename Visit, typename Member>
 void visit_member(const Visit& visit, const char* name, Member& member) {
-  if constexpr (is_inlined<std::remove_const_t<Member>>) {
+  if constexpr (is_a<std::remove_const_t<Member>, Inlined>) {
     Member::describe(member, visit);
   } else {
     visit(name, member);
@@ -162,7 +147,7 @@ inline std::optional<std::string> unless_empty(const std::string& text) {
 template <typename T>
 Json json_of(const T& value) {
   using namespace described;
-  if constexpr (is_later<T>) {
+  if constexpr (is_a<T, Later>) {
     return json_of<typename LaterOf<T>::Type>(value);
   } else if constexpr (std::same_as<T, Json>) {
     return value;
@@ -172,20 +157,20 @@ Json json_of(const T& value) {
     return std::string(to_string(value));
   } else if constexpr (std::same_as<T, Range>) {
     return Json::array({json_of(value.low), json_of(value.high)});
-  } else if constexpr (is_optional<T> || is_omittable<T>) {
+  } else if constexpr (is_a<T, std::optional> || is_a<T, Omittable>) {
     return value ? json_of(*value) : Json(nullptr);
   } else if constexpr (is_keyed<T>) {
     Json json = Json::object();
     for (const auto& [key, member] : value) json[key] = json_of(member);
     return json;
-  } else if constexpr (is_vector<T> || is_array<T>) {
+  } else if constexpr (is_a<T, std::vector> || is_array<T>) {
     Json json = Json::array();
     for (const auto& each : value) json.push_back(json_of(each));
     return json;
   } else if constexpr (Struct<T>) {
     Json json = Json::object();
     T::describe(value, [&json]<typename M>(const char* name, const M& member) {
-      if constexpr (is_omittable<M>) {
+      if constexpr (is_a<M, Omittable>) {
         if (!member) return;
       }
       json[key_of(name)] = json_of(member);
@@ -202,7 +187,7 @@ Json json_of(const T& value) {
 template <typename T>
 void read_into(const JsonNode& node, T& value) {
   using namespace described;
-  if constexpr (is_later<T>) {
+  if constexpr (is_a<T, Later>) {
     read_into<typename LaterOf<T>::Type>(node, value);
   } else if constexpr (std::same_as<T, Json>) {
     value = node.json();
@@ -225,11 +210,11 @@ void read_into(const JsonNode& node, T& value) {
     if (ends.size() != 2) node.fail("two numbers");
     read_into(ends[0], value.low);
     read_into(ends[1], value.high);
-  } else if constexpr (is_optional<T> || is_omittable<T>) {
+  } else if constexpr (is_a<T, std::optional> || is_a<T, Omittable>) {
     value.reset();
-    if constexpr (is_omittable<T>) {
+    if constexpr (is_a<T, Omittable>) {
       // Null is a value of one that may be null.
-      if constexpr (is_optional<typename T::value_type>) value.emplace();
+      if constexpr (is_a<typename T::value_type, std::optional>) value.emplace();
     }
     if (!node.is_null()) read_into(node, value.emplace());
   } else if constexpr (is_keyed<T>) {
@@ -238,7 +223,7 @@ void read_into(const JsonNode& node, T& value) {
       read_into(member, value.emplace_back(key, typename T::value_type::second_type{}).second);
   } else if constexpr (std::same_as<T, std::vector<double>>) {
     value = node.reals();
-  } else if constexpr (is_vector<T>) {
+  } else if constexpr (is_a<T, std::vector>) {
     value.clear();
     for (const JsonNode& item : node.items()) {
       typename T::value_type each{};
@@ -253,7 +238,7 @@ void read_into(const JsonNode& node, T& value) {
     static_assert(Struct<T>);
     T::describe(value, [&node]<typename M>(const char* name, M& member) {
       const std::string key = key_of(name);
-      if constexpr (is_omittable<M> || is_later<M> || std::same_as<M, Json>) {
+      if constexpr (is_a<M, Omittable> || is_a<M, Later> || std::same_as<M, Json>) {
         member = M();
         if (!node.has(key)) return;
       }
@@ -266,7 +251,7 @@ void read_into(const JsonNode& node, T& value) {
 template <typename T>
 Json schema_of() {
   using namespace described;
-  if constexpr (is_later<T>) {
+  if constexpr (is_a<T, Later>) {
     return schema_of<typename LaterOf<T>::Type>();
   } else if constexpr (std::same_as<T, Json>) {
     return Json::object();
@@ -284,9 +269,9 @@ Json schema_of() {
     return {{"enum", std::move(names)}};
   } else if constexpr (std::same_as<T, Range>) {
     return {{"type", "array"}, {"items", schema_of<double>()}, {"minItems", 2}, {"maxItems", 2}};
-  } else if constexpr (is_omittable<T>) {
+  } else if constexpr (is_a<T, Omittable>) {
     return schema_of<typename T::value_type>();
-  } else if constexpr (is_optional<T>) {
+  } else if constexpr (is_a<T, std::optional>) {
     Json schema = schema_of<typename T::value_type>();
     if (schema.contains("enum")) {
       schema["enum"].push_back(nullptr);
@@ -297,7 +282,7 @@ Json schema_of() {
   } else if constexpr (is_keyed<T>) {
     return {{"type", "object"},
             {"additionalProperties", schema_of<typename T::value_type::second_type>()}};
-  } else if constexpr (is_vector<T>) {
+  } else if constexpr (is_a<T, std::vector>) {
     return {{"type", "array"}, {"items", schema_of<typename T::value_type>()}};
   } else if constexpr (is_array<T>) {
     const std::size_t size = std::tuple_size_v<T>;
@@ -313,7 +298,7 @@ Json schema_of() {
     T::describe(sample, [&]<typename M>(const char* name, const M& /*member*/) {
       const std::string key = key_of(name);
       properties[key] = schema_of<M>();
-      if constexpr (!is_omittable<M> && !is_later<M> && !std::same_as<M, Json>)
+      if constexpr (!is_a<M, Omittable> && !is_a<M, Later> && !std::same_as<M, Json>)
         required.push_back(key);
     });
     return {{"type", "object"},
