@@ -238,6 +238,17 @@ std::vector<std::string> worst_conditions(const calib::Fit& fit) {
   return worst;
 }
 
+/// By which rule scores were compared with limits; nothing where none were.
+std::string rule_text(const Result& result) {
+  const auto& scores = result.fit.conditions;
+  const bool judged = std::any_of(scores.begin(), scores.end(),
+                                  [](const auto& score) { return !score.checks.empty(); });
+  if (!judged) return {};
+  return result.campaign.acceptance_bounds.decision == datasets::DecisionRule::guard_band
+             ? " by guard band"
+             : " by simple acceptance";
+}
+
 /// State of an aspect; what speaks against it, the gravest first; then what speaks for it.
 std::string aspect_text(std::string_view name, const calib::Aspect& aspect, const Style& style) {
   constexpr std::size_t kShown = 3;  // of one state; the files hold all
@@ -316,7 +327,7 @@ std::string summary_text(const Result& result, const std::vector<std::string>& f
   const calib::Fit& fit = result.fit;
   std::string text;
   const auto say = [&](const std::string& line) { text += wrapped(line, style.columns, 2) + "\n"; };
-  say((fit.verdict ? "verdict: " + coloured(*fit.verdict, style) +
+  say((fit.verdict ? "verdict: " + coloured(*fit.verdict, style) + rule_text(result) +
                          (*fit.verdict == Verdict::warn ? " (passed with reservations)" : "")
        : fit.conditions.empty() ? std::string("verdict: none (no condition was scored)")
                                 : std::string("verdict: none (the campaign has no [acceptance])")) +

@@ -48,10 +48,13 @@ TEST_CASE("fit: by the guard band a limit is kept by more than the score's uncer
   };
   const std::string guard = "decision = \"guard_band\"\n";
 
-  CHECK(judged(rho2 - 0.5 * uncertainty, "").exit_code == 0);
+  const Outcome simple = judged(rho2 - 0.5 * uncertainty, "");
+  CHECK(simple.exit_code == 0);
+  CHECK_THAT(simple.out, Catch::StartsWith("verdict: PASS by simple acceptance"));
   CHECK(judged(rho2 - 1.5 * uncertainty, guard).exit_code == 0);
   const Outcome within = judged(rho2 - 0.5 * uncertainty, guard);
   CHECK(within.exit_code == 1);
+  CHECK_THAT(within.out, Catch::StartsWith("verdict: WARN by guard band"));
   CHECK_THAT(within.out, Catch::Contains("not by more than its expanded uncertainty"));
   const Json result = result_of(folder, "judged/fit.json");
   CHECK(result["verdict"] == "WARN");
