@@ -8,6 +8,7 @@
 #include "calib/search/verify.hpp"
 #include "calib/search/weights.hpp"
 #include "calib/trust/findings.hpp"
+#include "common/memory.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -56,7 +57,11 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
       fit.message = "no start could be simulated; of the first: " + fit.message;
     return {};
   }
-  Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads);
+  give_freed_memory_back();  // of the simulations: what follows asks for other sizes
+  const bool awaited =
+      found.result.status == FitStatus::stopped && evaluator.budget().cancelled();
+  Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads,
+                                   awaited ? Detail::plain : Detail::full);
   auto open =
       describe_findings(problem, found.optimum, found.result.check, spread, options.threads, fit);
   return {std::move(found.optimum), std::move(spread), std::move(open)};

@@ -163,7 +163,7 @@ std::vector<std::size_t> judge_identifiability(const Problem& problem, const Eva
     fit.warnings.push_back(symmetric);
   }
   const auto open = symmetry && symmetry->holds() ? symmetry->unknowns : std::vector<std::size_t>();
-  add_remedies(problem, optimum, open, spread, fit.parameters);
+  if (spread.detail == Detail::full) add_remedies(problem, optimum, open, spread, fit.parameters);
   return open;
 }
 

@@ -75,6 +75,8 @@ std::string interval_advice(const Problem& problem, const OptimumCheck& check,
         "the nearest is {} standard errors away, and the intervals lie about that end",
         significant(check.relative_offset, 2));
   }
+  if (found.detail == Detail::plain)
+    return "only the plain standard errors exist: the search was stopped on request";
   if (found.scatter.empty()) {
     return "only the plain standard errors exist: too few residuals to tell their correlation, or "
            "a record that could not be simulated again";

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 
+#include "common/parallel.hpp"
 #include "metrics/distributions.hpp"
 
 namespace rigcal::calib {
@@ -55,14 +56,13 @@ RowMajor forwards(const Autoregression& noise, RowMajor rows) {
 }
 
 /// L^-1 x: u[t] = x[t] - sum_k phi[k] x[t - 1 - k].
-RowMajor whitened(const Autoregression& noise, const RowMajor& rows) {
-  RowMajor result = rows;
+RowMajor whitened(const Autoregression& noise, RowMajor rows) {
   const auto order = static_cast<Index>(noise.phi.size());
-  for (Index t = 0; t < rows.rows(); ++t) {
+  for (Index t = rows.rows() - 1; t >= 0; --t) {
     for (Index k = 0; k < order && k < t; ++k)
-      result.row(t) -= noise.phi[static_cast<std::size_t>(k)] * rows.row(t - 1 - k);
+      rows.row(t) -= noise.phi[static_cast<std::size_t>(k)] * rows.row(t - 1 - k);
   }
-  return result;
+  return rows;
 }
 
 /// sum_t a[t] . b[t + lag]
@@ -75,7 +75,8 @@ double lagged(const RowMajor& a, const RowMajor& b, Index lag) {
 std::vector<double> bias(const ChannelRows& rows, const Autoregression& noise,
                          const MatrixXd& total, Index lags) {
   const RowMajor& Q = rows.jacobian;
-  const RowMajor sigma_q = noise.variance * forwards(noise, backwards(noise, Q));
+  RowMajor sigma_q = forwards(noise, backwards(noise, Q));
+  sigma_q *= noise.variance;
   const RowMajor q_total = Q * total;
   std::vector<double> result;
   for (Index h = 0; h <= lags; ++h) {
@@ -91,53 +92,48 @@ MatrixXd expected(const ChannelRows& rows, const Autoregression& noise) {
   return noise.variance * filtered.transpose() * filtered;
 }
 
-/// u = L^-1 r of one channel.
-struct Innovations {
-  VectorXd u;
-  RowMajor own;  ///< covariance with the error of each combination, over its standard error
-};
-Innovations innovations(const ChannelRows& rows, const Autoregression& noise,
-                        const RowMajor& filtered, const MatrixXd& total,
-                        const MatrixXd& combinations) {
-  const RowMajor residual = rows.residual;
-  const RowMajor p = whitened(noise, rows.jacobian);
-  const MatrixXd c = combinations.transpose();
-  const VectorXd variance = (c.transpose() * total * c).diagonal();
-  Innovations result{whitened(noise, residual).col(0),
-                     noise.variance * filtered * c - p * (total * c)};
-  for (Index j = 0; j < c.cols(); ++j)
-    result.own.col(j) *= variance(j) > 0.0 ? 1.0 / std::sqrt(variance(j)) : 0.0;
-  return result;
-}
-
 /// The noise of one channel, before what the fit has removed is known.
 struct ChannelNoise {
   std::size_t condition = 0;
   Index channel = 0;
   std::vector<double> gamma;
   Autoregression noise;
+  MatrixXd expected;  ///< covariance of the channel's score, as expected()
 };
+
+std::vector<ChannelNoise> channels_of(const std::vector<ScoreRows>& rows) {
+  std::vector<ChannelNoise> channels;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (Index k = 0; k < rows[i].channels; ++k) channels.push_back({i, k, {}, {}, {}});
+  }
+  return channels;
+}
+
+/// In the order of the channels, whichever of them was made first.
+MatrixXd total_of(const MatrixXd& priors, const std::vector<ChannelNoise>& channels) {
+  MatrixXd total = priors;
+  for (const ChannelNoise& each : channels) total += each.expected;
+  return total;
+}
 
 /// Autoregressions of all channels, corrected for what the fit has removed. The rows of a channel
 /// are taken twice: those of all of them at once would be the most memory that a fit holds.
-std::vector<std::vector<Autoregression>> noise_models(const std::vector<ScoreRows>& rows,
-                                                      const MatrixXd& priors) {
-  std::vector<ChannelNoise> channels;
-  MatrixXd total = priors;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (Index k = 0; k < rows[i].channels; ++k) {
-      const ChannelRows own = channel_rows(rows[i], k);
-      const auto samples = static_cast<std::size_t>(own.samples());
-      const int lags = std::min<int>(kMostLags, static_cast<int>(samples / 10));
-      auto gamma = metrics::autocovariance({own.residual.data(), samples}, lags);
-      auto noise = metrics::fit_autoregression(gamma, static_cast<double>(samples));
-      total += expected(own, noise);
-      gamma.resize(noise.phi.size() + 1);
-      channels.push_back({i, k, std::move(gamma), std::move(noise)});
-    }
-  }
-  std::vector<std::vector<Autoregression>> result(rows.size());
-  for (ChannelNoise& each : channels) {
+std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows, const MatrixXd& priors,
+                                       int threads) {
+  std::vector<ChannelNoise> channels = channels_of(rows);
+  parallel_for(channels.size(), threads, [&](std::size_t i) {
+    ChannelNoise& each = channels[i];
+    const ChannelRows own = channel_rows(rows[each.condition], each.channel);
+    const auto samples = static_cast<std::size_t>(own.samples());
+    const int lags = std::min<int>(kMostLags, static_cast<int>(samples / 10));
+    each.gamma = metrics::autocovariance({own.residual.data(), samples}, lags);
+    each.noise = metrics::fit_autoregression(each.gamma, static_cast<double>(samples));
+    each.expected = expected(own, each.noise);
+    each.gamma.resize(each.noise.phi.size() + 1);
+  });
+  const MatrixXd total = total_of(priors, channels);
+  parallel_for(channels.size(), threads, [&](std::size_t i) {
+    ChannelNoise& each = channels[i];
     const ChannelRows own = channel_rows(rows[each.condition], each.channel);
     std::vector<double>& gamma = each.gamma;
     const auto removed = bias(own, each.noise, total, static_cast<Index>(gamma.size()) - 1);
@@ -145,12 +141,12 @@ std::vector<std::vector<Autoregression>> noise_models(const std::vector<ScoreRow
     if (removed.front() < 0.5 * (gamma.front() + removed.front())) {
       for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
       // Far from an optimum residuals are not the noise that the correction supposes.
-      if (metrics::is_autocovariance(gamma))
-        each.noise = metrics::fit_autoregression(gamma, static_cast<double>(own.samples()));
+      if (!metrics::is_autocovariance(gamma)) return;
+      each.noise = metrics::fit_autoregression(gamma, static_cast<double>(own.samples()));
+      each.expected = expected(own, each.noise);
     }
-    result[each.condition].push_back(std::move(each.noise));
-  }
-  return result;
+  });
+  return channels;
 }
 
 /// Andrews' bandwidth of the Parzen kernel, 2.6614 (alpha(2) n)^(1/5) with alpha(2) from a
@@ -190,24 +186,56 @@ MatrixXd kernel_covariance(const RowMajor& scores, double width) {
   return sum;
 }
 
+/// What the channels of a condition add up to, each of shape (samples, directions or
+/// combinations). The records are long: these and two more of the kind are held at a time.
+struct ChannelSums {
+  RowMajor scores;   ///< contributions of the samples to the score
+  RowMajor weights;  ///< variance of each combination of them
+  RowMajor own;      ///< their covariance with the error of each combination, over its standard error
+  double independent_residuals = 0.0;
+};
+
+void add(RowMajor& sum, RowMajor term) {
+  if (sum.size() == 0) {
+    sum = std::move(term);
+  } else {
+    sum += term;
+  }
+}
+
+ChannelSums sum_channels(const ScoreRows& rows, const std::vector<Autoregression>& noise,
+                         const MatrixXd& total, const MatrixXd& combinations) {
+  const MatrixXd c = combinations.transpose();
+  const MatrixXd total_c = total * c;
+  const VectorXd variance = (c.transpose() * total_c).diagonal();
+  ChannelSums sums;
+  for (Index k = 0; k < rows.channels; ++k) {
+    const Autoregression& model = noise[static_cast<std::size_t>(k)];
+    ChannelRows channel = channel_rows(rows, k);
+    const VectorXd innovations = whitened(model, channel.residual).col(0);
+    RowMajor filtered = backwards(model, channel.jacobian);
+    RowMajor combined = filtered * c;
+    filtered.array().colwise() *= innovations.array();
+    add(sums.scores, std::move(filtered));
+    RowMajor own = model.variance * combined;
+    own.noalias() -= whitened(model, std::move(channel.jacobian)) * total_c;
+    for (Index j = 0; j < own.cols(); ++j)
+      own.col(j) *= variance(j) > 0.0 ? 1.0 / std::sqrt(variance(j)) : 0.0;
+    add(sums.own, own.cwiseProduct(combined));
+    combined = model.variance * combined.cwiseAbs2();
+    add(sums.weights, std::move(combined));
+    sums.independent_residuals +=
+        model.effective_samples(static_cast<double>(channel.residual.size()));
+  }
+  return sums;
+}
+
 ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise,
                         const MatrixXd& total, const MatrixXd& combinations) {
   ScoreScatter result;
-  const Index samples = rows.residual.size() / rows.channels;
-  RowMajor scores = RowMajor::Zero(samples, rows.jacobian.cols());
-  MatrixXd weights = MatrixXd::Zero(samples, combinations.rows());  // variance of c . score
-  RowMajor own = RowMajor::Zero(samples, combinations.rows());
-  for (Index k = 0; k < rows.channels; ++k) {
-    const Autoregression& model = noise[static_cast<std::size_t>(k)];
-    const ChannelRows channel = channel_rows(rows, k);
-    const RowMajor filtered = backwards(model, channel.jacobian);
-    const Innovations each = innovations(channel, model, filtered, total, combinations);
-    scores += each.u.asDiagonal() * filtered;
-    const RowMajor combined = filtered * combinations.transpose();
-    own += each.own.cwiseProduct(combined);
-    weights += model.variance * combined.cwiseAbs2();
-    result.independent_residuals += model.effective_samples(static_cast<double>(samples));
-  }
+  const auto [scores, weights, own, independent_residuals] =
+      sum_channels(rows, noise, total, combinations);
+  result.independent_residuals = independent_residuals;
   const double width = bandwidth(scores);
   result.covariance = kernel_covariance(scores, width);
   const bool whitening =
@@ -231,16 +259,15 @@ ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise
 }  // namespace
 
 std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows, const MatrixXd& priors,
-                                        const MatrixXd& combinations) {
-  const auto noise = noise_models(rows, priors);
-  MatrixXd total = priors;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (Index k = 0; k < rows[i].channels; ++k)
-      total += expected(channel_rows(rows[i], k), noise[i][static_cast<std::size_t>(k)]);
-  }
-  std::vector<ScoreScatter> result;
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    result.push_back(scatter_of(rows[i], noise[i], total, combinations));
+                                        const MatrixXd& combinations, int threads) {
+  std::vector<ChannelNoise> channels = noise_models(rows, priors, threads);
+  const MatrixXd total = total_of(priors, channels);
+  std::vector<std::vector<Autoregression>> noise(rows.size());
+  for (ChannelNoise& each : channels) noise[each.condition].push_back(std::move(each.noise));
+  std::vector<ScoreScatter> result(rows.size());
+  parallel_for(rows.size(), threads, [&](std::size_t i) {
+    result[i] = scatter_of(rows[i], std::move(noise[i]), total, combinations);
+  });
   return result;
 }
 

@@ -55,7 +55,7 @@ struct ScoreScatter {
 /// @param combinations  of the directions, one per row
 std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
                                         const Eigen::MatrixXd& priors,
-                                        const Eigen::MatrixXd& combinations);
+                                        const Eigen::MatrixXd& combinations, int threads = 1);
 
 /// Variance c^T (sum of all covariances + priors) c of a combination.
 struct RobustVariance {

@@ -82,7 +82,7 @@ bool Uncertainty::repeats_differ() const {
 }
 
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
-                        std::vector<ConditionRows> rows, int threads) {
+                        std::vector<ConditionRows> rows, int threads, Detail detail) {
   const Linearisation system = linearise(problem, optimum);
   const auto n = static_cast<Eigen::Index>(optimum.z.size());
   const ScaledSvd svd(system.jacobian, rank_threshold(problem.tolerance));
@@ -92,6 +92,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   const Eigen::MatrixXd& V = svd.V();
 
   Uncertainty result;
+  result.detail = detail;
   result.rank = static_cast<int>(rank);
   result.singular_values.assign(s.data(), s.data() + s.size());
   const double freedom = static_cast<double>(problem.residual_count() - rank);
@@ -112,9 +113,9 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   std::vector<ScoreRows> scores;
   std::vector<Eigen::MatrixXd> repeats;
   Eigen::VectorXd coherent = Eigen::VectorXd::Zero(n);
-  if (rank > 0 && freedom > 0.0) {
+  if (detail == Detail::full && rank > 0 && freedom > 0.0) {
     scores = score_rows(problem, std::move(rows), root);
-    result.scatter = score_scatter(scores, priors, root);
+    result.scatter = score_scatter(scores, priors, root, threads);
     repeats = scores_of_repeats(problem, optimum.z, scores, threads);
     const auto noiseless = noiseless_channels(problem, optimum);
     for (const auto& channels : noiseless)
@@ -182,6 +183,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
         result.correlation(j, k) = std::clamp(inverse(j, k) / scale, -1.0, 1.0);
     }
   }
+  if (detail == Detail::plain) return result;
   CauseEffects effects(problem, optimum.z);
   auto difference = likely_difference(effects, scores, repeats);
   if (difference) difference->p = difference_by_noise(effects, difference->cause);

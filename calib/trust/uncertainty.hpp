@@ -13,8 +13,17 @@
 
 namespace rigcal::calib {
 
+/// How much is made of the point where a search ended.
+enum class Detail {
+  full,
+  /// Nothing that takes further simulations, or passes over all residuals: of a point that is no
+  /// minimum, where somebody waits for the end.
+  plain,
+};
+
 /// How far the unknowns are determined at an optimum.
 struct Uncertainty {
+  Detail detail = Detail::full;
   /// SI; absent for an unknown that takes part in a combination which the data do not determine.
   std::vector<std::optional<double>> standard_error;
   /// The same from the scatter of the residuals themselves (see below), with which freedom it is
@@ -66,7 +75,9 @@ void add_prior_information(const Problem& problem, std::span<const double> z,
 ///
 /// @param optimum  an evaluation that is ok
 /// @param rows     all its rows, per condition; no longer needed by the caller
+/// @param detail   plain: no robust errors, nor what differs between repeats
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
-                        std::vector<ConditionRows> rows, int threads);
+                        std::vector<ConditionRows> rows, int threads,
+                        Detail detail = Detail::full);
 
 }  // namespace rigcal::calib

@@ -2,32 +2,40 @@
 
 #include <kainjow/mustache.hpp>
 #include <stdexcept>
+#include <utility>
 
 namespace rigcal::report {
 namespace {
 
 using kainjow::mustache::data;
 
-data converted(const nlohmann::ordered_json& json) {
+/// Takes the strings out of `json`: those of a page are megabytes. So are the copies that set() and
+/// push_back() of the library make of all that lies beneath a value, hence the assignments.
+data converted(nlohmann::ordered_json& json) {
   if (json.is_object()) {
     data object;
-    for (const auto& [name, value] : json.items()) object.set(name, converted(value));
+    for (auto& [name, value] : json.items()) object[name] = converted(value);
     return object;
   }
   if (json.is_array()) {
     data list{data::type::list};
-    for (const auto& value : json) list.push_back(converted(value));
+    for (std::size_t i = 0; i < json.size(); ++i) list.push_back(data::type::invalid);
+    for (std::size_t i = 0; i < json.size(); ++i)
+      const_cast<data&>(list.list_value()[i]) = converted(json[i]);  // there is no other way in
     return list;
   }
   if (json.is_boolean()) return json.get<bool>() ? data::type::bool_true : data::type::bool_false;
-  if (json.is_string()) return json.get<std::string>();
+  if (json.is_string()) {
+    const std::string text = std::move(json.get_ref<std::string&>());
+    return text;
+  }
   if (json.is_null()) return data::type::bool_false;
   return json.dump();
 }
 
 }  // namespace
 
-std::string render(std::string_view text, const nlohmann::ordered_json& json,
+std::string render(std::string_view text, nlohmann::ordered_json json,
                    const std::vector<Partial>& partials) {
   kainjow::mustache::mustache page{std::string(text)};
   if (!page.is_valid()) throw std::logic_error("template: " + page.error_message());
@@ -36,7 +44,8 @@ std::string render(std::string_view text, const nlohmann::ordered_json& json,
     const kainjow::mustache::partial made{[&each] { return std::string(each.text); }};
     values.set(each.name, made);
   }
-  std::string result = page.render(values);
+  std::string result;
+  page.render(values, [&result](const std::string& piece) { result += piece; });
   if (!page.error_message().empty()) throw std::logic_error("template: " + page.error_message());
   return result;
 }

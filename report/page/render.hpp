@@ -17,7 +17,7 @@ struct Partial {
 /// for a list or asks whether it is true.
 ///
 /// @throws std::logic_error  the template is not well formed
-std::string render(std::string_view text, const nlohmann::ordered_json& data,
+std::string render(std::string_view text, nlohmann::ordered_json data,
                    const std::vector<Partial>& partials = {});
 
 }  // namespace rigcal::report

@@ -1,9 +1,10 @@
 #include "report/run/write_result.hpp"
 
-#include <functional>
 #include <memory>
+#include <mutex>
 
 #include "common/file.hpp"
+#include "common/parallel.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/json.hpp"
@@ -30,8 +31,8 @@ fs::path residual_file(const std::string& condition) {
   return fs::path("residuals") / (condition + ".csv");
 }
 
-/// Scores whose residuals are written. A fit that failed early scored nothing; its files say so all
-/// the same.
+/// What stands for the scores of a fit that failed before it scored anything: its residual files say
+/// so all the same.
 std::vector<calib::ConditionScore> unscored(const Result& result) {
   std::vector<calib::ConditionScore> scores;
   for (const datasets::Condition& condition : result.campaign.conditions) {
@@ -55,6 +56,25 @@ void require_inputs_kept(const fs::path& out, const Result& result) {
   for (const datasets::Condition& condition : result.campaign.conditions)
     files.push_back(residual_file(condition.id));
   require_inputs_kept(out, files, result.provenance.inputs);
+}
+
+/// Residual files, each written as soon as its text is there: those of all conditions at once would
+/// be the most memory that a result takes.
+///
+/// @return  their names and hashes, in the order of the scores
+std::vector<InputFile> add_residuals(const Result& result,
+                                     const std::vector<calib::ConditionScore>& scores, int threads,
+                                     ResultsInWriting& writing) {
+  std::vector<InputFile> files(scores.size());
+  std::mutex one_at_a_time;
+  parallel_for(scores.size(), threads, [&](std::size_t i) {
+    const fs::path file = residual_file(scores[i].id);
+    const std::string text = residuals_csv(result, scores[i]);
+    files[i] = {file.generic_string(), sha256_of_text(text)};
+    const std::lock_guard lock(one_at_a_time);
+    writing.add(file, text);
+  });
+  return files;
 }
 
 /// Every file but the residuals.
@@ -89,14 +109,8 @@ std::vector<fs::path> write_result(const fs::path& out, int threads, const Resul
   const std::vector<calib::ConditionScore> early = unscored(result);
   require_inputs_kept(out, result);
   ResultsInWriting writing(out, result.provenance.inputs);
-  std::vector<InputFile> residuals;
-  for (const auto& scores : {std::cref(result.fit.conditions), std::cref(early)}) {
-    for (const calib::ConditionScore& score : scores.get()) {
-      const std::string text = residuals_csv(result, score);
-      residuals.push_back({residual_file(score.id).generic_string(), sha256_of_text(text)});
-      writing.add(residual_file(score.id), text);
-    }
-  }
+  const std::vector<InputFile> residuals = add_residuals(
+      result, result.fit.conditions.empty() ? early : result.fit.conditions, threads, writing);
   std::vector<fs::path> paths;
   for (const InputFile& file : residuals) paths.emplace_back(file.path);
   for (const ResultFile& file : files_of(out, threads, result, residuals, stored)) {

@@ -11,7 +11,7 @@ namespace rigcal::report {
 /// Writes the files of a fit or validation. A failed fit takes the fitted.toml of an earlier one
 /// away.
 ///
-/// @param threads  that draw the page
+/// @param threads  that make the texts and draw the page
 /// @param stored   stored() of the result, to which the names of its files are added
 /// @return         what was written, relative to `out`; the page and the result come last
 /// @throws WriteError, UsageError  as write_results()

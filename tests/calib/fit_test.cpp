@@ -264,6 +264,26 @@ TEST_CASE("fit: limits and signals stop it with the best so far", "[calib]") {
     const Fit found = fit(twin.campaign, records, options);
     CHECK(found.status == FitStatus::stopped);
     CHECK(found.cost < found.starts.at(0).initial_cost);
+    // Somebody waits for the end: robust errors of a point that is no minimum are not made.
+    CHECK_THAT(found.interval_advice, Contains("no interval is reliable"));
+    CHECK(std::none_of(found.parameters.begin(), found.parameters.end(),
+                       [](const auto& each) { return each.robust_standard_error.has_value(); }));
+    CHECK(parameter(found, "mass").standard_error.has_value());
+  }
+  SECTION("a signal after the search") {
+    std::atomic<bool> cancel{false};
+    options.cancel = &cancel;
+    const Fit whole = fit(twin.campaign, records, options);
+    REQUIRE(whole.status == FitStatus::converged);
+    const int last = whole.starts.at(0).iterations;
+    options.progress = [&](int, int iteration, double, double, double) {
+      if (iteration >= last) cancel = true;
+    };
+    const Fit found = fit(twin.campaign, records, options);
+    CAPTURE(last, found.message);
+    REQUIRE(found.status == FitStatus::converged);
+    for (const auto& each : found.parameters)
+      CHECK((!each.fitted || each.robust_standard_error.has_value()));
   }
   SECTION("an exception of the observer reaches the caller, not Ceres") {
     options.progress = [](int, int, double, double, double) { throw std::runtime_error("seen"); };

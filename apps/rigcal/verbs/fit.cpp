@@ -94,6 +94,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   if (settings.starts > 1)
     settings.checkpoint = [&](const calib::Checkpoint& reached) { checkpoint.keep(reached); };
 
+  give_freed_memory_back();  // of the single repeats
   calib::Fit fit;
   {
     FitProgress progress(options.common.print.quiet,
@@ -108,6 +109,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   // Files and page are not made from them, and need as much memory again.
   datasets::drop_deviations(records);
   give_freed_memory_back();
+  give_large_blocks_back();
   const ExitCode code =
       write_and_print(options.common, {report::ResultKind::fit, campaign, records, fit, provenance},
                       options.choices.strict);
