@@ -58,8 +58,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
     return {};
   }
   give_freed_memory_back();  // of the simulations: what follows asks for other sizes
-  const bool awaited =
-      found.result.status == FitStatus::stopped && evaluator.budget().cancelled();
+  const bool awaited = found.result.status == FitStatus::stopped && evaluator.budget().cancelled();
   Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads,
                                    awaited ? Detail::plain : Detail::full);
   auto open =

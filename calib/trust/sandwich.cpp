@@ -191,7 +191,7 @@ MatrixXd kernel_covariance(const RowMajor& scores, double width) {
 struct ChannelSums {
   RowMajor scores;   ///< contributions of the samples to the score
   RowMajor weights;  ///< variance of each combination of them
-  RowMajor own;      ///< their covariance with the error of each combination, over its standard error
+  RowMajor own;  ///< their covariance with the error of each combination, over its standard error
   double independent_residuals = 0.0;
 };
 

@@ -77,7 +77,6 @@ void add_prior_information(const Problem& problem, std::span<const double> z,
 /// @param rows     all its rows, per condition; no longer needed by the caller
 /// @param detail   plain: no robust errors, nor what differs between repeats
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
-                        std::vector<ConditionRows> rows, int threads,
-                        Detail detail = Detail::full);
+                        std::vector<ConditionRows> rows, int threads, Detail detail = Detail::full);
 
 }  // namespace rigcal::calib

@@ -31,8 +31,8 @@ fs::path residual_file(const std::string& condition) {
   return fs::path("residuals") / (condition + ".csv");
 }
 
-/// What stands for the scores of a fit that failed before it scored anything: its residual files say
-/// so all the same.
+/// What stands for the scores of a fit that failed before it scored anything: its residual files
+/// say so all the same.
 std::vector<calib::ConditionScore> unscored(const Result& result) {
   std::vector<calib::ConditionScore> scores;
   for (const datasets::Condition& condition : result.campaign.conditions) {
