@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "datasets/read/load_csv.hpp"
+#include "datasets/read/csv/load_csv.hpp"
 
 namespace rigcal::bench {
 namespace {

@@ -24,7 +24,7 @@
 #include "calib/search/multi_start.hpp"
 #include "common/memory.hpp"
 #include "datasets/prepare/load_record.hpp"
-#include "datasets/read/load_csv.hpp"
+#include "datasets/read/csv/load_csv.hpp"
 
 namespace rigcal::bench {
 namespace {

@@ -2,7 +2,7 @@
 
 #include "report/run/write_result.hpp"
 #include "report/store/json.hpp"
-#include "report/store/stored_fit.hpp"
+#include "report/store/stored/stored_fit.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::app {

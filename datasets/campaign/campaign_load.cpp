@@ -6,7 +6,7 @@
 #include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
-#include "datasets/campaign/toml_reader.hpp"
+#include "datasets/campaign/toml/toml_reader.hpp"
 
 namespace rigcal::datasets {
 namespace {

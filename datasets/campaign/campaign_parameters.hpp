@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "datasets/campaign/campaign.hpp"
-#include "datasets/campaign/toml_reader.hpp"
+#include "datasets/campaign/toml/toml_reader.hpp"
 
 namespace rigcal::datasets {
 

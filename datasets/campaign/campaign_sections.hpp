@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "datasets/campaign/campaign.hpp"
-#include "datasets/campaign/toml_reader.hpp"
+#include "datasets/campaign/toml/toml_reader.hpp"
 
 /// The sections of a campaign file, one reader each. All throw InputError with the key and its
 /// place.

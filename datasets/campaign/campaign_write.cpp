@@ -5,8 +5,8 @@
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
-#include "datasets/campaign/toml_reader.hpp"
-#include "datasets/campaign/toml_writer.hpp"
+#include "datasets/campaign/toml/toml_reader.hpp"
+#include "datasets/campaign/toml/toml_writer.hpp"
 
 namespace rigcal::datasets {
 namespace {

@@ -12,7 +12,7 @@
 
 #include "common/error.hpp"
 #include "common/quantity.hpp"
-#include "datasets/campaign/toml_reader.hpp"
+#include "datasets/campaign/toml/toml_reader.hpp"
 #include "datasets/draft/column_guess.hpp"
 #include "datasets/draft/start_motion.hpp"
 #include "datasets/draft/waveform_guess.hpp"

@@ -6,11 +6,11 @@
 #include <fstream>
 #include <system_error>
 
-#include "datasets/read/load_csv.hpp"
-#include "datasets/read/load_hdf5.hpp"
-#include "datasets/read/load_mat.hpp"
-#include "datasets/read/load_xlsx.hpp"
-#include "datasets/read/mat_columns.hpp"
+#include "datasets/read/csv/load_csv.hpp"
+#include "datasets/read/hdf5/load_hdf5.hpp"
+#include "datasets/read/mat/load_mat.hpp"
+#include "datasets/read/mat/mat_columns.hpp"
+#include "datasets/read/xlsx/load_xlsx.hpp"
 
 namespace rigcal::datasets {
 namespace {

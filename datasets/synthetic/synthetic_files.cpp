@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "datasets/campaign/toml_reader.hpp"
-#include "datasets/campaign/toml_writer.hpp"
+#include "datasets/campaign/toml/toml_reader.hpp"
+#include "datasets/campaign/toml/toml_writer.hpp"
 
 namespace rigcal::datasets {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "report/store/stored_fit.hpp"
+#include "report/store/stored/stored_fit.hpp"
 
 // comparison.json, as docs/command-line.md describes it. Of lists with an entry per result, the
 // first, which the others are compared with, has null where an entry is about a difference.

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 #include <vector>
 
@@ -80,13 +79,13 @@ Plot parity_plot(const std::string& title, std::span<const double> measured,
   if (!(range.low < range.high)) return plot;
   const double cell = (range.high - range.low) / kCells;
   const auto index = [&](double value) {
-    return std::clamp(static_cast<int>((value / si - range.low) / cell), 0, kCells - 1);
+    const int at = std::clamp(static_cast<int>((value / si - range.low) / cell), 0, kCells - 1);
+    return static_cast<std::size_t>(at);
   };
-  std::map<std::pair<int, int>, std::size_t> counts;
+  std::vector<std::size_t> counts(std::size_t{kCells} * kCells, 0);  // by columns
   for (std::size_t i = 0; i < size; ++i)
-    if (there(i)) ++counts[{index(measured[i]), index(simulated[i])}];
-  std::size_t fullest = 0;
-  for (const auto& [at, count] : counts) fullest = std::max(fullest, count);
+    if (there(i)) ++counts[index(measured[i]) * kCells + index(simulated[i])];
+  const std::size_t fullest = *std::max_element(counts.begin(), counts.end());
 
   const ResidualMoments moments = residual_moments(measured, simulated);
   constexpr double kOfNormal95 = 1.96;
@@ -98,11 +97,11 @@ Plot parity_plot(const std::string& title, std::span<const double> measured,
   for (const auto& [share, style] : kShades) {
     Trace shade = empty_trace(Trace::Kind::cells, style);
     shade.cell = cell;
-    for (const auto& [at, count] : counts) {
-      const double of_fullest = static_cast<double>(count) / static_cast<double>(fullest);
+    for (std::size_t at = 0; at < counts.size(); ++at) {
+      const double of_fullest = static_cast<double>(counts[at]) / static_cast<double>(fullest);
       if (of_fullest <= from || of_fullest > share) continue;
-      shade.x.push_back(range.low + (at.first + 0.5) * cell);
-      shade.y.push_back(range.low + (at.second + 0.5) * cell);
+      shade.x.push_back(range.low + (static_cast<double>(at / kCells) + 0.5) * cell);
+      shade.y.push_back(range.low + (static_cast<double>(at % kCells) + 0.5) * cell);
     }
     from = share;
     if (!shade.x.empty()) plot.traces.push_back(std::move(shade));

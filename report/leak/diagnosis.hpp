@@ -5,7 +5,7 @@
 
 #include "diagnosis/diagnose.hpp"
 #include "report/leak/read_leak_table.hpp"
-#include "report/store/stored_diagnosis.hpp"
+#include "report/store/stored/stored_diagnosis.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {

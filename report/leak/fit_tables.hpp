@@ -3,7 +3,7 @@
 #include <string>
 
 #include "calib/published/fit_tables.hpp"
-#include "report/store/stored_tables_fit.hpp"
+#include "report/store/stored/stored_tables_fit.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {

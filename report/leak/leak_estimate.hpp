@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "diagnosis/leak/leak_estimate.hpp"
-#include "report/store/stored_leak.hpp"
+#include "report/store/stored/stored_leak.hpp"
 
 namespace rigcal::report {
 

@@ -6,7 +6,7 @@
 #include "calib/published/leak_table.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "report/store/provenance.hpp"
-#include "report/store/stored_leak_table.hpp"
+#include "report/store/stored/stored_leak_table.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {

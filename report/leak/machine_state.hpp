@@ -3,7 +3,7 @@
 #include <string>
 
 #include "diagnosis/machine_state.hpp"
-#include "report/store/stored_diagnosis.hpp"
+#include "report/store/stored/stored_diagnosis.hpp"
 
 namespace rigcal::report {
 

@@ -5,7 +5,7 @@
 
 #include "diagnosis/parity.hpp"
 #include "report/store/folder.hpp"
-#include "report/store/stored_parity.hpp"
+#include "report/store/stored/stored_parity.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {

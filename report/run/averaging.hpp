@@ -6,7 +6,7 @@
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/record.hpp"
 #include "report/store/folder.hpp"
-#include "report/store/stored_record.hpp"
+#include "report/store/stored/stored_record.hpp"
 
 namespace rigcal::report {
 

@@ -8,7 +8,7 @@
 
 #include "datasets/checks/short_records.hpp"
 #include "datasets/prepare/load_record.hpp"
-#include "report/store/stored_record.hpp"
+#include "report/store/stored/stored_record.hpp"
 #include "report/text/terminal.hpp"
 
 namespace rigcal::report {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "report/store/folder.hpp"
-#include "report/store/stored_fit.hpp"
+#include "report/store/stored/stored_fit.hpp"
 
 namespace rigcal::report {
 

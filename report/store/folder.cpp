@@ -50,6 +50,9 @@ HeldFolder::Made::~Made() {
 
 HeldFolder::HeldFolder(const fs::path& out) {
   const fs::path folder = fs::absolute(out).lexically_normal();
+  std::error_code unknown;  // the probe tells
+  if (fs::exists(folder, unknown) && !fs::is_directory(folder, unknown))
+    throw WriteError(fmt::format("--out {}: is a file; expected a folder", out.string()));
   const Uninterrupted whole;
   made_.folders = missing_folders(folder);
   made_now = &made_.folders;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "report/store/stored_fit.hpp"
+#include "report/store/stored/stored_fit.hpp"
 
 namespace rigcal::report {
 

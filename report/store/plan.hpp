@@ -3,7 +3,7 @@
 #include <string>
 
 #include "calib/trust/plan.hpp"
-#include "report/store/stored_plan.hpp"
+#include "report/store/stored/stored_plan.hpp"
 
 namespace rigcal::report {
 

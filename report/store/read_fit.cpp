@@ -9,7 +9,7 @@
 #include "report/json/json_node.hpp"
 #include "report/json/read_json.hpp"
 #include "report/store/json.hpp"
-#include "report/store/stored_fit.hpp"
+#include "report/store/stored/stored_fit.hpp"
 
 namespace rigcal::report {
 namespace {

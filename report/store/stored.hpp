@@ -11,13 +11,13 @@
 #include <variant>
 #include <vector>
 
-#include "report/store/stored_diagnosis.hpp"
-#include "report/store/stored_fit.hpp"
-#include "report/store/stored_leak_table.hpp"
-#include "report/store/stored_parity.hpp"
-#include "report/store/stored_plan.hpp"
-#include "report/store/stored_record.hpp"
-#include "report/store/stored_tables_fit.hpp"
+#include "report/store/stored/stored_diagnosis.hpp"
+#include "report/store/stored/stored_fit.hpp"
+#include "report/store/stored/stored_leak_table.hpp"
+#include "report/store/stored/stored_parity.hpp"
+#include "report/store/stored/stored_plan.hpp"
+#include "report/store/stored/stored_record.hpp"
+#include "report/store/stored/stored_tables_fit.hpp"
 #include "report/store/table.hpp"
 
 // The files of a result folder, read back. All throw InputError where a file is missing, or is no

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "report/store/provenance.hpp"
-#include "report/store/stored_fit.hpp"
+#include "report/store/stored/stored_fit.hpp"
 
 namespace rigcal::report {
 

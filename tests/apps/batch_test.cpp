@@ -175,7 +175,7 @@ TEST_CASE("batch: a signal ends it with what is done, and --resume makes the res
   const CommandFolder folder;
   write_rigs(folder, "lab_a", "2026-03-01", "0.5");
   const Outcome stopped = folder.run_and_signal(
-      {"batch", "lab_a", "--out", "out", "--bootstrap", "100000"}, "of 3 rigs", SIGTERM);
+      {"batch", "lab_a", "--out", "out", "--bootstrap", "5000"}, "of 3 rigs", SIGTERM);
   CAPTURE(stopped.out, stopped.err);
   // A rig that took longer than the signal was stopped, or not begun.
   if (stopped.exit_code != 0) {

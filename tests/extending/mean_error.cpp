@@ -3,7 +3,7 @@
 
 #include "report/page/calibration/score_columns.hpp"
 #include "report/store/json.hpp"
-#include "report/store/stored_fit.hpp"
+#include "report/store/stored/stored_fit.hpp"
 
 // Prints the scores of a simulation that is off by one throughout, as results hold them and as the
 // page shows them.

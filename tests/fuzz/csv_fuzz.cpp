@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "datasets/read/load_csv.hpp"
+#include "datasets/read/csv/load_csv.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace rigcal;

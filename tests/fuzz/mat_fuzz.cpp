@@ -1,8 +1,8 @@
 #include <cmath>
 
 #include "common/error.hpp"
-#include "datasets/read/mat_columns.hpp"
-#include "datasets/read/mat_level5.hpp"
+#include "datasets/read/mat/mat_columns.hpp"
+#include "datasets/read/mat/mat_level5.hpp"
 #include "tests/fuzz/fuzz.hpp"
 
 using namespace rigcal;

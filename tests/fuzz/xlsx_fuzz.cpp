@@ -2,7 +2,7 @@
 #include <string>
 
 #include "common/error.hpp"
-#include "datasets/read/xlsx_columns.hpp"
+#include "datasets/read/xlsx/xlsx_columns.hpp"
 #include "tests/datasets/xlsx_fixture.hpp"
 #include "tests/fuzz/fuzz.hpp"
 

@@ -137,6 +137,34 @@ class Scripts(unittest.TestCase):
             self.skipTest(f"no recordings in {records}")
         self.assertIn("1 of 1 starts end within", self.run_script("start-study", records, "1"))
 
+    def test_tag_version(self):
+        def git(*arguments):
+            return subprocess.run(["git", *arguments], cwd=self.tree, capture_output=True, text=True, check=True).stdout
+
+        def commit(version, section):
+            (self.tree / "CMakeLists.txt").write_text(f"project(rigcal VERSION {version} LANGUAGES CXX)\n")
+            (self.tree / "CHANGELOG.md").write_text(f"# Changelog\n\n## {section}\n\n- New.\n\n## 0.0.1\n\n- Old.\n")
+            git("add", "-f", "CMakeLists.txt", "CHANGELOG.md")
+            git("commit", "-qm", section)
+
+        git("init", "-q")
+        (self.tree / ".git" / "info" / "exclude").write_text("*\n")
+        git("config", "user.name", "nobody")
+        git("config", "user.email", "nobody@localhost")
+        commit("0.2.0", "0.2.0")
+        self.assertIn(f"v0.2.0 is {git('rev-parse', 'HEAD')}", self.run_script("tag-version"))
+        self.assertEqual(git("tag", "-l", "--format=%(contents)", "v0.2.0").strip(), "## 0.2.0\n\n- New.")
+        self.assertIn("v0.2.0 is there already", self.run_script("tag-version", fails=True))
+        commit("0.3.0", "0.2.0")
+        self.assertIn("begins with '0.2.0', CMakeLists.txt says 0.3.0", self.run_script("tag-version", "--check", fails=True))
+        commit("0.3.0", "0.3.0")
+        (self.tree / "CHANGELOG.md").write_text("## 0.3.0\n")
+        self.assertIn("not committed", self.run_script("tag-version", fails=True))
+        self.assertEqual(self.run_script("tag-version", "--check"), "")
+
+    def test_the_version_has_its_section(self):
+        subprocess.run([ROOT / "scripts" / "tag-version", "--check"], check=True)
+
     def test_test(self):
         make_program(self.programs / "ctest")
         for name in ("threads", "fuzz"):

@@ -3,6 +3,8 @@
 #include <catch2/catch.hpp>
 
 #include "common/error.hpp"
+#include "report/json/described.hpp"
+#include "report/store/stored/stored_leak_table.hpp"
 #include "tests/support/replaced.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -10,6 +10,7 @@
 using namespace rigcal;
 using namespace rigcal::report;
 using Catch::Contains;
+using Catch::EndsWith;
 
 TEST_CASE("HeldFolder: leaves no trace", "[report]") {
   const test::CommandFolder folder;
@@ -58,6 +59,8 @@ TEST_CASE("HeldFolder: names what is in the way", "[report]") {
   const test::CommandFolder folder;
   folder.write("file", "content");
   CHECK_THROWS_AS(HeldFolder(folder.work() / "file"), WriteError);
+  CHECK_THROWS_WITH(HeldFolder(folder.work() / "file"),
+                    EndsWith("file: is a file; expected a folder"));
   CHECK_THROWS_WITH(HeldFolder(folder.work() / "file" / "below"), Contains("file"));
   CHECK(folder.read("file") == "content");
 }

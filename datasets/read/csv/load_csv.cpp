@@ -1,0 +1,372 @@
+#include "datasets/read/csv/load_csv.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+#include "common/error.hpp"
+#include "common/parse_double.hpp"
+#include "common/suggest.hpp"
+#include "datasets/read/csv/csv_lines.hpp"
+#include "datasets/read/csv/csv_text.hpp"
+#include "datasets/read/limits.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr std::size_t kMostColumns = 10'000;
+
+struct Header {
+  std::string file;
+  long line = 0;
+  char separator = ',';
+  std::vector<CsvName> names;
+};
+
+bool is_blank(std::string_view line) {
+  return line.find_first_not_of(" \t") == std::string_view::npos;
+}
+
+bool is_comment(std::string_view line) {
+  const std::size_t first = line.find_first_not_of(" \t");
+  return first != std::string_view::npos && line[first] == '#';
+}
+
+std::string_view separator_name(char separator) {
+  return separator == '\t' ? "tab" : separator == ';' ? "';'" : "','";
+}
+
+// ---- Header --------------------------------------------------------------------------------
+
+Header read_header(CsvLines& lines, const std::string& file, char separator) {
+  if (separator != 0 && separator != ',' && separator != ';' && separator != '\t')
+    throw InputError({file}, fmt::format("'{}' is no separator of columns; expected ',', ';' or "
+                                         "tab",
+                                         separator));
+  const char* text = lines.next();
+  while (text != nullptr && is_comment(text)) text = lines.next();
+  if (text == nullptr)
+    throw InputError({file}, lines.number() == 0
+                                 ? "is empty; expected a header line with the names of the columns"
+                                 : "holds comments only; expected a header line with the names of "
+                                   "the columns");
+  const std::string_view line = text;
+  const auto fail = [&](const std::string& message) {
+    throw InputError({file, lines.number(), 1}, message);
+  };
+  if (is_blank(line)) fail("is an empty line; expected the header with the names of the columns");
+  if (line.find('\r') != std::string_view::npos)
+    fail("lines end with a carriage return alone; expected line ends of Unix or Windows");
+  if (std::any_of(line.begin(), line.end(), [](char c) { return c >= 0 && c < ' ' && c != '\t'; }))
+    fail("holds control characters; expected the names of the columns of a CSV file as text");
+
+  Header header{file, lines.number(), separator != 0 ? separator : find_separator(line), {}};
+  if (const auto columns = std::count(line.begin(), line.end(), header.separator) + 1;
+      static_cast<std::size_t>(columns) > kMostColumns)
+    fail(fmt::format("has {} columns; expected at most {}", columns, kMostColumns));
+  header.names = header_names(line, header.separator);
+  const bool numbers_only =
+      std::all_of(header.names.begin(), header.names.end(), [&header](const CsvName& name) {
+        return csv_number(name.full, header.separator != ',').has_value();
+      });
+  if (numbers_only)
+    fail("holds numbers; expected the header with the names of the columns, without '#' in front");
+  return header;
+}
+
+/// Index of the column of this name, with its unit or without.
+std::size_t find_column(const Header& header, const std::string& wanted) {
+  const Location where{header.file, header.line};
+  if (const auto found = find_column(header.names, wanted)) {
+    if (found->second)
+      throw InputError(where, fmt::format("columns {} and {} are both named '{}'; expected one",
+                                          found->index + 1, *found->second + 1, wanted));
+    return found->index;
+  }
+  std::string message = unknown_name_message("column", wanted, short_names(header.names));
+  if (header.names.size() == 1)
+    message += fmt::format(
+        "; the separator was taken for {}, expected one of ',', ';' or tab "
+        "between the columns",
+        separator_name(header.separator));
+  throw InputError(where, message);
+}
+
+// ---- Rows ----------------------------------------------------------------------------------
+
+/// A column of the file that goes to a column of the table.
+struct Wanted {
+  std::size_t field;
+  std::size_t target;
+  bool is_time;
+};
+
+/// Reads rows one by one into a table, and knows where it is for its messages.
+class RowReader {
+ public:
+  RowReader(const Header& header, const CsvRequest& request) : header_(header), request_(request) {
+    for (std::size_t i = 0; i < request.columns.size(); ++i)
+      wanted_.push_back(
+          {find_column(header, request.columns[i]), i, request.columns[i] == request.time_column});
+    values_.resize(wanted_.size());
+    std::sort(wanted_.begin(), wanted_.end(),
+              [](const Wanted& a, const Wanted& b) { return a.field < b.field; });
+    table_.columns.resize(request.columns.size());
+  }
+
+  void read(std::string_view line, long line_number) {
+    if (rows_ == 0) table_.first_data_line = line_number;
+    if ((rows_ + 1) * wanted_.size() > kMostValues)
+      throw InputError({header_.file, line_number},
+                       fmt::format("more than {} numbers ({} rows of {} columns), the limit of one "
+                                   "file; decimate the record, or split it into several files",
+                                   kMostValues, rows_, wanted_.size()));
+    if (!read_plain(line, line_number)) read_any(line, line_number);
+    ++rows_;
+  }
+
+  /// Makes room for all rows at once: growing columns would take up to three times their memory
+  /// for a moment. Room that is not used yet costs addresses, not memory.
+  void reserve(std::size_t rows) {
+    for (auto& column : table_.columns)
+      column.reserve(std::min(rows, kMostValues / table_.columns.size()));
+  }
+
+  std::size_t rows() const { return rows_; }
+
+  /// Says so if the last number of a file that ends without a newline is the shortest.
+  void judge_end() {
+    if (last_line_ == 0 || !(last_length_ < shortest_length_) || rows_ < 2) return;
+    table_.cut_short = fmt::format(
+        "{}:{}: the file ends without a newline in the shortest number of column '{}', of {} "
+        "character{}, where all others have {} or more: it may have been cut",
+        header_.file, last_line_, shown(header_.names.back().full), last_length_,
+        last_length_ == 1 ? "" : "s", shortest_length_);
+  }
+
+  /// The table, with room that is mostly unused given back.
+  CsvTable take() {
+    for (auto& column : table_.columns)
+      if (column.size() < column.capacity() / 2) column.shrink_to_fit();
+    return std::move(table_);
+  }
+
+ private:
+  /// Takes a row as most loggers write it: numbers right between separators where they are wanted,
+  /// and no quote where a field begins. Any other row it leaves as it is, right or wrong.
+  bool read_plain(std::string_view line, long line_number) {
+    const char* at = line.data();
+    const char* const end = at + line.size();
+    std::size_t length = 0;  // of the last wanted field
+    auto next = wanted_.begin();
+    auto value = values_.begin();
+    for (std::size_t field = 0; field < header_.names.size(); ++field) {
+      if (field > 0 && (at == end || *at++ != header_.separator)) return false;
+      if (next == wanted_.end() || next->field != field) {
+        if (at != end && (*at == '"' || *at == ' ')) return false;
+        at = std::find(at, end, header_.separator);
+        continue;
+      }
+      const auto [rest, error] = parse_double(at, end, *value);
+      if (error != std::errc{} || !std::isfinite(*value)) return false;
+      length = static_cast<std::size_t>(rest - at);
+      at = rest;
+      for (const double number = *value; next != wanted_.end() && next->field == field; ++next) {
+        *value = number;
+        const auto& column = table_.columns[next->target];
+        if (next->is_time && !column.empty() && !(number > column.back())) return false;
+        ++value;
+      }
+    }
+    if (at != end) return false;
+    value = values_.begin();
+    for (const Wanted& wanted : wanted_) table_.columns[wanted.target].push_back(*value++);
+    if (wanted_.back().field + 1 == header_.names.size()) note_last_field(length, line_number);
+    return true;
+  }
+
+  /// Takes any row, or says what is wrong with it.
+  void read_any(std::string_view line, long line_number) {
+    std::size_t count = 0;
+    auto next = wanted_.begin();
+    std::optional<CsvField> bad;
+    std::size_t bad_index = 0;
+    CsvFields fields(line, header_.separator);
+    for (CsvField field; fields.next(field); ++count)
+      for (; next != wanted_.end() && next->field == count; ++next) {
+        const auto value = csv_number(field.text, header_.separator != ',');
+        if (!value && !bad) {
+          bad = field;
+          bad_index = count;
+        }
+        if (!value || bad) continue;
+        if (count + 1 == header_.names.size()) note_last_field(field.text.size(), line_number);
+        auto& column = table_.columns[next->target];
+        if (!column.empty() && next->is_time && !(*value > column.back()))
+          fail_on_time(line, line_number, field, *value, column.back());
+        column.push_back(*value);
+      }
+    if (count != header_.names.size()) fail_on_count(line, line_number, count);
+    if (bad) fail_on_number(line, line_number, *bad, bad_index);
+  }
+
+  InputError error(std::string_view line, long line_number, std::size_t byte,
+                   const std::string& message) const {
+    return InputError({header_.file, line_number, character_column(line, byte)}, message);
+  }
+
+  [[noreturn]] void fail_on_time(std::string_view line, long line_number, const CsvField& field,
+                                 double now, double before) const {
+    throw error(line, line_number, field.begin,
+                fmt::format("time '{}' does not increase: {} comes after {}; expected a larger "
+                            "value in each row",
+                            request_.time_column, now, before));
+  }
+
+  [[noreturn]] void fail_on_count(std::string_view line, long line_number,
+                                  std::size_t count) const {
+    const std::size_t expected = header_.names.size();
+    std::size_t byte = line.size();
+    CsvFields fields(line, header_.separator);
+    CsvField field;
+    for (std::size_t i = 0; i <= expected && fields.next(field); ++i)
+      if (i == expected) byte = field.begin;
+    std::string message =
+        fmt::format("{} columns; expected {} as in the header (line {}), separated by {}", count,
+                    expected, header_.line, separator_name(header_.separator));
+    if (is_comment(line))
+      message += "; comments are accepted before the header only";
+    else if (count == expected + 1 && field.text.empty() && line.back() == header_.separator)
+      message += "; the line ends with a separator that the header does not have";
+    else if (count > expected && header_.separator == ',')
+      message +=
+          "; decimal commas are a likely cause: write decimal points, or separate the "
+          "columns by ';'";
+    throw error(line, line_number, byte, message);
+  }
+
+  [[noreturn]] void fail_on_number(std::string_view line, long line_number, const CsvField& field,
+                                   std::size_t index) const {
+    const std::string& name = header_.names[index].full;
+    if (line_number == table_.first_data_line && is_text_only(line))
+      throw error(
+          line, line_number, field.begin,
+          fmt::format("no numbers in the first row ('{}' in column '{}'), as in a second header "
+                      "line; expected numbers. Units stand behind the names (\"x [mm]\") or "
+                      "in the campaign file: remove such a line",
+                      shown(field.text), shown(name)));
+    if (field.text.empty())
+      throw error(line, line_number, field.begin,
+                  fmt::format("column '{}' is empty; expected a number", shown(name)));
+    throw error(
+        line, line_number, field.begin,
+        fmt::format("'{}' in column '{}' is not a finite number; expected one such as "
+                    "-1.5e-3{}",
+                    shown(field.text), shown(name), header_.separator == ',' ? "" : " or -1,5e-3"));
+  }
+
+  /// Keeps the length of the number that ends the last line, and the least of those before it.
+  void note_last_field(std::size_t length, long line_number) {
+    if (last_line_ != 0) shortest_length_ = std::min(shortest_length_, last_length_);
+    last_length_ = length;
+    last_line_ = line_number;
+  }
+
+  bool is_text_only(std::string_view line) const {
+    bool any = false;
+    CsvFields fields(line, header_.separator);
+    for (CsvField field; fields.next(field);) {
+      if (csv_number(field.text, header_.separator != ',')) return false;
+      any = any || !field.text.empty();
+    }
+    return any;
+  }
+
+  const Header& header_;
+  const CsvRequest& request_;
+  std::vector<Wanted> wanted_;
+  std::vector<double> values_;  ///< of the row being read, in the order of wanted_
+  CsvTable table_;
+  std::size_t rows_ = 0;
+  long last_line_ = 0;  ///< 0: the last column is not wanted
+  std::size_t last_length_ = 0;
+  std::size_t shortest_length_ = std::numeric_limits<std::size_t>::max();
+};
+
+/// Rows that the file can have at most: a field takes two bytes, with its separator.
+std::size_t most_rows(const std::filesystem::path& path, const Header& header) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (error) return kMostValues;  // a pipe
+  return static_cast<std::size_t>(bytes / (2 * header.names.size()) + 1);
+}
+
+}  // namespace
+
+CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) {
+  const auto& names = request.columns;
+  if (!request.time_column.empty() &&
+      std::find(names.begin(), names.end(), request.time_column) == names.end())
+    throw std::invalid_argument("load_csv: time_column '" + request.time_column +
+                                "' is not among the columns");
+  CsvLines lines(path, request.max_bytes);
+  const Header header = read_header(lines, path.string(), request.separator);
+  RowReader reader(header, request);
+  reader.reserve(most_rows(path, header));
+  long empty_line = 0;
+  while (const char* text = lines.next()) {
+    const std::string_view line = text;
+    if (is_blank(line)) {
+      if (empty_line == 0) empty_line = lines.number();
+      continue;
+    }
+    if (empty_line != 0)
+      throw InputError({header.file, empty_line, 1},
+                       fmt::format("an empty line inside the data, which goes on in line {}; "
+                                   "expected a row of {} columns",
+                                   lines.number(), header.names.size()));
+    reader.read(line, lines.number());
+  }
+  if (reader.rows() == 0)
+    throw InputError({header.file, header.line},
+                     "no rows after the header; expected at least one row of numbers");
+  if (lines.ends_without_newline()) reader.judge_end();
+  return reader.take();
+}
+
+std::vector<std::string> csv_header(const std::filesystem::path& path, char separator) {
+  CsvLines lines(path, CsvRequest{}.max_bytes);
+  return short_names(read_header(lines, path.string(), separator).names);
+}
+
+std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator) {
+  CsvLines lines(path, CsvRequest{}.max_bytes);
+  std::vector<std::string> names;
+  for (const CsvName& name : read_header(lines, path.string(), separator).names)
+    names.push_back(name.full);
+  return names;
+}
+
+std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path) {
+  std::vector<RecordColumn> columns;
+  for (std::string& name : csv_full_header(path)) columns.push_back({std::move(name), {}});
+  return columns;
+}
+
+RecordTable load_csv_record(const std::filesystem::path& path, const RecordRequest& request) {
+  CsvRequest wanted;
+  wanted.columns = request.columns;
+  wanted.separator = request.separator;
+  wanted.time_column = request.time_column;
+  CsvTable table = load_csv(path, wanted);
+  return {std::move(table.columns), std::move(table.cut_short)};
+}
+
+}  // namespace rigcal::datasets

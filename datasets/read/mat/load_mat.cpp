@@ -1,0 +1,125 @@
+#include "datasets/read/mat/load_mat.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+#include <utility>
+
+#include "common/error.hpp"
+#include "common/file.hpp"
+#include "datasets/read/confined_read.hpp"
+#include "datasets/read/mat/mat_columns.hpp"
+#include "datasets/read/mat/mat_hdf5.hpp"
+#include "datasets/read/mat/mat_level5.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+using Table = std::vector<std::vector<double>>;
+
+constexpr std::size_t kSignatureBytes = 10;
+
+/// "MATLAB 5.0", "MATLAB 7.3", or something else.
+std::string signature_of(const std::filesystem::path& path) {
+  std::string start(kSignatureBytes, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  return start;
+}
+
+/// Whether it is of version 7.3, not 5.
+///
+/// @throws InputError  neither
+bool is_hdf5(const std::filesystem::path& path) {
+  require_regular_file(path, "a MAT file");
+  const std::string signature = signature_of(path);
+  if (signature.size() < kSignatureBytes)
+    throw InputError({path.string()},
+                     "is shorter than the header of a MAT file: it is empty, truncated or no MAT "
+                     "file");
+  if (signature == "MATLAB 7.3") return true;
+  if (signature == "MATLAB 5.0") return false;
+  throw InputError({path.string()},
+                   "is no MAT file of version 5 or 7.3; expected one (of an older version: load it "
+                   "and save it with -v7)");
+}
+
+constexpr ConfinedReader kHdf5{"HDF5", "a MAT file", "copy or save it again, or save it with -v7"};
+
+/// Columns of the same length.
+Table read_columns(MatSource& source, const std::vector<std::string>& columns) {
+  Table table;
+  for (const std::string& column : columns) {
+    const std::size_t so_far = table.empty() ? 0 : table.size() * table.front().size();
+    table.push_back(read_mat_column(source, column, so_far));
+    if (table.back().size() != table.front().size())
+      throw InputError(
+          {source.name()},
+          fmt::format("'{}' has {} elements, but '{}' has {}; expected as many", column,
+                      table.back().size(), columns.front(), table.front().size()));
+  }
+  return table;
+}
+
+Table read_table(const std::filesystem::path& path, const std::vector<std::string>& columns) {
+  if (!is_hdf5(path)) {
+    Level5Source source(path);
+    return read_columns(source, columns);
+  }
+  return load_confined(path, kHdf5, columns.size(), [&] {
+    Hdf5Source source(path);
+    return read_columns(source, columns);
+  });
+}
+
+}  // namespace
+
+bool is_mat_file(const FileStart& start) {
+  return start.extension == ".mat" || start.bytes.starts_with("MATLAB 5.0") ||
+         start.bytes.starts_with("MATLAB 7.3");
+}
+
+Table load_mat(const std::filesystem::path& path, const MatRequest& request) {
+  const auto time = std::find(request.columns.begin(), request.columns.end(), request.time_column);
+  if (!request.time_column.empty() && time == request.columns.end())
+    throw std::invalid_argument("load_mat: time_column '" + request.time_column +
+                                "' is not among the columns");
+  Table table = read_table(path, request.columns);
+  if (request.time_column.empty()) return table;
+  const auto& t = table[static_cast<std::size_t>(time - request.columns.begin())];
+  for (std::size_t i = 1; i < t.size(); ++i)
+    if (!(t[i] > t[i - 1]))
+      throw InputError({path.string()},
+                       fmt::format("time '{}' does not increase: element {} is {} after {}; "
+                                   "expected a larger value in each",
+                                   request.time_column, i + 1, t[i], t[i - 1]));
+  return table;
+}
+
+std::vector<std::string> mat_columns(const std::filesystem::path& path) {
+  std::vector<std::string> names;
+  for (RecordColumn& column : mat_record_columns(path)) names.push_back(std::move(column.name));
+  return names;
+}
+
+std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path) {
+  const auto described = [](const MatSource& source) {
+    std::vector<RecordColumn> columns;
+    for (std::string& name : list_mat_columns(source)) {
+      const bool is_row = name.ends_with(",:)");
+      columns.push_back({std::move(name), {}, false, is_row});
+    }
+    return columns;
+  };
+  if (!is_hdf5(path)) return described(Level5Source(path));
+  return list_confined(path, kHdf5, [&] { return described(Hdf5Source(path)); });
+}
+
+RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request) {
+  return {load_mat(path, {request.columns, request.time_column}), {}};
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "datasets/read/byte_stream.hpp"
+#include "datasets/read/mat/mat_array.hpp"
+
+namespace rigcal::datasets {
+
+/// Reads MAT files of level 5 (also "v6", "v7"), strictly, after "MAT-File Format" of The
+/// MathWorks: nothing that the file says of itself is believed before it is checked against what
+/// contains it. Every variable is read to its end once, which finds what is cut off and, in
+/// compressed ones, what is damaged. Memory is limited by the numbers that are asked for.
+class Level5Source : public MatSource {
+ public:
+  /// @throws InputError  not a regular file of this kind, damaged, more than 200 000 arrays, or
+  ///                     compressed variables that inflate to more than `most_inflated_bytes`
+  explicit Level5Source(const std::filesystem::path& path,
+                        std::uint64_t most_inflated_bytes = std::uint64_t{4} << 30);
+
+  const std::string& name() const override { return name_; }
+  const std::vector<MatArray>& variables() const override { return variables_; }
+  std::vector<double> numbers(const MatArray& array, const MatSelection& selection,
+                              const std::string& column) override;
+
+ private:
+  /// Where a variable stands in the file.
+  struct Range {
+    std::uint64_t begin = 0;
+    std::uint64_t bytes = 0;
+    bool compressed = false;
+  };
+
+  std::unique_ptr<ByteStream> open(const Range& range);
+  void read_variable(const Range& range);
+
+  std::string name_;
+  std::ifstream file_;
+  bool swapped_ = false;
+  std::vector<Range> ranges_;
+  std::vector<MatArray> variables_;
+  std::size_t arrays_ = 0;
+  std::uint64_t inflated_bytes_ = 0;
+  std::uint64_t most_inflated_bytes_;
+  /// The last one that numbers were read from: columns often follow each other in a variable.
+  std::unique_ptr<ByteStream> stream_;
+  std::size_t stream_of_ = 0;
+};
+
+}  // namespace rigcal::datasets

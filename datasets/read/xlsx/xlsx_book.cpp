@@ -1,0 +1,347 @@
+#include "datasets/read/xlsx/xlsx_book.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+
+#include "common/error.hpp"
+#include "datasets/read/csv/csv_text.hpp"
+#include "datasets/read/xlsx/xlsx_date_format.hpp"
+#include "datasets/read/xlsx/xlsx_xml.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+// Excel's own limits, and bounds of what parts may inflate to.
+constexpr std::size_t kMostRows = 1'048'576;
+constexpr std::size_t kMostSheetColumns = 16'384;
+constexpr std::size_t kLongestCell = 32'767 * 4;
+constexpr std::uint64_t kMostSheetBytes = std::uint64_t{1} << 30;
+constexpr std::uint64_t kMostPartBytes = std::uint64_t{64} << 20;
+constexpr std::size_t kMostSharedBytes = std::size_t{64} << 20;
+constexpr std::size_t kMostSheets = 1000;
+constexpr std::size_t kMostStyles = 100'000;
+constexpr std::size_t kMostMerged = 100'000;
+
+template <typename Number>
+std::optional<Number> whole_number(std::string_view text) {
+  Number value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+struct Place {
+  std::size_t row = 0;
+  std::size_t column = 0;
+};
+
+/// "C17"
+std::optional<Place> parsed_address(std::string_view text) {
+  Place place;
+  std::size_t at = 0;
+  for (; at < text.size() && text[at] >= 'A' && text[at] <= 'Z' && at < 4; ++at)
+    place.column = 26 * place.column + static_cast<std::size_t>(text[at] - 'A' + 1);
+  place.row = whole_number<std::size_t>(text.substr(at)).value_or(0);
+  const bool is_possible = place.column >= 1 && place.column <= kMostSheetColumns &&
+                           place.row >= 1 && place.row <= kMostRows;
+  return is_possible ? std::optional(place) : std::nullopt;
+}
+
+/// The name of a part that another one refers to: relative to the folder of the latter.
+std::string resolved(const std::string& from, std::string_view target) {
+  if (target.starts_with('/')) return std::string(target.substr(1));
+  const auto path = std::filesystem::path(from).parent_path() / target;
+  return path.lexically_normal().generic_string();
+}
+
+/// Where the description of a part's references stands.
+std::string relations_of(const std::string& part) {
+  const std::filesystem::path path(part);
+  return (path.parent_path() / "_rels" / (path.filename().string() + ".rels")).generic_string();
+}
+
+// ---- What the small parts say --------------------------------------------------------------
+
+struct Relation {
+  std::string kind;  ///< "worksheet"
+  std::string target;
+};
+
+/// References of a part by their ids.
+class RelationsHandler : public XmlHandler {
+ public:
+  void start(std::string_view element, const XmlAttributes& attributes) override {
+    if (element != "Relationship" || relations.size() >= 10 * kMostSheets) return;
+    const std::string_view type = attributes.text("Type");
+    relations[std::string(attributes.text("Id"))] = {std::string(type.substr(type.rfind('/') + 1)),
+                                                     std::string(attributes.text("Target"))};
+  }
+  std::map<std::string, Relation> relations;
+};
+
+/// Names of the sheets, and the ids of the references to their parts.
+class WorkbookHandler : public XmlHandler {
+ public:
+  void start(std::string_view element, const XmlAttributes& attributes) override {
+    if (element == "sheet" && sheets.size() < kMostSheets)
+      sheets.emplace_back(attributes.text("name"), attributes.text("id"));
+  }
+  std::vector<std::pair<std::string, std::string>> sheets;
+};
+
+/// Texts that cells share, without the reading aids of Japanese ones.
+class SharedTextsHandler : public XmlHandler {
+ public:
+  explicit SharedTextsHandler(std::string name) : name_(std::move(name)) {}
+
+  void start(std::string_view element, const XmlAttributes& /*attributes*/) override {
+    if (element == "si") text_.clear();
+    if (element == "rPh") in_aid_ = true;
+    if (element == "t") in_text_ = !in_aid_;
+  }
+  void end(std::string_view element) override {
+    if (element == "rPh") in_aid_ = false;
+    if (element == "t") in_text_ = false;
+    if (element == "si") texts.push_back(std::exchange(text_, {}));
+  }
+  void text(std::string_view text) override {
+    if (!in_text_) return;
+    text_ += text;
+    bytes_ += text.size();
+    if (bytes_ > kMostSharedBytes)
+      throw InputError({name_},
+                       fmt::format("holds more than {} MB of text", kMostSharedBytes >> 20));
+  }
+  std::vector<std::string> texts;
+
+ private:
+  std::string name_;
+  std::string text_;
+  bool in_text_ = false;
+  bool in_aid_ = false;
+  std::size_t bytes_ = 0;
+};
+
+/// Which styles of cells show a date.
+class StylesHandler : public XmlHandler {
+ public:
+  void start(std::string_view element, const XmlAttributes& attributes) override {
+    const auto number = whole_number<long>(attributes.text("numFmtId"));
+    if (element == "numFmt" && number && own_.size() < kMostStyles)
+      own_[*number] = is_date_format(attributes.text("formatCode"));
+    if (element == "cellXfs") in_cells_ = true;
+    if (element != "xf" || !in_cells_ || shows_a_date.size() >= kMostStyles) return;
+    const auto own = own_.find(number.value_or(0));
+    shows_a_date.push_back(own != own_.end() ? own->second : is_date_format(number.value_or(0)));
+  }
+  void end(std::string_view element) override {
+    if (element == "cellXfs") in_cells_ = false;
+  }
+  std::vector<bool> shows_a_date;
+
+ private:
+  std::map<long, bool> own_;
+  bool in_cells_ = false;
+};
+
+// ---- Sheets --------------------------------------------------------------------------------
+
+class SheetHandler : public XmlHandler {
+ public:
+  SheetHandler(std::string file, std::string sheet, const std::vector<std::string>& texts,
+               const std::vector<bool>& shows_a_date,
+               const std::function<bool(const XlsxCell&)>& take)
+      : file_(std::move(file)),
+        sheet_(std::move(sheet)),
+        texts_(texts),
+        shows_a_date_(shows_a_date),
+        take_(take) {}
+
+  void start(std::string_view element, const XmlAttributes& attributes) override {
+    if (element == "row") start_row(attributes);
+    if (element == "c") start_cell(attributes);
+    if (element == "f") has_formula_ = true;
+    gathers_ = in_cell_ && (element == "v" || (element == "t" && !in_aid_));
+    if (element == "v") has_value_ = true;
+    if (element == "is") has_value_ = true;
+    if (element == "rPh") in_aid_ = true;
+    if (element == "mergeCell") add_merged(attributes.text("ref"));
+  }
+
+  void end(std::string_view element) override {
+    gathers_ = false;
+    if (element == "rPh") in_aid_ = false;
+    if (element != "c" || !in_cell_) return;
+    in_cell_ = false;
+    finish_cell();
+  }
+
+  void text(std::string_view text) override {
+    if (!gathers_) return;
+    cell_.text += text;
+    if (cell_.text.size() > kLongestCell) fail("holds more text than a cell can");
+  }
+
+  bool is_done() const override { return done_; }
+  std::vector<XlsxMerged> take_merged() { return std::move(merged_); }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const {
+    throw InputError({file_}, fmt::format("{}!{} {}; save the workbook again", sheet_,
+                                          xlsx_address(cell_.row, cell_.column), message));
+  }
+
+  void start_row(const XmlAttributes& attributes) {
+    const std::size_t next = row_ + 1;
+    row_ = next;
+    if (const auto given = attributes.find("r"))
+      row_ = whole_number<std::size_t>(*given).value_or(0);
+    cell_ = {row_, 1, XlsxKind::number, {}};
+    column_ = 0;
+    if (row_ < next || row_ > kMostRows) fail("begins a row that is out of order");
+  }
+
+  void start_cell(const XmlAttributes& attributes) {
+    Place place{row_, column_ + 1};
+    cell_ = {place.row, place.column, XlsxKind::number, {}};
+    if (const auto given = attributes.find("r")) place = parsed_address(*given).value_or(Place{});
+    if (place.row != row_ || place.column <= column_ || place.column > kMostSheetColumns)
+      fail("or a cell behind it is out of order");
+    column_ = place.column;
+    cell_.column = place.column;
+    type_ = attributes.text("t");
+    style_ = whole_number<std::size_t>(attributes.text("s")).value_or(0);
+    in_cell_ = true;
+    has_formula_ = false;
+    has_value_ = false;
+  }
+
+  void finish_cell() {
+    if (!has_value_ && !has_formula_) return;
+    if (!has_value_) {
+      cell_.kind = XlsxKind::no_result;
+    } else if (type_.empty() || type_ == "n") {
+      if (cell_.text.empty()) return;
+      const bool is_date = style_ < shows_a_date_.size() && shows_a_date_[style_];
+      cell_.kind = is_date ? XlsxKind::date : XlsxKind::number;
+    } else if (type_ == "s") {
+      const auto index = whole_number<std::size_t>(cell_.text);
+      if (!index || *index >= texts_.size()) fail("refers to a text that the workbook lacks");
+      cell_.text = texts_[*index];
+      cell_.kind = XlsxKind::text;
+    } else if (type_ == "b") {
+      cell_.kind = XlsxKind::truth;
+    } else if (type_ == "e") {
+      cell_.kind = XlsxKind::error;
+    } else if (type_ == "d") {
+      cell_.kind = XlsxKind::date;
+    } else {
+      cell_.kind = XlsxKind::text;
+    }
+    if (!done_) done_ = !take_(cell_);
+  }
+
+  void add_merged(std::string_view range) {
+    const std::size_t colon = range.find(':');
+    if (colon == std::string_view::npos || merged_.size() >= kMostMerged) return;
+    const auto first = parsed_address(range.substr(0, colon));
+    const auto last = parsed_address(range.substr(colon + 1));
+    if (first && last)
+      merged_.push_back({std::string(range), first->row, first->column, last->row, last->column});
+  }
+
+  std::string file_;
+  std::string sheet_;
+  const std::vector<std::string>& texts_;
+  const std::vector<bool>& shows_a_date_;
+  const std::function<bool(const XlsxCell&)>& take_;
+  std::size_t row_ = 0;
+  std::size_t column_ = 0;
+  XlsxCell cell_;
+  std::string type_;
+  std::size_t style_ = 0;
+  bool in_cell_ = false;
+  bool in_aid_ = false;
+  bool gathers_ = false;
+  bool has_formula_ = false;
+  bool has_value_ = false;
+  bool done_ = false;
+  std::vector<XlsxMerged> merged_;
+};
+
+std::map<std::string, Relation> relations(const XlsxArchive& archive, const std::string& part) {
+  RelationsHandler handler;
+  read_xml(archive, part, kMostPartBytes, handler);
+  return std::move(handler.relations);
+}
+
+/// The part with the workbook.
+std::string workbook_part(const XlsxArchive& archive) {
+  constexpr const char* kRoot = "_rels/.rels";
+  if (!archive.has(kRoot))
+    throw InputError({archive.name()},
+                     "is a ZIP archive, but no .xlsx workbook; expected one (a table of another "
+                     "program: save it as .xlsx or CSV)");
+  for (const auto& [id, relation] : relations(archive, kRoot)) {
+    if (relation.kind != "officeDocument") continue;
+    const std::string part = resolved("", relation.target);
+    if (part.ends_with(".xml")) return part;
+    throw InputError(
+        {archive.name()},
+        fmt::format("holds its workbook in '{}', in another format (.xlsb); save it as "
+                    ".xlsx",
+                    shown(part)));
+  }
+  throw InputError({archive.name()}, "holds no workbook; expected an .xlsx file of Excel");
+}
+
+}  // namespace
+
+std::string xlsx_address(std::size_t row, std::size_t column) {
+  std::string letters;
+  for (; column > 0; column = (column - 1) / 26)
+    letters.insert(letters.begin(), static_cast<char>('A' + (column - 1) % 26));
+  return letters + std::to_string(row);
+}
+
+XlsxBook::XlsxBook(const std::filesystem::path& path) : archive_(path) {
+  const std::string workbook = workbook_part(archive_);
+  const auto parts = relations(archive_, relations_of(workbook));
+  WorkbookHandler handler;
+  read_xml(archive_, workbook, kMostPartBytes, handler);
+  for (const auto& [sheet, id] : handler.sheets) {
+    const auto found = parts.find(id);
+    if (found != parts.end() && found->second.kind == "worksheet")
+      sheets_.push_back({sheet, resolved(workbook, found->second.target)});
+  }
+  if (sheets_.empty())
+    throw InputError({name()}, "holds no worksheet; expected one with a table of numbers");
+  for (const auto& [id, relation] : parts) {
+    if (relation.kind == "sharedStrings") {
+      SharedTextsHandler texts(name());
+      read_xml(archive_, resolved(workbook, relation.target), 4 * kMostSharedBytes, texts);
+      texts_ = std::move(texts.texts);
+    }
+    if (relation.kind == "styles") {
+      StylesHandler styles;
+      read_xml(archive_, resolved(workbook, relation.target), kMostPartBytes, styles);
+      shows_a_date_ = std::move(styles.shows_a_date);
+    }
+  }
+}
+
+std::vector<XlsxMerged> XlsxBook::read(const Sheet& sheet,
+                                       const std::function<bool(const XlsxCell&)>& take) const {
+  SheetHandler handler(name(), shown(sheet.name), texts_, shows_a_date_, take);
+  read_xml(archive_, sheet.part, kMostSheetBytes, handler);
+  return handler.take_merged();
+}
+
+}  // namespace rigcal::datasets

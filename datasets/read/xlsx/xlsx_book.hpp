@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "datasets/read/xlsx/xlsx_archive.hpp"
+
+namespace rigcal::datasets {
+
+/// What a cell holds; a formula counts as its last result.
+enum class XlsxKind { number, date, text, truth, error, no_result };
+
+struct XlsxCell {
+  std::size_t row = 0;     ///< from 1
+  std::size_t column = 0;  ///< from 1
+  XlsxKind kind = XlsxKind::number;
+  std::string text;  ///< as it is stored
+};
+
+/// Cells displayed as one, of which only the first holds a value.
+struct XlsxMerged {
+  std::string range;  ///< "B2:B4"
+  std::size_t first_row = 0, first_column = 0, last_row = 0, last_column = 0;
+  bool holds(std::size_t row, std::size_t column) const {
+    return row >= first_row && row <= last_row && column >= first_column && column <= last_column;
+  }
+};
+
+/// "C17"; rows and columns count from 1.
+std::string xlsx_address(std::size_t row, std::size_t column);
+
+/// An .xlsx workbook (ECMA-376, SpreadsheetML), read strictly, whatever the locale. Use it
+/// only within run_confined(): damaged files may crash the libraries beneath it.
+class XlsxBook {
+ public:
+  struct Sheet {
+    std::string name;
+    std::string part;
+  };
+
+  /// @throws InputError  no workbook, damaged, too large
+  explicit XlsxBook(const std::filesystem::path& path);
+
+  const std::string& name() const { return archive_.name(); }
+  /// Worksheets in their order, at least one.
+  const std::vector<Sheet>& sheets() const { return sheets_; }
+
+  /// Passes every cell with content to `take`, row by row, until it returns false.
+  ///
+  /// @return merged cells, if it was read to its end
+  /// @throws InputError  damaged, or cells that are not in their order
+  std::vector<XlsxMerged> read(const Sheet& sheet,
+                               const std::function<bool(const XlsxCell&)>& take) const;
+
+ private:
+  XlsxArchive archive_;
+  std::vector<Sheet> sheets_;
+  std::vector<std::string> texts_;  ///< that cells share
+  std::vector<bool> shows_a_date_;  ///< by the number of a cell's style
+};
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,375 @@
+#include "datasets/read/xlsx/xlsx_columns.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "common/error.hpp"
+#include "common/quantity.hpp"
+#include "common/suggest.hpp"
+#include "datasets/read/csv/csv_text.hpp"
+#include "datasets/read/limits.hpp"
+#include "datasets/read/xlsx/xlsx_book.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+/// Text of a header cell; line breaks, which are common there, count as blanks.
+std::string on_one_line(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    const bool is_break = static_cast<unsigned char>(c) <= ' ';
+    if (!is_break) result += c;
+    if (is_break && !result.empty() && result.back() != ' ') result += ' ';
+  }
+  return result;
+}
+
+/// The unit in a cell below the header, "mm", "[mm]" or "(mm)"; empty for "-". Nothing if the text
+/// is not a unit.
+std::optional<std::string> unit_in(std::string_view text) {
+  if (text.size() > 2 &&
+      ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')')))
+    text = text.substr(1, text.size() - 2);
+  if (text.empty() || text == "-") return std::string();
+  try {
+    unit_conversion(text, text);
+  } catch (const QuantityError&) {
+    return std::nullopt;
+  }
+  return std::string(text);
+}
+
+std::string kind_text(const XlsxCell& cell) {
+  switch (cell.kind) {
+    case XlsxKind::date:
+      return fmt::format(
+          "shows a date or a time of day (stored as {}); expected a number: give the cells the "
+          "format of a number, and times in seconds from the start",
+          shown(cell.text));
+    case XlsxKind::text:
+      return fmt::format("is the text '{}'; expected a number", shown(cell.text));
+    case XlsxKind::truth:
+      return "is a truth value; expected a number";
+    case XlsxKind::error:
+      return fmt::format("is the error {}; expected a number", shown(cell.text));
+    case XlsxKind::no_result:
+      return "has a formula without a result; open the workbook in Excel and save it again";
+    case XlsxKind::number:
+      break;
+  }
+  return fmt::format("is '{}', which is no finite number; expected one", shown(cell.text));
+}
+
+/// The header of a sheet, and the units below it.
+struct SheetHeader {
+  std::size_t row = 0;             ///< 0: the sheet holds nothing
+  std::vector<CsvName> names;      ///< by column; empty where the header has a gap
+  std::vector<std::string> units;  ///< by column; empty: no row of units
+  bool has_number = false;
+  bool has_text = false;
+};
+
+/// Finds the header while the cells of a sheet pass by.
+class HeaderFinder {
+ public:
+  /// Whether the header is complete, so that the cell belongs to the rows of numbers.
+  bool is_past(const XlsxCell& cell) {
+    if (cell.row != row_) finish_row();
+    row_ = cell.row;
+    if (is_known_) return true;
+    cells_.push_back(cell);
+    return false;
+  }
+
+  void finish_row() {
+    if (cells_.empty() || is_known_) return;
+    if (header_.row == 0) {
+      const bool is_comment = cells_.front().kind == XlsxKind::text &&
+                              std::string_view(cells_.front().text).starts_with('#');
+      if (!is_comment) take_names();
+    } else {
+      take_units();
+      is_known_ = true;
+    }
+    cells_.clear();
+  }
+
+  /// Cells of the row below the header, unless they were units.
+  std::vector<XlsxCell> take_rows() { return std::exchange(rows_, {}); }
+  const SheetHeader& header() const { return header_; }
+
+ private:
+  void take_names() {
+    header_.row = cells_.front().row;
+    for (const XlsxCell& cell : cells_) {
+      const bool is_text = cell.kind == XlsxKind::text;
+      (is_text ? header_.has_text : header_.has_number) = true;
+      header_.names.resize(cell.column);
+      header_.names.back() = header_name(on_one_line(cell.text));
+    }
+  }
+
+  void take_units() {
+    std::vector<std::string> units(header_.names.size());
+    bool are_units = cells_.front().row == header_.row + 1;
+    for (const XlsxCell& cell : cells_) {
+      const auto unit = cell.kind == XlsxKind::text ? unit_in(header_name(cell.text).full)
+                                                    : std::optional<std::string>();
+      are_units = are_units && unit.has_value();
+      if (unit && cell.column <= units.size()) units[cell.column - 1] = *unit;
+    }
+    if (are_units)
+      header_.units = std::move(units);
+    else
+      rows_ = cells_;
+  }
+
+  SheetHeader header_;
+  std::size_t row_ = 0;
+  bool is_known_ = false;
+  std::vector<XlsxCell> cells_;
+  std::vector<XlsxCell> rows_;
+};
+
+// ---- Which sheet, which column -------------------------------------------------------------
+
+struct SheetColumn {
+  std::size_t sheet = 0;
+  std::string name;  ///< in its header
+};
+
+/// "Sheet2!x", "'My sheet'!x"; what names no sheet is a column of the first.
+SheetColumn place_of(const XlsxBook& book, const std::string& column) {
+  for (std::size_t at = column.find('!'); at != std::string::npos; at = column.find('!', at + 1)) {
+    std::string name = column.substr(0, at);
+    if (name.size() > 2 && name.front() == '\'' && name.back() == '\'') {
+      name = name.substr(1, name.size() - 2);
+      for (std::size_t k = name.find("''"); k != std::string::npos; k = name.find("''", k + 1))
+        name.erase(k, 1);
+    }
+    for (std::size_t i = 0; i < book.sheets().size(); ++i)
+      if (book.sheets()[i].name == name) return {i, column.substr(at + 1)};
+  }
+  return {0, column};
+}
+
+std::string sheet_prefix(const std::string& sheet) {
+  if (sheet.find_first_of("!'") == std::string::npos) return sheet + "!";
+  std::string quoted;
+  for (const char c : sheet) quoted += std::string(c == '\'' ? 2 : 1, c);
+  return "'" + quoted + "'!";
+}
+
+// ---- Numbers of one sheet ------------------------------------------------------------------
+
+/// Columns of one sheet, read side by side.
+class SheetReader {
+ public:
+  SheetReader(const XlsxBook& book, const XlsxBook::Sheet& sheet, std::vector<std::string> names,
+              const std::string& time_name)
+      : book_(book), sheet_(sheet), names_(std::move(names)), time_name_(time_name) {}
+
+  /// One vector per name, of the same length.
+  std::vector<std::vector<double>> read(std::size_t most_values) {
+    most_values_ = most_values;
+    HeaderFinder finder;
+    const auto merged = book_.read(sheet_, [&](const XlsxCell& cell) {
+      if (finder.is_past(cell)) {
+        begin(finder);
+        take(cell);
+      }
+      return true;
+    });
+    finder.finish_row();
+    begin(finder);
+    finish_row();
+    if (gap_) fail_at_gap(merged);
+    if (next_row_ == first_row_)
+      throw InputError({book_.name()},
+                       fmt::format("{}: no rows below the header in row {}; expected at least one "
+                                   "row of numbers",
+                                   shown(sheet_.name), finder.header().row));
+    std::vector<std::vector<double>> table;
+    for (const std::string& name : names_) table.push_back(values_.at(columns_.at(name)));
+    return table;
+  }
+
+ private:
+  [[noreturn]] void fail(std::size_t row, std::size_t column, const std::string& message) const {
+    throw InputError({book_.name()}, fmt::format("{}!{} {}", shown(sheet_.name),
+                                                 xlsx_address(row, column), message));
+  }
+
+  /// Once the header is known.
+  void begin(HeaderFinder& finder) {
+    if (first_row_ != 0) return;
+    const SheetHeader& header = finder.header();
+    if (header.row == 0)
+      throw InputError({book_.name()}, fmt::format("{} is empty; {}", shown(sheet_.name),
+                                                   "expected a header and rows of numbers"));
+    if (header.has_number && !header.has_text)
+      fail(
+          header.row, header.names.size(),
+          "and the rest of its row are numbers; expected the header with the names of the columns");
+    first_row_ = header.row + (header.units.empty() ? 1 : 2);
+    next_row_ = first_row_;
+    for (const std::string& name : names_) columns_[name] = column_of(header, name);
+    for (const auto& [name, column] : columns_) values_[column];
+    for (const XlsxCell& cell : finder.take_rows()) take(cell);
+  }
+
+  std::size_t column_of(const SheetHeader& header, const std::string& name) const {
+    const auto found = find_column(header.names, name);
+    if (!found) {
+      std::vector<std::string> known = short_names(header.names);
+      std::erase(known, std::string());
+      std::vector<std::string> sheets;
+      for (const XlsxBook::Sheet& sheet : book_.sheets()) sheets.push_back(sheet.name);
+      std::string message = fmt::format("{} row {}: {}", shown(sheet_.name), header.row,
+                                        unknown_name_message("column", name, known));
+      if (const std::size_t at = name.find('!'); at != std::string::npos)
+        message += "; " + unknown_name_message("sheet", name.substr(0, at), sheets);
+      throw InputError({book_.name()}, message);
+    }
+    if (found->second)
+      throw InputError({book_.name()},
+                       fmt::format("{}: columns {} and {} are both named '{}'; expected one",
+                                   shown(sheet_.name), xlsx_address(header.row, found->index + 1),
+                                   xlsx_address(header.row, *found->second + 1), name));
+    return found->index + 1;
+  }
+
+  void take(const XlsxCell& cell) {
+    const auto wanted = values_.find(cell.column);
+    if (wanted == values_.end() || gap_) return;
+    if (cell.row != row_) {
+      finish_row();
+      if (gap_) return;
+      row_ = cell.row;
+      if (cell.row != next_row_) {
+        gap_ = {next_row_, values_.begin()->first};
+        return;
+      }
+    }
+    const auto value = cell.kind == XlsxKind::number ? csv_number(cell.text, false) : std::nullopt;
+    if (!value) fail(cell.row, cell.column, kind_text(cell) + hint(cell));
+    std::vector<double>& values = wanted->second;
+    if (!values.empty() && !time_name_.empty() && columns_.at(time_name_) == cell.column &&
+        !(*value > values.back()))
+      fail(cell.row, cell.column,
+           fmt::format("is {} after {}: time '{}' does not increase; expected a larger value in "
+                       "each row",
+                       *value, values.back(), time_name_));
+    if (++count_ > most_values_)
+      fail(cell.row, cell.column,
+           fmt::format("is beyond {} numbers, the limit of one file; decimate the record, or split "
+                       "it into several files",
+                       kMostValues));
+    values.push_back(*value);
+  }
+
+  /// Every wanted column has its cell in the row that has been read.
+  void finish_row() {
+    if (row_ == 0 || gap_) return;
+    const std::size_t rows = row_ - first_row_ + 1;
+    for (const auto& [column, values] : values_)
+      if (values.size() < rows) {
+        gap_ = {row_, column};
+        return;
+      }
+    next_row_ = row_ + 1;
+  }
+
+  std::string hint(const XlsxCell& cell) const {
+    return cell.row == first_row_ && cell.kind == XlsxKind::text
+               ? "; the row below the header may hold units only, such as mm, bar or -"
+               : "";
+  }
+
+  [[noreturn]] void fail_at_gap(const std::vector<XlsxMerged>& merged) const {
+    const auto [row, column] = *gap_;
+    for (const XlsxMerged& cells : merged)
+      if (cells.holds(row, column))
+        fail(
+            row, column,
+            fmt::format("belongs to the merged cells {}, of which the first alone holds something; "
+                        "expected a number in each cell",
+                        cells.range));
+    fail(row, column, "is empty, but rows follow or other columns go on; expected a number");
+  }
+
+  const XlsxBook& book_;
+  const XlsxBook::Sheet& sheet_;
+  std::vector<std::string> names_;
+  std::string time_name_;
+  std::size_t most_values_ = 0;
+  std::size_t count_ = 0;
+  std::map<std::string, std::size_t> columns_;         ///< by name
+  std::map<std::size_t, std::vector<double>> values_;  ///< by column
+  std::size_t first_row_ = 0;                          ///< of numbers; 0: not known yet
+  std::size_t next_row_ = 0;
+  std::size_t row_ = 0;
+  std::optional<std::pair<std::size_t, std::size_t>> gap_;  ///< the first cell that is missing
+};
+
+}  // namespace
+
+std::vector<RecordColumn> list_xlsx_columns(const std::filesystem::path& path) {
+  const XlsxBook book(path);
+  std::vector<RecordColumn> columns;
+  for (std::size_t i = 0; i < book.sheets().size(); ++i) {
+    const XlsxBook::Sheet& sheet = book.sheets()[i];
+    HeaderFinder finder;
+    book.read(sheet, [&](const XlsxCell& cell) { return !finder.is_past(cell); });
+    finder.finish_row();
+    const SheetHeader& header = finder.header();
+    if (!header.has_text) continue;
+    const std::string prefix = i == 0 ? "" : sheet_prefix(sheet.name);
+    for (std::size_t k = 0; k < header.names.size(); ++k) {
+      const std::string& name = header.names[k].full;
+      if (name.empty()) continue;
+      columns.push_back({prefix + name, header.units.empty() ? "" : header.units[k], false, false});
+    }
+  }
+  return columns;
+}
+
+std::vector<std::vector<double>> read_xlsx_columns(const std::filesystem::path& path,
+                                                   const RecordRequest& request) {
+  const XlsxBook book(path);
+  std::vector<SheetColumn> places;
+  for (const std::string& column : request.columns) places.push_back(place_of(book, column));
+  std::vector<std::vector<double>> table(places.size());
+  std::size_t values = 0;
+  for (std::size_t sheet = 0; sheet < book.sheets().size(); ++sheet) {
+    std::vector<std::string> names;
+    std::string time_name;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (places[i].sheet != sheet) continue;
+      names.push_back(places[i].name);
+      if (request.columns[i] == request.time_column) time_name = places[i].name;
+    }
+    if (names.empty()) continue;
+    auto own = SheetReader(book, book.sheets()[sheet], names, time_name)
+                   .read(kMostValues - std::min(kMostValues, values));
+    values += own.size() * own.front().size();
+    for (std::size_t i = 0, k = 0; i < places.size(); ++i)
+      if (places[i].sheet == sheet) table[i] = std::move(own[k++]);
+  }
+  for (std::size_t i = 1; i < table.size(); ++i)
+    if (table[i].size() != table[0].size())
+      throw InputError(
+          {book.name()},
+          fmt::format("'{}' has {} rows, but '{}' has {}; expected as many", request.columns[i],
+                      table[i].size(), request.columns[0], table[0].size()));
+  return table;
+}
+
+}  // namespace rigcal::datasets

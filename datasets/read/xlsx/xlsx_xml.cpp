@@ -1,0 +1,107 @@
+#include "datasets/read/xlsx/xlsx_xml.hpp"
+
+#include <expat.h>
+#include <fmt/format.h>
+
+#include <exception>
+#include <memory>
+#include <new>
+#include <type_traits>
+
+#include "common/error.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+std::string_view without_namespace(std::string_view name) {
+  const std::size_t colon = name.rfind(':');
+  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+}
+
+/// What Expat calls. Exceptions wait here until it has returned.
+struct Listener {
+  XML_Parser parser = nullptr;
+  XmlHandler* handler = nullptr;
+  std::exception_ptr error;
+  bool has_document_type = false;
+
+  template <typename Call>
+  void guarded(Call call) {
+    if (error) return;
+    try {
+      call();
+    } catch (...) {  // thrown again by read_xml()
+      error = std::current_exception();
+      XML_StopParser(parser, XML_FALSE);
+    }
+  }
+
+  static Listener& of(void* user) { return *static_cast<Listener*>(user); }
+  static void start(void* user, const char* name, const char** attributes) {
+    Listener& self = of(user);
+    self.guarded([&] { self.handler->start(without_namespace(name), XmlAttributes(attributes)); });
+  }
+  static void end(void* user, const char* name) {
+    Listener& self = of(user);
+    self.guarded([&] { self.handler->end(without_namespace(name)); });
+  }
+  static void text(void* user, const char* text, int length) {
+    Listener& self = of(user);
+    self.guarded(
+        [&] { self.handler->text(std::string_view(text, static_cast<std::size_t>(length))); });
+  }
+  static void document_type(void* user, const char* /*name*/, const char* /*system*/,
+                            const char* /*identity*/, int /*has_subset*/) {
+    Listener& self = of(user);
+    self.has_document_type = true;
+    XML_StopParser(self.parser, XML_FALSE);
+  }
+};
+
+struct FreeParser {
+  void operator()(XML_Parser parser) const { XML_ParserFree(parser); }
+};
+
+}  // namespace
+
+std::optional<std::string_view> XmlAttributes::find(std::string_view name) const {
+  for (const char** pair = pairs_; *pair != nullptr; pair += 2)
+    if (without_namespace(pair[0]) == name) return std::string_view(pair[1]);
+  return std::nullopt;
+}
+
+void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t most_bytes,
+              XmlHandler& handler) {
+  const std::unique_ptr<std::remove_pointer_t<XML_Parser>, FreeParser> parser(
+      XML_ParserCreate(nullptr));
+  if (!parser) throw std::bad_alloc();
+  Listener listener{parser.get(), &handler, nullptr, false};
+  XML_SetUserData(parser.get(), &listener);
+  XML_SetElementHandler(parser.get(), Listener::start, Listener::end);
+  XML_SetCharacterDataHandler(parser.get(), Listener::text);
+  XML_SetStartDoctypeDeclHandler(parser.get(), Listener::document_type);
+  const auto parse = [&](std::string_view block, bool is_last) {
+    const XML_Status status =
+        XML_Parse(parser.get(), block.data(), static_cast<int>(block.size()), is_last ? 1 : 0);
+    if (listener.error) std::rethrow_exception(listener.error);
+    if (listener.has_document_type)
+      throw InputError({archive.name()},
+                       fmt::format("its part '{}' has a document type, as no workbook has; save it "
+                                   "again as .xlsx",
+                                   part));
+    if (status == XML_STATUS_OK) return;
+    if (XML_GetErrorCode(parser.get()) == XML_ERROR_NO_MEMORY) throw std::bad_alloc();
+    throw InputError({archive.name()},
+                     fmt::format("is damaged in line {} of its part '{}' ({}); save it again as "
+                                 ".xlsx",
+                                 XML_GetCurrentLineNumber(parser.get()), part,
+                                 XML_ErrorString(XML_GetErrorCode(parser.get()))));
+  };
+  archive.read(part, most_bytes, [&](std::string_view block) {
+    parse(block, false);
+    return !handler.is_done();
+  });
+  if (!handler.is_done()) parse({}, true);
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "datasets/read/xlsx/xlsx_archive.hpp"
+
+namespace rigcal::datasets {
+
+/// Attributes of an element. Names are without their namespace, which Excel and others abbreviate
+/// differently.
+class XmlAttributes {
+ public:
+  explicit XmlAttributes(const char** pairs) : pairs_(pairs) {}
+  std::optional<std::string_view> find(std::string_view name) const;
+  /// Empty if there is none.
+  std::string_view text(std::string_view name) const { return find(name).value_or(""); }
+
+ private:
+  const char** pairs_;
+};
+
+/// Receives the elements of a part, in their order.
+class XmlHandler {
+ public:
+  XmlHandler() = default;
+  XmlHandler(const XmlHandler&) = delete;
+  XmlHandler& operator=(const XmlHandler&) = delete;
+  virtual ~XmlHandler() = default;
+
+  virtual void start(std::string_view element, const XmlAttributes& attributes) = 0;
+  virtual void end(std::string_view /*element*/) {}
+  virtual void text(std::string_view /*text*/) {}
+  /// The rest of the part is not wanted.
+  virtual bool is_done() const { return false; }
+};
+
+/// Reads a part of a workbook as XML, by Expat.
+///
+/// @throws InputError  as XlsxArchive::read; not XML, or with a document type, which no workbook
+/// has
+///                     and which may define endless entities
+void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t most_bytes,
+              XmlHandler& handler);
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,180 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/store/stored/stored_leak.hpp"
+#include "report/store/stored/stored_provenance.hpp"
+
+// diagnosis.json, as docs/diagnosis.md describes it.
+
+namespace rigcal::report {
+
+inline constexpr const char* kDiagnosisSchema = "rigcal.diagnosis/1";
+
+struct StoredDiagnosisSettings {
+  Keyed<double> limits_percent;  ///< upper limit of every class but the last
+  double least_probability = 0.0, false_alarms = 0.0, detection = 0.0;
+  RIGCAL_DESCRIBE(limits_percent, least_probability, false_alarms, detection)
+};
+
+/// A row of a leak table as the limit of a class.
+struct StoredClassLimit {
+  std::string signal;
+  double share_percent = 0.0;
+  std::optional<datasets::LeakClass> class_;  ///< that ends there
+  std::vector<double> coefficients;
+  std::vector<std::optional<Range>> coefficients_ci95;  ///< of each
+  RIGCAL_DESCRIBE(signal, share_percent, class_, coefficients, coefficients_ci95)
+};
+
+struct StoredNearestLimit {
+  datasets::LeakClass class_ = datasets::LeakClass::normal;  ///< that begins there
+  double percent = 0.0, distance_percentage_points = 0.0;
+  bool on_limit = false;
+  RIGCAL_DESCRIBE(class_, percent, distance_percentage_points, on_limit)
+};
+
+/// Whether the signals of a state tell the same leak.
+struct StoredSignalsAgreement {
+  double p = 1.0, chi_squared = 0.0, freedom = 0.0, widened = 1.0;
+  bool agree = true;
+  RIGCAL_DESCRIBE(p, chi_squared, freedom, widened, agree)
+};
+
+/// Verdict on one state of the machine.
+struct StoredState {
+  std::string state;
+  std::optional<std::string> leak_level, specimen, date;
+  std::string sentence;
+  std::optional<std::string> failure;
+  bool is_reference = false;
+  std::vector<std::string> conditions;
+  std::vector<std::string> left_out;  ///< condition and why
+  Inlined<StoredLeak> leak;
+  std::optional<double> leak_area_m2;
+  std::optional<Range> leak_area_ci95_m2;
+  std::optional<std::string> duty;  ///< signal whose share is stated
+  std::optional<StoredNearestLimit> nearest_limit;
+  std::optional<StoredSignalsAgreement> agreement;  ///< nothing: one signal alone
+  RIGCAL_DESCRIBE(state, leak_level, specimen, date, sentence, failure, is_reference, conditions,
+                  left_out, leak, leak_area_m2, leak_area_ci95_m2, duty, nearest_limit, agreement)
+};
+
+/// When a leak that rises reaches its next limit.
+struct StoredNextLimit {
+  datasets::LeakClass class_ = datasets::LeakClass::normal;
+  double percent = 0.0;
+  std::string reached, earliest;
+  std::optional<std::string> latest;  ///< nothing: never, as far as is known
+  RIGCAL_DESCRIBE(class_, percent, reached, earliest, latest)
+};
+
+struct StoredLeakTrend {
+  std::optional<std::string> leak_level, specimen;
+  std::string sentence;
+  int dates = 0;
+  std::string first_date, last_date, duty;
+  double coefficient_per_day = 0.0, share_percent_per_day = 0.0;
+  Range share_percent_per_day_ci95;
+  double p_value = 1.0;
+  bool significant = false;
+  double chi_squared = 0.0, freedom = 0.0, widened = 1.0;
+  std::optional<StoredNextLimit> next_limit;
+  RIGCAL_DESCRIBE(leak_level, specimen, sentence, dates, first_date, last_date, duty,
+                  coefficient_per_day, share_percent_per_day, share_percent_per_day_ci95, p_value,
+                  significant, chi_squared, freedom, widened, next_limit)
+};
+
+/// What was found in one record.
+struct StoredDiagnosedRecord {
+  std::string condition;
+  std::optional<int> repeat;  ///< from 1; nothing: the average
+  int repeats_averaged = 1;
+  std::string signal;
+  int reference_repeats = 0;
+  bool is_reference = false;
+  std::optional<std::string> failure;
+  Inlined<StoredLeak> leak;
+  std::optional<double> unbounded_leakage_coefficient;
+  bool undecided = false;
+  std::optional<bool> explained_by_leak;
+  ByFeature<std::optional<double>> features;
+  std::optional<double> parity_rms_m, misfit_rms_m, noise_rms_m, log_slope;
+  std::optional<datasets::LeakClass> class_by_features, class_by_features_of_other_signals,
+      true_class;
+  std::optional<double> true_share_percent;
+  std::vector<std::string> warnings;
+  RIGCAL_DESCRIBE(condition, repeat, repeats_averaged, signal, reference_repeats, is_reference,
+                  failure, leak, unbounded_leakage_coefficient, undecided, explained_by_leak,
+                  features, parity_rms_m, misfit_rms_m, noise_rms_m, log_slope, class_by_features,
+                  class_by_features_of_other_signals, true_class, true_share_percent, warnings)
+
+  bool is_average() const { return !repeat; }
+};
+
+/// Counts of records: rows by their true class, columns by what was found.
+struct StoredConfusion {
+  static constexpr std::size_t kClasses = datasets::kLeakClasses.size();
+  std::array<std::string, kClasses> truth;
+  std::array<std::string, kClasses + 1> found;  ///< the last one undecided
+  std::array<std::array<int, kClasses + 1>, kClasses> counts{};
+  RIGCAL_DESCRIBE(truth, found, counts)
+};
+
+/// How often a method is right.
+struct StoredAccuracy {
+  int records = 0, conditions = 0, right = 0, undecided = 0, off_by_two_or_more = 0;
+  std::optional<double> accuracy;
+  std::optional<Range> accuracy_ci95;
+  StoredConfusion confusion;
+  RIGCAL_DESCRIBE(records, conditions, right, undecided, off_by_two_or_more, accuracy,
+                  accuracy_ci95, confusion)
+};
+
+struct StoredMethods {
+  StoredAccuracy fitted_leak_single, fitted_leak_averaged;
+  StoredAccuracy features_leave_one_repeat_out, features_leave_one_signal_out;
+  RIGCAL_DESCRIBE(fitted_leak_single, fitted_leak_averaged, features_leave_one_repeat_out,
+                  features_leave_one_signal_out)
+};
+
+/// The smallest leak of a signal that is told from none [L/min].
+struct StoredSmallestLeak {
+  std::string signal;
+  int repeats_averaged = 1;
+  std::optional<double> averaged, single;
+  std::optional<double> averaged_share_percent;
+  std::optional<double> repeat_sd_m, healthy_leak_m;
+  std::optional<std::string> reason;  ///< why there is none
+  RIGCAL_DESCRIBE(signal, repeats_averaged, averaged, single, averaged_share_percent, repeat_sd_m,
+                  healthy_leak_m, reason)
+};
+
+struct StoredDiagnosis {
+  LeakStatus status = LeakStatus::failed;
+  std::string schema = kDiagnosisSchema;
+  std::vector<std::string> reasons;  ///< why it was declined
+  std::string campaign;
+  bool synthetic = false;
+  Json report;  ///< identity_json()
+  StoredDiagnosisSettings settings;
+  std::vector<StoredClassLimit> class_limits;  ///< empty where no leak table gave them
+  std::vector<StoredState> states;
+  std::vector<StoredLeakTrend> trends;
+  std::vector<StoredDiagnosedRecord> records;
+  StoredConfusion confusion;  ///< of the fitted leak in single repeats, as the two below
+  std::optional<double> accuracy;
+  std::optional<Range> accuracy_ci95;
+  StoredMethods methods;
+  std::vector<StoredSmallestLeak> smallest_leak_l_per_min;  ///< per signal
+  std::vector<std::string> warnings;
+  StoredProvenance provenance;
+  RIGCAL_DESCRIBE(status, schema, reasons, campaign, synthetic, report, settings, class_limits,
+                  states, trends, records, confusion, accuracy, accuracy_ci95, methods,
+                  smallest_leak_l_per_min, warnings, provenance)
+};
+
+}  // namespace rigcal::report

@@ -1,0 +1,381 @@
+#include "report/store/stored/stored_fit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "calib/problem/known_sd.hpp"
+#include "report/store/identity.hpp"
+#include "report/store/stored/stored_residual_tests.hpp"
+#include "report/store/stored/stored_tables_fit.hpp"
+#include "report/store/validity.hpp"
+#include "report/text/groups.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using datasets::Scope;
+
+Range range_of(const std::pair<double, double>& ends) { return {ends.first, ends.second}; }
+
+std::optional<Range> range_of(const std::optional<std::pair<double, double>>& ends) {
+  return ends ? std::optional(range_of(*ends)) : std::nullopt;
+}
+
+std::string key_of(datasets::Channel channel) { return std::string(info(channel).key); }
+
+StoredAspect stored(const calib::Aspect& aspect) {
+  StoredAspect result{aspect.state, {}};
+  for (const calib::Reason& reason : aspect.reasons)
+    result.reasons.push_back(
+        {reason.code, reason.state, unless_empty(reason.subject), reason.numbers, reason.words});
+  return result;
+}
+
+std::string reason_of(const calib::FittedParameter& p) {
+  if (std::isfinite(p.value)) return p.reason;
+  return p.reason + (p.reason.empty() ? "" : "; ") +
+         (std::isinf(p.value) && !p.fitted ? "no limit" : "the value is not a finite number");
+}
+
+StoredProfileEnd stored(const calib::ProfileEnd& end) {
+  return {finite(end.value), finite(end.reached), std::optional(end.lost)};
+}
+
+StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSpec& spec) {
+  StoredParameter result;
+  result.name = spec.name;
+  result.key = spec.key;
+  result.symbol = spec.symbol;
+  result.unit = spec.unit;
+  result.scope = p.scope;
+  if (p.scope != Scope::rig) result.level = p.level;
+  result.value = finite(p.value);
+  result.start = finite(p.start);
+  if (p.fitted) {
+    result.lower = finite(p.lower);
+    result.upper = finite(p.upper);
+    result.identifiability = p.identifiability;
+  }
+  result.fitted = p.fitted;
+  result.nuisance = p.nuisance;
+  result.standard_error = finite(p.standard_error);
+  result.robust_standard_error = finite(p.robust_standard_error);
+  result.ci95 = range_of(p.ci95);
+  if (p.ci95) result.ci95_from = std::optional(p.interval);
+  if (p.bootstrap)
+    result.bootstrap = StoredBootstrap{p.bootstrap->standard_error, p.bootstrap->bias,
+                                       p.bootstrap->freedom, range_of(p.bootstrap->ci95)};
+  if (p.profile)
+    result.profile = StoredProfile{stored(p.profile->low), stored(p.profile->high),
+                                   p.profile->values, p.profile->rises};
+  result.at_bound = p.at_bound;
+  result.reason = reason_of(p);
+  return result;
+}
+
+StoredLackOfFit lack_of_fit(const calib::Fit& fit) {
+  StoredLackOfFit result{fit.misfit, {}};
+  for (const calib::LackOfFit& test : fit.lack_of_fit)
+    result.tests.push_back({test.condition, key_of(test.channel),
+                            test.by_repeats ? "repeats" : "sd", test.ratio, test.freedom,
+                            test.pure_freedom, test.p, test.outcome, unless_empty(test.reason)});
+  return result;
+}
+
+std::optional<StoredBetweenRepeats> stored(const std::optional<calib::BetweenRepeats>& repeats) {
+  if (!repeats) return std::nullopt;
+  StoredBetweenRepeats result{
+      repeats->differ, repeats->p, repeats->ratio, repeats->parameters, {}, {}, {}};
+  if (repeats->cause.empty()) return result;
+  result.cause = repeats->cause;
+  result.cause_sd = repeats->cause_sd;
+  result.cause_explains = repeats->cause_explains;
+  return result;
+}
+
+Keyed<double> by_channel(const std::vector<std::pair<datasets::Channel, double>>& values) {
+  Keyed<double> result;
+  for (const auto& [channel, value] : values) result.emplace_back(key_of(channel), value);
+  return result;
+}
+
+std::vector<StoredHeldOut> stored(const std::vector<calib::HeldOut>& all) {
+  std::vector<StoredHeldOut> result;
+  for (const calib::HeldOut& held : all)
+    result.push_back({held.condition, unless_empty(held.problem), by_channel(held.rms),
+                      by_channel(held.fitted_rms),
+                      held.problem.empty() ? finite(held.largest_shift) : std::nullopt,
+                      unless_empty(held.shifted)});
+  return result;
+}
+
+const datasets::Record* record_of(const Result& result, const std::string& condition) {
+  const auto found = std::find_if(result.records.begin(), result.records.end(),
+                                  [&](const auto& each) { return each.condition == condition; });
+  return found == result.records.end() ? nullptr : &*found;
+}
+
+std::vector<StoredWeight> weights(const Result& result) {
+  std::vector<StoredWeight> list;
+  for (const calib::ConditionScore& score : result.fit.conditions) {
+    const datasets::Record* record = record_of(result, score.id);
+    if (score.use != datasets::Use::fit || record == nullptr) continue;
+    for (const calib::ChannelScore& channel : score.channels) {
+      const auto series = record->channels.find(channel.channel);
+      if (series == record->channels.end()) continue;
+      list.push_back({score.id, key_of(channel.channel), score.samples,
+                      finite(calib::known_sd(result.campaign, channel.channel, series->second)),
+                      channel.agreement ? std::optional(channel.agreement->rmse) : std::nullopt});
+    }
+  }
+  return list;
+}
+
+StoredValidity validity(const Result& result, bool closed_loop) {
+  using datasets::Use;
+  const Validity covered =
+      coverage(result.campaign, result.records, result.fit,
+               result.kind == ResultKind::fit ? std::vector<Use>{Use::fit}
+                                              : std::vector<Use>{Use::fit, Use::validate});
+  const std::optional<Range> none;
+  return {covered.frequency_hz,
+          closed_loop ? covered.amplitude : none,
+          closed_loop ? none : covered.amplitude,
+          covered.supply_pressure_pa,
+          covered.leakage_coefficient,
+          covered.leak_levels};
+}
+
+std::vector<StoredLimit> stored(const std::vector<datasets::AcceptanceLimit>& limits) {
+  std::vector<StoredLimit> list;
+  for (const datasets::AcceptanceLimit& limit : limits)
+    list.push_back({key_of(limit.channel), limit.metric, finite(limit.limit), finite(limit.warn)});
+  return list;
+}
+
+StoredAgreement stored(const std::optional<metrics::Agreement>& agreement) {
+  StoredAgreement result;
+  for (const metrics::MetricSpec& metric : metrics::kMetrics)
+    result.*metric.value = agreement ? (*agreement).*metric.value : std::nan("");
+  return result;
+}
+
+StoredScore stored(const calib::ChannelScore& score) {
+  StoredScore result{stored(score.agreement), {}, {}, {}, {}};
+  result.gain_ratio = score.gain_ratio;
+  result.phase_deg = score.phase_deg;
+  result.delay_s = score.delay_s;
+  result.problem = unless_empty(score.problem);
+  return result;
+}
+
+void add_checks(const calib::ConditionScore& score, StoredCondition& condition) {
+  std::map<datasets::Channel, calib::Verdict> worst;
+  for (const calib::LimitCheck& check : score.checks) {
+    condition.limit_checks.push_back(
+        {key_of(check.channel), check.metric, finite(check.value), finite(check.limit),
+         finite(check.warn), check.value ? finite(check.used) : std::nullopt,
+         check.expanded_uncertainty ? Omittable<double>(*check.expanded_uncertainty)
+                                    : Omittable<double>(),
+         check.verdict});
+    worst[check.channel] = std::max(worst[check.channel], check.verdict);
+  }
+  for (const auto& [channel, verdict] : worst)
+    condition.channel_verdicts.emplace_back(key_of(channel), verdict);
+}
+
+void add_stated(const Result& result, const calib::ConditionScore& score, bool closed_loop,
+                StoredCondition& stated) {
+  const datasets::Condition* condition = result.campaign.find(score.id);
+  if (condition == nullptr) return;
+  stated.waveform = std::optional(condition->waveform);
+  stated.frequency_hz = condition->frequency_hz;
+  if (closed_loop) {
+    stated.amplitude_m = condition->amplitude;
+  } else {
+    stated.amplitude_v = std::optional(condition->amplitude);
+  }
+  stated.leak_level = condition->leak_level;
+  if (condition->temperature_k) stated.temperature_k = *condition->temperature_k;
+  if (condition->date) stated.date = *condition->date;
+  if (condition->acceptance) stated.acceptance = stored(*condition->acceptance);
+}
+
+StoredCondition stored(const Result& result, const calib::ConditionScore& score, bool closed_loop) {
+  StoredCondition condition;
+  condition.id = score.id;
+  add_stated(result, score, closed_loop, condition);
+  condition.use = score.use;
+  condition.samples = score.samples;
+  if (const datasets::Record* record = record_of(result, score.id)) {
+    condition.windows_s.emplace();
+    for (const datasets::TimeWindow& window : record->windows)
+      condition.windows_s->push_back({window.start_s, window.end_s});
+    condition.notes = record->notes;
+  }
+  condition.warnings = score.data_warnings;
+  condition.not_scored = unless_empty(score.not_scored);
+  condition.failure = unless_empty(score.failure);
+  condition.expanded_uncertainty.emplace();
+  for (const calib::ChannelScore& channel : score.channels) {
+    const std::string key = key_of(channel.channel);
+    condition.metrics.emplace_back(key, stored(channel));
+    std::optional<StoredNoiseFloor> floor;
+    if (const auto& found = channel.noise_floor)
+      floor = {found->rho2, found->ccc, found->absolute_error_percent};
+    condition.noise_floor.emplace_back(key, floor);
+    condition.expanded_uncertainty->emplace_back(
+        key, channel.expanded_uncertainty ? std::optional(stored(channel.expanded_uncertainty))
+                                          : std::nullopt);
+    std::optional<StoredResidualTests> tests;
+    if (channel.residual_tests)
+      tests = report::stored(*channel.residual_tests, info(channel.channel).unit);
+    condition.residual_tests.emplace_back(key, std::move(tests));
+  }
+  add_checks(score, condition);
+  condition.verdict = score.verdict;
+  condition.reasons = score.reasons;
+  return condition;
+}
+
+std::vector<StoredGroup> gathered(const Result& result) {
+  std::vector<StoredGroup> list;
+  for (const Group& group : groups(result.campaign, result.fit)) {
+    StoredGroup& each = list.emplace_back(StoredGroup{group.by, group.label, group.conditions, {}});
+    for (const auto& [channel, score] : group.channels)
+      each.metrics.emplace_back(key_of(channel),
+                                StoredGroupScore{score.conditions, {score.mean}, {score.worst}});
+  }
+  return list;
+}
+
+StoredStart stored(const calib::StartReport& start) {
+  const bool simulated = !start.end_values.empty();
+  return {start.number,
+          start.status,
+          start.message,
+          start.start_values,
+          start.end_values,
+          simulated ? finite(start.initial_cost) : std::nullopt,
+          simulated ? finite(start.final_cost) : std::nullopt,
+          start.iterations};
+}
+
+void add_trust(const calib::Fit& fit, StoredFit& result) {
+  const bool solved = fit.rank > 0;
+  result.rank = fit.rank;
+  result.singular_values = fit.singular_values;
+  result.correlation.names = fit.correlation_names;
+  for (const auto& row : fit.correlation.rowwise())
+    result.correlation.matrix.emplace_back(row.begin(), row.end());
+  if (solved) {
+    result.reduced_chi_square = finite(fit.reduced_chi_square);
+    result.aic = finite(fit.aic);
+    result.bic = finite(fit.bic);
+  }
+  result.independent_residuals =
+      fit.independent_residuals > 0.0 ? finite(fit.independent_residuals) : std::nullopt;
+  result.interval_advice = fit.interval_advice;
+  result.combinations = fit.combinations;
+  result.lack_of_fit = std::optional(lack_of_fit(fit));
+  result.between_repeats = stored(fit.between_repeats);
+  for (const calib::Basin& basin : fit.basins)
+    result.basins.push_back({basin.cost, basin.starts, basin.values});
+  result.agreement = fit.agreement;
+  if (!fit.bootstrap_message.empty())
+    result.bootstrap = StoredBootstrapRun{fit.bootstrap_replicates, fit.bootstrap_message};
+  if (!fit.cross_validation.empty()) result.cross_validation = stored(fit.cross_validation);
+}
+
+void add_search(const calib::Fit& fit, StoredFit& result) {
+  for (const calib::StartReport& start : fit.starts) result.starts.push_back(stored(start));
+  result.best_start = fit.best_start;
+  result.failure_count = fit.failure_count;
+  for (const calib::SimulationFailure& failure : fit.failures)
+    result.failures.push_back(
+        {failure.condition, failure.start, failure.time_s, failure.reason, failure.parameters});
+}
+
+}  // namespace
+
+std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& channel) const {
+  if (failure) return verdict;
+  const calib::Verdict* found = find(channel_verdicts, channel);
+  return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+std::optional<double> error_of(const StoredParameter& parameter) {
+  if (!parameter.standard_error) return parameter.robust_standard_error;
+  return std::max(*parameter.standard_error, parameter.robust_standard_error.value_or(0.0));
+}
+
+std::string parameter_label(const std::string& key, Scope scope,
+                            const std::optional<std::string>& level) {
+  if (!level || level->empty()) return key;
+  return fmt::format("{} ({} {})", key, scope == Scope::leak_level ? "leak level" : "condition",
+                     *level);
+}
+
+StoredFit as_fit(const StoredTablesFit& tables) {
+  StoredFit fit;
+  fit.status = tables.status;
+  fit.schema = tables.schema;
+  fit.message = tables.message;
+  fit.campaign = tables.campaign;
+  fit.cost = tables.cost;
+  fit.residual_count = tables.residual_count;
+  fit.parameters = tables.parameters;
+  fit.correlation = tables.correlation;
+  fit.provenance = tables.provenance;
+  return fit;
+}
+
+const StoredCondition* StoredFit::find(const std::string& condition) const {
+  const auto found = std::find_if(conditions.begin(), conditions.end(),
+                                  [&](const auto& each) { return each.id == condition; });
+  return found == conditions.end() ? nullptr : &*found;
+}
+
+StoredFit stored(const Result& result) {
+  const calib::Fit& fit = result.fit;
+  const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
+  StoredFit json;
+  json.status = status_of(fit);
+  if (fit.stopped_in != calib::StoppedIn::nothing) json.stopped_in = std::optional(fit.stopped_in);
+  json.schema = result.kind == ResultKind::fit ? kFitSchema : kValidationSchema;
+  json.verdict = fit.verdict;
+  json.assessment = std::optional(
+      StoredAssessment{stored(fit.assessment.agreement), stored(fit.assessment.validation),
+                       stored(fit.assessment.adequacy), stored(fit.assessment.parameters)});
+  json.message = fit.message;
+  json.campaign = result.campaign.name;
+  json.synthetic = result.campaign.synthetic;
+  json.report = identity_json(result.campaign);
+  json.model = std::optional(result.campaign.rig.plant);
+  // Without a start nothing was estimated. A cost of zero would look like a perfect fit.
+  if (json.status != calib::FitStatus::failed && !fit.starts.empty()) json.cost = finite(fit.cost);
+  json.residual_count = fit.residual_count;
+  json.evaluations = fit.evaluations;
+  json.wall_seconds = finite(fit.wall_seconds);
+  json.simulation_tolerance = finite(fit.tolerance);
+  const auto table = model::parameter_table(result.campaign.rig.plant);
+  for (const calib::FittedParameter& p : fit.parameters)
+    json.parameters.push_back(stored(p, table[static_cast<std::size_t>(p.index)]));
+  add_trust(fit, json);
+  if (result.kind == ResultKind::fit) json.weights = weights(result);
+  json.validity = validity(result, closed_loop);
+  json.decision = result.campaign.acceptance_bounds.decision;
+  json.acceptance = stored(result.campaign.acceptance);
+  for (const calib::ConditionScore& score : fit.conditions)
+    json.conditions.push_back(stored(result, score, closed_loop));
+  json.groups = gathered(result);
+  add_search(fit, json);
+  json.warnings = fit.warnings;
+  json.provenance = stored(result.provenance);
+  return json;
+}
+
+}  // namespace rigcal::report

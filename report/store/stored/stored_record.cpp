@@ -1,0 +1,43 @@
+#include "report/store/stored/stored_record.hpp"
+
+#include <algorithm>
+
+#include "datasets/prepare/repeatability.hpp"
+
+namespace rigcal::report {
+
+long StoredRecord::outliers() const {
+  return std::count_if(repeat_reports.begin(), repeat_reports.end(),
+                       [](const StoredRepeat& repeat) { return repeat.outlier; });
+}
+
+StoredRecord stored(const datasets::Condition& condition, const datasets::Record& record) {
+  const auto& time_s = record.time_s;
+  const double duration_s = time_s.empty() ? 0.0 : time_s.back() - time_s.front();
+  StoredRecord told;
+  told.condition = condition.id;
+  told.use = condition.use;
+  told.samples = static_cast<long>(time_s.size());
+  if (duration_s > 0.0) told.sample_rate_hz = static_cast<double>(time_s.size() - 1) / duration_s;
+  told.duration_s = duration_s;
+  told.repeats = record.repeats;
+  for (const FileState& file : record.files) told.files.push_back(file.path);
+  for (const datasets::Repeatability& r : datasets::repeatability(record)) {
+    StoredRepeatability channel{
+        std::string(info(r.channel).unit), r.repeats, r.pooled_sd, r.sd_of_mean, {}};
+    if (const auto& floor = r.noise_floor)
+      channel.noise_floor = {floor->rho2, floor->ccc, floor->absolute_error_percent};
+    told.channels.emplace_back(info(r.channel).key, std::move(channel));
+  }
+  told.offset_range_s = datasets::offset_range_s(record);
+  for (const datasets::RepeatReport& repeat : record.repeat_reports)
+    told.repeat_reports.push_back(
+        {repeat.source, repeat.offset_s, repeat.deviation, repeat.outlier});
+  for (const datasets::TimeWindow& window : record.windows)
+    told.windows_s.push_back({window.start_s, window.end_s});
+  told.notes = record.notes;
+  told.warnings = record.warnings;
+  return told;
+}
+
+}  // namespace rigcal::report

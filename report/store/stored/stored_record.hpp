@@ -1,0 +1,70 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/record.hpp"
+#include "report/json/described.hpp"
+#include "report/store/described_campaign.hpp"
+#include "report/store/stored/stored_provenance.hpp"
+
+// A record as `check` and `average` tell of it, and average.json.
+
+namespace rigcal::report {
+
+inline constexpr const char* kAverageSchema = "rigcal.average/1";
+
+struct StoredNoiseFloor {
+  double rho2 = 0.0, ccc = 0.0, absolute_error_percent = 0.0;
+  RIGCAL_DESCRIBE(rho2, ccc, absolute_error_percent)
+};
+
+/// How the repeats agree in one channel, in its unit.
+struct StoredRepeatability {
+  std::string unit;
+  int repeats = 1;  ///< that carry the channel
+  std::optional<double> pooled_sd, sd_of_mean;
+  std::optional<StoredNoiseFloor> noise_floor;
+  RIGCAL_DESCRIBE(unit, repeats, pooled_sd, sd_of_mean, noise_floor)
+};
+
+/// What became of one repeat.
+struct StoredRepeat {
+  std::string source;
+  std::optional<double> offset_s, deviation;
+  bool outlier = false;
+  RIGCAL_DESCRIBE(source, offset_s, deviation, outlier)
+};
+
+struct StoredRecord {
+  std::string condition;
+  datasets::Use use = datasets::Use::fit;
+  long samples = 0;
+  std::optional<double> sample_rate_hz, duration_s;
+  int repeats = 1;
+  std::vector<std::string> files;
+  Keyed<StoredRepeatability> channels;
+  std::optional<double> offset_range_s;
+  std::vector<StoredRepeat> repeat_reports;
+  std::vector<Range> windows_s;  ///< parts that count; empty: the whole record
+  std::vector<std::string> notes, warnings;
+  RIGCAL_DESCRIBE(condition, use, samples, sample_rate_hz, duration_s, repeats, files, channels,
+                  offset_range_s, repeat_reports, windows_s, notes, warnings)
+
+  long outliers() const;
+};
+
+/// How the repeats of every condition agree.
+struct StoredAverage {
+  std::string schema = kAverageSchema;
+  std::string campaign;
+  bool synthetic = false;
+  std::vector<StoredRecord> records;
+  StoredProvenance provenance;
+  RIGCAL_DESCRIBE(schema, campaign, synthetic, records, provenance)
+};
+
+StoredRecord stored(const datasets::Condition& condition, const datasets::Record& record);
+
+}  // namespace rigcal::report

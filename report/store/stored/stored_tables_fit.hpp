@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "report/store/stored/stored_fit.hpp"
+
+// fit.json of a fit to published tables, which has no records.
+
+namespace rigcal::report {
+
+/// A published number against that of the model.
+struct StoredTableResidual {
+  std::string of;
+  double weight = 0.0;
+  double log_ratio = 0.0;
+  RIGCAL_DESCRIBE(of, weight, log_ratio)
+};
+
+inline constexpr const char* kOfTables = "published tables";
+
+struct StoredTablesFit {
+  calib::FitStatus status = calib::FitStatus::failed;
+  std::string schema = kFitSchema;
+  std::optional<calib::Verdict> verdict;
+  std::string message, campaign;
+  std::string of = kOfTables;
+  std::optional<double> cost;
+  long residual_count = 0;
+  std::optional<double> rms;
+  long evaluations = 0;
+  long iterations = 0;
+  std::optional<double> wall_seconds;
+  std::vector<StoredParameter> parameters;
+  StoredCorrelation correlation;
+  std::vector<StoredTableResidual> residuals;
+  std::vector<std::string> left_out;
+  StoredProvenance provenance;
+  RIGCAL_DESCRIBE(status, schema, verdict, message, campaign, of, cost, residual_count, rms,
+                  evaluations, iterations, wall_seconds, parameters, correlation, residuals,
+                  left_out, provenance)
+};
+
+/// Whether a fit.json is one of these.
+inline bool is_of_tables(const Json& fit) { return fit.is_object() && fit.contains("of"); }
+
+/// What it has in common with a fit to records.
+StoredFit as_fit(const StoredTablesFit& tables);
+
+}  // namespace rigcal::report

@@ -1,0 +1,489 @@
+#include "datasets/read/csv/load_csv.hpp"
+
+#include <fcntl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "common/error.hpp"
+#include "tests/support/sanitized.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace fs = std::filesystem;
+using Catch::Matchers::Contains;
+using Catch::Matchers::EndsWith;
+using Catch::Matchers::StartsWith;
+using rigcal::InputError;
+using rigcal::datasets::csv_header;
+using rigcal::datasets::CsvRequest;
+using rigcal::datasets::CsvTable;
+using rigcal::datasets::load_csv;
+using Columns = std::vector<std::vector<double>>;
+
+namespace {
+
+/// A file of its own for each test, removed at the end.
+class File {
+ public:
+  explicit File(const std::string& content) { folder_.write("a.csv", content); }
+  fs::path path() const { return folder_ / "a.csv"; }
+  fs::path folder() const { return folder_.path(); }
+
+ private:
+  rigcal::test::TemporaryFolder folder_;
+};
+
+CsvRequest request(std::vector<std::string> columns, const std::string& time = "") {
+  CsvRequest result;
+  result.columns = std::move(columns);
+  result.time_column = time;
+  return result;
+}
+
+CsvTable load(const std::string& content, const CsvRequest& wanted = request({"t", "x"}, "t")) {
+  return load_csv(File(content).path(), wanted);
+}
+
+/// Message of the refusal, from the name of the file on: "a.csv:2:3: ...".
+std::string refusal_of(const fs::path& path, const CsvRequest& wanted) {
+  try {
+    load_csv(path, wanted);
+  } catch (const InputError& error) {
+    CHECK(error.code() == rigcal::ExitCode::bad_input);
+    const std::string message = error.what();
+    const std::string folder = path.parent_path().string() + "/";
+    CHECK_THAT(message, StartsWith(folder));
+    return message.substr(folder.size());
+  }
+  return "no error";
+}
+
+std::string refusal(const std::string& content,
+                    const CsvRequest& wanted = request({"t", "x"}, "t")) {
+  return refusal_of(File(content).path(), wanted);
+}
+
+}  // namespace
+
+// ---- What is accepted ----------------------------------------------------------------------
+
+TEST_CASE("load_csv: wanted columns in the wanted order", "[datasets]") {
+  const CsvTable table = load("t,u,x\n0,text,1.5\n0.1,,-2e-3\n", request({"x", "t"}, "t"));
+  CHECK(table.columns == Columns{{1.5, -2e-3}, {0.0, 0.1}});
+  CHECK(table.first_data_line == 2);
+}
+
+TEST_CASE("load_csv: one column may be wanted twice", "[datasets]") {
+  CHECK(load("t,x\n0,1\n1,2\n", request({"x", "t", "x"}, "t")).columns ==
+        Columns{{1, 2}, {0, 1}, {1, 2}});
+}
+
+TEST_CASE("load_csv: numbers are read to the last digit", "[datasets]") {
+  const CsvTable table =
+      load("x\n0.1\n1e-300\n+5\n.5\n5.\n-0\n1.7976931348623157e308\n0.30000000000000004\n 7 \n",
+           request({"x"}));
+  CHECK(table.columns.front() == std::vector<double>{0.1, 1e-300, 5, 0.5, 5, 0,
+                                                     1.7976931348623157e308, 0.30000000000000004,
+                                                     7});
+}
+
+TEST_CASE("load_csv: separators are found by themselves", "[datasets]") {
+  const Columns expected{{0, 1}, {1.5, 2.5}};
+  CHECK(load("t,x\n0,1.5\n1,2.5\n").columns == expected);
+  CHECK(load("t;x\n0;1.5\n1;2.5\n").columns == expected);
+  CHECK(load("t\tx\n0\t1.5\n1\t2.5\n").columns == expected);
+  CHECK(load("t , x\n0 , 1.5\n1 , 2.5 \n").columns == expected);
+  CHECK(load("t;x [m,abs]\n0;1.5\n1;2.5\n").columns == expected);
+  CHECK(load("\"t\";\"a, b\";x\n0;0;1.5\n1;0;2.5\n").columns == expected);
+}
+
+TEST_CASE("load_csv: a given separator counts", "[datasets]") {
+  CsvRequest wanted = request({"t;s", "x"});
+  wanted.separator = ',';
+  CHECK(load("t;s,x\n0,1.5\n", wanted).columns == Columns{{0}, {1.5}});
+  wanted.separator = '|';
+  CHECK_THAT(refusal("t|x\n0|1\n", wanted), Contains("'|' is no separator") && Contains("tab"));
+}
+
+TEST_CASE("load_csv: decimal commas where the separator allows them", "[datasets]") {
+  const Columns expected{{0, 0.5}, {-1.5, 2e-3}};
+  CHECK(load("t;x\n0,0;-1,5\n0,5;2,0e-3\n").columns == expected);
+  CHECK(load("t\tx\n0,0\t-1,5\n0,5\t2,0e-3\n").columns == expected);
+  CHECK(load("t;x\n0.0;-1,5\n0,5;2.0e-3\n").columns == expected);
+}
+
+TEST_CASE("load_csv: units behind names", "[datasets]") {
+  const Columns expected{{0}, {1}};
+  const std::string header =
+      GENERATE("t [s],x [mm]", "t (s),x (mm)", "t[s],x(mm)", "\"t [s]\",\"x (m/(s Pa))\"");
+  CAPTURE(header);
+  CHECK(load(header + "\n0,1\n").columns == expected);
+  CHECK(csv_header(File(header + "\n0,1\n").path()) == std::vector<std::string>{"t", "x"});
+}
+
+TEST_CASE("load_csv: names with units tell columns of one name apart", "[datasets]") {
+  const std::string text = "p (A),p (B)\n1,2\n";
+  CHECK(load(text, request({"p (B)", "p (A)"})).columns == Columns{{2}, {1}});
+  CHECK(csv_header(File(text).path()) == std::vector<std::string>{"p (A)", "p (B)"});
+  CHECK_THAT(refusal(text, request({"p"})),
+             StartsWith("a.csv:1: ") && Contains("columns 1 and 2 are both named 'p'"));
+}
+
+TEST_CASE("load_csv: quoted header, and quoted text in columns that are not wanted", "[datasets]") {
+  CHECK(load("\"t\",\"x \"\"raw\"\" [mm]\",note\n0,1,\"a, b\"\n", request({"t", "x \"raw\""}))
+            .columns == Columns{{0}, {1}});
+  CHECK(load("t,x,note\n0,1,5\" pipe\n").columns == Columns{{0}, {1}});  // quote inside a field
+}
+
+TEST_CASE("load_csv: comments before the header", "[datasets]") {
+  const CsvTable table = load("# rig 3; day 2\n  # more\nt,x\n0,1\n");
+  CHECK(table.columns == Columns{{0}, {1}});
+  CHECK(table.first_data_line == 4);
+}
+
+TEST_CASE("load_csv: line ends, byte-order mark, end of file", "[datasets]") {
+  const Columns expected{{0, 1}, {1, 2}};
+  CHECK(load("t,x\r\n0,1\r\n1,2\r\n").columns == expected);
+  CHECK(load("\xEF\xBB\xBFt,x\n0,1\n1,2\n").columns == expected);
+  CHECK(load("t,x\n0,1\n1,2").columns == expected);
+  CHECK(load("t,x\r\n0,1\r\n1,2\r\n\r\n  \n\n").columns == expected);
+}
+
+TEST_CASE("load_csv: header in Latin-1", "[datasets]") {
+  CHECK(load("t,\xD6ldruck [bar]\n0,1\n", request({"Öldruck"})).columns == Columns{{1}});
+}
+
+TEST_CASE("csv_header: names without units", "[datasets]") {
+  CHECK(csv_header(File("# c\nt [s];x;;y (m)\n").path()) ==
+        std::vector<std::string>{"t", "x", "", "y"});
+  CHECK(csv_header(File("a;b,c\n").path(), ',') == std::vector<std::string>{"a;b", "c"});
+}
+
+// ---- What is refused -----------------------------------------------------------------------
+
+TEST_CASE("load_csv: fields that are not numbers", "[datasets]") {
+  const std::string field = GENERATE("abc", "nan", "inf", "-inf", "1.5x", "1.2.3", "0x10", "1 2",
+                                     "1e999", "--1", "+-1", "12:00:01", "\"1.5\"", "1'000");
+  CAPTURE(field);
+  CHECK_THAT(refusal("t,x\n0,1\n1, " + field + "\n"),
+             StartsWith("a.csv:3:4: '" + field + "' in column 'x' is not a finite number") &&
+                 Contains("expected"));
+}
+
+TEST_CASE("load_csv: decimal commas that are none", "[datasets]") {
+  const std::string field = GENERATE("1.234,5", "1,234,5", ",", "1,5x");
+  CAPTURE(field);
+  CHECK_THAT(refusal("t;x\n0;1\n1;" + field + "\n"),
+             StartsWith("a.csv:3:3: '" + field + "' in column 'x' is not a finite number"));
+}
+
+TEST_CASE("load_csv: an empty field is no zero", "[datasets]") {
+  CHECK_THAT(refusal("t,x,y\n0,1,2\n1,,2\n"), StartsWith("a.csv:3:3: column 'x' is empty"));
+  CHECK_THAT(refusal("t,x\n0,1\n1,\n"), StartsWith("a.csv:3:3: column 'x' is empty"));
+}
+
+TEST_CASE("load_csv: the column in messages counts characters", "[datasets]") {
+  CHECK_THAT(refusal("note,t,x\n0,0,1\n\xC3\xB6\xE2\x82\xAC,1,bad\n"), StartsWith("a.csv:3:6: "));
+}
+
+TEST_CASE("load_csv: decimal comma with ',' as separator", "[datasets]") {
+  CHECK_THAT(refusal("t,x\n0,0,1,5\n"),
+             StartsWith("a.csv:2:5: 4 columns; expected 2 as in the header (line 1)") &&
+                 Contains("decimal commas are a likely cause"));
+  // The count of columns is what is wrong, though a field is wrong too.
+  CHECK_THAT(refusal("t,x\n0,a,1,5\n"), Contains("decimal commas are a likely cause"));
+}
+
+TEST_CASE("load_csv: wrong count of columns", "[datasets]") {
+  CHECK_THAT(refusal("t,x,y\n0,1,2\n1,2\n"),
+             StartsWith("a.csv:3:4: 2 columns; expected 3") && !Contains("decimal"));
+  CHECK_THAT(refusal("t;x\n0;1\n1;2;3\n"),
+             StartsWith("a.csv:3:5: 3 columns; expected 2") && !Contains("decimal"));
+  CHECK_THAT(refusal("t,x\n0,1,\n"),
+             StartsWith("a.csv:2:5: ") && Contains("the line ends with a separator"));
+  CHECK_THAT(refusal("t,x\n0,1\n# end of record\n"),
+             StartsWith("a.csv:3:") && Contains("comments are accepted before the header only"));
+}
+
+TEST_CASE("load_csv: missing column", "[datasets]") {
+  const std::string message = refusal("# c\nt [s],x_mm,u\n0,1,2\n", request({"t", "xmm"}));
+  CHECK(message == "a.csv:2: unknown column 'xmm'; did you mean 'x_mm'? (known: t, x_mm, u)");
+  CHECK_THAT(refusal("t x\n0 1\n"), Contains("(known: t x)") && Contains("separator"));
+}
+
+TEST_CASE("load_csv: duplicate names matter where they are wanted", "[datasets]") {
+  const std::string text = "t,x,y,x\n0,1,2,3\n";
+  CHECK_THAT(refusal(text), StartsWith("a.csv:1: columns 2 and 4 are both named 'x'"));
+  CHECK(load(text, request({"t", "y"}, "t")).columns == Columns{{0}, {2}});
+}
+
+TEST_CASE("load_csv: a second header line of units", "[datasets]") {
+  CHECK_THAT(refusal("t,x\ns,mm\n0,1\n"),
+             StartsWith("a.csv:2:1: no numbers in the first row ('s' in column 't')") &&
+                 Contains("x [mm]"));
+  CHECK_THAT(refusal("t,x\n[s],\n0,1\n"), StartsWith("a.csv:2:1: no numbers in the first row"));
+}
+
+TEST_CASE("load_csv: numbers where the header should be", "[datasets]") {
+  CHECK_THAT(refusal("0,1\n1,2\n"), StartsWith("a.csv:1:1: holds numbers; expected the header"));
+  CHECK_THAT(refusal("# t,x\n0,1\n"), StartsWith("a.csv:2:1: ") && Contains("'#'"));
+}
+
+TEST_CASE("load_csv: time that does not increase", "[datasets]") {
+  CHECK_THAT(refusal("x,t\n5,0\n5,0.1\n5,0.1\n"),
+             StartsWith("a.csv:4:3: time 't' does not increase: 0.1 comes after 0.1"));
+  CHECK_THAT(refusal("x,t\n5,0\n5,0.2\n5,0.1\n"),
+             StartsWith("a.csv:4:3: time 't' does not increase: 0.1 comes after 0.2"));
+  CHECK(load("x,t\n5,1\n5,0\n", request({"t", "x"})).columns == Columns{{1, 0}, {5, 5}});
+}
+
+TEST_CASE("load_csv: a time column that is not wanted is a mistake of the caller", "[datasets]") {
+  CHECK_THROWS_AS(load("t,x\n0,1\n", request({"x"}, "t")), std::invalid_argument);
+}
+
+TEST_CASE("load_csv: empty lines inside", "[datasets]") {
+  CHECK_THAT(refusal("t,x\n0,1\n\n \n1,2\n"),
+             StartsWith("a.csv:3:1: an empty line inside the data, which goes on in line 5"));
+  CHECK_THAT(refusal("\nt,x\n0,1\n"), StartsWith("a.csv:1:1: is an empty line"));
+  CHECK_THAT(refusal("t,x\n\n0,1\n"), StartsWith("a.csv:2:1: an empty line inside the data"));
+}
+
+TEST_CASE("load_csv: nothing to read", "[datasets]") {
+  CHECK_THAT(refusal(""), StartsWith("a.csv: is empty; expected a header line"));
+  CHECK_THAT(refusal("\xEF\xBB\xBF"), StartsWith("a.csv:1:1: is an empty line"));
+  CHECK_THAT(refusal("# only\n# comments\n"), StartsWith("a.csv: holds comments only"));
+  CHECK_THAT(refusal("t,x\n"), StartsWith("a.csv:1: no rows after the header"));
+  CHECK_THAT(refusal("t,x\n\n\n"), StartsWith("a.csv:1: no rows after the header"));
+}
+
+TEST_CASE("load_csv: no such file, a folder", "[datasets]") {
+  const File file("");
+  CHECK_THAT(refusal_of(file.folder() / "missing.csv", request({"t"})),
+             StartsWith("missing.csv: cannot be opened: No such file"));
+  fs::create_directory(file.folder() / "folder.csv");
+  CHECK_THAT(refusal_of(file.folder() / "folder.csv", request({"t"})),
+             StartsWith("folder.csv: is a folder; expected a CSV file"));
+}
+
+TEST_CASE("load_csv: a file that cannot be read", "[datasets]") {
+  const File file("t\n0\n");
+  if (::geteuid() != 0) {  // root may read everything
+    fs::permissions(file.path(), fs::perms::none);
+    CHECK_THAT(refusal_of(file.path(), request({"t"})), Contains("cannot be opened: Permission"));
+  }
+  // Opens, but its first byte cannot be read.
+  CHECK_THAT(refusal_of("/proc/self/mem", request({"t"})), Contains("mem: cannot be read: "));
+}
+
+TEST_CASE("load_csv: text in another encoding, and what is no text", "[datasets]") {
+  using namespace std::string_literals;
+  CHECK_THAT(refusal("\xFF\xFEt\0,\0x\0\n\0"s), StartsWith("a.csv: is UTF-16 text"));
+  CHECK_THAT(refusal("\xFE\xFF\0t\0,\0x\0\n"s), StartsWith("a.csv: is UTF-16 text"));
+  CHECK_THAT(refusal("t,x\n0,1\n1,\0\x32\n"s),
+             StartsWith("a.csv: is a binary file (byte 11 is NUL); expected CSV text"));
+  CHECK_THAT(refusal("\x89PNG\x1A\n0,1\n"), Contains("control characters"));
+  CHECK_THAT(refusal("t,x\r0,1\r1,2\r"), StartsWith("a.csv:1:1: ") && Contains("carriage return"));
+}
+
+TEST_CASE("load_csv: messages show no control characters and stay short", "[datasets]") {
+  const std::string message = refusal("t,x\n0,\x1B[31m" + std::string(1000, 'a') + "\n");
+  CHECK_THAT(message, StartsWith("a.csv:2:3: '?[31maaa") && Contains("...' in column"));
+  CHECK(message.size() < 200);
+}
+
+TEST_CASE("load_csv: too many columns", "[datasets]") {
+  CHECK_THAT(refusal(std::string(20'000, ',') + "\n"),
+             StartsWith("a.csv:1:1: has 20001 columns; expected at most 10000"));
+}
+
+// ---- Sizes ---------------------------------------------------------------------------------
+
+TEST_CASE("load_csv: files longer than the window of the reader", "[datasets]") {
+  // 3 windows of 16 MiB, without end of the last line; every line is checked by its number.
+  constexpr bool kFewer = rigcal::test::kSanitized;  // a tenth of the lines, ten times as long
+  constexpr long kRows = kFewer ? 110'000 : 1'100'000;
+  std::string text = "note,t,x\n";
+  const std::string padding(kFewer ? 300 : 30, 'p');
+  for (long i = 0; i < kRows; ++i)
+    text.append(padding)
+        .append(",")
+        .append(std::to_string(i))
+        .append(",")
+        .append(std::to_string(i % 7))
+        .append("\n");
+  text.pop_back();
+  REQUIRE(text.size() > std::size_t{3} << 23);
+  const CsvTable table = load(text);
+  REQUIRE(table.columns[0].size() == kRows);
+  long wrong = 0;
+  for (long i = 0; i < kRows; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    if (table.columns[0][k] != static_cast<double>(i)) ++wrong;
+    if (table.columns[1][k] != static_cast<double>(i % 7)) ++wrong;
+  }
+  CHECK(wrong == 0);
+  CHECK_THAT(refusal(text + "x\n"), StartsWith("a.csv:" + std::to_string(kRows + 1) + ":"));
+}
+
+TEST_CASE("load_csv: a file above the limit of bytes is refused unread", "[datasets]") {
+  const File file("t,x\n0,1\n");
+  fs::resize_file(file.path(), std::uintmax_t{5} << 30);  // sparse: takes no room
+  CHECK_THAT(refusal_of(file.path(), request({"t"})),
+             StartsWith("a.csv: has 5368709120 bytes, more than the limit of 4294967296") &&
+                 EndsWith("split it into several files"));
+  CsvRequest wanted = request({"t"});
+  wanted.max_bytes = 8;
+  CHECK(load("t,x\n0,1\n", wanted).columns == Columns{{0}});
+  CHECK_THAT(refusal("t,x\n0,12\n", wanted), Contains("limit of 8"));
+}
+
+namespace {
+
+// 200 MB for the whole command, of which 20 are left to the rest of it. The sanitizer's own memory
+// comes on top, and freed blocks stay in its quarantine.
+constexpr long kMostMegabytes = rigcal::test::kSanitized ? 700 : 180;
+
+/// Resident memory of this process: a child starts with as much.
+long resident_megabytes() {
+  long pages_of_program = 0;
+  long pages_resident = 0;
+  std::ifstream("/proc/self/statm") >> pages_of_program >> pages_resident;
+  return pages_resident * ::sysconf(_SC_PAGESIZE) / (1 << 20);
+}
+
+struct EndlessResult {
+  std::string message;
+  std::size_t bytes_given = 0;
+  long grown_megabytes = 0;  ///< peak of memory above that before
+};
+
+/// Loads, in a process of its own, a pipe that holds `head` and then `body` again and again.
+EndlessResult load_endless(const std::string& head, const std::string& body,
+                           const CsvRequest& wanted) {
+  const File file("");
+  const fs::path pipe = file.folder() / "endless.csv";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  const auto handler = std::signal(SIGPIPE, SIG_IGN);  // write() fails when the reader gives up
+  const long megabytes_before = resident_megabytes();
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    std::string message = "no error";
+    try {
+      load_csv(pipe, wanted);
+    } catch (const std::exception& error) {
+      message = error.what();
+    }
+    std::ofstream(file.folder() / "message") << message;
+    ::_exit(0);
+  }
+  EndlessResult result;
+  const int out = ::open(pipe.c_str(), O_WRONLY);
+  REQUIRE(out >= 0);
+  // The stop is for a reader that never gives up.
+  constexpr std::size_t kStop = std::size_t{2} << 30;
+  std::string block = head;
+  while (block.size() < (std::size_t{1} << 20)) block += body;
+  const std::string first = block;
+  block.clear();
+  while (block.size() < (std::size_t{1} << 20)) block += body;
+  const std::string* next = &first;
+  while (result.bytes_given < kStop) {
+    const ssize_t written = ::write(out, next->data(), next->size());
+    if (written < 0) break;
+    result.bytes_given += static_cast<std::size_t>(written);
+    if (static_cast<std::size_t>(written) < next->size()) break;
+    next = &block;
+  }
+  ::close(out);
+  int status = 0;
+  rusage usage{};
+  REQUIRE(::wait4(child, &status, 0, &usage) == child);
+  std::signal(SIGPIPE, handler);
+  CHECK(status == 0);
+  result.grown_megabytes = usage.ru_maxrss / 1024 - megabytes_before;
+  std::getline(std::ifstream(file.folder() / "message"), result.message);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("load_csv: a huge file is given up early and within 200 MB", "[datasets]") {
+  const auto [head, row, names] =
+      GENERATE(table<std::string, std::string, std::vector<std::string>>(
+          {{"x\n", "1\n", {"x"}}, {"a,b,c,d\n", "1,2,3,4\n", {"a", "b", "c", "d"}}}));
+  const EndlessResult result = load_endless(head, row, request(names));
+  CAPTURE(result.bytes_given, result.grown_megabytes);
+  CHECK_THAT(result.message, Contains("endless.csv:") && Contains("more than 12000000 numbers") &&
+                                 Contains("decimate the record, or split it"));
+  // 12 million numbers of two bytes each, and at most three windows of 16 MiB read ahead.
+  CHECK(result.bytes_given < 80'000'000);
+  CHECK(result.grown_megabytes < kMostMegabytes);
+}
+
+TEST_CASE("load_csv: a huge file on disk is refused within 200 MB", "[datasets]") {
+  const File file("");
+  {
+    std::ofstream out(file.path());
+    out << "x\n1\n";
+    std::string block;
+    for (int i = 0; i < 100'000; ++i) block += "1\n";
+    for (int i = 0; i < 121; ++i) out << block;
+  }
+  const long megabytes_before = resident_megabytes();
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    try {
+      load_csv(file.path(), request({"x"}));
+    } catch (const InputError& error) {
+      ::_exit(error.where().line == 12'000'002 ? 2 : 3);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  rusage usage{};
+  REQUIRE(::wait4(child, &status, 0, &usage) == child);
+  CHECK(WEXITSTATUS(status) == 2);
+  CHECK(usage.ru_maxrss / 1024 - megabytes_before < kMostMegabytes);
+}
+
+TEST_CASE("load_csv: a line without end is given up early", "[datasets]") {
+  const EndlessResult result = load_endless("t,x\n0,1\n", "1234567890", request({"t"}));
+  CHECK_THAT(result.message, Contains("endless.csv:3: the line has 16 MiB or more"));
+  CHECK(result.bytes_given < 80'000'000);
+  CHECK(result.grown_megabytes < kMostMegabytes);
+}
+
+TEST_CASE("load_csv: a pipe above the limit of bytes", "[datasets]") {
+  CsvRequest wanted = request({"x"});
+  wanted.max_bytes = 1'000'000;
+  const EndlessResult result = load_endless("x\n", "1\n", wanted);
+  CHECK_THAT(result.message, Contains("is longer than the limit of 1000000 bytes"));
+  CHECK(result.bytes_given < 80'000'000);
+}
+
+TEST_CASE("load_csv: a file that may have been cut within its last number", "[datasets]") {
+  const auto cut = [](const std::string& content, const std::vector<std::string>& columns) {
+    return load_csv(File(content).path(), request(columns)).cut_short;
+  };
+  const std::string rows = "t,x\n0.0,3.4209\n0.1,-1.2345\n0.2,2.5";
+  CHECK_THAT(cut(rows, {"t", "x"}), Contains(":4: the file ends without a newline") &&
+                                        Contains("column 'x', of 3 characters") &&
+                                        Contains("6 or more"));
+  CHECK(cut(rows + "\n", {"t", "x"}).empty());            // whole
+  CHECK(cut(rows + "432", {"t", "x"}).empty());           // as long as others
+  CHECK(cut(rows, {"t"}).empty());                        // its last column is not used
+  CHECK(cut("t,x\n0.0,3.4", {"t", "x"}).empty());         // nothing to compare with
+  CHECK(cut("t,x\n0,1\n1,10\n2,3", {"t", "x"}).empty());  // not the shortest
+}
