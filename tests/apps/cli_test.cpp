@@ -364,7 +364,9 @@ TEST_CASE("rigcal: --out that cannot be written is told before any work", "[apps
         const Outcome outcome = folder.run({verb, "campaign.toml", "--out", out});
         CAPTURE(out, outcome.err);
         CHECK(outcome.exit_code == 5);
-        CHECK_THAT(outcome.err, StartsWith("rigcal: ") && Contains(out) && Contains("cannot"));
+        CHECK_THAT(outcome.err,
+                   StartsWith("rigcal: ") && Contains(out) &&
+                       (Contains("cannot") || Contains("is a file; expected a folder")));
         CHECK(folder.files() == before);
         CHECK(folder.read("occupied") == "a file");
       }

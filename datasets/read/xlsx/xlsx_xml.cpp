@@ -13,6 +13,10 @@
 namespace rigcal::datasets {
 namespace {
 
+/// Of a tag or comment. With every block Expat reads one that is not closed again from its
+/// beginning, so that one of 64 MB would take 20 s.
+constexpr std::int64_t kMostTagBytes = std::int64_t{1} << 20;
+
 std::string_view without_namespace(std::string_view name) {
   const std::size_t colon = name.rfind(':');
   return colon == std::string_view::npos ? name : name.substr(colon + 1);
@@ -97,8 +101,16 @@ void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t
                                  XML_GetCurrentLineNumber(parser.get()), part,
                                  XML_ErrorString(XML_GetErrorCode(parser.get()))));
   };
+  std::int64_t given = 0;
   archive.read(part, most_bytes, [&](std::string_view block) {
     parse(block, false);
+    given += static_cast<std::int64_t>(block.size());
+    const std::int64_t begin = XML_GetCurrentByteIndex(parser.get());  // -1 of none
+    if (begin >= 0 && given - begin > kMostTagBytes)
+      throw InputError({archive.name()},
+                       fmt::format("its part '{}' has a tag or comment of more than {} MB; save it "
+                                   "again as .xlsx",
+                                   part, kMostTagBytes >> 20));
     return !handler.is_done();
   });
   if (!handler.is_done()) parse({}, true);

@@ -39,9 +39,8 @@ class XmlHandler {
 
 /// Reads a part of a workbook as XML, by Expat.
 ///
-/// @throws InputError  as XlsxArchive::read; not XML, or with a document type, which no workbook
-/// has
-///                     and which may define endless entities
+/// @throws InputError  as XlsxArchive::read; not XML; with a document type, which no workbook has
+///                     and which may define endless entities; with a tag of more than 1 MB
 void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t most_bytes,
               XmlHandler& handler);
 

@@ -81,14 +81,25 @@ TEST_CASE("damaged XLSX: what inflates without end is refused", "[datasets]") {
   write_zip(bomb, parts);
   CHECK_THROWS_WITH(load_xlsx_record(bomb, {{"t", "x"}, "t"}),
                     Catch::Contains("holds more than 64 MB of text"));
-  // One attribute of 70 MB, which Expat keeps whole, in a part that is small otherwise.
+  const auto require_refused_styles = [&](const std::string& styles, const std::string& message) {
+    parts = xlsx_parts({{"Log", text}});
+    parts.at(parts.size() - 2).second = styles;
+    write_zip(bomb, parts);
+    CHECK_THROWS_WITH(load_xlsx_record(bomb, {{"t", "x"}, "t"}), Catch::Contains(message));
+  };
+  // Expat would read a tag again from its beginning with every block of it.
   std::string attribute = "<styleSheet a=\"";
-  for (int i = 0; i < 70; ++i) attribute += blanks;
-  parts = xlsx_parts({{"Log", text}});
-  parts.at(parts.size() - 2).second = attribute + "\"/>";
-  write_zip(bomb, parts);
-  CHECK_THROWS_WITH(load_xlsx_record(bomb, {{"t", "x"}, "t"}),
-                    Catch::Contains("'xl/styles.xml' inflates to more than 64 MB"));
+  std::string comment = "<styleSheet><!--";
+  for (int i = 0; i < 70; ++i) {
+    attribute += blanks;
+    comment += blanks;
+  }
+  require_refused_styles(attribute + "\"/>",
+                         "'xl/styles.xml' has a tag or comment of more than 1 MB");
+  require_refused_styles(comment + "--></styleSheet>", "has a tag or comment of more than 1 MB");
+  std::string many = "<styleSheet>";
+  for (int i = 0; i < 140; ++i) many += "<a b=\"" + blanks.substr(blanks.size() / 2) + "\"/>";
+  require_refused_styles(many + "</styleSheet>", "'xl/styles.xml' inflates to more than 64 MB");
   rusage children{};
   ::getrusage(RUSAGE_CHILDREN, &children);
   CHECK(children.ru_maxrss / 1024 < (kSanitized ? 4096 : 1024));
