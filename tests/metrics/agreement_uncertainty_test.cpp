@@ -123,6 +123,7 @@ TEST_CASE("agreement_uncertainty: a sensor's gain and offset", "[metrics]") {
   with.offset_sd = 0.02;
   const auto offset = agreement_uncertainty(with, truth);
   CHECK_THAT(offset->maximum_error, WithinRel(1.959964 * 0.02, 1e-5));
+  CHECK_THAT(offset->rmse, WithinRel(1.959964 * 0.02, 1e-5));  // the same at every sample
   with.gain_sd = 0.01;
   CHECK_THAT(agreement_uncertainty(with, truth)->rmse,
              WithinRel(std::hypot(gain->rmse, offset->rmse), 1e-6));
@@ -147,7 +148,9 @@ TEST_CASE("agreement_uncertainty: one repeat and copies tell nothing", "[metrics
   const std::vector<double> truth = sine(100, 1.0);
   Repeats repeats{truth, {}};
   CHECK_FALSE(agreement_uncertainty(measured(repeats), truth).has_value());
-  repeats.deviations.emplace_back(100, 0.0);
+  repeats.deviations.emplace_back(100, 0.1);
+  CHECK_FALSE(agreement_uncertainty(measured(repeats), truth).has_value());
+  repeats.deviations.back().assign(100, 0.0);
   CHECK_FALSE(agreement_uncertainty(measured(repeats), truth).has_value());
   repeats.deviations.emplace_back(100, 0.0);
   CHECK_FALSE(agreement_uncertainty(measured(repeats), truth).has_value());
