@@ -100,8 +100,10 @@ Plot parity_plot(const std::string& title, std::span<const double> measured,
     for (std::size_t at = 0; at < counts.size(); ++at) {
       const double of_fullest = static_cast<double>(counts[at]) / static_cast<double>(fullest);
       if (of_fullest <= from || of_fullest > share) continue;
-      shade.x.push_back(range.low + (static_cast<double>(at / kCells) + 0.5) * cell);
-      shade.y.push_back(range.low + (static_cast<double>(at % kCells) + 0.5) * cell);
+      const std::size_t column = at / kCells;
+      const std::size_t row = at % kCells;
+      shade.x.push_back(range.low + (static_cast<double>(column) + 0.5) * cell);
+      shade.y.push_back(range.low + (static_cast<double>(row) + 0.5) * cell);
     }
     from = share;
     if (!shade.x.empty()) plot.traces.push_back(std::move(shade));
