@@ -4,6 +4,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/apps/cli_fixture.hpp"
@@ -360,13 +361,13 @@ TEST_CASE("rigcal: --out that cannot be written is told before any work", "[apps
       write_campaign(folder);
       folder.write("occupied", "a file");
       const auto before = folder.files();
-      for (const char* out : {"occupied", "occupied/below", "/dev/null/below"}) {
+      for (const auto& [out, why] :
+           {std::pair{"occupied", "is a file; expected a folder"},
+            std::pair{"occupied/below", "cannot"}, std::pair{"/dev/null/below", "cannot"}}) {
         const Outcome outcome = folder.run({verb, "campaign.toml", "--out", out});
         CAPTURE(out, outcome.err);
         CHECK(outcome.exit_code == 5);
-        CHECK_THAT(outcome.err,
-                   StartsWith("rigcal: ") && Contains(out) &&
-                       (Contains("cannot") || Contains("is a file; expected a folder")));
+        CHECK_THAT(outcome.err, StartsWith("rigcal: ") && Contains(out) && Contains(why));
         CHECK(folder.files() == before);
         CHECK(folder.read("occupied") == "a file");
       }

@@ -161,6 +161,7 @@ class Scripts(unittest.TestCase):
         (self.tree / "CHANGELOG.md").write_text("## 0.3.0\n")
         self.assertIn("not committed", self.run_script("tag-version", fails=True))
         self.assertEqual(self.run_script("tag-version", "--check"), "")
+        self.assertIn("found '--chek'", self.run_script("tag-version", "--chek", fails=True))
 
     def test_the_version_has_its_section(self):
         subprocess.run([ROOT / "scripts" / "tag-version", "--check"], check=True)
