@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "common/significant.hpp"
+
 namespace rigcal::calib {
 namespace {
 
@@ -16,7 +18,7 @@ double largest_use(const ConditionScore& score) {
 
 /// "37 %", "1.8 %", "over 1000 %".
 std::string percent(double share) {
-  return share > 10.0 ? std::string("over 1000 %") : fmt::format("{:.2g} %", 100.0 * share);
+  return share > 10.0 ? std::string("over 1000 %") : significant(100.0 * share, 2) + " %";
 }
 
 /// Scores in the order of how far they use their tolerances, the worst first.

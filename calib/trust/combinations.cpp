@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "common/significant.hpp"
 #include "common/unit_product.hpp"
 #include "metrics/distributions.hpp"
 
@@ -55,9 +56,9 @@ std::string text_of(const Problem& problem, std::span<const double> z, const Pow
       std::pow(problem.map.to_physical(static_cast<int>(c.second), z[c.second]), c.power);
   const std::string unit =
       unit_product(problem.spec(c.first).unit, problem.spec(c.second).unit, -c.power);
-  return fmt::format("the records fix {}{}{} = {:.3g}{} (to {:.2g} %), not {} and {}", a,
+  return fmt::format("the records fix {}{}{} = {:.3g}{} (to {} %), not {} and {}", a,
                      c.power > 0.0 ? "/" : " * ", power_text(b, std::abs(c.power)), value,
-                     unit == "1" ? "" : " " + unit, 100.0 * c.half_width, a, b);
+                     unit == "1" ? "" : " " + unit, significant(100.0 * c.half_width, 2), a, b);
 }
 
 /// The partner with which the unknown makes the best-known product of powers.

@@ -150,8 +150,8 @@ std::string between_repeats_warning(const BetweenRepeats& repeats) {
                       "drives the rig, or use a common trigger",
                       1e3 * repeats.cause_sd);
   }
-  text += fmt::format("; they differ as if {} varied by {:.2g} % from repeat to repeat",
-                      repeats.cause, 100.0 * repeats.cause_sd);
+  text += fmt::format("; they differ as if {} varied by {} % from repeat to repeat", repeats.cause,
+                      significant(100.0 * repeats.cause_sd, 2));
   text += ": ";
   if (repeats.cause == "supply_pressure")
     text += "a recorded supply pressure (channel `supply_pressure`) would account for it, or ";

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "common/parallel.hpp"
+#include "common/significant.hpp"
 #include "common/unit_product.hpp"
 
 namespace rigcal::calib {
@@ -167,9 +168,9 @@ std::string describe(const Problem& problem, const ScalingSymmetry& symmetry) {
   if (symmetry.holds()) {
     return fmt::format(
         "scaling symmetry, nearly: {} changes positions only through the fixed {}, which {} s to "
-        "no better than {:.2g} % (standard error); it takes {} to determine it",
+        "no better than {} % (standard error); it takes {} to determine it",
         scaling, known, symmetry.known.size() == 1 ? "determines" : "determine",
-        100.0 * symmetry.relative_sd, symmetry_remedy(problem, symmetry));
+        significant(100.0 * symmetry.relative_sd, 2), symmetry_remedy(problem, symmetry));
   }
   return fmt::format(
       "scaling symmetry: {} changes positions only through the fixed {}: an error of 1 % there is "

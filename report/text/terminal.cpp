@@ -214,12 +214,12 @@ std::vector<std::string> worst_conditions(const calib::Fit& fit) {
                            return std::pair(a.verdict, a.used) < std::pair(b.verdict, b.used);
                          });
     if (check != score.checks.end()) {
-      ranked.emplace_back(check->value ? check->used : kWithoutScore,
-                          check->value
-                              ? fmt::format("{}: {} of {}, {:.2g} % of the tolerance used",
-                                            score.id, metric_text(check->metric, *check->value),
-                                            info(check->channel).key, 100.0 * check->used)
-                              : fmt::format("{}: {}", score.id, check->words));
+      ranked.emplace_back(
+          check->value ? check->used : kWithoutScore,
+          check->value ? fmt::format("{}: {} of {}, {} % of the tolerance used", score.id,
+                                     metric_text(check->metric, *check->value),
+                                     info(check->channel).key, significant(100.0 * check->used, 2))
+                       : fmt::format("{}: {}", score.id, check->words));
       continue;
     }
     for (const calib::ChannelScore& channel : score.channels) {

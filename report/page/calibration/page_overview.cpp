@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "common/significant.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
@@ -126,7 +127,8 @@ Json three_numbers(const StoredFit& fit, const std::string& channel) {
           extreme(fit.conditions, channel, &Agreement::absolute_error_percent, std::greater<>()))
     add("Largest mean error", fmt::format("{:.3g} % of the range", largest->value), largest->of);
   if (const auto widest = widest_interval(fit.parameters))
-    add("Least certain estimate", fmt::format("± {:.2g} %", 100.0 * widest->value), widest->of);
+    add("Least certain estimate", fmt::format("± {} %", significant(100.0 * widest->value, 2)),
+        widest->of);
   return numbers;
 }
 

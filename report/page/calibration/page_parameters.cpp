@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/significant.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
@@ -28,7 +29,8 @@ std::string half_width_text(const StoredParameter& p) {
   const double half = std::max(ends->high - *p.value, *p.value - ends->low);
   const double percent = 100.0 * half / std::abs(*p.value);
   if (percent > 1000.0) return "over 1000 %";
-  return percent < 100.0 ? fmt::format("± {:.2g} %", percent) : fmt::format("± {:.0f} %", percent);
+  return fmt::format("± {} %",
+                     percent < 100.0 ? significant(percent, 2) : fmt::format("{:.0f}", percent));
 }
 
 Json grade(const StoredParameter& p) {

@@ -50,6 +50,16 @@ TEST_CASE("scorecard_text: agreement never looks perfect where it is not", "[rep
   CHECK_THAT(scene.scorecard_at(-0.5), Contains(" -0.5000 "));
 }
 
+TEST_CASE("summary_text: a tolerance that is far exceeded, without an exponent", "[report]") {
+  Scene scene;
+  calib::ConditionScore score;
+  score.id = "sine";
+  score.checks.push_back({.metric = "rho2", .value = 0.9, .used = 2.179});
+  scene.fit.conditions = {score};
+  CHECK_THAT(summary_text(scene.result(ResultKind::fit), {}, {}),
+             Contains("sine: rho2 0.9000 of position, 220 % of the tolerance used"));
+}
+
 TEST_CASE("parameters_text: a reason that several share is told once", "[report]") {
   Scene scene;
   scene.add_parameter("mass", "shared");
