@@ -6,6 +6,7 @@ and a mutated statement an if with both, so that the tree is built once and an e
 mutant. README.md beside this file describes the tables.
 """
 
+import difflib
 import re
 import zlib
 from dataclasses import dataclass
@@ -59,6 +60,7 @@ class Mutant:
     name: str  # unique in its layer
     what: str  # what is broken, in words
     file: str
+    function: str = ""  # all that are defined by this name in the file; the whole file if empty
     original: str = ""
     mutated: str | None = None
     equivalent: str = ""  # why no test can tell, if none can
@@ -91,10 +93,10 @@ def read_table(path):
             before = getattr(mutants[-1], field)
             setattr(mutants[-1], field, f"{before} {rest}" if before else rest)
         else:
-            match = re.fullmatch(r"([a-z0-9_]+): (.+)", line)
+            match = re.fullmatch(r"([a-z0-9_]+)(?: @ (\w+))?: (.+)", line)
             if not match or file is None:
-                raise TableError(f"{where}: expected 'name: what is broken' under a line '== file'")
-            mutants.append(Mutant(path.stem, match[1], match[2], file))
+                raise TableError(f"{where}: expected 'name @ function: what is broken' under a line '== file'")
+            mutants.append(Mutant(path.stem, match[1], match[3], file, match[2] or ""))
     for mutant in mutants:
         if not mutant.original or mutant.mutated in (None, mutant.original):
             raise TableError(f"{mutant.id}: needs a line '- original' and another text in '+ mutated'")
@@ -114,36 +116,129 @@ def blanked(source, literals):
     return pattern.sub(blank, source)
 
 
-def find(mutant, source):
-    """The only place of the original in a source without comments, whatever its white space: (begin, end)."""
-    words = [re.escape(word) for word in mutant.original.split()]
-    places = [m.span() for m in re.finditer(r"\s+".join(words), source)]
-    if len(places) != 1:
-        raise TableError(f"{mutant.id}: the original is found {len(places)} times in {mutant.file}, not once")
+OPEN, CLOSE = "([{", ")]}"
+NO_FUNCTIONS = {"if", "for", "while", "switch", "catch", "return", "sizeof", "decltype", "alignas"}
+TOKEN = re.compile(r'''R"\((?:.*?)\)"|"(?:\\.|[^"\\\n])*"|'(?:\\.|[^'\\])+'|\.?\d(?:[eEpP][+-]|'?[\w.])*|\w+'''
+                   r"|<=>|<<=|>>=|->\*|\.\.\.|::|->|\+\+|--|<<|>>|&&|\|\||[-+*/%&|^=!<>]=|\S", re.S)
+
+
+@dataclass(frozen=True)
+class Token:
+    text: str
+    begin: int
+    end: int
+
+
+def tokens_of(code):
+    """Those of a text without comments; white space and line breaks do not count."""
+    return [Token(m[0], *m.span()) for m in TOKEN.finditer(code)]
+
+
+def closing(tokens, i):
+    """The bracket that closes tokens[i], or the end of the tokens."""
+    depth = 0
+    for j in range(i, len(tokens)):
+        depth += (tokens[j].text in OPEN) - (tokens[j].text in CLOSE)
+        if depth == 0:
+            return j
+    return len(tokens)
+
+
+def definition_end(tokens, i):
+    """The brace that ends the function whose name is tokens[i], or None where that only uses the name."""
+    if i + 1 == len(tokens) or tokens[i + 1].text != "(":
+        return None
+    i, initialises = closing(tokens, i + 1) + 1, False
+    while i < len(tokens):
+        text = tokens[i].text
+        if text == "{" and not (initialises and re.match(r"\w|>", tokens[i - 1].text)):
+            return closing(tokens, i)
+        if text in "([{":
+            i = closing(tokens, i)
+        elif text == ":":
+            initialises = True
+        elif not re.fullmatch(r"\w+|->|::|[&*<>,.]|&&|>>|\.\.\.", text) or (text == "," and not initialises):
+            return None
+        i += 1
+    return None
+
+
+def functions_of(tokens):
+    """(name, its index, the index of the brace that ends it) of every function that is defined among the tokens."""
+    found = []
+    for i, token in enumerate(tokens):
+        if re.fullmatch(r"[A-Za-z_]\w*", token.text) and token.text not in NO_FUNCTIONS:
+            end = definition_end(tokens, i)
+            if end is not None and (i == 0 or tokens[i - 1].text not in (".", "->", "return", "else", ":", ",")):
+                found.append((token.text, i, end))
+    return found
+
+
+def sequences(wanted, tokens, begin, end):
+    """Where the texts stand among tokens[begin:end]."""
+    first, count = wanted[0], len(wanted)
+    return [i for i in range(begin, end - count + 1)
+            if tokens[i].text == first and [t.text for t in tokens[i:i + count]] == wanted]
+
+
+def nearest(wanted, tokens, begin, end, code):
+    """The stretch of tokens[begin:end] most like the texts, as "line 12: text"."""
+    count = min(len(wanted), end - begin)
+    matcher = difflib.SequenceMatcher(autojunk=False)
+    matcher.set_seq2(wanted)
+    best, at = (0.0, 0), None
+    for i in range(begin, end - count + 1):
+        texts = [t.text for t in tokens[i:i + count]]
+        matcher.set_seq1(texts)
+        if matcher.quick_ratio() >= best[0]:
+            best, at = max((best, at), ((matcher.ratio(), sum(map(str.__eq__, texts, wanted))), i),
+                           key=lambda likeness: likeness[0])
+    return told(tokens[at], tokens[at + count - 1], code) if at is not None else "nothing like it"
+
+
+def told(first, last, code):
+    text = " ".join(code[first.begin:last.end].split())
+    return f"line {code.count(chr(10), 0, first.begin) + 1}: {text}"
+
+
+def find(mutant, tokens, functions, code):
+    """The only place of the original in its function, or in the file where none is given: its first token."""
+    wanted = [t.text for t in tokens_of(mutant.original)]
+    bodies = [(i, end) for name, i, end in functions if name == mutant.function]
+    whole = [(0, len(tokens))]
+    where = f"{mutant.function}() of {mutant.file}" if mutant.function else mutant.file
+    if mutant.function and not bodies:
+        elsewhere = sequences(wanted, tokens, 0, len(tokens))
+        of = sorted({name for name, i, end in functions for at in elsewhere if i <= at <= end})
+        like = of or difflib.get_close_matches(mutant.function, {name for name, _, _ in functions})
+        raise TableError(f"{mutant.id}: no function {mutant.function}() in {mutant.file}"
+                         + (f"; the original stands in {', '.join(of)}()" if of else
+                            f"; nearest: {', '.join(like)}()" if like else ""))
+    places = sorted({i for begin, end in bodies or whole for i in sequences(wanted, tokens, begin, end)})
+    if not places:
+        candidates = [nearest(wanted, tokens, begin, end, code) for begin, end in bodies or whole]
+        raise TableError(f"{mutant.id}: lost its place in {where}:\n  wanted   {' '.join(mutant.original.split())}\n"
+                         + "\n".join(f"  nearest  {candidate}" for candidate in candidates))
+    if len(places) > 1:
+        raise TableError(f"{mutant.id}: the original stands {len(places)} times in {where}, not once:\n" + "\n".join(
+            f"  {told(tokens[i], tokens[i + len(wanted) - 1], code)}" for i in places))
     return places[0]
 
 
-def changed(mutant, text):
-    """What differs, in the text of the source that the original matches: (begin, end, what stands there instead)."""
-    original, mutated = mutant.original, mutant.mutated
+def changed(mutant, tokens, at):
+    """What differs, in the source whose tokens match the original from `at` on: (begin, end, what stands there instead)."""
+    original, mutated = tokens_of(mutant.original), tokens_of(mutant.mutated)
     least = min(len(original), len(mutated))
-    front = next((i for i in range(least) if original[i] != mutated[i]), least)
-    back = next((i for i in range(least - front) if original[-1 - i] != mutated[-1 - i]), least - front)
-
-    def alike(part, of):
-        """How long a prefix of `of` has the characters of `part`, whatever its white space."""
-        at, characters = 0, len("".join(part.split()))
-        while characters > 0 or (part[-1:].isspace() and of[at:at + 1].isspace()):
-            characters -= not of[at].isspace()
-            at += 1
-        return at
-
-    begin = alike(original[:front], text)
-    end = len(text) - alike(original[len(original) - back:][::-1], text[::-1])
-    return begin, max(begin, end), mutated[front:len(mutated) - back]
+    front = next((i for i in range(least) if original[i].text != mutated[i].text), least)
+    back = next((i for i in range(least - front) if original[-1 - i].text != mutated[-1 - i].text), least - front)
+    last, last_mutated = len(original) - back, len(mutated) - back
+    instead = mutant.mutated[mutated[front].begin:mutated[last_mutated - 1].end] if front < last_mutated else ""
+    if front == last:  # nothing goes, something comes
+        begin = tokens[at + front].begin if front < len(original) else tokens[at + front - 1].end
+        return begin, begin, f" {instead} "
+    return tokens[at + front].begin, tokens[at + last - 1].end, instead
 
 
-OPEN, CLOSE = "([{", ")]}"
 BEFORE_A_CONDITION = re.compile(r"\b(?:if|for|while|switch)\s*$")
 IS_STATEMENT = re.compile(r"(?:if|for|while|switch|return|throw|continue|break)\b")
 ENDS_IN_A_KEYWORD = re.compile(r"\b(?:return|else|throw|case)\s*$")
@@ -252,21 +347,28 @@ class Place:
 def places_of(mutants, source):
     """Where the mutants of one file go; those of one expression together."""
     code, shape = blanked(source, literals=False), blanked(source, literals=True)
-    places = {}
+    tokens = tokens_of(code)
+    functions = functions_of(tokens)
+    places, lost = {}, []
     for mutant in mutants:
-        begin, end = find(mutant, code)
-        first, last, instead = changed(mutant, code[begin:end])
-        first, last = begin + first, begin + last
+        try:
+            at = find(mutant, tokens, functions, code)
+        except TableError as error:
+            lost.append(str(error))
+            continue
+        first, last, instead = changed(mutant, tokens, at)
         region = None if ";" in instead else expression_around(shape, first, last)
-        if region and IS_STATEMENT.match(code[region[0]:first] + instead + code[last:region[1]]):
+        if region and IS_STATEMENT.match((code[region[0]:first] + instead + code[last:region[1]]).lstrip()):
             region = None
         left, right = region or statement_around(shape, first, last)
-        replaced = code[left:first] + instead + code[last:right]
+        replaced = (code[left:first] + instead + code[last:right]).strip()
         is_statement = region is None
         place = places.setdefault((left, right), Place(left, right, is_statement, []))
         if place.is_statement != is_statement:
             raise TableError(f"{mutant.id}: {mutant.file} is mutated there as expression and as statement")
         place.mutants.append((mutant, replaced))
+    if lost:
+        raise TableError("\n".join(lost))
     ordered = sorted(places.values(), key=lambda place: (place.begin, -place.end))
     for i, place in enumerate(ordered):
         for other in ordered[i + 1:]:
@@ -327,10 +429,17 @@ def check(mutants, root):
         other = numbers.setdefault(mutant.number, mutant)
         if other is not mutant:
             raise TableError(f"{mutant.id} and {other.id}: choose another name, theirs are not told apart")
+    lost = []
     for file, here in by_file(mutants).items():
         if not (root / file).is_file():
-            raise TableError(f"{here[0].id}: no file {file}")
-        with_mutants((root / file).read_text(), here)
+            lost.append(f"{', '.join(mutant.id for mutant in here)}: no file {file}")
+            continue
+        try:
+            with_mutants((root / file).read_text(), here)
+        except TableError as error:
+            lost.append(str(error))
+    if lost:
+        raise TableError("\n".join(lost))
 
 
 def by_file(mutants):
