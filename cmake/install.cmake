@@ -25,7 +25,13 @@ install(FILES ${PROJECT_BINARY_DIR}/rigcalConfig.cmake ${PROJECT_BINARY_DIR}/rig
 install(DIRECTORY datasets/rigs docs/schema DESTINATION ${CMAKE_INSTALL_DATADIR}/rigcal COMPONENT program
   FILES_MATCHING PATTERN *.toml PATTERN *.json)
 install(FILES README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
+set(notices ${PROJECT_BINARY_DIR}/NOTICE ${PROJECT_BINARY_DIR}/copyright)
+add_custom_command(OUTPUT ${notices}
+  COMMAND ${CMAKE_COMMAND} -DROOT=${PROJECT_SOURCE_DIR} -DNOTICE=${PROJECT_BINARY_DIR}/NOTICE
+    -DCOPYRIGHT=${PROJECT_BINARY_DIR}/copyright -P ${PROJECT_SOURCE_DIR}/cmake/notice.cmake
+  DEPENDS cmake/notice.cmake cmake/parts.txt LICENSE)
+add_custom_target(rigcal_notice ALL DEPENDS ${notices})
+install(FILES ${notices} DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
 # The .deb: the program without the libraries that it is made of.
 set(CPACK_GENERATOR DEB)

@@ -100,7 +100,9 @@ Json page_view(Parts parts) {
   view["has_beside"] = !view["beside"].empty();
   view["formulas"] = formulas_view();
   view["style_html"] = std::string(asset("report.css")) + std::string(asset("uPlot.css"));
-  view["plot_library_html"] = std::string(asset("uPlot.js"));
+  // Its licence asks for its notice in every copy, which each page is.
+  view["plot_library_html"] =
+      fmt::format("/*! uPlot\n\n{}*/\n{}", asset("uPlot.LICENSE"), asset("uPlot.js"));
   view["script_html"] = std::string(asset("report.js"));
   return view;
 }

@@ -9,7 +9,7 @@
 
 #include "tests/apps/cli_fixture.hpp"
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using nlohmann::json;
 using rigcal::test::CommandFolder;
 using rigcal::test::Outcome;

@@ -16,7 +16,7 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using rigcal::FilesInWriting;
 using rigcal::InputError;
 using rigcal::read_file;

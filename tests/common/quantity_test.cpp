@@ -9,8 +9,8 @@
 #include <thread>
 #include <vector>
 
+using Catch::Contains;
 using Catch::WithinRel;
-using Catch::Matchers::Contains;
 using rigcal::parse_quantity;
 using rigcal::QuantityError;
 using rigcal::unit_conversion;

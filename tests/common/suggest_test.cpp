@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using Catch::Matchers::EndsWith;
 using rigcal::nearest_name;
 using rigcal::unknown_name_message;

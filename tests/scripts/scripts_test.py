@@ -170,10 +170,13 @@ class Scripts(unittest.TestCase):
         make_program(self.programs / "ctest")
         for name in ("threads", "fuzz"):
             make_program(self.tree / "scripts" / name)
-        printed = self.run_script("test")
-        self.assertTrue(printed.endswith("\nthreads \n== fuzz: build, test\nfuzz --seconds 10\n"), printed)
-        for preset in ("release", "ci"):
-            self.assertIn(f"build {preset}\n== {preset}: test\nctest --preset {preset} -j", printed)
+        sanitizers = "\nthreads \n== fuzz: build, test\nfuzz --seconds 10\n"
+        for arguments, presets in (([], ["release"]), (["--sanitizers"], ["ci"]), (["--all"], ["release", "ci"])):
+            printed = self.run_script("test", *arguments)
+            self.assertEqual(printed.endswith(sanitizers), "ci" in presets, printed)
+            for preset in ("release", "ci"):
+                self.assertEqual(f"build {preset}\n== {preset}: test\nctest --preset {preset} -j" in printed, preset in presets)
+        self.assertIn("found '--al'; expected nothing, --sanitizers or --all", self.run_script("test", "--al", fails=True))
 
     def test_every_script_has_a_test(self):
         tested = {name[5:].replace("_", "-") for name in dir(self) if name.startswith("test_")}

@@ -231,10 +231,12 @@ Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()) {
 void Hdf5File::fail(const std::string& message) const { throw InputError({name_}, message); }
 
 void Hdf5File::list_group(hid_t group, const std::string& path, std::vector<haddr_t>& above) {
-  H5O_info_t info{};
-  if (H5Oget_info2(group, &info, H5O_INFO_BASIC) < 0 || above.size() >= kDeepestGroup) return;
-  if (std::find(above.begin(), above.end(), info.addr) != above.end()) return;  // a circle
-  above.push_back(info.addr);
+  // A reference to an object is its address, which H5Oget_info tells by another type in each
+  // version.
+  hobj_ref_t address{};
+  if (H5Rcreate(&address, group, ".", H5R_OBJECT, -1) < 0 || above.size() >= kDeepestGroup) return;
+  if (std::find(above.begin(), above.end(), address) != above.end()) return;  // a circle
+  above.push_back(address);
   list_clocks(group, path, true);
   Links links;
   if (H5Literate(group, H5_INDEX_NAME, H5_ITER_INC, nullptr, note_link, &links) < 0)

@@ -3,6 +3,7 @@
 #include <expat.h>
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <exception>
 #include <memory>
 #include <new>
@@ -16,6 +17,15 @@ namespace {
 /// Of a tag or comment. With every block Expat reads one that is not closed again from its
 /// beginning, so that one of 64 MB would take 20 s.
 constexpr std::int64_t kMostTagBytes = std::int64_t{1} << 20;
+
+// Expat 2.9 wants its calls of 64 bits, which 2.5 has not.
+#if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
+std::uint64_t current_line(XML_Parser parser) { return XML_GetCurrentLineNumber64(parser); }
+std::int64_t current_byte(XML_Parser parser) { return XML_GetCurrentByteIndex64(parser); }
+#else
+std::uint64_t current_line(XML_Parser parser) { return XML_GetCurrentLineNumber(parser); }
+std::int64_t current_byte(XML_Parser parser) { return XML_GetCurrentByteIndex(parser); }
+#endif
 
 std::string_view without_namespace(std::string_view name) {
   const std::size_t colon = name.rfind(':');
@@ -98,14 +108,14 @@ void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t
     throw InputError({archive.name()},
                      fmt::format("is damaged in line {} of its part '{}' ({}); save it again as "
                                  ".xlsx",
-                                 XML_GetCurrentLineNumber(parser.get()), part,
+                                 current_line(parser.get()), part,
                                  XML_ErrorString(XML_GetErrorCode(parser.get()))));
   };
   std::int64_t given = 0;
   archive.read(part, most_bytes, [&](std::string_view block) {
     parse(block, false);
     given += static_cast<std::int64_t>(block.size());
-    const std::int64_t begin = XML_GetCurrentByteIndex(parser.get());  // -1 of none
+    const std::int64_t begin = current_byte(parser.get());  // -1 of none
     if (begin >= 0 && given - begin > kMostTagBytes)
       throw InputError({archive.name()},
                        fmt::format("its part '{}' has a tag or comment of more than {} MB; save it "

@@ -20,7 +20,7 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace fs = std::filesystem;
-using Catch::Matchers::Contains;
+using Catch::Contains;
 using Catch::Matchers::EndsWith;
 using Catch::Matchers::StartsWith;
 using rigcal::InputError;

@@ -1,0 +1,28 @@
+#pragma once
+
+// What the tests use of Catch2, by the header and the names of version 2, for version 3.
+#include <catch2/catch_approx.hpp>
+#include <catch2/catch_template_test_macros.hpp>
+#include <catch2/catch_test_macros.hpp>
+#include <catch2/generators/catch_generators.hpp>
+#include <catch2/generators/catch_generators_adapters.hpp>
+#include <catch2/generators/catch_generators_range.hpp>
+#include <catch2/matchers/catch_matchers.hpp>
+#include <catch2/matchers/catch_matchers_floating_point.hpp>
+#include <catch2/matchers/catch_matchers_predicate.hpp>
+#include <catch2/matchers/catch_matchers_string.hpp>
+#include <catch2/matchers/catch_matchers_vector.hpp>
+#include <string>
+
+namespace Catch {
+
+using Matchers::EndsWith;
+using Matchers::StartsWith;
+using Matchers::WithinAbs;
+using Matchers::WithinRel;
+
+inline auto Contains(const std::string& text) { return Matchers::ContainsSubstring(text); }
+
+}  // namespace Catch
+
+using Catch::Approx;
