@@ -1,6 +1,6 @@
 # Every package is one of Debian's; scripts/setup installs them.
 find_package(Eigen3 REQUIRED NO_MODULE)
-find_package(Boost 1.74 REQUIRED)
+find_package(Boost 1.74 REQUIRED CONFIG)
 find_package(Ceres 2.1 REQUIRED)
 find_package(fmt REQUIRED)
 find_package(nlohmann_json REQUIRED)

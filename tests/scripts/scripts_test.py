@@ -18,7 +18,6 @@ RIGCAL = pathlib.Path("rigcal")  # from the command line
 ELSEWHERE = {
     "build": ".ci/run",
     "lint": ".ci/run",
-    "setup": ".ci/run",
     "package": ".ci/run",
     "docs": "scripts/lint",
     "docs-numbers": "tests/docs/numbers_test.py",
@@ -130,6 +129,20 @@ class Scripts(unittest.TestCase):
 
     def test_resume_study(self):
         self.assertTrue(self.run_script("resume-study", "2", "3").endswith("killed 2 times: the same\n"))
+
+    def test_setup(self):
+        # On a system that it does not know.
+        shutil.copy(ROOT / "scripts" / "setup", self.tree / "scripts" / "setup")
+        system = self.tree / "os-release"
+        system.write_text("ID=fedora\nVERSION_CODENAME=\n")
+        make_program(self.programs / "dpkg-query", "#!/bin/sh\nexit 1\n")
+        for name in ("apt-get", "sudo", "npm"):
+            make_program(self.programs / name, "#!/bin/sh\necho must not be called\n")
+        done = subprocess.run([self.tree / "scripts" / "setup"], capture_output=True, text=True, check=False, cwd=self.tree,
+                              env=os.environ | {"PATH": f"{self.programs}:{os.environ['PATH']}", "OS_RELEASE": str(system)})
+        self.assertEqual((done.returncode, done.stdout), (2, ""))
+        for package in ("g++", "libceres-dev", "zlib1g-dev", "catch2"):
+            self.assertIn(f"\n  {package}\n", done.stderr)
 
     def test_start_study(self):
         records = DATA / "sim_hopsan_leaky_servo"

@@ -16,7 +16,8 @@ no_bare_system() {
 make_bare_system() (
   set -euo pipefail
   suite=$1 root=$2
-  made=$(mktemp -d)
+  made=$root.made
+  mkdir -p "$made"
   trap 'rm -rf "$made"' EXIT
   own=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
   files=()
