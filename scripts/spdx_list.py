@@ -9,6 +9,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -32,7 +33,7 @@ def entry(name, package, version, licence, comment):
     if package.startswith("npm:"):
         place, reference = f"https://registry.npmjs.org/{package[4:]}/-/{package[4:]}-{version}.tgz", f"pkg:npm/{package[4:]}@{version}"
     else:
-        place, reference = "NOASSERTION", f"pkg:deb/debian/{package}@{version}"
+        place, reference = "NOASSERTION", f"pkg:deb/debian/{package}@{urllib.parse.quote(version, safe='')}"
     return {"SPDXID": identifier, "name": name, "versionInfo": version, "downloadLocation": place, "filesAnalyzed": False,
             "licenseConcluded": licence, "licenseDeclared": licence, "copyrightText": "NOASSERTION", "comment": comment,
             "externalRefs": [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl", "referenceLocator": reference}]}

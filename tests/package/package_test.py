@@ -1,4 +1,5 @@
 """What `cmake --install` leaves is what a project finds and a user reads. usage: package_test.py BUILD COMPILER"""
+import json
 import pathlib
 import re
 import shutil
@@ -71,6 +72,36 @@ class Installed(unittest.TestCase):
         for folder, installed, pattern in (("datasets/rigs", "rigs", "*.toml"), ("docs/schema", "schema", "*.json")):
             names = {path.relative_to(ROOT / folder) for path in (ROOT / folder).rglob(pattern)}
             self.assertEqual(names, {path.relative_to(share / installed) for path in (share / installed).rglob("*.*")})
+
+    def test_the_notices_of_all_parts_are_installed(self):
+        parts = [line.split("|") for line in (ROOT / "cmake" / "parts.txt").read_text().splitlines() if not line.startswith("#")]
+        folder = self.prefix / "share" / "doc" / "rigcal"
+        own = (ROOT / "LICENSE").read_text()
+        for name in ("NOTICE", "copyright"):
+            text = (folder / name).read_text()
+            self.assertEqual(text.startswith(own), name == "copyright")
+            for part, package, licence, _ in parts:
+                self.assertIn(f"\n  {part}: {licence}; ", text)
+                if package.startswith("npm:") or pathlib.Path(f"/usr/share/doc/{package}/copyright").is_file():
+                    self.assertIn(f"\n======== {part}\n", text)
+            self.assertIn("Leon Sorokin", text)  # of uPlot
+
+    def test_the_spdx_list_names_what_is_linked_and_what_is_compiled_in(self):
+        if not shutil.which("dpkg-query"):
+            self.skipTest("no packages of Debian")
+        made = json.loads(run(sys.executable, ROOT / "scripts" / "spdx_list.py", "1.2.3", "2026-01-02T04:05:06+02:00", "libc6"))
+        self.assertEqual((made["spdxVersion"], made["creationInfo"]["created"]), ("SPDX-2.3", "2026-01-02T02:05:06Z"))
+        packages = {package["SPDXID"]: package for package in made["packages"]}
+        self.assertEqual(len(packages), len(made["packages"]))
+        for identifier, package in packages.items():
+            self.assertRegex(identifier, r"^SPDXRef-[A-Za-z0-9.-]+$")
+            self.assertLessEqual({"name", "versionInfo", "downloadLocation", "licenseDeclared"}, package.keys())
+        names = {package["name"]: package for package in packages.values()}
+        self.assertEqual(names["uPlot"]["licenseDeclared"], "MIT")
+        self.assertIn("pkg:deb/debian/libc6@", names["libc6"]["externalRefs"][0]["referenceLocator"])
+        related = {(each["relationshipType"], each["relatedSpdxElement"]) for each in made["relationships"]}
+        self.assertIn(("DESCRIBES", "SPDXRef-rigcal"), related)
+        self.assertEqual({identifier for _, identifier in related}, set(packages))
 
     def test_python_imports_the_module(self):
         modules = list(self.prefix.glob("lib/python3*/dist-packages"))

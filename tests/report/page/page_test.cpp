@@ -67,6 +67,15 @@ TEST_CASE("page: sections in the order of the guide", "[report]") {
     CHECK_THAT(html, !Contains(outside));
 }
 
+TEST_CASE("page: the plot library comes with its notice", "[report]") {
+  const std::string html = page(stored_result());
+  REQUIRE_THAT(html, Contains("var uPlot="));
+  const std::size_t notice = html.find("Permission is hereby granted, free of charge");
+  REQUIRE(notice != std::string::npos);
+  CHECK(notice < html.find("var uPlot="));
+  CHECK_THAT(html, Contains("Leon Sorokin") && Contains("WITHOUT WARRANTY OF ANY KIND"));
+}
+
 TEST_CASE("page: the first screen has three numbers and every condition as a picture", "[report]") {
   Json json = stored_result();
   const std::string html = page(json);
