@@ -1,12 +1,13 @@
-// Of the FMU's library alone. Where glibc has `_dl_find_object` (2.35), libgcc's unwinder asks by
-// it in which loaded object an address lies, and a library that holds the unwinder would load with
-// no older glibc. This one asks as the unwinder did before.
+// Of the FMU's library alone, which holds libstdc++ and libgcc: what these ask of a glibc newer
+// than 2.34, so that it loads with an older one.
 #include <dlfcn.h>
 #include <link.h>
 
 #include <cstddef>
 #include <cstdint>
 
+// glibc 2.35: in which loaded object an address lies. It is libgcc's unwinder that asks, which did
+// so by dl_iterate_phdr before.
 #ifdef DLFO_EH_SEGMENT_TYPE
 
 namespace {
@@ -46,6 +47,20 @@ extern "C" __attribute__((visibility("hidden"))) int _dl_find_object(
     void* address, dl_find_object* found) noexcept {
   Search search{reinterpret_cast<std::uintptr_t>(address), found};
   return dl_iterate_phdr(look_into, &search) == 1 ? 0 : -1;
+}
+
+#endif
+
+// glibc 2.38: strtoul that takes "0b1", too. libstdc++ reads a variable of the environment by it.
+#if __GLIBC_PREREQ(2, 38)
+
+extern "C" unsigned long strtoul_of_any_glibc(const char* text, char** end, int base) noexcept
+    __asm__("strtoul");
+
+extern "C" __attribute__((visibility("hidden"))) unsigned long __isoc23_strtoul(const char* text,
+                                                                                char** end,
+                                                                                int base) noexcept {
+  return strtoul_of_any_glibc(text, end, base);
 }
 
 #endif
