@@ -222,10 +222,17 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
     record.estimate = estimate_leak(record.fit.coefficient, error, curve, share_rig_se,
                                     problem.campaign.diagnosis);
     if (!prepared.is_healthy) return;
-    const double limit = detection_limit(record.estimate, problem.campaign.diagnosis);
+    // A record that is its own reference differs from it by nothing.
+    const auto of_healthy =
+        record.is_reference
+            ? error_of_averages(record.fit, errors, record.repeats, record.reference_repeats)
+            : std::optional(error);
+    if (!of_healthy || !(of_healthy->total() > 0.0)) return;
+    const double limit = detection_limit(*of_healthy, problem.campaign.diagnosis);
     const LeakCurve beyond =
         leak_curve_of(problem, *prepared.condition, average, limit, std::max(limit, least));
-    record.smallest_leak = {limit, beyond.leak_flow_m3_per_s(limit), beyond.share(limit)};
+    const double share = beyond.share(limit);
+    if (share <= 1.0) record.smallest_leak = {limit, beyond.leak_flow_m3_per_s(limit), share};
   } catch (const NoResultError& failure) {
     record.fit.failure = failure.what();
   }
@@ -236,13 +243,22 @@ SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& erro
   SignalDiagnosis result;
   result.signal = signal;
   result.errors = errors;
+  // Another healthy average tells more than one that is its own reference.
+  const auto is_other = [](const RecordDiagnosis* each) {
+    return !each->repeat && !each->is_reference && each->smallest_leak.has_value();
+  };
+  const bool others = std::any_of(records.healthy.begin(), records.healthy.end(), is_other);
   for (const RecordDiagnosis* each : records.healthy) {
-    if (!each->fit.ok()) continue;
+    if (!each->fit.ok() || !each->smallest_leak || (others && each->is_reference)) continue;
     if (!each->repeat) result.repeats = each->repeats;
-    keep_larger(each->smallest_leak,
+    keep_larger(*each->smallest_leak,
                 each->repeat ? result.smallest_single_leak : result.smallest_leak);
   }
-  if (records.healthy.empty()) result.reason = "no healthy record of this signal";
+  if (records.healthy.empty()) {
+    result.reason = "no healthy record of this signal";
+  } else if (!result.smallest_leak) {
+    result.reason = "no repeats tell how healthy records of this signal scatter";
+  }
   return result;
 }
 
@@ -322,6 +338,8 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
       accuracy(result.records, Method::features, true,
                [](const RecordDiagnosis& record) { return record.by_features_of_other_signals; });
   for (const std::string& each : confounded(campaign)) result.warnings.push_back(each);
+  for (const std::string& each : other_days(campaign)) result.warnings.push_back(each);
+  for (const std::string& each : too_few_dates(result.states)) result.warnings.push_back(each);
   return result;
 }
 

@@ -40,7 +40,7 @@ struct RecordDiagnosis {
   LeakFit fit;                         ///< says why where nothing was found
   metrics::ResidualFeatures features;  ///< of the parity residual, eq. 14, nothing taken off [m]
   LeakEstimate estimate;               ///< means nothing unless fit.ok()
-  DetectionLimit smallest_leak;        ///< of a healthy record
+  std::optional<DetectionLimit> smallest_leak;  ///< of a healthy record, where something tells it
   /// A leak leaves more than a third of the difference from the healthy model: some other fault.
   bool unexplained = false;
   std::optional<LeakClass> leak_class;  ///< empty: undecided

@@ -14,7 +14,13 @@ constexpr double kFlat = 0.1;
 constexpr double kNoticeable = 0.05;
 constexpr double kTooMuch = 1.0 / 3.0;
 
+/// A record that is the healthy reference is not judged by itself.
 void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m) {
+  if (record.is_reference) {
+    record.warnings.emplace_back(
+        "the healthy reference of its signal: its leak is zero by construction");
+    return;
+  }
   const LeakFit& fit = record.fit;
   const LeakEstimate& estimate = record.estimate;
   const double left = unexplained_share(fit, healthy_m);
@@ -32,10 +38,18 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m)
         "(friction, valve, sensor), or the fit does not hold for this record",
         1e3 * fit.parity_rms_m, 1e3 * fit.misfit_rms_m, 1e3 * healthy_m));
   }
-  if (estimate.leak_score < -4.0) {
+  if (estimate.incompatible) {
     record.warnings.push_back(fmt::format(
-        "a leak below zero would fit best (coefficient {:.3g}): the machine is faster than its "
-        "healthy model, so supply or valve are not as they were in the fit",
+        "incompatible with the model: the coefficient would be {:.3g} ({:.3g} to {:.3g}), below "
+        "zero "
+        "by more than its error: the machine is faster than its healthy model, so supply or valve "
+        "are not as they were in the fit",
+        fit.coefficient, estimate.ci95.first, estimate.ci95.second));
+  }
+  if (!estimate.has_share()) {
+    record.warnings.push_back(fmt::format(
+        "a coefficient of {:.3g} would leak more than the servo valve delivers, so no share and no "
+        "class is told",
         fit.coefficient));
   }
   const double log_slope =
@@ -49,9 +63,6 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m)
   if (!errors.repeat_m)
     record.warnings.emplace_back(
         "no repeats of this signal: how one run varies from the next is not in the interval");
-  if (record.is_reference)
-    record.warnings.emplace_back(
-        "the healthy reference of its signal: its leak is zero by construction");
   if (!errors.healthy_m && record.reference_repeats == 0)
     record.warnings.emplace_back(
         "no healthy record of this signal: what the model lacks is not in the interval. If a leak "
@@ -63,9 +74,10 @@ void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m)
 
 void judge(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m,
            const datasets::DiagnosisSettings& settings) {
-  record.unexplained = unexplained_share(record.fit, healthy_m) > kTooMuch;
+  record.unexplained = !record.is_reference && unexplained_share(record.fit, healthy_m) > kTooMuch;
   const auto best = static_cast<std::size_t>(record.estimate.most_probable);
-  if (!record.unexplained && record.estimate.probability[best] >= settings.least_probability)
+  if (!record.unexplained && !record.is_reference && record.estimate.has_class() &&
+      record.estimate.probability[best] >= settings.least_probability)
     record.leak_class = record.estimate.most_probable;
   warn(record, errors, healthy_m);
 }

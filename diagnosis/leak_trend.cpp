@@ -1,17 +1,16 @@
 #include "diagnosis/leak_trend.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cmath>
 
 #include "common/calendar.hpp"
-#include "metrics/distributions.hpp"
+#include "metrics/trend.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
 
-/// A trend, or scatter about it, of less probability is significant.
+/// A trend of less probability is significant.
 constexpr double kSignificantTrend = 0.05;
 
 /// A state with the day of its date.
@@ -23,15 +22,6 @@ struct DatedState {
 struct DatedMachine {
   std::string leak_level, specimen;
   std::vector<DatedState> states;
-};
-
-/// A straight line through coefficients.
-struct TrendLine {
-  double slope = 0.0;
-  double standard_error = 0.0;
-  double freedom = 1.0;  ///< with which that error is known
-  double chi_squared = 0.0;
-  double widened = 1.0;
 };
 
 std::vector<DatedMachine> dated_machines(const std::vector<MachineState>& states) {
@@ -46,7 +36,6 @@ std::vector<DatedMachine> dated_machines(const std::vector<MachineState>& states
       machine = machines.insert(machines.end(), {state.key.leak_level, state.key.specimen, {}});
     machine->states.push_back({&state, *day});
   }
-  std::erase_if(machines, [](const DatedMachine& each) { return each.states.size() < 2; });
   for (DatedMachine& each : machines) {
     std::sort(each.states.begin(), each.states.end(),
               [](const DatedState& a, const DatedState& b) { return a.day < b.day; });
@@ -54,46 +43,22 @@ std::vector<DatedMachine> dated_machines(const std::vector<MachineState>& states
   return machines;
 }
 
-TrendLine line_through(const std::vector<DatedState>& states,
-                       const Eigen::MatrixXd& rig_covariance) {
-  const auto n = static_cast<Eigen::Index>(states.size());
-  Eigen::MatrixXd design = Eigen::MatrixXd::Ones(n, 2);
-  Eigen::VectorXd coefficients(n);
-  Eigen::VectorXd own(n);
-  Eigen::MatrixXd moves(n, rig_covariance.rows());
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const DatedState& each = states[static_cast<std::size_t>(i)];
+metrics::Trend line_through(const std::vector<DatedState>& states,
+                            const Eigen::MatrixXd& rig_covariance) {
+  std::vector<double> days, coefficients;
+  std::vector<metrics::EstimateError> errors;
+  Eigen::MatrixXd moves(static_cast<Eigen::Index>(states.size()), rig_covariance.rows());
+  for (const DatedState& each : states) {
     const PooledLeak& pooled = each.state->pooled;
-    design(i, 1) = each.day - states.front().day;
-    coefficients(i) = pooled.coefficient;
-    own(i) = pooled.error.own_se * pooled.error.own_se;
-    if (moves.cols() > 0) moves.row(i) = pooled.rig_moves.transpose();
+    if (moves.cols() > 0)
+      moves.row(static_cast<Eigen::Index>(days.size())) = pooled.rig_moves.transpose();
+    days.push_back(each.day - states.front().day);
+    coefficients.push_back(pooled.coefficient);
+    errors.push_back({pooled.error.own_se, pooled.error.freedom});
   }
-  Eigen::MatrixXd covariance = moves * rig_covariance * moves.transpose();
-  covariance.diagonal() += own;
-  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
-  const Eigen::MatrixXd weighted = root.solve(design);
-  const Eigen::Matrix2d errors = (design.transpose() * weighted).inverse();
-  const Eigen::MatrixXd weights =
-      errors * weighted.transpose();  // of the coefficients, shape (2, n)
-  const Eigen::Vector2d line = weights * coefficients;
-
-  TrendLine result;
-  result.slope = line(1);
-  const Eigen::VectorXd off = coefficients - design * line;
-  result.chi_squared = off.dot(root.solve(off));
-  const auto scatter_freedom = static_cast<double>(n - 2);
-  if (n > 2 &&
-      metrics::chi_squared_exceedance(result.chi_squared, scatter_freedom) < kSignificantTrend)
-    result.widened = std::max(1.0, std::sqrt(result.chi_squared / scatter_freedom));
-  result.standard_error = result.widened * std::sqrt(errors(1, 1));
-  double squares = 0.0;  // of Welch and Satterthwaite
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const double part = weights(1, i) * weights(1, i) * own(i);
-    squares += part * part / states[static_cast<std::size_t>(i)].state->pooled.error.freedom;
-  }
-  result.freedom = std::clamp(errors(1, 1) * errors(1, 1) / squares, 1.0, 1e6);
-  return result;
+  // The rig moves all dates together.
+  return metrics::weighted_trend(days, coefficients, errors,
+                                 moves * rig_covariance * moves.transpose());
 }
 
 /// When the line reaches the next limit.
@@ -113,7 +78,7 @@ void foresee(const MachineState& last, const datasets::DiagnosisSettings& settin
 
 LeakTrend trend_of(const DatedMachine& machine, const Eigen::MatrixXd& rig_covariance,
                    const datasets::DiagnosisSettings& settings) {
-  const TrendLine line = line_through(machine.states, rig_covariance);
+  const metrics::Trend line = line_through(machine.states, rig_covariance);
   const MachineState& last = *machine.states.back().state;
   LeakTrend trend;
   trend.leak_level = machine.leak_level;
@@ -124,12 +89,10 @@ LeakTrend trend_of(const DatedMachine& machine, const Eigen::MatrixXd& rig_covar
   trend.dates = static_cast<int>(machine.states.size());
   trend.coefficient_per_day = line.slope;
   trend.share_per_day = last.share_slope * line.slope;
-  const double half =
-      last.share_slope * line.standard_error * metrics::student_t_quantile(0.975, line.freedom);
-  trend.share_per_day_ci95 = {trend.share_per_day - half, trend.share_per_day + half};
-  trend.p = 2.0 * metrics::student_t_cdf(-std::abs(line.slope) / line.standard_error, line.freedom);
+  trend.share_per_day_ci95 = {last.share_slope * line.ci95_low, last.share_slope * line.ci95_high};
+  trend.p = line.p_value;
   trend.significant = trend.p < kSignificantTrend;
-  trend.chi_squared = line.chi_squared;
+  trend.chi_squared = line.chi_square;
   trend.freedom = static_cast<double>(machine.states.size() - 2);
   trend.widened = line.widened;
   if (trend.significant && line.slope > 0.0) foresee(last, settings, trend);
@@ -142,9 +105,28 @@ std::vector<LeakTrend> leak_trends(const std::vector<MachineState>& states,
                                    const Eigen::MatrixXd& rig_covariance,
                                    const datasets::DiagnosisSettings& settings) {
   std::vector<LeakTrend> trends;
-  for (const DatedMachine& machine : dated_machines(states))
-    trends.push_back(trend_of(machine, rig_covariance, settings));
+  for (const DatedMachine& machine : dated_machines(states)) {
+    if (machine.states.size() >= metrics::kLeastTrendPoints)
+      trends.push_back(trend_of(machine, rig_covariance, settings));
+  }
   return trends;
+}
+
+std::vector<std::string> too_few_dates(const std::vector<MachineState>& states) {
+  std::vector<std::string> texts;
+  for (const DatedMachine& machine : dated_machines(states)) {
+    if (machine.states.size() != 2) continue;
+    StateKey key;
+    key.leak_level = machine.leak_level;
+    key.specimen = machine.specimen;
+    const std::string name = key.name();
+    texts.push_back(fmt::format(
+        "{}{} and {} are two dates, which make no trend: their difference may be that of two days "
+        "(supply, oil); a third date tells how dates scatter",
+        name.empty() ? "" : name + ": ", machine.states[0].state->key.date,
+        machine.states[1].state->key.date));
+  }
+  return texts;
 }
 
 }  // namespace rigcal::diagnosis

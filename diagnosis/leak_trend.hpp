@@ -33,16 +33,19 @@ struct LeakTrend {
   std::optional<double> latest_day;
 };
 
-/// The trend of every machine that was diagnosed on two dates or more, in order of appearance:
+/// The trend of every machine that was diagnosed on three dates or more, in order of appearance:
 /// states of one leak level and specimen.
 ///
-/// A straight line through the coefficients by generalised least squares: errors of their own, and
-/// that of the rig's parameters in common. States that lie farther off the line than their errors
-/// allow widen the error of the slope by Birge's ratio, as members of a state do.
+/// metrics::weighted_trend() through the coefficients: errors of their own, and that of the rig's
+/// parameters in common.
 ///
 /// @param rig_covariance  of the rig's parameters, shape (rig_moves)^2
 std::vector<LeakTrend> leak_trends(const std::vector<MachineState>& states,
                                    const Eigen::MatrixXd& rig_covariance,
                                    const datasets::DiagnosisSettings& settings);
+
+/// Machines that were diagnosed on two dates, in words: nothing tells their difference from that of
+/// two days, so they have no trend.
+std::vector<std::string> too_few_dates(const std::vector<MachineState>& states);
 
 }  // namespace rigcal::diagnosis

@@ -83,7 +83,7 @@ void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& 
   }
   const LeakEstimate& found = state.estimate;
   const auto best = static_cast<std::size_t>(found.most_probable);
-  if (found.probability[best] >= campaign.diagnosis.least_probability)
+  if (found.has_class() && found.probability[best] >= campaign.diagnosis.least_probability)
     state.leak_class = found.most_probable;
   state.limit = nearest_limit(found, campaign.diagnosis);
 }

@@ -23,6 +23,7 @@ double student_t_cdf(double t, double freedom) {
 }
 
 double chi_squared_exceedance(double x, double freedom) {
+  if (x == 0.0 && freedom > 0.0) return 1.0;  // where Boost overflows for many degrees
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), x));
 }
 

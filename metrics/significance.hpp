@@ -5,12 +5,34 @@
 
 namespace rigcal::metrics {
 
-/// Two-sided probability of a difference this large between two independent estimates that do not
-/// differ: 2 Phi(-|difference| / standard_error).
+/// Degrees of freedom beyond which Student's t is the normal distribution.
+inline constexpr double kManyDegrees = 1e6;
+
+/// Standard error of an estimate, and the degrees of freedom with which it is known.
+struct EstimateError {
+  double standard_error = 0.0;
+  double freedom = kManyDegrees;
+};
+
+/// One of independent parts that a variance is the sum of.
+struct ErrorPart {
+  double variance = 0.0;
+  double freedom = kManyDegrees;
+};
+
+/// Degrees of freedom with which a sum of variances is known: (sum v)^2 / sum (v^2 / freedom)
+/// (B. L. Welch, Biometrika 34, 1947), at least 1 and at most kManyDegrees.
+double effective_freedom(std::span<const ErrorPart> parts);
+
+/// Error of the difference between two independent estimates.
+EstimateError error_of_difference(const EstimateError& a, const EstimateError& b);
+
+/// Two-sided probability of a difference this large where there is none: by Student's t with the
+/// freedom of its error, which from kManyDegrees on is the normal distribution.
 ///
-/// @param standard_error  of the difference, same unit, > 0
-/// @throws std::invalid_argument  it is not, or a value is not finite
-double difference_p_value(double difference, double standard_error);
+/// @param error  of the difference, same unit, > 0
+/// @throws std::invalid_argument  it is not, its freedom is not above 0, or a value is not finite
+double difference_p_value(double difference, const EstimateError& error);
 
 /// p-values that hold for all of them together: of the k-th smallest of n, (n - k + 1) p, never
 /// below that of a smaller one (S. Holm, Scand. J. Statist. 6, 1979).
@@ -27,26 +49,5 @@ double sign_test_p_value(int better, int worse);
 
 /// Fewest pairs with which a sign test can reach the 5 % level: 2 / 2^6 = 0.031, 2 / 2^5 = 0.063.
 inline constexpr int kLeastSignPairs = 6;
-
-/// A straight line through estimates with standard errors, by weighted least squares.
-struct Trend {
-  double slope = 0.0;  ///< unit of y per unit of x
-  double intercept = 0.0;
-  double slope_standard_error = 0.0;
-  double ci95_low = 0.0;  ///< of the slope, by the t distribution with n - 2 degrees of freedom
-  double ci95_high = 0.0;
-  double p_value = 1.0;             ///< of no slope, two-sided
-  double reduced_chi_square = 0.0;  ///< of the points about the line; n - 2 degrees of freedom
-};
-
-/// Line y = intercept + slope x with weights 1 / standard_error^2. Where the points scatter more
-/// than their errors say, the error of the slope is widened by the root of reduced chi-square.
-///
-/// @param x, y, standard_error  shape (n), n >= 3; errors > 0
-/// @throws std::invalid_argument  fewer points, unequal shapes, an error that is not positive, a
-///                                value that is not finite
-/// @throws std::domain_error      all x are equal
-Trend weighted_trend(std::span<const double> x, std::span<const double> y,
-                     std::span<const double> standard_error);
 
 }  // namespace rigcal::metrics

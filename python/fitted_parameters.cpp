@@ -103,6 +103,9 @@ void bind_fitted_parameters(py::module_& module) {
             return self.value.ci95 ? std::optional(to_string(self.value.interval)) : std::nullopt;
           },
           "What the interval rests on: \"standard_error\", \"robust_standard_error\"...; or None.")
+      .def_property_readonly("degrees_of_freedom",
+                             field(&Self::value, &calib::FittedParameter::degrees_of_freedom),
+                             "With which the error that `ci95` rests on is known; or None.")
       .def_property_readonly("bootstrap", field(&Self::value, &calib::FittedParameter::bootstrap),
                              "Its spread, where the fit was asked for one.")
       .def_property_readonly(

@@ -92,6 +92,7 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, TablesFit& fit) 
     FittedAssumption& parameter = fit.parameters[static_cast<std::size_t>(j)];
     if (open(j) > kRankThreshold || !(covariance(j, j) > 0.0)) continue;
     parameter.standard_error = std::sqrt(covariance(j, j));
+    parameter.degrees_of_freedom = freedom;
     parameter.ci95 = {parameter.value - t * *parameter.standard_error,
                       parameter.value + t * *parameter.standard_error};
     for (Eigen::Index k = 0; k < n; ++k) {

@@ -21,6 +21,7 @@ struct FittedAssumption {
   double upper = 0.0;
   std::optional<double> standard_error;  ///< absent where the tables do not determine it
   std::optional<std::pair<double, double>> ci95;
+  std::optional<double> degrees_of_freedom;  ///< of the standard error
   bool at_bound = false;
 };
 

@@ -67,6 +67,8 @@ struct FittedParameter {
   std::optional<double> robust_standard_error;
   std::optional<std::pair<double, double>> ci95;
   IntervalSource interval = IntervalSource::none;  ///< of ci95
+  /// With which the error that ci95 rests on is known; at most metrics::kManyDegrees.
+  std::optional<double> degrees_of_freedom;
   std::optional<BootstrapSpread> bootstrap;
   std::optional<Profile> profile;
   bool at_bound = false;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "common/significant.hpp"
+#include "metrics/significance.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -98,6 +99,9 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
                                     100.0 * share, partner(problem, found, unknown)));
 }
 
+/// As student_t() takes it; known variances have no end of it.
+double degrees(double freedom) { return std::clamp(freedom, 1.0, metrics::kManyDegrees); }
+
 /// Half width of the 95 % interval, and on which error it rests.
 double choose_interval(const Problem& problem, const Uncertainty& found, std::size_t unknown,
                        FittedParameter& parameter) {
@@ -108,9 +112,11 @@ double choose_interval(const Problem& problem, const Uncertainty& found, std::si
   const bool unresolved = found.reduced_chi_square < least * least;
   if (!(robust > 0.0) || unresolved || (freedom < kLeastFreedom && robust < plain)) {
     parameter.interval = IntervalSource::standard_error;
+    parameter.degrees_of_freedom = degrees(found.freedom);
     return student_t(found.freedom) * plain;
   }
   parameter.interval = IntervalSource::robust_standard_error;
+  parameter.degrees_of_freedom = degrees(freedom);
   if (robust > kRobustMatters * plain) {
     add_reason(parameter,
                fmt::format("{}: the robust error, on which the "

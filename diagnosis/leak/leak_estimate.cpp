@@ -7,6 +7,7 @@
 
 #include "diagnosis/leak/exceeds_noise.hpp"
 #include "metrics/distributions.hpp"
+#include "metrics/significance.hpp"
 
 namespace rigcal::diagnosis {
 namespace {
@@ -17,22 +18,6 @@ constexpr int kDraws = 401;
 constexpr int kBlurs = 15;
 /// Below this an error is that of the arithmetic.
 constexpr double kLeastShareError = 1e-7;
-
-struct ErrorPart {
-  double variance = 0.0;
-  double freedom = 1e9;
-};
-
-/// Welch and Satterthwaite.
-double effective_freedom(const std::vector<ErrorPart>& parts) {
-  double sum = 0.0;
-  double weighted = 0.0;
-  for (const ErrorPart& part : parts) {
-    sum += part.variance;
-    weighted += part.variance * part.variance / part.freedom;
-  }
-  return weighted > 0.0 ? std::clamp(sum * sum / weighted, 1.0, 1e6) : 1e6;
-}
 
 /// The share given what is known of the coefficient: equally probable shares, each blurred by the
 /// error that comes from the rig's parameters.
@@ -72,7 +57,7 @@ class ShareDistribution {
 
   double quantile(double p) const {
     double low = 0.0;
-    double high = *std::max_element(shares_.begin(), shares_.end()) + 10.0 * blur_;
+    double high = std::min(1.0, *std::max_element(shares_.begin(), shares_.end()) + 10.0 * blur_);
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high);
       (below(middle) < p ? low : high) = middle;
@@ -123,6 +108,20 @@ std::array<double, kClassCount> class_probabilities(const ShareDistribution& sha
   return probability;
 }
 
+/// Of a leak that is not detected the upper limit is that of a distribution which is cut at 0: it
+/// is never 0, however far below zero the coefficient lies.
+void set_interval(double half_width, LeakEstimate& estimate) {
+  const double coefficient = estimate.coefficient;
+  if (estimate.leak_detected || estimate.incompatible || !(estimate.standard_error > 0.0)) {
+    estimate.ci95 = {coefficient - half_width, coefficient + half_width};
+    if (!estimate.incompatible) estimate.ci95.first = std::max(0.0, estimate.ci95.first);
+    return;
+  }
+  const double above_zero = metrics::student_t_cdf(estimate.leak_score, estimate.freedom);
+  const double quantile = metrics::student_t_quantile(0.05 * above_zero, estimate.freedom);
+  estimate.ci95 = {0.0, coefficient - quantile * estimate.standard_error};
+}
+
 }  // namespace
 
 double CoefficientError::total() const { return std::hypot(own_se, rig_se); }
@@ -135,7 +134,7 @@ CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& error
                                    int reference) {
   const bool coloured = errors.misfit && exceeds_noise(squared(fit.cluster_se),
                                                        squared(fit.white_se), fit.cluster_freedom);
-  std::vector<ErrorPart> parts;
+  std::vector<metrics::ErrorPart> parts;
   if (coloured) {
     parts.push_back({squared(fit.cluster_se), static_cast<double>(fit.cluster_freedom)});
   } else {
@@ -149,9 +148,20 @@ CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& error
   if (errors.healthy_m && reference == 0 && fit.effect_m > 0.0)
     parts.push_back({squared(*errors.healthy_m / fit.effect_m)});
   double own_variance = 0.0;
-  for (const ErrorPart& part : parts) own_variance += part.variance;
+  for (const metrics::ErrorPart& part : parts) own_variance += part.variance;
   parts.push_back({squared(fit.rig_se)});
-  return {std::sqrt(own_variance), fit.rig_se, effective_freedom(parts)};
+  return {std::sqrt(own_variance), fit.rig_se, metrics::effective_freedom(parts)};
+}
+
+std::optional<CoefficientError> error_of_averages(const LeakFit& fit, const SignalErrors& errors,
+                                                  int repeats, int reference) {
+  if (!errors.repeat_m || !(fit.effect_m > 0.0) || reference < 1) return std::nullopt;
+  const double of_both = 1.0 / repeats + 1.0 / reference;
+  const metrics::ErrorPart spread{squared(*errors.repeat_m / fit.effect_m) * of_both,
+                                  static_cast<double>(std::max(1, errors.repeat_freedom))};
+  return CoefficientError{
+      std::sqrt(spread.variance), fit.rig_se,
+      metrics::effective_freedom(std::array{spread, metrics::ErrorPart{squared(fit.rig_se)}})};
 }
 
 LeakEstimate estimate_leak(double coefficient, const CoefficientError& error,
@@ -161,8 +171,6 @@ LeakEstimate estimate_leak(double coefficient, const CoefficientError& error,
   estimate.coefficient = coefficient;
   estimate.standard_error = error.total();
   estimate.freedom = error.freedom;
-  const double half = error.half_width();
-  estimate.ci95 = {std::max(0.0, coefficient - half), std::max(0.0, coefficient + half)};
   estimate.share = curve.share(coefficient);
   estimate.leak_flow_m3_per_s = curve.leak_flow_m3_per_s(coefficient);
   estimate.share_slope = curve.share_slope(coefficient);
@@ -174,11 +182,12 @@ LeakEstimate estimate_leak(double coefficient, const CoefficientError& error,
   estimate.most_probable =
       datasets::kLeakClasses[static_cast<std::size_t>(best - estimate.probability.begin())];
   if (estimate.standard_error > 0.0) {
+    const double alarm = metrics::student_t_quantile(1.0 - settings.false_alarms, estimate.freedom);
     estimate.leak_score = estimate.coefficient / estimate.standard_error;
-    estimate.leak_detected =
-        estimate.leak_score >
-        metrics::student_t_quantile(1.0 - settings.false_alarms, estimate.freedom);
+    estimate.leak_detected = estimate.leak_score > alarm;
+    estimate.incompatible = estimate.leak_score < -alarm;
   }
+  set_interval(error.half_width(), estimate);
   if (!estimate.leak_detected) {
     estimate.share_upper_limit = shares.quantile(0.95);
     estimate.share_ci95 = {0.0, *estimate.share_upper_limit};
@@ -186,8 +195,9 @@ LeakEstimate estimate_leak(double coefficient, const CoefficientError& error,
   return estimate;
 }
 
-double detection_limit(const LeakEstimate& healthy, const datasets::DiagnosisSettings& settings) {
-  return healthy.standard_error *
+double detection_limit(const CoefficientError& healthy,
+                       const datasets::DiagnosisSettings& settings) {
+  return healthy.total() *
          (metrics::student_t_quantile(1.0 - settings.false_alarms, healthy.freedom) +
           metrics::student_t_quantile(settings.detection, healthy.freedom));
 }

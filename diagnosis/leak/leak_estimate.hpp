@@ -16,12 +16,18 @@ inline constexpr std::size_t kClassCount = datasets::kLeakClasses.size();
 
 /// What is known of the leak in one record.
 struct LeakEstimate {
-  double coefficient = 0.0;                  ///< signed, see LeakFit
-  double standard_error = 0.0;               ///< of it, rig parameters included
-  double freedom = 1.0;                      ///< degrees of freedom of that error (Satterthwaite)
-  std::pair<double, double> ci95{0.0, 0.0};  ///< of the coefficient, cut at 0
-  double share = 0.0;                        ///< fraction of the servo flow, >= 0
-  /// Given that a leak is not negative; where none is detected, from 0 to the upper limit.
+  double coefficient = 0.0;     ///< signed, see LeakFit
+  double standard_error = 0.0;  ///< of it, rig parameters included
+  double freedom = 1.0;         ///< degrees of freedom of that error (Satterthwaite)
+  /// Of the coefficient, cut at 0 from below; where no leak is detected, from 0 to the upper limit
+  /// at 95 %, given that a leak is not negative. Not cut where it is incompatible.
+  std::pair<double, double> ci95{0.0, 0.0};
+  /// The coefficient lies below zero by more than its error allows, at the settings' rate of false
+  /// alarms: no leak makes such a record, so nothing is said of one.
+  bool incompatible = false;
+  double share = 0.0;  ///< fraction of the servo flow, >= 0; above 1 none that can be
+  /// Given that a leak is not negative, within 0 and 1; where none is detected, from 0 to the upper
+  /// limit.
   std::pair<double, double> share_ci95{0.0, 0.0};
   /// One-sided limit at 95 % where no leak is detected.
   std::optional<double> share_upper_limit;
@@ -31,6 +37,11 @@ struct LeakEstimate {
   LeakClass most_probable = LeakClass::normal;
   double leak_score = 0.0;     ///< coefficient over its standard error
   bool leak_detected = false;  ///< at the settings' rate of false alarms
+
+  /// Whether the share is one: more than the servo flow cannot leak of it.
+  bool has_share() const { return share <= 1.0; }
+  /// Whether it may be put into a class.
+  bool has_class() const { return !incompatible && has_share(); }
 };
 
 /// Error of the coefficient of one record: four parts that are independent of each other, scatter
@@ -50,6 +61,12 @@ struct CoefficientError {
 /// @param reference  how many healthy repeats correct it; 0: none
 CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& errors, int repeats,
                                    int reference);
+
+/// The error of an average that is its own reference, from the spread between single repeats: of
+/// the difference between the mean of so many and that of as many as the reference has. Nothing
+/// where there are no repeats.
+std::optional<CoefficientError> error_of_averages(const LeakFit& fit, const SignalErrors& errors,
+                                                  int repeats, int reference);
 
 /// Interval, share and class probabilities of one record.
 ///
@@ -75,8 +92,9 @@ struct DetectionLimit {
 
 /// Coefficient of the smallest leak.
 ///
-/// @param healthy  estimate of a record without a leak
-double detection_limit(const LeakEstimate& healthy, const datasets::DiagnosisSettings& settings);
+/// @param healthy  error of the coefficient of a record without a leak
+double detection_limit(const CoefficientError& healthy,
+                       const datasets::DiagnosisSettings& settings);
 
 /// Keeps the limit that takes the larger flow to be seen.
 void keep_larger(const DetectionLimit& limit, std::optional<DetectionLimit>& kept);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "diagnosis/leak/record_share.hpp"
@@ -55,6 +56,13 @@ Candidate simulate_leak(const calib::Problem& problem, const calib::ProblemCondi
 
 LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition& condition,
                     double share_above) {
+  if (!(condition.values["leakage_area"] > 0.0)) {
+    throw NoResultError(fmt::format(
+        "condition \"{}\": leakage_area is 0 m2, and a leak is the coefficient times this area, so "
+        "no leakage coefficient can be told; expected the area of an orifice, such as --set "
+        "leakage_area=\"1 mm2\"",
+        condition.condition->id));
+  }
   Candidate best = simulate_leak(problem, condition, 0.0);
   // The coefficient says nothing without its area: the range begins where a thousandth leaks.
   double coefficient = kFirst;
@@ -62,13 +70,13 @@ LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition
   while (point.share > 1e-3 && coefficient > 1e-12)
     point = simulate_leak(problem, condition, coefficient *= 0.1);
   while (point.share < 2e-4 && coefficient < kLargest)
-    point = simulate_leak(problem, condition, coefficient *= 5.0);
+    point = simulate_leak(problem, condition, coefficient = std::min(kLargest, 5.0 * coefficient));
   while (true) {
     const bool is_better = point.cost < best.cost;
     if (is_better) best = point;
     if ((point.share >= share_above && !is_better) || coefficient >= kLargest) break;
     // Coarser steps where the share is small and all but proportional to the coefficient.
-    coefficient *= point.share < 0.02 ? 2.0 : kRatio;
+    coefficient = std::min(kLargest, coefficient * (point.share < 0.02 ? 2.0 : kRatio));
     point = simulate_leak(problem, condition, coefficient);
   }
   return {best.coefficient, coefficient};

@@ -47,6 +47,21 @@ StoredComparedResult stored(const Compared& compared) {
   return result;
 }
 
+std::string repeats_warning(const std::string& name, const StoredBetweenRepeats& repeats) {
+  const std::string cause =
+      repeats.cause ? fmt::format(", as {} would make them", *repeats.cause) : std::string();
+  return fmt::format(
+      "{}: its repeats differ from one another by more than their noise{}: what differs from day "
+      "to day in the same way is in no error, and counts as a change of the rig",
+      name, cause);
+}
+
+bool lacks_degrees(const StoredFit& fit) {
+  return std::any_of(fit.parameters.begin(), fit.parameters.end(), [](const StoredParameter& p) {
+    return p.fitted && !p.nuisance && p.ci95 && !p.degrees_of_freedom;
+  });
+}
+
 std::vector<std::string> comparison_warnings(const std::vector<Compared>& results) {
   std::vector<std::string> list;
   for (const Compared& compared : results) {
@@ -55,11 +70,19 @@ std::vector<std::string> comparison_warnings(const std::vector<Compared>& result
       list.push_back(fmt::format("{}: {}: {}", compared.name, to_string(fit.status), fit.message));
     if (fit.verdict == calib::Verdict::fail)
       list.push_back(fmt::format("{}: outside the campaign's limits (FAIL)", compared.name));
+    if (const auto& repeats = fit.between_repeats; repeats && repeats->differ)
+      list.push_back(repeats_warning(compared.name, *repeats));
+    if (lacks_degrees(fit))
+      list.push_back(
+          fmt::format("{}: written by a version that does not tell the degrees of "
+                      "freedom of its errors; they are taken from its intervals",
+                      compared.name));
   }
   for (std::size_t i = 1; i < results.size(); ++i) {
-    if (!share_records(results[0], results[i])) continue;
+    if (!share_fitted_records(results[0], results[i])) continue;
     list.push_back(fmt::format(
-        "{} and {} share {}: their estimates are not independent, so differences "
+        "{} and {} were fitted to the same {}, at least in part: their estimates are not "
+        "independent, so differences "
         "between them are not tested for significance",
         results[0].name, results[i].name, results[i].of_tables ? "published numbers" : "records"));
   }

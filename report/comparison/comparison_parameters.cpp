@@ -24,7 +24,10 @@ std::optional<StoredEstimate> estimate_of(const StoredFit& fit,
   const bool usable = is_usable(fit);
   if (usable || !found->fitted) estimate.value = found->value;
   estimate.fitted = found->fitted;
-  if (usable && found->fitted) estimate.standard_error = error_of(*found);
+  if (const auto error = interval_error(*found); error && usable && found->fitted) {
+    estimate.standard_error = error->standard_error;
+    estimate.degrees_of_freedom = std::optional(error->freedom);
+  }
   if (usable) estimate.ci95 = found->ci95;
   estimate.identifiability = found->identifiability;
   estimate.at_bound = found->at_bound;
@@ -54,17 +57,19 @@ std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate
   result.difference = difference;
   if (!may_be_zero(*first)) result.percent = 100.0 * (*other->value / *first->value - 1.0);
   if (!first->fitted && !other->fitted) return untested(kKnownInBoth);
+  // A known value has none.
   const auto error = [](const StoredEstimate& estimate) {
-    return estimate.fitted ? estimate.standard_error : std::optional(0.0);
+    return metrics::EstimateError{estimate.standard_error.value_or(0.0),
+                                  estimate.degrees_of_freedom.value_or(metrics::kManyDegrees)};
   };
-  const auto error_a = error(*first);
-  const auto error_b = error(*other);
-  if (!error_a || !error_b) return untested("an estimate has no standard error");
+  for (const auto* estimate : {&*first, &*other})
+    if (estimate->fitted && !estimate->standard_error)
+      return untested("an estimate has no standard error");
   if (first->fitted && other->fitted && same_records)
     return untested("estimated from the same data, so not independent of each other");
-  const double both = std::hypot(*error_a, *error_b);
-  if (!(both > 0.0)) return untested("an estimate has no standard error");
-  result.standard_error = both;
+  const metrics::EstimateError both = metrics::error_of_difference(error(*first), error(*other));
+  result.standard_error = both.standard_error;
+  result.degrees_of_freedom = std::optional(both.freedom);
   result.p_value = metrics::difference_p_value(difference, both);
   return result;
 }
@@ -110,7 +115,7 @@ std::vector<StoredComparedParameter> compared_parameters(const std::vector<Compa
     parameter.differences.emplace_back();
     for (std::size_t i = 1; i < results.size(); ++i) {
       parameter.differences.push_back(difference_of(parameter.estimates[0], parameter.estimates[i],
-                                                    share_records(results[0], results[i])));
+                                                    share_fitted_records(results[0], results[i])));
     }
   }
   for (std::size_t i = 1; i < results.size(); ++i) judge_together(list, i);

@@ -23,8 +23,13 @@ inline bool is_usable(const StoredFit& fit) { return fit.status != calib::FitSta
 
 /// Files by hash of what a result was made from, but for the campaign file and an earlier fit.
 std::map<std::string, std::string> record_hashes(const StoredFit& fit);
-/// Whether two results rest on the same records or published numbers, at least in part.
+/// Whether two results were made from the same files or published numbers, at least in part: scored
+/// by them, if not fitted to them.
 bool share_records(const Compared& a, const Compared& b);
+/// Whether the estimates of two results rest on the same data, at least in part: published numbers,
+/// or samples of a file (by SHA-256) that lie within windows of both. A file of a version that does
+/// not tell which records were fitted counts with all it was made from.
+bool share_fitted_records(const Compared& a, const Compared& b);
 
 /// Estimates side by side, differences from the first.
 std::vector<StoredComparedParameter> compared_parameters(const std::vector<Compared>& results);

@@ -14,6 +14,34 @@ bool share_published_numbers(const Compared& a, const Compared& b) {
   });
 }
 
+/// Conditions that the estimates rest on; none where the file does not tell their records.
+std::vector<const StoredCondition*> fitted_conditions(const StoredFit& fit) {
+  std::vector<const StoredCondition*> fitted;
+  for (const StoredCondition& condition : fit.conditions) {
+    if (condition.use != datasets::Use::fit) continue;
+    if (condition.record_sha256.empty()) return {};
+    fitted.push_back(&condition);
+  }
+  return fitted;
+}
+
+/// Whether some time counts in both; without windows all of it does.
+bool overlap(const StoredCondition& a, const StoredCondition& b) {
+  if (!a.windows_s || a.windows_s->empty() || !b.windows_s || b.windows_s->empty()) return true;
+  for (const Range& one : *a.windows_s) {
+    for (const Range& other : *b.windows_s)
+      if (one.low < other.high && other.low < one.high) return true;
+  }
+  return false;
+}
+
+bool share_file(const StoredCondition& a, const StoredCondition& b) {
+  const std::vector<std::string>& theirs = b.record_sha256;
+  return std::any_of(a.record_sha256.begin(), a.record_sha256.end(), [&](const auto& hash) {
+    return std::find(theirs.begin(), theirs.end(), hash) != theirs.end();
+  });
+}
+
 }  // namespace
 
 std::map<std::string, std::string> record_hashes(const StoredFit& fit) {
@@ -31,6 +59,18 @@ bool share_records(const Compared& a, const Compared& b) {
   const auto theirs = record_hashes(b.result);
   for (const auto& [hash, path] : record_hashes(a.result))
     if (theirs.contains(hash)) return true;
+  return false;
+}
+
+bool share_fitted_records(const Compared& a, const Compared& b) {
+  if (share_published_numbers(a, b)) return true;
+  const auto ours = fitted_conditions(a.result);
+  const auto theirs = fitted_conditions(b.result);
+  if (ours.empty() || theirs.empty()) return share_records(a, b);
+  for (const StoredCondition* one : ours) {
+    for (const StoredCondition* other : theirs)
+      if (share_file(*one, *other) && overlap(*one, *other)) return true;
+  }
   return false;
 }
 

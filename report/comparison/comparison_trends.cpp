@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "common/calendar.hpp"
-#include "metrics/significance.hpp"
+#include "metrics/trend.hpp"
 #include "report/comparison/comparison_parts.hpp"
 
 namespace rigcal::report {
@@ -40,27 +40,32 @@ std::string series_of(const StoredFit& fit, const StoredParameter& parameter) {
 /// @param shared  whether results of the series share records
 void find_trend(const std::vector<StoredTrendPoint>& points,
                 std::optional<double> StoredTrendPoint::*place, bool shared, StoredTrend& result) {
-  std::vector<double> x, y, error;
+  std::vector<double> x, y;
+  std::vector<metrics::EstimateError> errors;
   for (const StoredTrendPoint& point : points) {
     if (!(point.*place) || !point.value || !(point.standard_error.value_or(0.0) > 0.0)) continue;
     x.push_back(*(point.*place));
     y.push_back(*point.value);
-    error.push_back(*point.standard_error);
+    errors.push_back(
+        {*point.standard_error, point.degrees_of_freedom.value_or(metrics::kManyDegrees)});
   }
   result.points = static_cast<long>(x.size());
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
-  if (x.size() < 3 || *low == *high || shared) {
-    result.reason = x.empty()      ? "no estimate has it"
-                    : x.size() < 3 ? "fewer than three estimates with an error"
+  const bool few = x.size() < metrics::kLeastTrendPoints;
+  if (few || *low == *high || shared) {
+    result.reason = x.empty() ? "no estimate has it"
+                    : few     ? "fewer than three estimates with an error"
                     : *low == *high
                         ? "all estimates are at the same place"
                         : "not tested: the results share records, so they are not independent";
     return;
   }
-  const metrics::Trend trend = metrics::weighted_trend(x, y, error);
+  const metrics::Trend trend = metrics::weighted_trend(x, y, errors);
   result.slope = trend.slope;
   result.intercept = trend.intercept;
   result.standard_error = trend.slope_standard_error;
+  result.degrees_of_freedom = std::optional(trend.freedom);
+  result.widened = std::optional(trend.widened);
   result.ci95 = {trend.ci95_low, trend.ci95_high};
   result.p_value = trend.p_value;
   result.reduced_chi_square = trend.reduced_chi_square;
@@ -71,7 +76,7 @@ bool any_share_records(const std::vector<const Compared*>& results) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     for (std::size_t j = i + 1; j < results.size(); ++j) {
       // Several levels of one fit are told apart by their own records.
-      if (results[i] != results[j] && share_records(*results[i], *results[j])) return true;
+      if (results[i] != results[j] && share_fitted_records(*results[i], *results[j])) return true;
     }
   }
   return false;
@@ -89,7 +94,10 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
                                     return condition.temperature_k;
                                   });
   point.value = parameter.value;
-  point.standard_error = error_of(parameter);
+  if (const auto error = interval_error(parameter)) {
+    point.standard_error = error->standard_error;
+    point.degrees_of_freedom = std::optional(error->freedom);
+  }
   point.ci95 = parameter.ci95;
   return point;
 }

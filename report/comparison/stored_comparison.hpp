@@ -37,10 +37,12 @@ struct StoredEstimate {
   std::optional<double> value;
   bool fitted = false;
   std::optional<double> standard_error;
+  Later<std::optional<double>> degrees_of_freedom;  ///< of it
   std::optional<Range> ci95;
   std::optional<calib::Identifiability> identifiability;
   bool at_bound = false;
-  RIGCAL_DESCRIBE(value, fitted, standard_error, ci95, identifiability, at_bound)
+  RIGCAL_DESCRIBE(value, fitted, standard_error, degrees_of_freedom, ci95, identifiability,
+                  at_bound)
 };
 
 /// An estimate minus that of the first result.
@@ -48,11 +50,13 @@ struct StoredDifference {
   std::optional<double> difference;
   std::optional<double> percent;  ///< null where the first value may be zero
   std::optional<double> standard_error;
-  std::optional<double> p_value;         ///< of this one alone
-  std::optional<double> p_value_of_all;  ///< for all parameters together (Holm)
+  Later<std::optional<double>> degrees_of_freedom;  ///< of it (Welch and Satterthwaite)
+  std::optional<double> p_value;                    ///< of this one alone
+  std::optional<double> p_value_of_all;             ///< for all parameters together (Holm)
   std::optional<bool> significant;
   std::optional<std::string> reason;  ///< why it is not tested
-  RIGCAL_DESCRIBE(difference, percent, standard_error, p_value, p_value_of_all, significant, reason)
+  RIGCAL_DESCRIBE(difference, percent, standard_error, degrees_of_freedom, p_value, p_value_of_all,
+                  significant, reason)
 };
 
 struct StoredComparedParameter {
@@ -134,14 +138,18 @@ struct StoredTrendPoint {
   std::optional<std::string> level;
   std::optional<double> day, temperature_k;
   std::optional<double> value, standard_error;
+  Later<std::optional<double>> degrees_of_freedom;  ///< of the error
   std::optional<Range> ci95;
-  RIGCAL_DESCRIBE(result, level, day, temperature_k, value, standard_error, ci95)
+  RIGCAL_DESCRIBE(result, level, day, temperature_k, value, standard_error, degrees_of_freedom,
+                  ci95)
 };
 
 /// A line through the points, weighted by their errors.
 struct StoredTrend {
   long points = 0;  ///< with an error, and a place
   std::optional<double> slope, intercept, standard_error;
+  Later<std::optional<double>> degrees_of_freedom;  ///< of the error of the slope
+  Later<std::optional<double>> widened;             ///< factor of it by scatter about the line
   std::optional<Range> ci95;
   std::optional<double> p_value, reduced_chi_square;
   std::optional<bool> significant;
@@ -154,6 +162,8 @@ struct StoredTrend {
     visit(slope_name, self.slope);
     visit("intercept", self.intercept);
     visit("standard_error", self.standard_error);
+    visit("degrees_of_freedom", self.degrees_of_freedom);
+    visit("widened", self.widened);
     visit("ci95", self.ci95);
     visit("p_value", self.p_value);
     visit("reduced_chi_square", self.reduced_chi_square);

@@ -34,21 +34,33 @@ std::string class_name(const std::optional<LeakClass>& leak_class, const char* o
   return leak_class ? std::string(to_string(*leak_class)) : otherwise;
 }
 
+/// What is found of a record, in a word.
+std::string found_class(const RecordDiagnosis& record) {
+  if (record.is_reference) return "reference";
+  if (record.estimate.incompatible) return "incompatible";
+  if (record.unexplained) return "not explained";
+  return class_name(record.leak_class, "undecided");
+}
+
 std::string record_row(const RecordDiagnosis& record) {
   const bool ok = record.fit.ok();
   const diagnosis::LeakEstimate& e = record.estimate;
+  const bool has_leak = ok && !record.is_reference && !e.incompatible;
+  const bool has_interval = has_leak && e.standard_error > 0.0;
+  const bool has_share = has_leak && e.has_share();
   std::vector<std::string> fields{record.condition,
                                   record.repeat ? fmt::format("{}", *record.repeat) : std::string(),
                                   csv_text(record.signal),
-                                  number_field(ok, std::max(0.0, e.coefficient)),
-                                  number_field(ok, e.ci95.first),
-                                  number_field(ok, e.ci95.second),
-                                  number_field(ok, kInPercent * e.share),
-                                  number_field(ok, kInPercent * e.share_ci95.first),
-                                  number_field(ok, kInPercent * e.share_ci95.second),
-                                  number_field(ok, kLitresPerMinute * e.leak_flow_m3_per_s),
-                                  class_name(record.leak_class, "undecided")};
-  for (const double probability : e.probability) fields.push_back(number_field(ok, probability));
+                                  number_field(has_leak, std::max(0.0, e.coefficient)),
+                                  number_field(has_interval, e.ci95.first),
+                                  number_field(has_interval, e.ci95.second),
+                                  number_field(has_share, kInPercent * e.share),
+                                  number_field(has_share, kInPercent * e.share_ci95.first),
+                                  number_field(has_share, kInPercent * e.share_ci95.second),
+                                  number_field(has_leak, kLitresPerMinute * e.leak_flow_m3_per_s),
+                                  ok ? found_class(record) : class_name({}, "undecided")};
+  for (const double probability : e.probability)
+    fields.push_back(number_field(has_share, probability));
   fields.insert(
       fields.end(),
       {number_field(ok, record.features.mean), number_field(ok, record.features.rms),
@@ -83,16 +95,23 @@ std::string record_table(const diagnosis::Diagnosis& found, const Style& style) 
                  "not fitted", "-", "-", class_name(record.truth, "-")});
       continue;
     }
+    const std::string repeats = fmt::format("{}", record.repeats);
+    if (record.is_reference || e.incompatible) {
+      table.add({record.condition, repeats, "-", "-", "-", "-", "-", found_class(record), "-",
+                 class_name(record.by_features, "-"), class_name(record.truth, "-")});
+      continue;
+    }
     const double best = e.probability[static_cast<std::size_t>(e.most_probable)];
-    table.add({record.condition, fmt::format("{}", record.repeats),
-               fmt::format("{:.4g}", std::max(0.0, e.coefficient)),
-               fmt::format("{:.3g} .. {:.3g}", e.ci95.first, e.ci95.second),
-               fmt::format("{:.2f}", kInPercent * e.share),
-               fmt::format("{:.2f} .. {:.2f}", kInPercent * e.share_ci95.first,
-                           kInPercent * e.share_ci95.second),
-               fmt::format("{:.4f}", kLitresPerMinute * e.leak_flow_m3_per_s),
-               record.unexplained ? "not explained" : class_name(record.leak_class, "undecided"),
-               fmt::format("{:.3f}", best), class_name(record.by_features, "-"),
+    const bool has_share = e.has_share();
+    table.add({record.condition, repeats, fmt::format("{:.4g}", std::max(0.0, e.coefficient)),
+               e.standard_error > 0.0 ? fmt::format("{:.3g} .. {:.3g}", e.ci95.first, e.ci95.second)
+                                      : "-",
+               has_share ? fmt::format("{:.2f}", kInPercent * e.share) : "-",
+               has_share ? fmt::format("{:.2f} .. {:.2f}", kInPercent * e.share_ci95.first,
+                                       kInPercent * e.share_ci95.second)
+                         : "-",
+               fmt::format("{:.4f}", kLitresPerMinute * e.leak_flow_m3_per_s), found_class(record),
+               has_share ? fmt::format("{:.3f}", best) : "-", class_name(record.by_features, "-"),
                class_name(record.truth, "-")});
   }
   return table.text(style.columns);

@@ -19,16 +19,18 @@ StoredDiagnosedRecord stored(const diagnosis::RecordDiagnosis& record) {
   told.reference_repeats = record.reference_repeats;
   told.is_reference = record.is_reference;
   if (!ok) told.failure = record.fit.failure;
-  told.leak = report::stored(e, record.leak_class, ok);
-  told.unbounded_leakage_coefficient = value(e.coefficient);
-  told.undecided = !record.leak_class.has_value();
-  if (ok) told.explained_by_leak = !record.unexplained;
+  const bool judged = ok && !record.is_reference;
+  told.leak = report::stored(e, record.leak_class, judged);
+  if (judged) told.unbounded_leakage_coefficient = e.coefficient;
+  told.undecided = !record.leak_class && !record.is_reference && !e.incompatible;
+  if (judged) told.explained_by_leak = !record.unexplained;
   told.features = {value(record.features.mean), value(record.features.rms),
                    value(record.features.std)};
   told.parity_rms_m = value(record.fit.parity_rms_m);
   told.misfit_rms_m = value(record.fit.misfit_rms_m);
   told.noise_rms_m = value(record.fit.noise_rms_m);
-  if (ok && e.share > 0.0) told.log_slope = e.share_slope * e.coefficient / e.share;
+  if (judged && e.has_class() && e.share > 0.0)
+    told.log_slope = e.share_slope * e.coefficient / e.share;
   told.class_by_features = record.by_features;
   told.class_by_features_of_other_signals = record.by_features_of_other_signals;
   told.true_class = record.truth;

@@ -51,6 +51,7 @@ StoredParameter stored(const TablesFitResult& result, const calib::FittedAssumpt
   if (p.ci95) {
     parameter.ci95 = {p.ci95->first, p.ci95->second};
     parameter.ci95_from = std::optional(calib::IntervalSource::standard_error);
+    parameter.degrees_of_freedom = p.degrees_of_freedom;
   }
   parameter.at_bound = p.at_bound;
   parameter.identifiability = identifiability(p);

@@ -15,18 +15,21 @@ StoredLeak stored(const diagnosis::LeakEstimate& estimate,
   for (std::size_t i = 0; i < diagnosis::kClassCount; ++i) {
     leak.class_probabilities.emplace_back(
         to_string(datasets::kLeakClasses[i]),
-        ok ? std::optional(estimate.probability[i]) : std::nullopt);
+        ok && estimate.has_class() ? std::optional(estimate.probability[i]) : std::nullopt);
   }
   if (!ok) return leak;
-  leak.leakage_coefficient = std::max(0.0, estimate.coefficient);
-  leak.ci95 = scaled_ends(estimate.ci95);
   leak.standard_error = estimate.standard_error;
+  leak.compatible_with_model = std::optional(!estimate.incompatible);
+  if (estimate.incompatible) return leak;
+  leak.leakage_coefficient = std::max(0.0, estimate.coefficient);
+  if (estimate.standard_error > 0.0) leak.ci95 = scaled_ends(estimate.ci95);
+  leak.leak_flow_l_per_min = kLitresPerMinute * estimate.leak_flow_m3_per_s;
+  leak.leak_detected = estimate.leak_detected;
+  if (!estimate.has_share()) return leak;
   leak.leak_share_percent = kInPercent * estimate.share;
   leak.leak_share_ci95_percent = scaled_ends(estimate.share_ci95, kInPercent);
   if (const auto& limit = estimate.share_upper_limit)
     leak.leak_share_upper_limit_percent = kInPercent * *limit;
-  leak.leak_flow_l_per_min = kLitresPerMinute * estimate.leak_flow_m3_per_s;
-  leak.leak_detected = estimate.leak_detected;
   leak.class_ = leak_class;
   return leak;
 }

@@ -57,6 +57,20 @@ std::string state_sentence(const MachineState& state) {
                        state.failure.empty() ? "no condition of it tells its leak" : state.failure);
   }
   const diagnosis::LeakEstimate& e = state.estimate;
+  if (e.incompatible) {
+    return fmt::format(
+        "{}: incompatible with the model: the leakage coefficient would be {:.3g} ({:.3g} to "
+        "{:.3g}), below zero by more than its error, so supply or valve are not as they were in "
+        "the "
+        "fit.{}",
+        name, e.coefficient, e.ci95.first, e.ci95.second, agreement_of(state));
+  }
+  if (!e.has_share()) {
+    return fmt::format(
+        "{}: undecided: a leakage coefficient of {:.3g} would leak more than the servo valve "
+        "delivers at {}.{}",
+        name, e.coefficient, state.duty, agreement_of(state));
+  }
   // Two decimals at most: of an operator's percentages no more can be meant.
   const double error = std::max(0.1, kInPercent * (e.share_ci95.second - e.share_ci95.first) / 4.0);
   const auto percent = [&](double fraction) { return matched(kInPercent * fraction, error); };
@@ -94,11 +108,13 @@ StoredState stored(const MachineState& state) {
   told.leak = stored(e, state.leak_class, state.ok());
   told.duty = unless_empty(state.duty);
   if (!state.ok()) return told;
+  if (e.incompatible) return told;
   const double area = e.coefficient != 0.0 ? state.leak_area_m2 / e.coefficient : 0.0;
   told.leak_area_m2 = std::max(0.0, state.leak_area_m2);
-  told.leak_area_ci95_m2 = scaled_ends(e.ci95, area);
-  told.nearest_limit = {state.limit.above, kInPercent * state.limit.limit,
-                        kInPercent * state.limit.distance, state.limit.on_limit};
+  if (e.standard_error > 0.0) told.leak_area_ci95_m2 = scaled_ends(e.ci95, area);
+  if (e.has_share())
+    told.nearest_limit = {state.limit.above, kInPercent * state.limit.limit,
+                          kInPercent * state.limit.distance, state.limit.on_limit};
   if (const diagnosis::PooledLeak& pooled = state.pooled; state.members.size() > 1)
     told.agreement = {pooled.p, pooled.chi_squared, pooled.freedom, pooled.widened,
                       !pooled.disagree};

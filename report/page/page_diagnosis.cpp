@@ -43,8 +43,15 @@ Json class_badge(LeakClass leak_class) {
   return {{"word", to_string(leak_class)}, {"mark", mark.mark}, {"class", mark.css}};
 }
 
+/// A leak below zero: supply or valve are not as in the fit.
+Json incompatible_badge() {
+  return {{"word", "incompatible with the model"}, {"mark", "✕"}, {"class", "bad"}};
+}
+
 Json leak_badge(const StoredDiagnosedRecord& record) {
   if (record.failure) return {{"word", "not fitted"}, {"mark", "✕"}, {"class", "bad"}};
+  if (record.is_reference) return {{"word", "reference"}, {"mark", "○"}, {"class", "none"}};
+  if (record.leak.compatible_with_model == false) return incompatible_badge();
   if (record.explained_by_leak == false)
     return {{"word", "not explained by a leak"}, {"mark", "✕"}, {"class", "bad"}};
   if (!record.leak.class_) return {{"word", "undecided"}, {"mark", "?"}, {"class", "none"}};
@@ -215,8 +222,9 @@ std::vector<StoredState> judged_states(const StoredDiagnosis& diagnosis) {
 
 Json state_badge(const StoredState& state) {
   if (state.is_reference) return {{"word", "reference"}, {"mark", "○"}, {"class", "none"}};
+  if (state.leak.compatible_with_model == false) return incompatible_badge();
   if (state.leak.class_) return class_badge(*state.leak.class_);
-  return {{"word", state.leak.leak_share_percent ? "undecided" : "no verdict"},
+  return {{"word", state.leak.leakage_coefficient ? "undecided" : "no verdict"},
           {"mark", "?"},
           {"class", "none"}};
 }

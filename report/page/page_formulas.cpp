@@ -100,11 +100,14 @@ constexpr std::array kFormulas{
             "(Currie's detection limit)"},
     Formula{"accuracy", "right / all; interval of Wilson"},
     Formula{"difference, p",
-            "two-sided, of (b - a) / root of the sum of the squared errors, each the larger of "
-            "standard and robust; for all parameters together by Holm's steps"},
-    Formula{"trend",
-            "weighted least squares; its error is widened by the root of reduced chi-square where "
-            "that exceeds 1, t with n - 2 degrees of freedom"},
+            "two-sided, of (b - a) / root of the sum of the squared errors that the intervals rest "
+            "on, by t with the degrees of freedom of Welch and Satterthwaite; for all parameters "
+            "together by Holm's steps"},
+    Formula{
+        "trend",
+        "weighted least squares, tested by the errors of the points; where chi-square about the "
+        "line is beyond its upper quartile, the error is widened by the root of reduced "
+        "chi-square and tested by t with n - 2 degrees of freedom"},
     Formula{"sign test", "exact binomial, two-sided, over the conditions that both results have"},
 };
 

@@ -94,11 +94,19 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
     // 0.05 mm of noise on 750 samples leave the share uncertain by less than a percent point.
     CHECK(std::abs(record.estimate.share - *record.true_share) < 0.01);
     CHECK(record.is_reference == (!record.repeat && record.truth == LeakClass::normal));
+    CHECK(record.leak_class.has_value() == !record.is_reference);
   }
   REQUIRE(found.signals.size() == 1);
   REQUIRE(found.signals.front().smallest_leak);
   CHECK(found.signals.front().smallest_leak->share > 0.0);
   CHECK(found.signals.front().smallest_leak->share < 0.02);
+  // Of means of three the error is that of a repeat times sqrt(1/3 + 1/3) over sqrt(1 + 1/2): their
+  // limit is less than that of a repeat, but of its size. An average less itself has none.
+  REQUIRE(found.signals.front().smallest_single_leak);
+  const double of_average = found.signals.front().smallest_leak->coefficient;
+  const double of_single = found.signals.front().smallest_single_leak->coefficient;
+  CHECK(of_average > 0.2 * of_single);
+  CHECK(of_average < 1.2 * of_single);
 
   options.threads = 1;
   const Diagnosis again = diagnosis::diagnose(campaign, records, known_rig(campaign), options);
@@ -207,6 +215,20 @@ TEST_CASE("diagnose: without a healthy record the interval says what is not in i
   CHECK(found.records.front().warnings.size() == 2);
   CHECK_FALSE(found.signals.front().smallest_leak);
   CHECK_FALSE(found.signals.front().reason.empty());
+}
+
+TEST_CASE("diagnose: without the area of a leak no coefficient can be told", "[diagnosis]") {
+  Campaign campaign = small_campaign();
+  campaign.conditions.resize(1);
+  const auto records = records_of(campaign);
+  diagnosis::RigFit rig = known_rig(campaign);
+  const int area = row_of(campaign, "leakage_area");
+  for (auto& setting : campaign.parameters)
+    if (setting.index == area) setting.value = 0.0;
+  std::erase_if(rig.values, [&](const auto& each) { return each.index == area; });
+  const Diagnosis found = diagnosis::diagnose(campaign, records, rig, {});
+  CHECK_FALSE(found.usable());
+  CHECK_THAT(found.records.front().fit.failure, Catch::Contains("leakage_area is 0 m2"));
 }
 
 TEST_CASE("diagnose: a record of one sample is told to be too short", "[diagnosis]") {

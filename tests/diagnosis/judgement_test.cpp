@@ -84,14 +84,26 @@ TEST_CASE("judge: from a twentieth unexplained on told of, from a third not clas
   CHECK_THAT(told(other), StartsWith("not explained by a leak"));
 }
 
-TEST_CASE("judge: a leak below zero is told of from four standard errors on", "[diagnosis]") {
+TEST_CASE("judge: a leak below zero by more than its error has no class, and says why",
+          "[diagnosis]") {
   RecordDiagnosis fast = sure_record();
   fast.estimate.share = 0.0;
   fast.fit.coefficient = -0.1;
-  fast.estimate.leak_score = -3.9;
+  fast.estimate.ci95 = {-0.12, -0.08};
   CHECK(told(judged(fast)).empty());
-  fast.estimate.leak_score = -4.1;
-  CHECK_THAT(told(judged(fast)), StartsWith("a leak below zero would fit best"));
+  fast.estimate.incompatible = true;
+  CHECK_FALSE(judged(fast).leak_class);
+  CHECK_THAT(told(judged(fast)), StartsWith("incompatible with the model") &&
+                                     Contains("-0.1 (-0.12 to -0.08)") &&
+                                     Contains("supply or valve"));
+}
+
+TEST_CASE("judge: no class of a share that cannot be", "[diagnosis]") {
+  RecordDiagnosis beyond = sure_record();
+  beyond.estimate.share = 4.99;
+  beyond.fit.coefficient = 10.0;
+  CHECK_FALSE(judged(beyond).leak_class);
+  CHECK_THAT(told(judged(beyond)), StartsWith("a coefficient of 10 would leak more than"));
 }
 
 TEST_CASE("judge: a plateau is told of by the relative slope", "[diagnosis]") {
@@ -120,5 +132,7 @@ TEST_CASE("judge: what is not in the interval is told", "[diagnosis]") {
   corrected.reference_repeats = 5;
   CHECK(told(judged(corrected, errors)).empty());
   corrected.is_reference = true;
-  CHECK_THAT(told(judged(corrected, errors)), StartsWith("the healthy reference of its signal"));
+  CHECK(told(judged(corrected, errors)) ==
+        "the healthy reference of its signal: its leak is zero by construction");
+  CHECK_FALSE(judged(corrected, errors).leak_class);
 }

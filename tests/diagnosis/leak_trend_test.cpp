@@ -37,26 +37,37 @@ LeakTrend only_trend(const std::vector<MachineState>& states, const Eigen::Matri
 
 }  // namespace
 
-TEST_CASE("leak_trends: two dates are a difference over its days", "[diagnosis]") {
+TEST_CASE("leak_trends: two dates are no trend, and said so", "[diagnosis]") {
+  const std::vector states{on("2026-01-11", 0.5, 0.003), on("2026-01-01", 0.3, 0.004)};
+  CHECK(diagnosis::leak_trends(states, kNoRig, {}).empty());
+  const auto texts = diagnosis::too_few_dates(states);
+  REQUIRE(texts.size() == 1);
+  CHECK_THAT(texts.front(), Catch::Contains("2026-01-01 and 2026-01-11"));
+  CHECK(diagnosis::too_few_dates({on("2026-01-01", 0.3, 0.01)}).empty());
+  const std::vector three{states[0], states[1], on("2026-01-21", 0.5, 0.003)};
+  CHECK(diagnosis::too_few_dates(three).empty());
+}
+
+TEST_CASE("leak_trends: the line through three dates, in their order", "[diagnosis]") {
+  // 4 degrees of freedom at the ends, which alone have weight in the slope: 8 of their sum.
   const LeakTrend trend =
-      only_trend({on("2026-01-11", 0.5, 0.03, 9.0), on("2026-01-01", 0.3, 0.04, 4.0)});
-  CHECK(trend.dates == 2);
+      only_trend({on("2026-01-11", 0.5, 0.03, 4.0), on("2026-01-01", 0.3, 0.03, 4.0),
+                  on("2026-01-06", 0.4, 0.01, 1.0)});
+  CHECK(trend.dates == 3);
   CHECK(trend.last_day - trend.first_day == 10);
   CHECK_THAT(trend.coefficient_per_day, WithinRel(0.02, 1e-9));
   CHECK_THAT(trend.share_per_day, WithinRel(0.004, 1e-9));
-  // Error 0.05 / 10 per day; Welch's freedom 0.05^4 / (0.03^4 / 9 + 0.04^4 / 4) = 8.56, of which
-  // the quantile of Student's t is 2.27994 and the tail beyond 4 is 0.00172045 on each side
-  // (SciPy).
+  // Error 0.03 sqrt(2) / 10 per day; quantile 97.5 % of t with 8 degrees.
   CHECK_THAT(trend.share_per_day_ci95.second - trend.share_per_day,
-             WithinRel(0.2 * 0.005 * 2.27994, 1e-5));
-  CHECK_THAT(trend.p, WithinRel(2.0 * 0.00172045, 1e-5));
+             WithinRel(0.2 * 0.003 * std::sqrt(2.0) * 2.306004135, 1e-6));
   CHECK(trend.significant);
   CHECK(trend.widened == 1.0);
 }
 
 TEST_CASE("leak_trends: when the line reaches the next limit", "[diagnosis]") {
   // 2 % on the last day, 0.4 points a day: 10 %, where medium begins, 20 days later.
-  const LeakTrend trend = only_trend({on("2026-01-01", 0.06, 1e-3), on("2026-01-03", 0.1, 1e-3)});
+  const LeakTrend trend = only_trend(
+      {on("2026-01-01", 0.06, 1e-3), on("2026-01-02", 0.08, 1e-3), on("2026-01-03", 0.1, 1e-3)});
   REQUIRE(trend.next_class == datasets::LeakClass::medium);
   CHECK_THAT(trend.next_limit, WithinAbs(0.1, 1e-12));
   CHECK_THAT(trend.reached_day - trend.last_day, WithinRel(20.0, 1e-9));
@@ -64,8 +75,14 @@ TEST_CASE("leak_trends: when the line reaches the next limit", "[diagnosis]") {
   REQUIRE(trend.latest_day);
   CHECK(*trend.latest_day > trend.reached_day);
   // Falling, or beyond the last limit: nothing to reach.
-  CHECK_FALSE(only_trend({on("2026-01-01", 0.3, 1e-3), on("2026-01-03", 0.1, 1e-3)}).next_class);
-  CHECK_FALSE(only_trend({on("2026-01-01", 2.0, 1e-3), on("2026-01-03", 2.4, 1e-3)}).next_class);
+  for (const double change : {-0.1, 0.2}) {
+    const double first = change < 0.0 ? 0.3 : 2.0;
+    const LeakTrend other =
+        only_trend({on("2026-01-01", first, 1e-3), on("2026-01-02", first + change, 1e-3),
+                    on("2026-01-03", first + 2.0 * change, 1e-3)});
+    CHECK(other.significant);
+    CHECK_FALSE(other.next_class);
+  }
 }
 
 TEST_CASE("leak_trends: no trend within the errors", "[diagnosis]") {
@@ -74,7 +91,8 @@ TEST_CASE("leak_trends: no trend within the errors", "[diagnosis]") {
   CHECK_FALSE(trend.significant);
   CHECK_THAT(trend.p, WithinAbs(1.0, 1e-9));
   CHECK_FALSE(trend.next_class);
-  const LeakTrend rise = only_trend({on("2026-01-01", 0.30, 0.02), on("2026-01-02", 0.31, 0.02)});
+  const LeakTrend rise = only_trend(
+      {on("2026-01-01", 0.30, 0.02), on("2026-01-02", 0.305, 0.02), on("2026-01-03", 0.31, 0.02)});
   CHECK(rise.coefficient_per_day > 0.0);
   CHECK_FALSE(rise.significant);
   CHECK_FALSE(rise.next_class);
@@ -85,6 +103,7 @@ TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]
   const Eigen::MatrixXd rig = Eigen::MatrixXd::Constant(1, 1, 0.25);
   const auto states = [](double move) {
     return std::vector{on("2026-01-01", 0.3, 0.01, 1e6, move),
+                       on("2026-01-06", 0.35, 0.01, 1e6, move),
                        on("2026-01-11", 0.4, 0.01, 1e6, move)};
   };
   const LeakTrend exact = only_trend(states(0.0), rig);
@@ -92,8 +111,10 @@ TEST_CASE("leak_trends: an error that all dates share is no trend", "[diagnosis]
   CHECK_THAT(shared.p, WithinRel(exact.p, 1e-6));
   CHECK_THAT(shared.coefficient_per_day, WithinRel(0.01, 1e-9));
   // It counts where it moves one date more than the other: by 0.1 * 0.5 over ten days.
-  const LeakTrend uneven = only_trend(
-      {on("2026-01-01", 0.3, 0.01, 1e6, 0.3), on("2026-01-11", 0.4, 0.01, 1e6, 0.4)}, rig);
+  const LeakTrend uneven =
+      only_trend({on("2026-01-01", 0.3, 0.01, 1e6, 0.3), on("2026-01-06", 0.35, 0.01, 1e6, 0.35),
+                  on("2026-01-11", 0.4, 0.01, 1e6, 0.4)},
+                 rig);
   const double error = (uneven.share_per_day_ci95.second - uneven.share_per_day) / (0.2 * 1.95996);
   CHECK_THAT(error, WithinRel(std::sqrt(2e-4 + 0.0025) / 10.0, 1e-3));
 }
@@ -110,15 +131,19 @@ TEST_CASE("leak_trends: dates that lie off a line widen its error", "[diagnosis]
 }
 
 TEST_CASE("leak_trends: one for each machine, of dated verdicts alone", "[diagnosis]") {
-  std::vector<MachineState> states{on("2026-01-01", 0.3, 0.01), on("2026-01-02", 0.3, 0.01),
-                                   on("2026-01-01", 0.5, 0.01), on("2026-01-02", 0.5, 0.01),
-                                   on("", 0.5, 0.01),           on("2026-01-03", 0.9, 0.01)};
-  states[2].key.specimen = states[3].key.specimen = "B";
-  states[5].failure = "no verdict";
+  std::vector<MachineState> states;
+  for (const char* date : {"2026-01-01", "2026-01-02", "2026-01-04"}) {
+    states.push_back(on(date, 0.3, 0.01));
+    states.push_back(on(date, 0.5, 0.01));
+    states.back().key.specimen = "B";
+  }
+  states.push_back(on("", 0.5, 0.01));
+  states.push_back(on("2026-01-03", 0.9, 0.01));
+  states.back().failure = "no verdict";
   const auto trends = diagnosis::leak_trends(states, kNoRig, {});
   REQUIRE(trends.size() == 2);
   CHECK(trends[0].specimen.empty());
-  CHECK(trends[0].dates == 2);
+  CHECK(trends[0].dates == 3);
   CHECK(trends[1].specimen == "B");
   CHECK(diagnosis::leak_trends({on("2026-01-01", 0.3, 0.01)}, kNoRig, {}).empty());
 }

@@ -134,18 +134,20 @@ def significance(generator):
         yield "sign_test", [better, worse, stats.binomtest(better, better + worse).pvalue]
     x = rounded(generator.uniform(0, 40, 8))
     error = rounded(generator.uniform(0.5, 2, 8))
-    # Scatter larger than the errors widens the interval, smaller scatter does not narrow it.
+    # Scatter larger than the errors widens the interval, by t; smaller scatter leaves the errors,
+    # by the normal distribution.
     for name, scatter in (("trend_wide", 3.0), ("trend_narrow", 0.3)):
         y = rounded(1 + 0.07 * x + scatter * error * generator.standard_normal(8))
         fit = WLS(y, numpy.c_[numpy.ones(8), x], weights=error**-2).fit()
         sd = fit.bse[1] / min(1.0, numpy.sqrt(fit.scale))
-        half = stats.t.ppf(0.975, 6) * sd
+        of_slope = stats.t(6) if stats.chi2.sf(6 * fit.scale, 6) < 0.25 else stats.norm
+        half = of_slope.ppf(0.975) * sd
         yield f"{name}.x", x
         yield f"{name}.y", y
         yield f"{name}.error", error
         yield f"{name}.line", [fit.params[1], fit.params[0], sd, fit.scale]
         yield f"{name}.ci95", [fit.params[1] - half, fit.params[1] + half]
-        yield f"{name}.p_value", 2 * stats.t.sf(abs(fit.params[1]) / sd, 6)
+        yield f"{name}.p_value", 2 * of_slope.sf(abs(fit.params[1]) / sd)
     for right, trials in ((5, 9), (0, 4), (12, 12)):
         yield "wilson", [right, trials, *proportion_confint(right, trials, method="wilson")]
 

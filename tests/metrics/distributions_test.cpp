@@ -28,4 +28,5 @@ TEST_CASE("distributions: chi-square, F and binomial", "[metrics]") {
   CHECK_THAT(fisher_f_exceedance(3.325834530, 5.0, 10.0), WithinRel(0.05, 1e-8));
   CHECK_THAT(binomial_cdf(2, 10, 0.5), WithinAbs(56.0 / 1024.0, 1e-15));
   CHECK_THROWS_AS(chi_squared_exceedance(-1.0, 3.0), std::domain_error);
+  CHECK(chi_squared_exceedance(0.0, 1e4) == 1.0);
 }

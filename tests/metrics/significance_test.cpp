@@ -13,10 +13,10 @@ using namespace rigcal::metrics;
 
 TEST_CASE("significance: a difference of 1.96 standard errors has 5 %", "[metrics]") {
   // Quantile of the normal distribution, to its printed digits.
-  CHECK_THAT(difference_p_value(-1.959963985 * 0.3, 0.3), WithinRel(0.05, 1e-8));
-  CHECK(difference_p_value(0.0, 2.0) == 1.0);
-  CHECK_THROWS_AS(difference_p_value(1.0, 0.0), std::invalid_argument);
-  CHECK_THROWS_AS(difference_p_value(std::numeric_limits<double>::quiet_NaN(), 1.0),
+  CHECK_THAT(difference_p_value(-1.959963985 * 0.3, {0.3}), WithinRel(0.05, 1e-8));
+  CHECK(difference_p_value(0.0, {2.0}) == 1.0);
+  CHECK_THROWS_AS(difference_p_value(1.0, {0.0}), std::invalid_argument);
+  CHECK_THROWS_AS(difference_p_value(std::numeric_limits<double>::quiet_NaN(), {1.0}),
                   std::invalid_argument);
 }
 
@@ -40,42 +40,73 @@ TEST_CASE("significance: sign test counts tails of a fair coin", "[metrics]") {
   CHECK_THROWS_AS(sign_test_p_value(-1, 2), std::invalid_argument);
 }
 
-TEST_CASE("significance: a trend is the exact line where the points lie on one", "[metrics]") {
-  const std::vector<double> x{0.0, 1.0, 4.0, 6.0};
-  std::vector<double> y;
-  for (const double each : x) y.push_back(2.0 - 0.5 * each);
-  const Trend trend = weighted_trend(x, y, std::vector<double>(4, 0.1));
-  CHECK_THAT(trend.slope, WithinRel(-0.5, 1e-12));
-  CHECK_THAT(trend.intercept, WithinRel(2.0, 1e-12));
-  // sum (x - 2.75)^2 = 22.75; error 0.1 / sqrt(22.75)
-  CHECK_THAT(trend.slope_standard_error, WithinRel(0.1 / std::sqrt(22.75), 1e-12));
-  CHECK_THAT(trend.reduced_chi_square, WithinAbs(0.0, 1e-20));
-  CHECK(trend.ci95_low < -0.5);
-  CHECK(trend.ci95_high > -0.5);
+TEST_CASE("significance: a difference by few degrees of freedom is one of Student's t",
+          "[metrics]") {
+  // Quantiles 97.5 % of t with 2 and 5 degrees, to their printed digits.
+  CHECK_THAT(difference_p_value(4.302652730 * 0.2, {0.2, 2.0}), WithinRel(0.05, 1e-8));
+  CHECK_THAT(difference_p_value(-2.570581836 * 0.2, {0.2, 5.0}), WithinRel(0.05, 1e-8));
+  CHECK_THROWS_AS(difference_p_value(1.0, {1.0, 0.0}), std::invalid_argument);
+  // By hand: (9 + 16)^2 / (81 / 4 + 256 / 9) = 12.83.
+  const EstimateError both = error_of_difference({3.0, 4.0}, {4.0, 9.0});
+  CHECK_THAT(both.standard_error, WithinRel(5.0, 1e-15));
+  CHECK_THAT(both.freedom, WithinRel(625.0 / (81.0 / 4.0 + 256.0 / 9.0), 1e-12));
+  // A value that is known exactly adds none.
+  CHECK_THAT(error_of_difference({3.0, 4.0}, {}).freedom, WithinRel(4.0, 1e-12));
+  CHECK(error_of_difference({3.0}, {4.0}).freedom == kManyDegrees);
 }
 
-TEST_CASE("significance: no slope is found significant at 5 % in 5 % of cases", "[metrics]") {
-  std::mt19937_64 random(4);
-  std::normal_distribution<double> noise;
-  const std::vector<double> x{0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0};
-  int found = 0;
-  constexpr int kTrials = 4000;
-  for (int i = 0; i < kTrials; ++i) {
-    std::vector<double> y;
-    // Errors are stated three times too small: the scatter has to tell.
-    for (std::size_t k = 0; k < x.size(); ++k) y.push_back(3.0 * noise(random));
-    found += weighted_trend(x, y, std::vector<double>(x.size(), 1.0)).p_value < 0.05 ? 1 : 0;
+namespace {
+
+/// An estimate as a fit of conditions with few repeats has it: the mean over conditions, its error
+/// by the spread of the repeats of each, with the freedom of Satterthwaite.
+struct Drawn {
+  double value = 0.0;
+  EstimateError error;
+};
+
+Drawn draw(std::mt19937_64& random, int repeats, const std::vector<double>& weights) {
+  std::normal_distribution<double> normal;
+  Drawn drawn;
+  std::vector<ErrorPart> parts;
+  double variance = 0.0;
+  for (const double weight : weights) {
+    std::vector<double> values;
+    double mean = 0.0;
+    for (int r = 0; r < repeats; ++r) {
+      values.push_back(weight * normal(random));
+      mean += values.back() / repeats;
+    }
+    double squares = 0.0;
+    for (const double each : values) squares += (each - mean) * (each - mean);
+    parts.push_back({squares / (repeats * (repeats - 1.0)), repeats - 1.0});
+    variance += parts.back().variance;
+    drawn.value += mean;
   }
-  // 200 expected, standard deviation 14; four of them.
-  CHECK(found > 144);
-  CHECK(found < 256);
+  drawn.error = {std::sqrt(variance), effective_freedom(parts)};
+  return drawn;
 }
 
-TEST_CASE("significance: a trend needs three points at different places", "[metrics]") {
-  using Values = std::vector<double>;
-  CHECK_THROWS_AS(weighted_trend(Values{0, 1}, Values{0, 1}, Values{1, 1}), std::invalid_argument);
-  CHECK_THROWS_AS(weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Values{1, 0, 1}),
-                  std::invalid_argument);
-  CHECK_THROWS_AS(weighted_trend(Values{1, 1, 1}, Values{0, 1, 2}, Values{1, 1, 1}),
-                  std::domain_error);
+}  // namespace
+
+TEST_CASE("significance: equal rigs of few repeats are told apart in 5 % of cases", "[metrics]") {
+  std::mt19937_64 random(7);
+  const int repeats = GENERATE(2, 3, 5);
+  const std::vector<double> weights{1.0, 0.6, 0.8};
+  constexpr int kPairs = 4000;
+  int found = 0;
+  int found_by_normal = 0;
+  for (int i = 0; i < kPairs; ++i) {
+    const Drawn a = draw(random, repeats, weights);
+    const Drawn b = draw(random, repeats, weights);
+    const EstimateError both = error_of_difference(a.error, b.error);
+    found += difference_p_value(a.value - b.value, both) < 0.05 ? 1 : 0;
+    found_by_normal += difference_p_value(a.value - b.value, {both.standard_error}) < 0.05 ? 1 : 0;
+  }
+  CAPTURE(repeats, found, found_by_normal);
+  // 200 expected, standard deviation 14; fewer of two repeats, where the freedom is an estimate
+  // too.
+  CHECK(found > (repeats == 2 ? 40 : 120));
+  CHECK(found < 260);
+  // The normal distribution does not know that the errors are uncertain.
+  if (repeats == 2) CHECK(found_by_normal > 400);
 }

@@ -13,6 +13,7 @@
 #include "metrics/residual_features.hpp"
 #include "metrics/residual_tests.hpp"
 #include "metrics/significance.hpp"
+#include "metrics/trend.hpp"
 #include "tests/support/golden.hpp"
 
 using namespace rigcal::metrics;
@@ -132,8 +133,9 @@ TEST_CASE("golden: significance", "[metrics]") {
   });
   for (const std::string name : {"trend_wide", "trend_narrow"}) {
     CAPTURE(name);
-    const Trend trend =
-        weighted_trend(golden(name + ".x"), golden(name + ".y"), golden(name + ".error"));
+    std::vector<EstimateError> errors;
+    for (const double error : golden(name + ".error")) errors.push_back({error});
+    const Trend trend = weighted_trend(golden(name + ".x"), golden(name + ".y"), errors);
     check_values(
         {trend.slope, trend.intercept, trend.slope_standard_error, trend.reduced_chi_square},
         golden(name + ".line"));

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "calib/problem/known_sd.hpp"
+#include "metrics/distributions.hpp"
 #include "report/store/identity.hpp"
 #include "report/store/stored/stored_residual_tests.hpp"
 #include "report/store/stored/stored_tables_fit.hpp"
@@ -65,6 +66,7 @@ StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSp
   result.robust_standard_error = finite(p.robust_standard_error);
   result.ci95 = range_of(p.ci95);
   if (p.ci95) result.ci95_from = std::optional(p.interval);
+  result.degrees_of_freedom = finite(p.degrees_of_freedom);
   if (p.bootstrap)
     result.bootstrap = StoredBootstrap{p.bootstrap->standard_error, p.bootstrap->bias,
                                        p.bootstrap->freedom, range_of(p.bootstrap->ci95)};
@@ -204,6 +206,19 @@ void add_stated(const Result& result, const calib::ConditionScore& score, bool c
   if (condition->acceptance) stated.acceptance = stored(*condition->acceptance);
 }
 
+/// Of the files that a record is made from, as the provenance has them.
+std::vector<std::string> hashes_of(const Result& result, const datasets::Record& record) {
+  std::vector<std::string> hashes;
+  for (const FileState& file : record.files) {
+    const auto& inputs = result.provenance.inputs;
+    const auto found = std::find_if(inputs.begin(), inputs.end(), [&](const InputFile& input) {
+      return input.path == file.path;
+    });
+    if (found != inputs.end()) hashes.push_back(found->sha256);
+  }
+  return hashes;
+}
+
 StoredCondition stored(const Result& result, const calib::ConditionScore& score, bool closed_loop) {
   StoredCondition condition;
   condition.id = score.id;
@@ -211,6 +226,7 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score,
   condition.use = score.use;
   condition.samples = score.samples;
   if (const datasets::Record* record = record_of(result, score.id)) {
+    condition.record_sha256 = hashes_of(result, *record);
     condition.windows_s.emplace();
     for (const datasets::TimeWindow& window : record->windows)
       condition.windows_s->push_back({window.start_s, window.end_s});
@@ -299,12 +315,42 @@ void add_search(const calib::Fit& fit, StoredFit& result) {
         {failure.condition, failure.start, failure.time_s, failure.reason, failure.parameters});
 }
 
+/// Degrees of freedom of which the quantile of Student's t is the half width of ci95 in errors. A
+/// bound may cut an interval on one side, so the longer one counts.
+double freedom_of_interval(const StoredParameter& parameter, double error) {
+  if (!parameter.ci95 || !parameter.value) return metrics::kManyDegrees;
+  const double quantile =
+      std::max(parameter.ci95->high - *parameter.value, *parameter.value - parameter.ci95->low) /
+      error;
+  if (!(quantile > metrics::student_t_quantile(0.975, metrics::kManyDegrees)))
+    return metrics::kManyDegrees;
+  double low = 1.0;
+  double high = metrics::kManyDegrees;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = std::sqrt(low * high);
+    (metrics::student_t_quantile(0.975, middle) > quantile ? low : high) = middle;
+  }
+  return low;
+}
+
 }  // namespace
 
 std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& channel) const {
   if (failure) return verdict;
   const calib::Verdict* found = find(channel_verdicts, channel);
   return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter) {
+  const auto& source = parameter.ci95_from;
+  const auto error = source == calib::IntervalSource::standard_error ? parameter.standard_error
+                     : source == calib::IntervalSource::robust_standard_error
+                         ? parameter.robust_standard_error
+                         : error_of(parameter);
+  if (!error || !(*error > 0.0)) return std::nullopt;
+  if (parameter.degrees_of_freedom && *parameter.degrees_of_freedom > 0.0)
+    return metrics::EstimateError{*error, *parameter.degrees_of_freedom};
+  return metrics::EstimateError{*error, freedom_of_interval(parameter, *error)};
 }
 
 std::optional<double> error_of(const StoredParameter& parameter) {

@@ -7,6 +7,7 @@
 
 #include "calib/fit.hpp"
 #include "metrics/metric_table.hpp"
+#include "metrics/significance.hpp"
 #include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
 #include "report/store/result.hpp"
@@ -107,16 +108,20 @@ struct StoredParameter {
   std::optional<double> standard_error, robust_standard_error;
   std::optional<Range> ci95;
   Later<std::optional<calib::IntervalSource>> ci95_from;
+  Later<std::optional<double>> degrees_of_freedom;  ///< of the error that ci95 rests on
   Omittable<StoredBootstrap> bootstrap;
   Omittable<StoredProfile> profile;
   bool at_bound = false;
   std::optional<calib::Identifiability> identifiability;
   std::string reason;
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, value, start, lower, upper, fitted,
-                  nuisance, standard_error, robust_standard_error, ci95, ci95_from, bootstrap,
-                  profile, at_bound, identifiability, reason)
+                  nuisance, standard_error, robust_standard_error, ci95, ci95_from,
+                  degrees_of_freedom, bootstrap, profile, at_bound, identifiability, reason)
 };
 
+/// The error that ci95 rests on, and its degrees of freedom. A file of a version that does not tell
+/// these has them by the half width of ci95 in errors, else many.
+std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter);
 /// The larger of standard and robust error.
 std::optional<double> error_of(const StoredParameter& parameter);
 /// "leakage_coefficient (leak level 33 %)": a parameter with whose it is.
@@ -243,7 +248,8 @@ struct StoredCondition {
   Omittable<double> temperature_k;
   Omittable<std::string> date;
   long samples = 0;
-  Omittable<std::vector<Range>> windows_s;  ///< empty: the whole record
+  Later<std::vector<std::string>> record_sha256;  ///< of the files that its record is made from
+  Omittable<std::vector<Range>> windows_s;        ///< empty: the whole record
   Omittable<std::vector<std::string>> notes;
   Omittable<std::vector<StoredLimit>> acceptance;  ///< its own, in place of the campaign's
   Later<std::vector<std::string>> warnings;
@@ -258,9 +264,9 @@ struct StoredCondition {
   std::optional<calib::Verdict> verdict;
   std::vector<std::string> reasons;
   RIGCAL_DESCRIBE(id, waveform, frequency_hz, amplitude_m, amplitude_v, leak_level, use,
-                  temperature_k, date, samples, windows_s, notes, acceptance, warnings, not_scored,
-                  failure, metrics, noise_floor, expanded_uncertainty, residual_tests, limit_checks,
-                  channel_verdicts, verdict, reasons)
+                  temperature_k, date, samples, record_sha256, windows_s, notes, acceptance,
+                  warnings, not_scored, failure, metrics, noise_floor, expanded_uncertainty,
+                  residual_tests, limit_checks, channel_verdicts, verdict, reasons)
 
   /// Of one channel; nothing where it has no limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;

@@ -49,11 +49,13 @@ struct StoredLeak {
   std::optional<double> leak_share_upper_limit_percent;
   std::optional<double> leak_flow_l_per_min;
   std::optional<bool> leak_detected;
+  /// False: the coefficient lies below zero by more than its error, so nothing is said of a leak.
+  Later<std::optional<bool>> compatible_with_model;
   std::optional<datasets::LeakClass> class_;  ///< nothing: undecided
   Keyed<std::optional<double>> class_probabilities;
   RIGCAL_DESCRIBE(leakage_coefficient, ci95, standard_error, leak_share_percent,
                   leak_share_ci95_percent, leak_share_upper_limit_percent, leak_flow_l_per_min,
-                  leak_detected, class_, class_probabilities)
+                  leak_detected, compatible_with_model, class_, class_probabilities)
 };
 
 }  // namespace rigcal::report

@@ -164,9 +164,52 @@ TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis
   CHECK(some.share_ci95.first > 0.0);
 }
 
+TEST_CASE("estimate_leak: no interval ends at zero, however far below it the estimate lies",
+          "[diagnosis]") {
+  // Where nothing leaks: of half a normal distribution 95 % lie below 1.959964.
+  const auto none = estimated(fit_of(0.0, 0.1));
+  CHECK(none.ci95.first == 0.0);
+  CHECK_THAT(none.ci95.second, WithinRel(0.1959964, 1e-5));
+  // Two errors below zero: of what is left above zero, P(Z > 2) = 0.0227501, a twentieth lies
+  // beyond 3.05176 errors.
+  const auto below = estimated(fit_of(-0.2, 0.1));
+  CHECK_FALSE(below.incompatible);
+  CHECK_THAT(below.ci95.second, WithinAbs(0.1 * (3.05176 - 2.0), 1e-5));
+  // From 2.3263 errors on, the 1 % of false alarms, no leak makes such a record.
+  CHECK_FALSE(estimated(fit_of(-0.232, 0.1)).incompatible);
+  const auto beyond = estimated(fit_of(-0.233, 0.1));
+  CHECK(beyond.incompatible);
+  CHECK_FALSE(beyond.has_class());
+  CHECK_THAT(beyond.ci95.first, WithinAbs(-0.233 - 0.196, 1e-4));
+  CHECK_THAT(beyond.ci95.second, WithinAbs(-0.233 + 0.196, 1e-4));
+}
+
+TEST_CASE("estimate_leak: a share is within 0 and 1, or none", "[diagnosis]") {
+  // share = C / 10: a coefficient of 9 with an error of 2 has shares beyond all of the flow.
+  const auto wide = estimated(fit_of(9.0, 2.0));
+  CHECK(wide.has_share());
+  CHECK(wide.share_ci95.second == 1.0);
+  CHECK(wide.share_ci95.first > 0.4);
+  CHECK_FALSE(estimated(fit_of(11.0, 2.0)).has_share());
+}
+
 TEST_CASE("detection_limit: Currie's sum of both quantiles", "[diagnosis]") {
   // 2.3263 + 1.6449
-  CHECK_THAT(detection_limit(estimated(fit_of(0.0, 0.01)), kSettings), WithinRel(0.039712, 1e-4));
+  const CoefficientError error = coefficient_error(fit_of(0.0, 0.01), {}, 1, 0);
+  CHECK_THAT(detection_limit(error, kSettings), WithinRel(0.039712, 1e-4));
+}
+
+TEST_CASE("error_of_averages: from the spread between repeats, of both means", "[diagnosis]") {
+  SignalErrors errors;
+  // A record that is its own reference has no residual, and so no error of its own.
+  const LeakFit reference = fit_of(0.0, 0.0);
+  CHECK_FALSE(error_of_averages(reference, errors, 5, 5));
+  errors.repeat_m = 0.12e-3;  // 0.12 of the coefficient
+  errors.repeat_freedom = 4;
+  const auto error = error_of_averages(reference, errors, 5, 3);
+  REQUIRE(error);
+  CHECK_THAT(error->own_se, WithinRel(0.12 * std::sqrt(1.0 / 5.0 + 1.0 / 3.0), 1e-12));
+  CHECK_THAT(error->freedom, WithinRel(4.0, 1e-12));
 }
 
 TEST_CASE("keep_larger: the limit of the larger flow, whatever comes first", "[diagnosis]") {

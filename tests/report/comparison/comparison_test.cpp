@@ -43,12 +43,15 @@ ComparedJson compared_fit(const std::string& name, double mass_kg, double leak,
   result["parameters"][0]["value"] = mass_kg;
   result["parameters"][0]["standard_error"] = 0.3;
   result["parameters"][0]["robust_standard_error"] = 0.4;
+  result["parameters"][0]["ci95_from"] = "robust_standard_error";
+  result["parameters"][0]["degrees_of_freedom"] = 1e6;
   Json leakage = result["parameters"][0];
   leakage["name"] = leakage["key"] = "leakage_coefficient";
   leakage["unit"] = "1";
   leakage["value"] = leak;
   leakage["standard_error"] = 0.01;
   leakage["robust_standard_error"] = nullptr;
+  leakage["ci95_from"] = "standard_error";
   leakage["ci95"] = {leak - 0.02, leak + 0.02};
   result["parameters"].push_back(leakage);
   const int day = 1 + static_cast<int>(day_shift);
@@ -62,7 +65,7 @@ ComparedJson compared_fit(const std::string& name, double mass_kg, double leak,
 
 }  // namespace
 
-TEST_CASE("comparison: the difference with the larger errors of both", "[report]") {
+TEST_CASE("comparison: the difference with the errors that the intervals rest on", "[report]") {
   const Json json =
       comparison_json({compared_fit("before", 85.0, 0.3), compared_fit("after", 86.0, 0.3)}, {});
   CHECK(json["status"] == "done");
@@ -148,7 +151,97 @@ TEST_CASE("comparison: fits to the same records are not independent", "[report]"
   CHECK_THAT(difference["reason"].get<std::string>(), Contains("same data"));
   CHECK(json["records"].size() == 1);
   CHECK(json["records"][0]["in"] == Json::array({true, true}));
-  CHECK(json["warnings"].dump().find("share records") != std::string::npos);
+  CHECK(json["warnings"].dump().find("fitted to the same records") != std::string::npos);
+}
+
+TEST_CASE("comparison: errors of few degrees of freedom are judged by Student's t", "[report]") {
+  const auto fit = [](const char* name, double mass_kg, double freedom) {
+    ComparedJson compared = compared_fit(name, mass_kg, 0.3);
+    compared.result["parameters"][0]["degrees_of_freedom"] = freedom;
+    return compared;
+  };
+  // 2.5 errors: p = 0.012 by the normal distribution, 0.067 by t with 2 + 2 degrees.
+  const double mass_kg = 85.0 + 2.5 * std::hypot(0.4, 0.4);
+  const Json json = comparison_json({fit("before", 85.0, 2.0), fit("after", mass_kg, 2.0)}, {});
+  const Json& difference = json["parameters"][0]["differences"][1];
+  CHECK_THAT(difference["degrees_of_freedom"].get<double>(), WithinRel(4.0, 1e-12));
+  CHECK_THAT(difference["p_value"].get<double>(), WithinRel(0.0667666, 1e-5));
+  CHECK(json["parameters"][0]["estimates"][0]["degrees_of_freedom"] == 2.0);
+}
+
+TEST_CASE("comparison: a file without degrees of freedom has those of its intervals", "[report]") {
+  ComparedJson old = compared_fit("before", 85.0, 0.3);
+  Json& mass = old.result["parameters"][0];
+  mass.erase("degrees_of_freedom");
+  mass.erase("ci95_from");
+  // Three degrees: quantile 3.182446 of t. The lower end is cut by a bound.
+  mass["ci95"] = {84.9, 85.0 + 3.182446305 * 0.4};
+  const Json json = comparison_json({old, compared_fit("after", 86.0, 0.3)}, {});
+  CHECK_THAT(json["parameters"][0]["estimates"][0]["degrees_of_freedom"].get<double>(),
+             WithinRel(3.0, 1e-6));
+  CHECK_THAT(json["warnings"].dump(), Contains("before: written by a version"));
+  CHECK_THAT(json["warnings"].dump(), !Contains("after: written by a version"));
+}
+
+TEST_CASE("comparison: repeats that differ are said of the fit that warned of them", "[report]") {
+  ComparedJson other = compared_fit("after", 86.0, 0.3);
+  other.result["between_repeats"] = Json::parse(
+      R"({"differ": true, "p": 1e-4, "ratio": 5.0, "parameters": ["mass"],
+          "cause": "supply_pressure", "cause_sd": 0.01, "cause_explains": 0.9})");
+  const Json json = comparison_json({compared_fit("before", 85.0, 0.3), other}, {});
+  CHECK_THAT(json["warnings"].dump(),
+             Contains("after: its repeats differ") && Contains("supply_pressure"));
+  CHECK_THAT(json["warnings"].dump(), !Contains("before: its repeats differ"));
+}
+
+namespace {
+
+/// A fit to one record that scores another one too; both are among its inputs.
+ComparedJson half(const std::string& name, double mass_kg, const std::string& fitted,
+                  const std::string& scored) {
+  ComparedJson compared = compared_fit(name, mass_kg, 0.3);
+  compared.result["provenance"]["inputs"] = {{{"path", "a/one.csv"}, {"sha256", fitted}},
+                                             {{"path", "a/two.csv"}, {"sha256", scored}}};
+  Json& conditions = compared.result["conditions"];
+  conditions.push_back(conditions[0]);
+  conditions[0]["record_sha256"] = Json::array({fitted});
+  conditions[1]["id"] = "scored";
+  conditions[1]["use"] = "validate";
+  conditions[1]["record_sha256"] = Json::array({scored});
+  return compared;
+}
+
+bool is_tested(const ComparedJson& a, const ComparedJson& b) {
+  const Json json = comparison_json({a, b}, {});
+  const bool tested = json["parameters"][0]["differences"][1]["significant"].is_boolean();
+  // What is not tested is warned of.
+  CHECK(tested == (json["warnings"].dump().find("fitted to the same") == std::string::npos));
+  return tested;
+}
+
+}  // namespace
+
+TEST_CASE("comparison: halves that score each other's records are independent", "[report]") {
+  const ComparedJson first = half("h1", 85.0, "one", "two");
+  CHECK(is_tested(first, half("h2", 86.0, "two", "one")));
+  CHECK_FALSE(is_tested(first, half("again", 86.0, "one", "two")));
+  // Either may be of an earlier version, which does not tell what was fitted.
+  ComparedJson old = half("old", 86.0, "two", "one");
+  for (Json& condition : old.result["conditions"]) condition.erase("record_sha256");
+  CHECK_FALSE(is_tested(first, old));
+}
+
+TEST_CASE("comparison: windows of one file that do not overlap are other samples", "[report]") {
+  const auto within = [](const char* name, double low, double high) {
+    ComparedJson compared = half(name, 85.0, "one", "two");
+    compared.result["conditions"][0]["windows_s"] = Json::array({{low, high}});
+    return compared;
+  };
+  const ComparedJson first = within("h1", 0.0, 10.0);
+  CHECK(is_tested(first, within("h2", 10.0, 20.0)));
+  CHECK_FALSE(is_tested(first, within("h2", 9.0, 20.0)));
+  ComparedJson whole = half("whole", 85.0, "one", "two");
+  CHECK_FALSE(is_tested(first, whole));
 }
 
 TEST_CASE("comparison: a failed fit has no values, and two usable ones are needed", "[report]") {

@@ -22,6 +22,7 @@ MachineState leaking() {
   state.leak_area_m2 = 0.5 * 4e-6;
   state.estimate.coefficient = 0.5;
   state.estimate.ci95 = {0.45, 0.55};
+  state.estimate.standard_error = 0.025;
   state.estimate.share = 0.15;
   state.estimate.share_ci95 = {0.14, 0.16};
   state.estimate.leak_detected = true;
@@ -66,6 +67,35 @@ TEST_CASE("state_sentence: no leak, no verdict, the reference", "[report]") {
   CHECK(report::state_sentence(state) == "66 %: no verdict: it did not run.");
   state.is_reference = true;
   CHECK_THAT(report::state_sentence(state), Contains("healthy reference"));
+}
+
+TEST_CASE("machine_state: a leak below zero is incompatible, in words and without numbers",
+          "[report]") {
+  MachineState state = leaking();
+  state.estimate.coefficient = -0.05;
+  state.estimate.ci95 = {-0.06, -0.04};
+  state.estimate.incompatible = true;
+  state.leak_class.reset();
+  CHECK_THAT(report::state_sentence(state), Contains("incompatible with the model") &&
+                                                Contains("-0.05 (-0.06 to -0.04)") &&
+                                                Contains("supply or valve"));
+  const auto json = report::json_of(report::stored(state));
+  CHECK(json["compatible_with_model"] == false);
+  for (const char* key : {"leakage_coefficient", "ci95", "leak_share_percent", "leak_detected",
+                          "class", "nearest_limit", "leak_area_ci95_m2"})
+    CHECK(json[key].is_null());
+  CHECK(json["class_probabilities"]["medium"].is_null());
+}
+
+TEST_CASE("machine_state: no share of more than the servo flow", "[report]") {
+  MachineState state = leaking();
+  state.estimate.share = 4.99;
+  state.leak_class.reset();
+  CHECK_THAT(report::state_sentence(state), Contains("more than the servo valve delivers"));
+  const auto json = report::json_of(report::stored(state));
+  CHECK(json["leakage_coefficient"] == 0.5);
+  CHECK(json["leak_share_percent"].is_null());
+  CHECK(json["nearest_limit"].is_null());
 }
 
 TEST_CASE("machine_state: numbers of a verdict, nothing without one", "[report]") {

@@ -1,0 +1,90 @@
+#include "metrics/trend.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "metrics/distributions.hpp"
+
+namespace rigcal::metrics {
+namespace {
+
+/// Scatter about the line that is less probable than this is more than the errors tell.
+constexpr double kUpperQuartile = 0.25;
+
+void require_points(std::span<const double> x, std::span<const double> y,
+                    std::span<const EstimateError> errors, const Eigen::MatrixXd& common) {
+  const std::size_t n = x.size();
+  const auto rows = static_cast<Eigen::Index>(n);
+  if (n < kLeastTrendPoints || y.size() != n || errors.size() != n ||
+      (common.size() > 0 && (common.rows() != rows || common.cols() != rows)))
+    throw std::invalid_argument("weighted_trend: expected three points or more, of equal shapes");
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!std::isfinite(x[i]) || !std::isfinite(y[i]) || !(errors[i].standard_error > 0.0) ||
+        !std::isfinite(errors[i].standard_error))
+      throw std::invalid_argument("weighted_trend: expected finite values and positive errors");
+  }
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  if (*low == *high) throw std::domain_error("weighted_trend: all x are equal");
+}
+
+double square(double value) { return value * value; }
+
+}  // namespace
+
+Trend weighted_trend(std::span<const double> x, std::span<const double> y,
+                     std::span<const EstimateError> errors, const Eigen::MatrixXd& common) {
+  require_points(x, y, errors, common);
+  const auto n = static_cast<Eigen::Index>(x.size());
+  Eigen::MatrixXd design = Eigen::MatrixXd::Ones(n, 2);
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
+  if (common.size() > 0) covariance = common;
+  // About the mean of x: days since 1970 would leave few digits.
+  double middle = 0.0;
+  for (const double each : x) middle += each / static_cast<double>(n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    design(i, 1) = x[at] - middle;
+    covariance(i, i) += square(errors[at].standard_error);
+  }
+  const Eigen::LLT<Eigen::MatrixXd> root(covariance);
+  const Eigen::MatrixXd weighted = root.solve(design);
+  const Eigen::Matrix2d of_line = (design.transpose() * weighted).inverse();
+  const Eigen::MatrixXd weights = of_line * weighted.transpose();  // of the points, shape (2, n)
+  const Eigen::Map<const Eigen::VectorXd> values(y.data(), n);
+  const Eigen::Vector2d line = weights * values;
+
+  Trend trend;
+  trend.slope = line(1);
+  trend.intercept = line(0) - line(1) * middle;
+  const Eigen::VectorXd off = values - design * line;
+  trend.chi_square = off.dot(root.solve(off));
+  const auto scatter_freedom = static_cast<double>(n - 2);
+  trend.reduced_chi_square = trend.chi_square / scatter_freedom;
+  if (chi_squared_exceedance(trend.chi_square, scatter_freedom) < kUpperQuartile) {
+    trend.widened = std::max(1.0, std::sqrt(trend.reduced_chi_square));
+    trend.freedom = scatter_freedom;
+  } else {
+    std::vector<ErrorPart> parts;
+    double own = 0.0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const EstimateError& error = errors[static_cast<std::size_t>(i)];
+      parts.push_back({square(weights(1, i) * error.standard_error), error.freedom});
+      own += parts.back().variance;
+    }
+    parts.push_back({std::max(0.0, of_line(1, 1) - own), kManyDegrees});
+    trend.freedom = effective_freedom(parts);
+  }
+  trend.slope_standard_error = trend.widened * std::sqrt(of_line(1, 1));
+  const double quantile = trend.freedom < kManyDegrees ? student_t_quantile(0.975, trend.freedom)
+                                                       : normal_quantile(0.975);
+  const double half = quantile * trend.slope_standard_error;
+  trend.ci95_low = trend.slope - half;
+  trend.ci95_high = trend.slope + half;
+  trend.p_value = difference_p_value(trend.slope, {trend.slope_standard_error, trend.freedom});
+  return trend;
+}
+
+}  // namespace rigcal::metrics

@@ -1,0 +1,140 @@
+#include "metrics/trend.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using namespace rigcal::metrics;
+
+namespace {
+
+using Values = std::vector<double>;
+using Errors = std::vector<EstimateError>;
+
+constexpr int kTrials = 4000;
+
+/// How often, of kTrials, a trend is significant at 5 %: points at 0, 1, 2 and so on with an error
+/// of 1, a day effect of this standard deviation that no error tells, and a slope of so many of its
+/// standard errors.
+double share_found(std::size_t points, double day_sd, double slope_in_errors) {
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> normal;
+  Values x;
+  double middle = 0.0;
+  for (std::size_t i = 0; i < points; ++i) {
+    x.push_back(static_cast<double>(i));
+    middle += x.back() / static_cast<double>(points);
+  }
+  double squares = 0.0;
+  for (const double each : x) squares += (each - middle) * (each - middle);
+  const double slope = slope_in_errors / std::sqrt(squares);
+  int found = 0;
+  for (int i = 0; i < kTrials; ++i) {
+    Values y;
+    for (const double each : x)
+      y.push_back(slope * each + std::hypot(1.0, day_sd) * normal(random));
+    found += weighted_trend(x, y, Errors(points, {1.0})).p_value < 0.05 ? 1 : 0;
+  }
+  return static_cast<double>(found) / kTrials;
+}
+
+}  // namespace
+
+TEST_CASE("trend: the exact line where the points lie on one", "[metrics]") {
+  const Values x{0.0, 1.0, 4.0, 6.0};
+  Values y;
+  for (const double each : x) y.push_back(2.0 - 0.5 * each);
+  const Trend trend = weighted_trend(x, y, Errors(4, {0.1}));
+  CHECK_THAT(trend.slope, WithinRel(-0.5, 1e-12));
+  CHECK_THAT(trend.intercept, WithinRel(2.0, 1e-12));
+  // sum (x - 2.75)^2 = 22.75; error 0.1 / sqrt(22.75), by the normal distribution
+  CHECK_THAT(trend.slope_standard_error, WithinRel(0.1 / std::sqrt(22.75), 1e-12));
+  CHECK_THAT(trend.reduced_chi_square, WithinAbs(0.0, 1e-20));
+  CHECK_THAT(trend.ci95_high + 0.5, WithinRel(1.959963985 * trend.slope_standard_error, 1e-8));
+  CHECK(trend.widened == 1.0);
+}
+
+TEST_CASE("trend: few false alarms where the errors tell the scatter", "[metrics]") {
+  const std::size_t points = GENERATE(3U, 4U, 5U);
+  // Some of these are widened needlessly, so a little fewer than 5 %.
+  const double found = share_found(points, 0.0, 0.0);
+  CAPTURE(points, found);
+  CHECK(found > 0.02);
+  CHECK(found < 0.055);
+}
+
+TEST_CASE("trend: a day effect that no error tells makes few false alarms", "[metrics]") {
+  // Three points show it with one degree of freedom only.
+  struct Case {
+    std::size_t points;
+    double most;
+  };
+  const Case each = GENERATE(Case{3, 0.16}, Case{4, 0.11}, Case{5, 0.09});
+  for (const double day_sd : {0.5, 1.0, 2.0, 5.0, 30.0}) {
+    const double found = share_found(each.points, day_sd, 0.0);
+    CAPTURE(each.points, day_sd, found);
+    CHECK(found < each.most);
+  }
+}
+
+TEST_CASE("trend: a steep line is found from three points on", "[metrics]") {
+  CHECK(share_found(3, 0.0, 6.0) > 0.7);
+  CHECK(share_found(4, 0.0, 6.0) > 0.8);
+  CHECK(share_found(5, 0.0, 6.0) > 0.9);
+}
+
+TEST_CASE("trend: the scatter of many points tells errors that are stated too small", "[metrics]") {
+  const double found = share_found(8, std::sqrt(8.0), 0.0);  // three times too small
+  // 5 % expected, standard deviation 0.35 %.
+  CHECK(found > 0.036);
+  CHECK(found < 0.064);
+}
+
+TEST_CASE("trend: points off the line widen it by Birge's ratio, tested by t with n - 2",
+          "[metrics]") {
+  // 0, 6, 0, 6 errors: about the line 1.2 x + 1.2 chi-square 28.8 of 2 degrees.
+  const Trend trend = weighted_trend(Values{0, 1, 2, 3}, Values{0, 6, 0, 6}, Errors(4, {1.0}));
+  CHECK_THAT(trend.slope, WithinRel(1.2, 1e-12));
+  CHECK_THAT(trend.chi_square, WithinRel(28.8, 1e-12));
+  CHECK_THAT(trend.widened, WithinRel(std::sqrt(14.4), 1e-12));
+  CHECK(trend.freedom == 2.0);
+  CHECK_THAT(trend.slope_standard_error, WithinRel(std::sqrt(14.4 / 5.0), 1e-12));
+  // t = 0.7071; its tail of 2 degrees is 1/2 - t / (2 sqrt(2 + t^2)).
+  CHECK_THAT(trend.p_value, WithinRel(1.0 - std::sqrt(0.5 / 2.5), 1e-9));
+}
+
+TEST_CASE("trend: errors of few degrees of freedom are those of t", "[metrics]") {
+  // Points on a line: 1 and 4 degrees at the ends, the middle has no weight in the slope.
+  const Trend trend =
+      weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Errors{{0.3, 4.0}, {0.5, 1.0}, {0.3, 4.0}});
+  CHECK_THAT(trend.freedom, WithinRel(8.0, 1e-9));
+  // Quantile 97.5 % of t with 8 degrees, to its printed digits.
+  CHECK_THAT(trend.ci95_high - trend.slope,
+             WithinRel(2.306004135 * trend.slope_standard_error, 1e-8));
+}
+
+TEST_CASE("trend: an error that all points share is none of the slope", "[metrics]") {
+  const Values x{0, 1, 2};
+  const Values y{0.3, 0.4, 0.5};
+  const Trend alone = weighted_trend(x, y, Errors(3, {0.01}));
+  const Trend shared =
+      weighted_trend(x, y, Errors(3, {0.01}), Eigen::MatrixXd::Constant(3, 3, 0.04));
+  CHECK_THAT(shared.slope_standard_error, WithinRel(alone.slope_standard_error, 1e-6));
+  CHECK_THAT(shared.slope, WithinRel(0.1, 1e-9));
+}
+
+TEST_CASE("trend: needs three points at different places", "[metrics]") {
+  CHECK_THROWS_AS(weighted_trend(Values{0, 1}, Values{0, 1}, Errors(2, {1.0})),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Errors{{1.0}, {0.0}, {1.0}}),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Errors(3, {1.0}),
+                                 Eigen::MatrixXd::Zero(2, 2)),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(weighted_trend(Values{1, 1, 1}, Values{0, 1, 2}, Errors(3, {1.0})),
+                  std::domain_error);
+}
