@@ -3,6 +3,7 @@
 #include <dlfcn.h>
 #include <link.h>
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -35,9 +36,9 @@ int look_into(dl_phdr_info* object, std::size_t /*size*/, void* data) {
   }
   if (!holds || frames == 0) return 0;
   *search.found = {};
-  search.found->dlfo_map_start = reinterpret_cast<void*>(begin);
-  search.found->dlfo_map_end = reinterpret_cast<void*>(end);
-  search.found->dlfo_eh_frame = reinterpret_cast<void*>(frames);
+  search.found->dlfo_map_start = std::bit_cast<void*>(begin);
+  search.found->dlfo_map_end = std::bit_cast<void*>(end);
+  search.found->dlfo_eh_frame = std::bit_cast<void*>(frames);
   return 1;
 }
 
@@ -52,6 +53,7 @@ extern "C" __attribute__((visibility("hidden"))) int _dl_find_object(
 #endif
 
 // glibc 2.38: strtoul that takes "0b1", too. libstdc++ reads a variable of the environment by it.
+#ifdef __GLIBC_PREREQ
 #if __GLIBC_PREREQ(2, 38)
 
 extern "C" unsigned long strtoul_of_any_glibc(const char* text, char** end, int base) noexcept
@@ -63,4 +65,5 @@ extern "C" __attribute__((visibility("hidden"))) unsigned long __isoc23_strtoul(
   return strtoul_of_any_glibc(text, end, base);
 }
 
+#endif
 #endif
