@@ -133,6 +133,6 @@ TEST_CASE("judge: what is not in the interval is told", "[diagnosis]") {
   CHECK(told(judged(corrected, errors)).empty());
   corrected.is_reference = true;
   CHECK(told(judged(corrected, errors)) ==
-        "the healthy reference of its signal: its leak is zero by construction");
+        "the healthy reference of its signal: its leak is zero by construction\n");
   CHECK_FALSE(judged(corrected, errors).leak_class);
 }
