@@ -292,12 +292,12 @@ def expression_around(text, begin, end):
     while left > 0:
         c = text[left - 1]
         if c in CLOSE:
-            if c == "}":
-                break
             start, depth = left - 1, 1
             while depth:
                 start -= 1
                 depth += (text[start] in CLOSE) - (text[start] in OPEN)
+            if c == "}" and not re.match(r"[\w>]", text[start - 1]):
+                break  # of a block, not of an initialiser
             if BEFORE_A_CONDITION.search(text[:start]):
                 break
             left = start
@@ -358,7 +358,8 @@ def places_of(mutants, source):
             continue
         first, last, instead = changed(mutant, tokens, at)
         region = None if ";" in instead else expression_around(shape, first, last)
-        if region and IS_STATEMENT.match((code[region[0]:first] + instead + code[last:region[1]]).lstrip()):
+        if region and any(IS_STATEMENT.match(text.lstrip()) for text in (
+                code[region[0]:region[1]], code[region[0]:first] + instead + code[last:region[1]])):
             region = None
         left, right = region or statement_around(shape, first, last)
         replaced = (code[left:first] + instead + code[last:right]).strip()

@@ -24,6 +24,13 @@ class Schemata(unittest.TestCase):
                          "y += k ? (M0 ? (a * 3.0) : (a * 2.0)) : b;")
         self.assertEqual(inserted("if (a && b) return;", ("a && b", "a")), "if ((M0 ? (a) : (a && b))) return;")
 
+    def test_an_initialiser_is_part_of_its_expression(self):
+        self.assertEqual(inserted("{ f(); } x = T{1} << 3;", ("<< 3", "<< 4")),
+                         "{ f(); } x = (M0 ? (T{1} << 4) : (T{1} << 3));")
+        self.assertEqual(inserted("{ f(); } if (e == E{} && b) g();", ("&& b", "")),
+                         "{ f(); } if ((M0 ? (e == E{}) : (e == E{} && b))) g();")
+        self.assertEqual(inserted("{ f(); } a + b;", ("a + b", "a - b")), "{ f(); } (M0 ? (a - b) : (a + b));")
+
     def test_exchanged_arguments_take_the_call(self):
         self.assertEqual(inserted("x = 1 + f(a, b);", ("f(a, b)", "f(b, a)")), "x = (M0 ? (1 + f(b, a)) : (1 + f(a, b)));")
 
@@ -31,6 +38,8 @@ class Schemata(unittest.TestCase):
         self.assertEqual(inserted("{ a = 1; b = 2; }", ("b = 2;", "")), "{ a = 1; if (M0) { } else { b = 2; } }")
         self.assertEqual(inserted("{ if (c) a += b; }", ("a += b", "a -= b")),
                          "{ if (M0) { if (c) a -= b; } else { if (c) a += b; } }")
+
+        self.assertEqual(inserted("{ if (c) f(a); }", ("if (c) f(a);", "f(a);")), "{ if (M0) { f(a); } else { if (c) f(a); } }")
 
     def test_a_statement_that_ends_in_an_initialiser(self):
         self.assertEqual(inserted("{ if (c) { a = {0, b}; } d(); }", ("a = {0, b};", ";")),

@@ -60,9 +60,10 @@ double number(const Reason& reason, const std::string& name) {
 }  // namespace
 
 TEST_CASE("judge_limits: of those that keep their limits the closest is named", "[calib]") {
-  const auto reasons = judged({scored("low", {{Verdict::pass, 0.2}}),
-                               scored("high", {{Verdict::pass, 0.1}, {Verdict::pass, 0.6}}),
-                               scored("mid", {{Verdict::pass, 0.4}})});
+  const auto reasons =
+      judged({scored("low", {{Verdict::pass, 0.2}}),
+              scored("high", {{Verdict::pass, 0.1}, {Verdict::pass, 0.6}, {Verdict::pass, 0.3}}),
+              scored("mid", {{Verdict::pass, 0.4}})});
   REQUIRE(codes(reasons) == std::vector<std::string>{"limits_kept of high"});
   CHECK(reasons[0].state == AspectState::pass);
   CHECK(number(reasons[0], "conditions") == 3.0);
