@@ -33,6 +33,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
   evaluator.set_fidelity(problem.of_starts());
   budget_steps(problem, evaluator.evaluate(problem.start()));
   MultiStart found = multi_start(problem, evaluator, options);
+  go_on_with_best(problem, evaluator, options, found);
   if (found.optimum.ok && problem.has_estimated_sd())
     estimate_weights(problem, evaluator, options, found, fit.warnings);
   std::vector<ConditionRows> rows = verify_optimum(problem, evaluator, options, found);

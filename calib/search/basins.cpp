@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace rigcal::calib {
 namespace {
@@ -27,6 +28,18 @@ bool same_point(const std::vector<double>& a, const std::vector<double>& b,
 
 }  // namespace
 
+bool same_cost(double a, double b, double variance) {
+  return std::abs(a - b) <= std::max(kSameCost * variance, kSimulated * std::min(a, b));
+}
+
+bool better_start(const StartReport& a, const StartReport& b, double variance) {
+  const bool a_converged = a.status == FitStatus::converged;
+  const bool b_converged = b.status == FitStatus::converged;
+  if (a_converged != b_converged && same_cost(a.final_cost, b.final_cost, variance))
+    return a_converged;
+  return a.final_cost < b.final_cost;
+}
+
 std::vector<Basin> basins(const std::vector<StartReport>& starts,
                           const std::vector<FittedParameter>& parameters, double variance) {
   std::vector<const StartReport*> converged;
@@ -38,8 +51,7 @@ std::vector<Basin> basins(const std::vector<StartReport>& starts,
   std::vector<Basin> result;
   for (const StartReport* start : converged) {
     const auto home = std::find_if(result.begin(), result.end(), [&](const Basin& basin) {
-      return start->final_cost - basin.cost <=
-                 std::max(kSameCost * variance, kSimulated * basin.cost) &&
+      return same_cost(start->final_cost, basin.cost, variance) &&
              same_point(start->end_values, basin.values, parameters);
     });
     if (home != result.end()) {
@@ -55,6 +67,20 @@ std::string agreement_of(const std::vector<StartReport>& starts, const std::vect
                          double variance) {
   if (starts.size() < 2) return {};
   if (basins.empty()) return fmt::format("none of {} starts converged", starts.size());
+  const auto lowest = std::min_element(starts.begin(), starts.end(),
+                                       [](const StartReport& a, const StartReport& b) {
+                                         return std::pair(a.end_values.empty(), a.final_cost) <
+                                                std::pair(b.end_values.empty(), b.final_cost);
+                                       });
+  if (lowest->final_cost < basins.front().cost &&
+      !same_cost(lowest->final_cost, basins.front().cost, variance)) {
+    return fmt::format(
+        "start {} of {} has the lowest cost and did not converge; the best of those that did, "
+        "start "
+        "{}, lies higher by {:.3g} (2 would be one parameter's 95 % interval)",
+        lowest->number, starts.size(), basins.front().starts.front(),
+        (basins.front().cost - lowest->final_cost) / std::max(variance, 1e-300));
+  }
   const auto unfinished = std::count_if(starts.begin(), starts.end(), [](const StartReport& start) {
     return start.status != FitStatus::converged;
   });

@@ -8,11 +8,17 @@
 
 namespace rigcal::calib {
 
+/// Whether two costs are those of one minimum: no further apart than 0.02 variances of the
+/// residuals (0.2 standard errors), or than two millionths, which errors of the simulations leave.
+bool same_cost(double a, double b, double variance);
+
+/// Whether start a is the better one: that of the lower cost, whatever ended it; of one cost the
+/// converged one.
+bool better_start(const StartReport& a, const StartReport& b, double variance);
+
 /// Gathers converged starts that ended at one point: no parameter farther than a tenth of its
 /// interval from that of the basin's best, parameters without an interval left out, and the cost
-/// higher by no more than 0.02 variances of the residuals (0.2 standard errors), or than two
-/// millionths of itself, which errors of the simulations leave. Ordered by cost,
-/// then by start.
+/// the same. Ordered by cost, then by start.
 ///
 /// @param parameters  of the fit, in the order of the starts' values
 /// @param variance    of the weighted residuals: 1, or more where the model leaves more than noise

@@ -1,8 +1,10 @@
 #include "calib/search/multi_start.hpp"
 
+#include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
 #include <numeric>
 
+#include "calib/search/basins.hpp"
 #include "calib/search/checkpoint.hpp"
 #include "common/bytes.hpp"
 #include "common/error.hpp"
@@ -49,10 +51,11 @@ std::vector<std::vector<double>> start_points(const Problem& problem, const FitO
   return points;
 }
 
-bool better(const StartReport& a, const StartReport& b) {
-  const bool a_converged = a.status == FitStatus::converged;
-  const bool b_converged = b.status == FitStatus::converged;
-  return a_converged != b_converged ? a_converged : a.final_cost < b.final_cost;
+/// Variance of the weighted residuals that a cost leaves; 1 at least where the noise is known.
+double residual_variance(const Problem& problem, double cost) {
+  const auto freedom = problem.residual_count() - static_cast<long>(problem.map.unknowns().size());
+  const double variance = 2.0 * cost / static_cast<double>(std::max(1L, freedom));
+  return problem.has_estimated_sd() ? variance : std::max(1.0, variance);
 }
 
 /// Makes one start; where it ends is the evaluator's best point.
@@ -78,9 +81,11 @@ StartReport make_start(const Problem& problem, Evaluator& evaluator, const FitOp
 }
 
 /// Whether a start, which has a point that can be simulated, is better than those before it.
-bool is_best(const MultiStart& before, const StartReport& report) {
-  return before.best == 0 ||
-         better(report, before.starts[static_cast<std::size_t>(before.best) - 1]);
+bool is_best(const MultiStart& before, const StartReport& report, const Problem& problem) {
+  if (before.best == 0) return true;
+  const StartReport& best = before.starts[static_cast<std::size_t>(before.best) - 1];
+  const double least = std::min(report.final_cost, best.final_cost);
+  return better_start(report, best, residual_variance(problem, least));
 }
 
 /// Takes over status and words of the best start, or of the first where none can be simulated, and
@@ -123,7 +128,7 @@ void make_in_turn(const Problem& problem, Evaluator& evaluator, const FitOptions
     StartReport report =
         make_start(problem, evaluator, options, static_cast<int>(i) + 1, points[i], solved);
     if (evaluator.best().ok) {
-      if (is_best(found, report)) {
+      if (is_best(found, report, problem)) {
         found.best = report.number;
         found.optimum = evaluator.best();
         found.result = solved;
@@ -164,7 +169,7 @@ void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions
     EvaluationCounters counters;
     from_bytes(made.bytes, report, end, counters);
     evaluator.add(counters);
-    if (!end.empty() && is_best(found, report)) {
+    if (!end.empty() && is_best(found, report, problem)) {
       found.best = report.number;
       best_z = std::move(end);
     }
@@ -220,6 +225,13 @@ bool search_on(const Problem& problem, Evaluator& evaluator, const FitOptions& o
   if (!evaluator.best().ok) return false;
   found.optimum = evaluator.best();
   return true;
+}
+
+void go_on_with_best(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                     MultiStart& found) {
+  const bool unfinished = found.optimum.ok && found.result.status != FitStatus::converged;
+  if (!unfinished || found.starts.size() < 2 || evaluator.budget().spent()) return;
+  if (search_on(problem, evaluator, options, found)) report_best(problem, found);
 }
 
 void report_best(const Problem& problem, MultiStart& found) {

@@ -24,8 +24,8 @@ struct MultiStart {
 
 /// Solves from the campaign's start values (start 1) and from a latin hypercube over the unit box;
 /// nuisance parameters always start at their own start values. A start that fails leaves the others
-/// alone. The best is the converged one of lowest cost, ties by number; without a converged one,
-/// the lowest cost of all.
+/// alone. The best is that of lowest cost, whatever ended it; of those of one cost (same_cost()) a
+/// converged one; ties by number.
 MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options);
 
 /// Polishes the optimum again, where weights or tolerance have changed since.
@@ -33,6 +33,10 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
 /// @return  false where it cannot be simulated any more
 bool search_on(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                MultiStart& found);
+
+/// Where the best of several starts has not converged: another round of iterations from its end.
+void go_on_with_best(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                     MultiStart& found);
 
 /// Takes over what the best start ended at into its report.
 void report_best(const Problem& problem, MultiStart& found);

@@ -394,6 +394,22 @@ TEST_CASE("fit: starts are a table, the best of them counts", "[calib]") {
   CHECK(found.status == FitStatus::converged);
 }
 
+TEST_CASE("fit: of several starts the lowest cost goes on where it has not converged", "[calib]") {
+  const Twin twin = small_twin();
+  const auto records = twin.records(250, 500.0, 3);
+  FitOptions options;
+  options.max_iterations = 3;
+  const Fit alone = fit(twin.campaign, records, options);
+  REQUIRE(alone.status == FitStatus::stopped);
+  options.starts = 2;
+  const Fit found = fit(twin.campaign, records, options);
+  CAPTURE(found.message, alone.cost, found.cost);
+  const StartReport& best = found.starts.at(static_cast<std::size_t>(found.best_start) - 1);
+  CHECK(best.iterations > options.max_iterations);
+  CHECK(best.final_cost == found.cost);
+  CHECK(found.cost < alone.cost);
+}
+
 TEST_CASE("fit: what is missing is told before anything is computed", "[calib]") {
   Twin twin = small_twin();
   auto records = twin.records(50, 500.0, 3);

@@ -22,7 +22,7 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
   parameter.ci95 = {0.9, 1.1};
   const std::vector<StartReport> starts{
       start(1, 50.0, 3.0, FitStatus::converged), start(2, 10.001, 1.001, FitStatus::converged),
-      start(3, 10.0, 1.0, FitStatus::converged), start(4, 9.0, 1.0, FitStatus::failed)};
+      start(3, 10.0, 1.0, FitStatus::converged), start(4, 11.0, 1.0, FitStatus::failed)};
   const auto found = basins(starts, {parameter}, 1.0);
   REQUIRE(found.size() == 2);
   CHECK(found[0].starts == std::vector<int>{3, 2});
@@ -31,6 +31,15 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
   CHECK_THAT(words, Contains("2 of 4 starts") && Contains("1 other minimum") &&
                         Contains("1 did not converge"));
   CHECK(agreement_of({starts[0]}, found, 1.0).empty());
+  // A start that did not converge, but lies lower: the converged ones are not the best point.
+  std::vector<StartReport> beneath = starts;
+  beneath[3].final_cost = 9.0;
+  const std::string told = agreement_of(beneath, found, 1.0);
+  CHECK_THAT(told, Contains("start 4 of 4") && Contains("did not converge") && Contains("by 1 "));
+  // One that has no point at all has no cost either.
+  beneath[3].final_cost = 0.0;
+  beneath[3].end_values.clear();
+  CHECK(agreement_of(beneath, found, 1.0) == words);
   // Of one cost, but at two points: a tenth of the interval's width is 0.02.
   const auto apart = [&](double distance) {
     return basins({start(1, 10.0, 1.0, FitStatus::converged),
@@ -50,6 +59,27 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
                                       start(2, 42865.915, 1.00001, FitStatus::converged)};
   CHECK(basins(even, {parameter}, 1.0).size() == 1);
   CHECK_THAT(agreement_of({starts[3], starts[3]}, {}, 1.0), Contains("none of 2"));
+}
+
+TEST_CASE("basins: the start of lower cost is better, whatever ended it", "[calib]") {
+  const auto start = [](double cost, FitStatus status) {
+    StartReport report;
+    report.final_cost = cost;
+    report.status = status;
+    return report;
+  };
+  const StartReport converged = start(34875.0, FitStatus::converged);
+  for (const FitStatus status : {FitStatus::stopped, FitStatus::failed}) {
+    const StartReport lower = start(30249.0, status);
+    CHECK(better_start(lower, converged, 17.9));
+    CHECK_FALSE(better_start(converged, lower, 17.9));
+    // 0.02 variances, which are 0.358: of one cost, the converged start counts.
+    const StartReport beneath = start(34875.0 - 0.35, status);
+    CHECK(better_start(converged, beneath, 17.9));
+    CHECK_FALSE(better_start(beneath, converged, 17.9));
+    CHECK(better_start(start(34875.0 - 0.37, status), converged, 17.9));
+  }
+  CHECK(better_start(start(1.0, FitStatus::converged), start(1.001, FitStatus::converged), 1.0));
 }
 
 }  // namespace rigcal::calib
