@@ -83,8 +83,8 @@ ProblemChannel make_channel(const Campaign& campaign, const ProblemCondition& co
   return result;
 }
 
-/// A channel of unknown noise starts from a share of its own peak-to-peak, or of the largest of
-/// that channel where it is constant.
+/// A channel of unknown noise starts from a share of its largest peak-to-peak over all conditions:
+/// one value, as estimate_weights() will find one.
 void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   std::map<Channel, double> largest;
   for (const ProblemCondition& condition : conditions) {
@@ -96,8 +96,7 @@ void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   for (ProblemCondition& condition : conditions) {
     for (ProblemChannel& channel : condition.channels) {
       if (channel.sd_known) continue;
-      const double range =
-          channel.peak_to_peak > 0.0 ? channel.peak_to_peak : largest[channel.channel];
+      const double range = largest[channel.channel];
       if (!(range > 0.0)) {
         throw InputError(
             condition.condition->where,

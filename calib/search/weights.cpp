@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 namespace rigcal::calib {
@@ -26,12 +27,33 @@ void for_each_estimated(Problem& problem, const Evaluation& optimum, const Actio
   }
 }
 
-/// Sets every estimated standard deviation to the rms residual, and the tolerance to what that asks
-/// for; returns the largest relative change of a standard deviation.
+/// Root mean square residual of each channel of estimated noise, over the samples of all its
+/// conditions. By condition, the record that the model happens to fit best would weigh most, and
+/// the others would be given up.
+std::map<datasets::Channel, double> pooled_rms(Problem& problem, const Evaluation& optimum) {
+  struct Sum {
+    double squares = 0.0;
+    double samples = 0.0;
+  };
+  std::map<datasets::Channel, Sum> sums;
+  for_each_estimated(problem, optimum, [&](const ProblemChannel& channel, double rms) {
+    const auto samples = static_cast<double>(channel.measured.size());
+    Sum& sum = sums[channel.channel];
+    sum.squares += samples * rms * rms;
+    sum.samples += samples;
+  });
+  std::map<datasets::Channel, double> pooled;
+  for (const auto& [channel, sum] : sums) pooled[channel] = std::sqrt(sum.squares / sum.samples);
+  return pooled;
+}
+
+/// Sets every estimated standard deviation to the pooled residual of its channel, and the tolerance
+/// to what that asks for; returns the largest relative change of a standard deviation.
 double update(Problem& problem, const Evaluation& optimum) {
+  const auto pooled = pooled_rms(problem, optimum);
   double largest = 0.0;
-  const auto set = [&](ProblemChannel& channel, double rms) {
-    const double sd = std::max(rms, problem.least_sd(channel));
+  const auto set = [&](ProblemChannel& channel, double) {
+    const double sd = std::max(pooled.at(channel.channel), problem.least_sd(channel));
     largest = std::max(largest, std::abs(sd / channel.sd - 1.0));
     channel.sd = sd;
   };
@@ -50,10 +72,11 @@ void warn(Problem& problem, const Evaluation& optimum, bool settled,
   int estimated = 0;
   int unresolved = 0;
   double share = 0.0;
-  for_each_estimated(problem, optimum, [&](const ProblemChannel& channel, double rms) {
+  const auto pooled = pooled_rms(problem, optimum);
+  for_each_estimated(problem, optimum, [&](const ProblemChannel& channel, double) {
     names.emplace(datasets::info(channel.channel).key);
     ++estimated;
-    if (rms >= problem.least_sd(channel)) return;
+    if (pooled.at(channel.channel) >= problem.least_sd(channel)) return;
     ++unresolved;
     if (channel.peak_to_peak > 0.0)
       share = std::max(share, problem.least_sd(channel) / channel.peak_to_peak);
@@ -65,10 +88,10 @@ void warn(Problem& problem, const Evaluation& optimum, bool settled,
       where.push_back(fmt::format("\"{}\"", each.condition->id));
   }
   warnings.push_back(fmt::format(
-      "neither repeats nor `sd` tell the noise of {}: it was estimated from the residual of the "
-      "fit in {}{}; errors of the model count as noise",
+      "neither repeats nor `sd` tell the noise of {}: it was estimated from the residuals of the "
+      "fit, one value a channel, over {}{}; errors of the model count as noise",
       fmt::join(names, ", "),
-      where.size() == problem.conditions.size() ? std::string("each condition")
+      where.size() == problem.conditions.size() ? std::string("all conditions")
                                                 : fmt::format("{}", fmt::join(where, ", ")),
       settled ? "" : " (and had not settled when the fit ended)"));
   if (unresolved == 0) return;

@@ -7,11 +7,11 @@
 
 namespace rigcal::calib {
 
-/// Where neither repeats nor the campaign tell the noise of a channel: takes it from the residual
-/// of the fit, per condition, solves again from the optimum, and repeats until no standard
-/// deviation moves by more than a tenth. The tolerance of the simulations follows, unless the
-/// campaign fixes it. Not below Problem::least_sd(), so that no condition can draw all weight to
-/// itself and no fit chases the errors of its own simulations; said in a warning. With known noise
+/// Where neither repeats nor the campaign tell the noise of a channel: takes it from the residuals
+/// of the fit, pooled over the conditions in which it is unknown, solves again from the optimum,
+/// and repeats until no standard deviation moves by more than a tenth. The tolerance of the
+/// simulations follows, unless the campaign fixes it. Not below Problem::least_sd(), so that no fit
+/// chases the errors of its own simulations; said in a warning. With known noise
 /// in other channels this sets their share right; model errors count as noise here, which is said
 /// in a warning.
 ///

@@ -1,6 +1,8 @@
 #include "calib/search/weights.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <cstdio>
 
 #include "tests/calib/twin.hpp"
@@ -30,14 +32,21 @@ double rmse(const Fit& found, std::size_t condition) {
 
 }  // namespace
 
-TEST_CASE("weights: each record ends with the residual for its noise", "[calib]") {
+TEST_CASE("weights: a channel ends with its residual over all records for its noise", "[calib]") {
   const Twin twin = of_two_minds();
   auto records = twin.records(500, 500.0, 3, model::InitialState::rest, false);
+  records[1].time_s.resize(250);  // records count by their samples
+  auto& small = records[1].channels[datasets::Channel::position];
+  small.mean.resize(250);
+  small.sd.resize(std::min<std::size_t>(small.sd.size(), 250));
+  small.count.resize(std::min<std::size_t>(small.count.size(), 250));
   const Fit found = fit(twin.campaign, records, {});
   REQUIRE(found.status == FitStatus::converged);
+  REQUIRE(rmse(found, 1) > 1.5 * rmse(found, 0));
   // The same residuals, stated as noise, lead to the same estimate.
-  for (std::size_t i = 0; i < 2; ++i)
-    records[i].channels[datasets::Channel::position].sd_of_mean = rmse(found, i);
+  const double squares = 500.0 * std::pow(rmse(found, 0), 2) + 250.0 * std::pow(rmse(found, 1), 2);
+  for (auto& record : records)
+    record.channels[datasets::Channel::position].sd_of_mean = std::sqrt(squares / 750.0);
   const Fit stated = fit(twin.campaign, records, {});
   CAPTURE(rmse(found, 0), rmse(found, 1), parameter(stated, "valve_gain").value);
   CHECK_THAT(parameter(found, "valve_gain").value,
@@ -49,6 +58,8 @@ TEST_CASE("weights: each record ends with the residual for its noise", "[calib]"
 TEST_CASE("weights: iterations of all rounds count", "[calib]") {
   const Twin twin = of_two_minds();
   auto records = twin.records(500, 500.0, 3, model::InitialState::rest, false);
+  // Beside a record of known noise the weight of the other one moves the optimum.
+  records[1].channels[datasets::Channel::position].sd_of_mean = 5e-5;
   const Fit found = fit(twin.campaign, records, {});
   REQUIRE(found.starts.size() == 1);
   // The start ends before the first round, and a round takes an iteration at least.
