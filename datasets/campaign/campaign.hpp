@@ -58,12 +58,23 @@ using Overrides = std::vector<std::pair<int, double>>;
 enum class ChannelRole { input, output, ignore };
 enum class Interpolation { hold, linear };
 
+/// What the campaign says of the numbers of a column, to be held against what their file says.
+struct StatedUnit {
+  std::string unit;            ///< "bar"; empty: numbers of a converter, which have none
+  std::optional<double> gain;  ///< physical value in `unit` = gain * number
+  bool has_offset = false;
+  std::string
+      ignored;  ///< `ignore_unit`: what the file names, and what does not hold; mostly empty
+  Location where;
+};
+
 /// One entry of [recording.channels].
 struct ChannelSetting {
   Channel channel = Channel::position;
-  std::string column;        ///< empty: only where `columns` of a repeat names one
-  std::string minus;         ///< second column that is taken off `column`; empty: none
-  UnitConversion to_si;      ///< SI = conversion(gain * raw + offset), from the file's number
+  std::string column;    ///< empty: only where `columns` of a repeat names one
+  std::string minus;     ///< second column that is taken off `column`; empty: none
+  UnitConversion to_si;  ///< SI = conversion(gain * raw + offset), from the file's number
+  StatedUnit stated;
   std::optional<double> sd;  ///< of the samples in the file, SI, after `gain`
   double gain_sd = 0.0;      ///< standard uncertainty of the sensor's gain, relative
   double offset_sd = 0.0;    ///< that of its offset, SI
@@ -181,6 +192,7 @@ struct Campaign {
   std::filesystem::path file;
   FileState file_state;            ///< of it, before it was read
   std::filesystem::path data_dir;  ///< where relative record paths start
+  std::filesystem::path root;      ///< outside of this folder nothing is read; empty: no limit
   std::string name;
   bool synthetic = false;  ///< its records were made by `rigcal synthesize`
   model::Rig rig;
@@ -193,6 +205,7 @@ struct Campaign {
   SpikeTreatment spikes = SpikeTreatment::report;
   std::string time_column;
   UnitConversion time_to_s;
+  StatedUnit stated_time;
   bool time_in_counts = false;  ///< samples are numbered, nothing says how long one lasts
   std::map<Channel, ChannelSetting> channels;
   Alignment alignment = Alignment::correlate;
@@ -214,10 +227,12 @@ struct Campaign {
 /// Reads and checks a campaign file.
 ///
 /// @param data_dir  where relative record paths start; the file's folder if empty
+/// @param root      outside of this folder nothing is read, wherever links lead; empty: no limit
 /// @throws InputError  file:line:column with the key, what was found and what was expected; an
-///                     unknown key names the nearest known one
+///                     unknown key names the nearest known one; a file outside `root`
 Campaign load_campaign(const std::filesystem::path& file,
-                       const std::filesystem::path& data_dir = {});
+                       const std::filesystem::path& data_dir = {},
+                       const std::filesystem::path& root = {});
 
 /// Changes a value as `--set name="value unit"` does (a fitted parameter stays fitted, from there).
 /// @throws UsageError  unknown name, wrong unit, value outside the parameter's limits or bounds, or
@@ -250,7 +265,8 @@ struct RepeatSource {
 };
 
 /// Files of a condition, patterns expanded and sorted by name.
-/// @throws InputError  a pattern that matches no file, with the folder that was searched
+/// @throws InputError  a pattern that matches no file, with the folder that was searched; a file
+///                     outside the campaign's root
 std::vector<RepeatSource> repeat_sources(const Campaign& campaign, const Condition& condition);
 
 /// What drives the model in a condition.

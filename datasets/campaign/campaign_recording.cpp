@@ -19,7 +19,7 @@ bool is_in_counts(const TomlNode& node) {
 
 /// Numbers that nothing converts stay as they are.
 UnitConversion read_counts(const TomlNode& node) {
-  for (const char* key : {"gain", "offset", "sd", "gain_sd", "offset_sd"}) {
+  for (const char* key : {"gain", "offset", "sd", "gain_sd", "offset_sd", "ignore_unit"}) {
     if (const auto entry = node.find(key))
       entry->fail("has no meaning for counts: expected the unit that the gain leads to");
   }
@@ -27,7 +27,7 @@ UnitConversion read_counts(const TomlNode& node) {
 }
 
 /// SI = conversion(gain * raw + offset), the offset in the channel's own unit.
-UnitConversion read_conversion(const TomlNode& node, std::string_view si_unit) {
+UnitConversion read_conversion(const TomlNode& node, std::string_view si_unit, StatedUnit& stated) {
   const TomlNode unit =
       node.require("unit", fmt::format("the unit of the column, such as \"{}\"", si_unit));
   const std::string name = unit.name("a unit in quotes");
@@ -37,13 +37,20 @@ UnitConversion read_conversion(const TomlNode& node, std::string_view si_unit) {
   } catch (const QuantityError& error) {
     unit.fail(error.what());
   }
-  double gain = 1.0;
+  stated.unit = name;
+  stated.where = unit.where();
   if (const auto entry = node.find("gain")) {
-    gain = entry->number();
-    if (gain == 0.0) entry->fail_type("a number other than zero");
+    stated.gain = entry->number();
+    if (stated.gain == 0.0) entry->fail_type("a number other than zero");
   }
+  const double gain = stated.gain.value_or(1.0);
   double offset = 0.0;
-  if (const auto entry = node.find("offset")) offset = entry->difference(name);
+  if (const auto entry = node.find("offset")) {
+    offset = entry->difference(name);
+    stated.has_offset = true;
+  }
+  if (const auto entry = node.find("ignore_unit"))
+    stated.ignored = entry->name("the unit that the file names, in quotes");
   return {conversion.scale * gain, conversion.scale * offset + conversion.offset};
 }
 
@@ -83,8 +90,8 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role,
 
 ChannelSetting read_channel(const TomlNode& node, Channel channel,
                             model::ControllerKind controller) {
-  node.allow_only({"column", "minus", "unit", "gain", "offset", "sd", "gain_sd", "offset_sd",
-                   "role", "interpolation"});
+  node.allow_only({"column", "minus", "unit", "ignore_unit", "gain", "offset", "sd", "gain_sd",
+                   "offset_sd", "role", "interpolation"});
   ChannelSetting setting;
   setting.channel = channel;
   if (const auto column = node.find("column")) setting.column = column->name("a column name");
@@ -94,7 +101,8 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel,
       minus->fail("nothing to take this column off: expected a column as well");
   }
   setting.in_counts = is_in_counts(node);
-  setting.to_si = setting.in_counts ? read_counts(node) : read_conversion(node, info(channel).unit);
+  setting.to_si = setting.in_counts ? read_counts(node)
+                                    : read_conversion(node, info(channel).unit, setting.stated);
   if (const auto sd = node.find("sd")) {
     setting.sd = sd->non_negative_difference(info(channel).unit);
     if (*setting.sd == 0.0) sd->fail_type("a standard deviation above zero");
@@ -123,11 +131,13 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel,
 void read_channels(const TomlNode& table, Campaign& campaign) {
   for (const auto& [key, node] : table.entries()) {
     if (key == "time") {
-      node.allow_only({"column", "unit", "gain", "offset"});
+      node.allow_only({"column", "unit", "ignore_unit", "gain", "offset"});
       campaign.time_column =
           node.require("column", "the name of the time column").name("a column name");
       campaign.time_in_counts = is_in_counts(node);
-      campaign.time_to_s = campaign.time_in_counts ? read_counts(node) : read_conversion(node, "s");
+      campaign.time_to_s = campaign.time_in_counts
+                               ? read_counts(node)
+                               : read_conversion(node, "s", campaign.stated_time);
       continue;
     }
     const Channel channel = read_channel_key(table, key);

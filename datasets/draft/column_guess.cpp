@@ -7,12 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/read/unit_in_name.hpp"
+
 namespace rigcal::datasets {
 namespace {
-
-constexpr std::array<std::string_view, 28> kUnits{
-    "s",   "ms",  "us",  "min", "V",  "mV",  "m", "cm", "mm",   "um",   "in", "bar", "mbar", "Pa",
-    "kPa", "MPa", "psi", "N",   "kN", "lbf", "K", "C",  "degC", "degF", "mA", "A",   "inch", "hPa"};
 
 constexpr std::array<std::string_view, 6> kLengths{"m", "cm", "mm", "um", "in", "inch"};
 
@@ -36,9 +34,6 @@ const std::vector<std::pair<Channel, Words>> kChannelWords{
     {Channel::supply_pressure, {"ps", "psupply", "supply", "supplypressure", "pp"}},
     {Channel::force, {"f", "force", "load", "loadcell", "fl"}},
     {Channel::temperature, {"temp", "temperature", "toil", "oiltemperature"}}};
-
-/// Words behind which a lone A is a chamber, not amperes.
-const Words kChamberWords{"p", "pressure", "chamber", "druck", "kammer"};
 
 /// Parts between underscores, blanks and brackets.
 std::vector<std::string> parts_of(std::string_view name) {
@@ -64,14 +59,6 @@ bool contains(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-/// The unit that a part behind others is, if any: a last "pa" behind a word is no chamber.
-std::string unit_of(const std::string& part, bool last, const std::string& before) {
-  if (last && part == "pa") return "Pa";
-  if (part == "A" && contains(kChamberWords, before)) return {};
-  if (std::find(kUnits.begin(), kUnits.end(), part) == kUnits.end()) return {};
-  return part == "C" ? "degC" : part;
-}
-
 void assign(ColumnGuess& guess, const std::string& word) {
   if (guess.is_time || guess.channel) return;
   guess.is_time = contains(kTimeWords, word);
@@ -82,21 +69,18 @@ void assign(ColumnGuess& guess, const std::string& word) {
 }  // namespace
 
 ColumnGuess guess_column(const std::string& name) {
-  // Of "/run1/x", "Sheet1!x" and "log.signals(2).values" what stands last tells.
-  std::string own = name.starts_with('/') ? name.substr(name.rfind('/') + 1) : name;
-  for (const char before : {'!', '.'}) own = own.substr(own.rfind(before) + 1);
-  const auto parts = parts_of(own);
   ColumnGuess guess;
-  std::vector<std::string> words;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    std::string unit;
-    if (i > 0 && guess.unit.empty())
-      unit = unit_of(parts[i], i + 1 == parts.size(), lower(parts[i - 1]));
-    if (unit.empty())
-      words.push_back(lower(parts[i]));
-    else
-      guess.unit = unit;
+  std::string own = name;
+  const auto unit = unit_in_name(name);
+  if (unit) {
+    guess.unit = unit->unit;
+    own.replace(unit->begin, unit->end - unit->begin, " ");
   }
+  // Of a path what stands last tells.
+  if (own.starts_with('/')) own = own.substr(own.rfind('/') + 1);
+  for (const char before : {'!', '.'}) own = own.substr(own.rfind(before) + 1);
+  std::vector<std::string> words;
+  for (const std::string& part : parts_of(own)) words.push_back(lower(part));
   if (words.size() > 1) assign(guess, words[0] + words[1]);
   for (const std::string& word : words) assign(guess, word);
   // A command in units of length is the reference of a position loop.

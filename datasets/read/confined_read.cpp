@@ -6,6 +6,7 @@
 #include <cstring>
 #include <new>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "common/confined.hpp"
@@ -13,8 +14,6 @@
 
 namespace rigcal::datasets {
 namespace {
-
-using Table = std::vector<std::vector<double>>;
 
 constexpr char kDone = 'd';
 constexpr char kRefused = 'r';
@@ -44,19 +43,36 @@ std::string read_confined(const std::filesystem::path& path, const ConfinedReade
   return text.substr(1);
 }
 
-std::string packed(const Table& table) {
+/// Takes the text up to the next NUL off its front.
+std::string next_text(std::string_view& text) {
+  const std::size_t end = std::min(text.find('\0'), text.size());
+  std::string part(text.substr(0, end));
+  text.remove_prefix(std::min(end + 1, text.size()));
+  return part;
+}
+
+/// Labels as texts that end with a NUL each, and the numbers behind them.
+std::string packed(RecordTable table) {
+  table.labels.resize(table.columns.size());
   std::string text;
-  if (!table.empty()) text.reserve(table.size() * table.front().size() * sizeof(double));
-  for (const std::vector<double>& column : table)
+  for (const ColumnLabel& label : table.labels)
+    text += label.name + '\0' + label.unit + '\0' + label.place + '\0';
+  const std::size_t rows = table.columns.empty() ? 0 : table.columns.front().size();
+  text.reserve(text.size() + table.columns.size() * rows * sizeof(double));
+  for (const std::vector<double>& column : table.columns)
     text.append(reinterpret_cast<const char*>(column.data()), column.size() * sizeof(double));
   return text;
 }
 
-Table unpacked(const std::string& text, std::size_t columns) {
+RecordTable unpacked(std::string_view text, std::size_t columns) {
+  RecordTable table;
+  for (std::size_t i = 0; i < columns; ++i)
+    table.labels.push_back({next_text(text), next_text(text), next_text(text), 0});
   const std::size_t rows = columns == 0 ? 0 : text.size() / sizeof(double) / columns;
-  Table table(columns, std::vector<double>(rows));
+  table.columns.assign(columns, std::vector<double>(rows));
   for (std::size_t i = 0; i < columns && rows > 0; ++i)
-    std::memcpy(table[i].data(), text.data() + i * rows * sizeof(double), rows * sizeof(double));
+    std::memcpy(table.columns[i].data(), text.data() + i * rows * sizeof(double),
+                rows * sizeof(double));
   return table;
 }
 
@@ -71,16 +87,10 @@ std::string joined(const std::vector<RecordColumn>& columns) {
 }
 
 std::vector<RecordColumn> split(std::string_view text) {
-  const auto next = [&] {
-    const std::size_t end = std::min(text.find('\0'), text.size());
-    std::string part(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-    return part;
-  };
   std::vector<RecordColumn> columns;
   while (!text.empty()) {
-    RecordColumn column{next(), next()};
-    const std::string marks = next();
+    RecordColumn column{next_text(text), next_text(text)};
+    const std::string marks = next_text(text);
     column.is_time = marks.find('t') != std::string::npos;
     column.is_matrix_line = marks.find('r') != std::string::npos;
     columns.push_back(std::move(column));
@@ -90,8 +100,8 @@ std::vector<RecordColumn> split(std::string_view text) {
 
 }  // namespace
 
-Table load_confined(const std::filesystem::path& path, const ConfinedReader& reader,
-                    std::size_t columns, const std::function<Table()>& read) {
+RecordTable load_confined(const std::filesystem::path& path, const ConfinedReader& reader,
+                          std::size_t columns, const std::function<RecordTable()>& read) {
   return unpacked(read_confined(path, reader, [&] { return packed(read()); }), columns);
 }
 

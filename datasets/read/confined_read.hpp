@@ -20,12 +20,11 @@ struct ConfinedReader {
 /// What `read` makes of the file, in a process of its own with limits of memory and time: a crash,
 /// a loop or a greedy allocation there refuses the file.
 ///
-/// @param columns  how many `read` returns, of the same length
+/// @param columns  how many `read` returns, of the same length, with a label each or none
 /// @param read     may throw InputError of this file, and std::bad_alloc
 /// @throws InputError  that of `read`; or the process came to no end
-std::vector<std::vector<double>> load_confined(
-    const std::filesystem::path& path, const ConfinedReader& reader, std::size_t columns,
-    const std::function<std::vector<std::vector<double>>()>& read);
+RecordTable load_confined(const std::filesystem::path& path, const ConfinedReader& reader,
+                          std::size_t columns, const std::function<RecordTable()>& read);
 
 /// Likewise a list of columns.
 std::vector<RecordColumn> list_confined(const std::filesystem::path& path,

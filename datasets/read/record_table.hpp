@@ -40,9 +40,18 @@ inline void require_time_column(const RecordRequest& request) {
                                 "' is not among the columns");
 }
 
+/// What a file says of a column that was asked for.
+struct ColumnLabel {
+  std::string name;   ///< as it stands in the file, with its unit where that is part of it
+  std::string unit;   ///< as the file tells it apart from the name; empty if it does not
+  std::string place;  ///< where the file tells the unit: "Log!C2"; empty: in the name
+  long line = 0;      ///< of a text file, where the name stands; else 0
+};
+
 struct RecordTable {
   std::vector<std::vector<double>> columns;  ///< one per wanted name, of the same length
   std::string warning;                       ///< what is doubtful about the file; mostly empty
+  std::vector<ColumnLabel> labels{};         ///< one per wanted name, or none
 };
 
 }  // namespace rigcal::datasets

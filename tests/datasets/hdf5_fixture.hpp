@@ -76,6 +76,27 @@ class Hdf5Writer {
     H5Tclose(memory);
   }
 
+  /// A vector of `rows` doubles in chunks, of which only the first numbers are written.
+  /// @param fill  what HDF5 gives for the others; nothing: its own zero
+  void partly_written(const std::string& path, const std::vector<double>& values, hsize_t rows,
+                      hsize_t chunk, const double* fill = nullptr) const {
+    const hid_t plan = checked(H5Pcreate(H5P_DATASET_CREATE));
+    H5Pset_chunk(plan, 1, &chunk);
+    H5Pset_deflate(plan, 6);
+    if (fill != nullptr) H5Pset_fill_value(plan, H5T_NATIVE_DOUBLE, fill);
+    const hid_t set = dataset(path, {rows}, H5T_IEEE_F64LE, plan);
+    const hid_t space = checked(H5Dget_space(set));
+    const hsize_t start = 0;
+    const auto count = static_cast<hsize_t>(values.size());
+    H5Sselect_hyperslab(space, H5S_SELECT_SET, &start, nullptr, &count, nullptr);
+    const hid_t memory = checked(H5Screate_simple(1, &count, nullptr));
+    checked(H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values.data()));
+    H5Sclose(memory);
+    H5Sclose(space);
+    H5Dclose(set);
+    H5Pclose(plan);
+  }
+
   /// A dataset of this type and shape into which nothing is written.
   void unwritten(const std::string& path, std::vector<hsize_t> shape, hid_t type) const {
     H5Dclose(dataset(path, shape, type, H5P_DEFAULT));

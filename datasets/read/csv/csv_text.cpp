@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "common/parse_double.hpp"
+#include "datasets/read/unit_in_name.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -80,18 +81,9 @@ std::string unquoted(std::string_view text) {
 
 /// "x" of "x [mm]" and "q (m3/(s Pa))"; the text itself if no brackets end it.
 std::string without_unit(std::string_view text) {
-  if (text.empty() || (text.back() != ']' && text.back() != ')')) return std::string(text);
-  const char close = text.back();
-  const char open = close == ']' ? '[' : '(';
-  int depth = 0;
-  for (std::size_t i = text.size(); i-- > 0;) {
-    if (text[i] == close) ++depth;
-    if (text[i] == open && --depth == 0) {
-      const std::string_view name = trimmed(text.substr(0, i));
-      return std::string(name.empty() ? text : name);
-    }
-  }
-  return std::string(text);
+  const std::string_view name =
+      trimmed(text.substr(0, brackets_at_end(text).value_or(text.size())));
+  return std::string(name.empty() ? text : name);
 }
 
 }  // namespace

@@ -119,6 +119,9 @@ class RowReader {
     std::sort(wanted_.begin(), wanted_.end(),
               [](const Wanted& a, const Wanted& b) { return a.field < b.field; });
     table_.columns.resize(request.columns.size());
+    table_.labels.resize(request.columns.size());
+    for (const Wanted& wanted : wanted_)
+      table_.labels[wanted.target] = {header.names[wanted.field].full, {}, {}, header.line};
   }
 
   void read(std::string_view line, long line_number) {
@@ -177,6 +180,8 @@ class RowReader {
       const auto [rest, error] = parse_double(at, end, *value);
       if (error != std::errc{} || !std::isfinite(*value)) return false;
       length = static_cast<std::size_t>(rest - at);
+      const bool tells_sign = header_.separator != ',' && (point_line_ == 0 || comma_line_ != 0);
+      if (tells_sign && std::find(at, rest, '.') != rest) return false;  // to be noted
       at = rest;
       for (const double number = *value; next != wanted_.end() && next->field == field; ++next) {
         *value = number;
@@ -207,6 +212,7 @@ class RowReader {
           bad_index = count;
         }
         if (!value || bad) continue;
+        note_decimal_sign(line, line_number, field);
         if (count + 1 == header_.names.size()) note_last_field(field.text.size(), line_number);
         auto& column = table_.columns[next->target];
         if (!column.empty() && next->is_time && !(*value > column.back()))
@@ -272,6 +278,20 @@ class RowReader {
                     shown(field.text), shown(name), header_.separator == ',' ? "" : " or -1,5e-3"));
   }
 
+  /// "1.234" among decimal commas is a thousand more than among decimal points.
+  void note_decimal_sign(std::string_view line, long line_number, const CsvField& field) {
+    const bool has_comma = field.text.find(',') != std::string_view::npos;
+    const bool has_point = field.text.find('.') != std::string_view::npos;
+    if (has_comma && comma_line_ == 0) comma_line_ = line_number;
+    if (has_point && point_line_ == 0) point_line_ = line_number;
+    if ((!has_comma && !has_point) || comma_line_ == 0 || point_line_ == 0) return;
+    throw error(line, line_number, field.begin,
+                fmt::format("'{}' has a decimal {}, but line {} has a decimal {}; expected one of "
+                            "them in the whole file, and no sign between thousands",
+                            shown(field.text), has_comma ? "comma" : "point",
+                            has_comma ? point_line_ : comma_line_, has_comma ? "point" : "comma"));
+  }
+
   /// Keeps the length of the number that ends the last line, and the least of those before it.
   void note_last_field(std::size_t length, long line_number) {
     if (last_line_ != 0) shortest_length_ = std::min(shortest_length_, last_length_);
@@ -295,7 +315,9 @@ class RowReader {
   std::vector<double> values_;  ///< of the row being read, in the order of wanted_
   CsvTable table_;
   std::size_t rows_ = 0;
-  long last_line_ = 0;  ///< 0: the last column is not wanted
+  long comma_line_ = 0;  ///< that has the first decimal comma; 0: none
+  long point_line_ = 0;  ///< likewise, of a file that may have decimal commas
+  long last_line_ = 0;   ///< 0: the last column is not wanted
   std::size_t last_length_ = 0;
   std::size_t shortest_length_ = std::numeric_limits<std::size_t>::max();
 };
@@ -366,7 +388,7 @@ RecordTable load_csv_record(const std::filesystem::path& path, const RecordReque
   wanted.separator = request.separator;
   wanted.time_column = request.time_column;
   CsvTable table = load_csv(path, wanted);
-  return {std::move(table.columns), std::move(table.cut_short)};
+  return {std::move(table.columns), std::move(table.cut_short), std::move(table.labels)};
 }
 
 }  // namespace rigcal::datasets

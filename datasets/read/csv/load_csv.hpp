@@ -23,6 +23,7 @@ struct CsvTable {
   /// In words, if the file may have been cut within its last number: it ends without a newline, and
   /// the number has fewer characters than any other of its column. Else empty.
   std::string cut_short;
+  std::vector<ColumnLabel> labels{};  ///< one per requested name
 };
 
 /// Reads the wanted columns of a CSV file, strictly.

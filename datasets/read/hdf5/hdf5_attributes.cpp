@@ -10,6 +10,7 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr hssize_t kMostTexts = 1000;
+constexpr hssize_t kMostNumbers = 1000;
 constexpr std::size_t kLongestText = 40;
 
 struct Attribute {
@@ -82,13 +83,19 @@ std::vector<std::string> hdf5_texts(hid_t object, const char* attribute) {
 }
 
 std::optional<double> hdf5_number(hid_t object, const char* attribute) {
+  const auto numbers = hdf5_numbers(object, attribute);
+  return numbers && numbers->size() == 1 ? std::optional(numbers->front()) : std::nullopt;
+}
+
+std::optional<std::vector<double>> hdf5_numbers(hid_t object, const char* attribute) {
+  if (H5Aexists(object, attribute) <= 0) return std::nullopt;
   const auto found = opened(object, attribute);
-  if (!found || found->count != 1) return std::nullopt;
+  if (!found || found->count < 1 || found->count > kMostNumbers) return std::vector<double>();
   const H5T_class_t kind = H5Tget_class(found->type.get());
-  if (kind != H5T_INTEGER && kind != H5T_FLOAT) return std::nullopt;
-  double value = 0.0;
-  if (H5Aread(found->id.get(), H5T_NATIVE_DOUBLE, &value) < 0) return std::nullopt;
-  return value;
+  if (kind != H5T_INTEGER && kind != H5T_FLOAT) return std::vector<double>();
+  std::vector<double> values(static_cast<std::size_t>(found->count));
+  if (H5Aread(found->id.get(), H5T_NATIVE_DOUBLE, values.data()) < 0) values.clear();
+  return values;
 }
 
 }  // namespace rigcal::datasets

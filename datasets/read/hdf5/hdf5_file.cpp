@@ -207,6 +207,26 @@ Hdf5Id type_in_memory(const Hdf5Series& series, hid_t native, std::size_t bytes)
   return table;
 }
 
+/// How numbers are packed, by the conventions for climate and forecast metadata (CF 1.11, 2.5.1 and
+/// 8.1), which netCDF files and others follow: value = factor * number + offset.
+struct Packing {
+  double factor = 1.0;
+  double offset = 0.0;
+  std::vector<double> missing;  ///< numbers that stand for none
+};
+
+/// What HDF5 gives for what was never written, where the file says it; nothing of a zero, which may
+/// be meant.
+std::optional<double> own_fill_value(hid_t dataset) {
+  const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
+  H5D_fill_value_t kind = H5D_FILL_VALUE_UNDEFINED;
+  if (!plan || H5Pfill_value_defined(plan.get(), &kind) < 0) return std::nullopt;
+  if (kind != H5D_FILL_VALUE_USER_DEFINED) return std::nullopt;
+  double value = 0.0;
+  if (H5Pget_fill_value(plan.get(), H5T_NATIVE_DOUBLE, &value) < 0) return std::nullopt;
+  return value == 0.0 ? std::nullopt : std::optional(value);
+}
+
 }  // namespace
 
 std::size_t Hdf5Series::element_count() const {
@@ -333,6 +353,72 @@ void Hdf5File::require_readable(hid_t dataset, const std::string& column) const 
     fail(fmt::format("'{}' was never written: it has a shape, but no numbers", column));
 }
 
+void Hdf5File::require_written(hid_t dataset, const Hdf5Series& series, const Hdf5Line& line,
+                               const std::string& column) const {
+  const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
+  const std::size_t rank = dims_of_dataset(series);
+  if (!plan || rank == 0 || H5Pget_layout(plan.get()) != H5D_CHUNKED) return;
+  std::vector<hsize_t> chunk(rank);
+  hsize_t written = 0;
+  if (H5Pget_chunk(plan.get(), static_cast<int>(rank), chunk.data()) != static_cast<int>(rank) ||
+      std::count(chunk.begin(), chunk.end(), 0U) > 0 ||
+      H5Dget_num_chunks(dataset, H5S_ALL, &written) < 0)
+    fail(
+        fmt::format("is damaged at '{}' (HDF5: {}); copy or save it again", column, hdf5_reason()));
+  hsize_t wanted = 1;
+  for (std::size_t k = 0; k < rank; ++k) wanted *= (series.dims[k] + chunk[k] - 1) / chunk[k];
+  if (written >= wanted) return;
+  std::vector<hsize_t> at(rank);
+  for (std::size_t k = 0; k < rank; ++k) at[k] = line.fixed[k] / chunk[k] * chunk[k];
+  const bool is_along_chunks = line.along < rank;
+  const hsize_t rows = is_along_chunks ? series.dims[line.along] : 1;
+  const hsize_t step = is_along_chunks ? chunk[line.along] : 1;
+  for (hsize_t row = 0; row < rows; row += step) {
+    if (is_along_chunks) at[line.along] = row;
+    unsigned filters = 0;
+    haddr_t address = HADDR_UNDEF;
+    hsize_t bytes = 0;
+    if (H5Dget_chunk_info_by_coord(dataset, at.data(), &filters, &address, &bytes) >= 0 &&
+        address != HADDR_UNDEF)
+      continue;
+    fail(
+        fmt::format("rows {} to {} of '{}' were never written: the file holds no numbers there; "
+                    "expected a number in each row",
+                    row + 1, std::min(row + step, rows), column));
+  }
+}
+
+std::vector<double> Hdf5File::unpacked(hid_t dataset, std::vector<double> values,
+                                       const std::string& column) const {
+  Packing packing;
+  const auto number_of = [&](const char* attribute, double& number) {
+    const auto found = hdf5_numbers(dataset, attribute);
+    if (!found) return;
+    if (found->size() != 1 || !std::isfinite(found->front()))
+      fail(
+          fmt::format("the attribute '{}' of '{}' is not one finite number; expected one, by which "
+                      "its values are unpacked",
+                      attribute, column));
+    number = found->front();
+  };
+  number_of("scale_factor", packing.factor);
+  number_of("add_offset", packing.offset);
+  for (const char* attribute : {"_FillValue", "missing_value"})
+    if (const auto found = hdf5_numbers(dataset, attribute))
+      packing.missing.insert(packing.missing.end(), found->begin(), found->end());
+  if (const auto fill = own_fill_value(dataset)) packing.missing.push_back(*fill);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (std::find(packing.missing.begin(), packing.missing.end(), values[i]) !=
+        packing.missing.end())
+      fail(
+          fmt::format("row {} of '{}' is {}, which stands for a missing value there; expected a "
+                      "number in each row",
+                      i + 1, column, values[i]));
+    values[i] = packing.factor * values[i] + packing.offset;
+  }
+  return values;
+}
+
 std::vector<double> Hdf5File::numbers(const Hdf5Series& series, const Hdf5Line& line,
                                       const std::string& column) const {
   const auto damaged = [&]() {
@@ -342,6 +428,7 @@ std::vector<double> Hdf5File::numbers(const Hdf5Series& series, const Hdf5Line& 
   const Hdf5Id dataset(H5Dopen2(file_.get(), series.dataset.c_str(), H5P_DEFAULT), H5Dclose);
   if (!dataset) damaged();
   require_readable(dataset.get(), column);
+  require_written(dataset.get(), series, line, column);
   const CellChoice choice = choice_of(series, line);
   if (choice.width > kMostValues / std::max<std::size_t>(choice.cells, 1))
     fail(fmt::format("'{}' stands in arrays of {} numbers each, {} of them: more than {} in all",
@@ -352,7 +439,7 @@ std::vector<double> Hdf5File::numbers(const Hdf5Series& series, const Hdf5Line& 
   const bool is_float = H5Tget_class(type.get()) == H5T_FLOAT;
   const bool is_signed = !is_float && H5Tget_sign(type.get()) == H5T_SGN_2;
 
-  const auto read = [&](auto zero, hid_t native) {
+  const auto read_raw = [&](auto zero, hid_t native) {
     using Number = decltype(zero);
     std::vector<Number> raw(choice.cells * choice.width);
     const Hdf5Id memory = type_in_memory(series, native, choice.width * sizeof(Number));
@@ -365,9 +452,11 @@ std::vector<double> Hdf5File::numbers(const Hdf5Series& series, const Hdf5Line& 
       chosen[i] = raw[choice.first + i * choice.stride];
     return exact(chosen, name_, column);
   };
-  if (is_float) return read(double{}, H5T_NATIVE_DOUBLE);
-  if (is_signed) return read(std::int64_t{}, H5T_NATIVE_INT64);
-  return read(std::uint64_t{}, H5T_NATIVE_UINT64);
+  std::vector<double> values = is_float    ? read_raw(double{}, H5T_NATIVE_DOUBLE)
+                               : is_signed ? read_raw(std::int64_t{}, H5T_NATIVE_INT64)
+                                           : read_raw(std::uint64_t{}, H5T_NATIVE_UINT64);
+  // The attributes of a table say nothing of its columns.
+  return series.member.empty() ? unpacked(dataset.get(), std::move(values), column) : values;
 }
 
 }  // namespace rigcal::datasets

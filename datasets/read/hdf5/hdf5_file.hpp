@@ -78,10 +78,11 @@ class Hdf5File {
   const std::vector<Hdf5Series>& series() const { return series_; }
   const std::vector<Hdf5Clock>& clocks() const { return clocks_; }
 
-  /// Numbers of a series whose kind is empty.
-  /// @throws InputError  damaged, never written, compressed by an unknown filter, stored in another
-  /// file,
-  ///                     or an integer that a double cannot hold
+  /// Numbers of a series whose kind is empty, unpacked by `scale_factor` and `add_offset` of its
+  /// dataset.
+  /// @throws InputError  damaged, never written or in part only, missing by `_FillValue`,
+  ///                     `missing_value` or the dataset's own fill value, compressed by an unknown
+  ///                     filter, stored in another file, or an integer that a double cannot hold
   std::vector<double> numbers(const Hdf5Series& series, const Hdf5Line& line,
                               const std::string& column) const;
 
@@ -91,6 +92,10 @@ class Hdf5File {
   void list_dataset(hid_t dataset, const std::string& path);
   void list_clocks(hid_t object, const std::string& path, bool is_group);
   void require_readable(hid_t dataset, const std::string& column) const;
+  void require_written(hid_t dataset, const Hdf5Series& series, const Hdf5Line& line,
+                       const std::string& column) const;
+  std::vector<double> unpacked(hid_t dataset, std::vector<double> values,
+                               const std::string& column) const;
 
   std::string name_;
   Hdf5Id file_;

@@ -64,14 +64,15 @@ class Hdf5Columns {
  public:
   explicit Hdf5Columns(const std::filesystem::path& path) : file_(path) {}
 
-  Table read(const RecordRequest& request) {
+  RecordTable read(const RecordRequest& request) {
     Table table(request.columns.size());
+    std::vector<ColumnLabel> labels(table.size());
     std::size_t rows = 0;
     std::string first;
     for (std::size_t i = 0; i < table.size(); ++i) {
       const std::string& column = request.columns[i];
       if (find_clock(column) != nullptr) continue;
-      table[i] = numbers(column, so_far_);
+      table[i] = numbers(column, so_far_, labels[i]);
       so_far_ += table[i].size();
       if (first.empty()) {
         first = column;
@@ -84,6 +85,7 @@ class Hdf5Columns {
     for (std::size_t i = 0; i < table.size(); ++i) {
       const Hdf5Clock* clock = find_clock(request.columns[i]);
       if (clock == nullptr) continue;
+      labels[i] = {clock->path, "s", {}, 0};
       table[i] = samples_of(*clock, first.empty() ? std::nullopt : std::optional(rows), first);
       so_far_ += table[i].size();
       if (first.empty()) {
@@ -92,7 +94,7 @@ class Hdf5Columns {
       }
     }
     if (!request.time_column.empty()) check_time(request, table);
-    return table;
+    return {std::move(table), {}, std::move(labels)};
   }
 
   std::vector<RecordColumn> list() const {
@@ -138,7 +140,8 @@ class Hdf5Columns {
     fail(unknown_name_message("dataset", column, known));
   }
 
-  std::vector<double> numbers(const std::string& column, std::size_t so_far) const {
+  std::vector<double> numbers(const std::string& column, std::size_t so_far,
+                              ColumnLabel& label) const {
     const std::string wanted = with_slash(column);
     const Hdf5Series& series = series_of(wanted, column);
     if (series.kind == "a table")
@@ -148,6 +151,8 @@ class Hdf5Columns {
       fail(fmt::format("'{}' is {}; expected numbers", column, series.kind));
     if (series.element_count() == 0) fail(fmt::format("'{}' is empty; expected numbers", column));
     const Hdf5Line line = line_of(series, wanted.substr(series.path.size()), column);
+    label = {wanted, unit_of(series, line), {}, 0};
+    if (!label.unit.empty()) label.place = "attribute of its unit";
     const std::size_t count = series.dims.empty() ? 1 : series.dims[line.along];
     if (count > kMostValues - std::min(kMostValues, so_far))
       fail(
@@ -161,6 +166,15 @@ class Hdf5Columns {
       fail(fmt::format("row {} of '{}' is {}; expected a finite number", bad - values.begin() + 1,
                        column, *bad));
     return values;
+  }
+
+  /// As an attribute tells it: of all, or of this line of a matrix.
+  static std::string unit_of(const Hdf5Series& series, const Hdf5Line& line) {
+    if (series.units.size() == 1) return series.units[0];
+    if (series.dims.size() != 2) return {};
+    const std::size_t across = 1 - line.along;
+    const bool one_each = series.units.size() == series.dims[across];
+    return one_each ? series.units[line.fixed[across]] : std::string();
   }
 
   std::string first_member_of(const Hdf5Series& table) const {
@@ -282,9 +296,8 @@ std::vector<RecordColumn> hdf5_record_columns(const std::filesystem::path& path)
 RecordTable load_hdf5_record(const std::filesystem::path& path, const RecordRequest& request) {
   require_time_column(request);
   require_regular_file(path, "an HDF5 file");
-  return {load_confined(path, kHdf5Library, request.columns.size(),
-                        [&] { return Hdf5Columns(path).read(request); }),
-          {}};
+  return load_confined(path, kHdf5Library, request.columns.size(),
+                       [&] { return Hdf5Columns(path).read(request); });
 }
 
 }  // namespace rigcal::datasets

@@ -69,10 +69,11 @@ Table read_table(const std::filesystem::path& path, const std::vector<std::strin
     Level5Source source(path);
     return read_columns(source, columns);
   }
-  return load_confined(path, kHdf5, columns.size(), [&] {
+  const auto read = [&] {
     Hdf5Source source(path);
-    return read_columns(source, columns);
-  });
+    return RecordTable{read_columns(source, columns), {}};
+  };
+  return load_confined(path, kHdf5, columns.size(), read).columns;
 }
 
 }  // namespace

@@ -48,9 +48,8 @@ std::vector<RecordColumn> xlsx_record_columns(const std::filesystem::path& path)
 RecordTable load_xlsx_record(const std::filesystem::path& path, const RecordRequest& request) {
   require_time_column(request);
   require_workbook(path);
-  return {load_confined(path, kXlsxLibraries, request.columns.size(),
-                        [&] { return read_xlsx_columns(path, request); }),
-          {}};
+  return load_confined(path, kXlsxLibraries, request.columns.size(),
+                       [&] { return read_xlsx_columns(path, request); });
 }
 
 }  // namespace rigcal::datasets

@@ -11,10 +11,10 @@
 #include <utility>
 
 #include "common/error.hpp"
-#include "common/quantity.hpp"
 #include "common/suggest.hpp"
 #include "datasets/read/csv/csv_text.hpp"
 #include "datasets/read/limits.hpp"
+#include "datasets/read/unit_in_name.hpp"
 #include "datasets/read/xlsx/xlsx_book.hpp"
 
 namespace rigcal::datasets {
@@ -38,12 +38,8 @@ std::optional<std::string> unit_in(std::string_view text) {
       ((text.front() == '[' && text.back() == ']') || (text.front() == '(' && text.back() == ')')))
     text = text.substr(1, text.size() - 2);
   if (text.empty() || text == "-") return std::string();
-  try {
-    unit_conversion(text, text);
-  } catch (const QuantityError&) {
-    return std::nullopt;
-  }
-  return std::string(text);
+  const std::string unit = unit_of_text(text);
+  return unit.empty() ? std::nullopt : std::optional(unit);
 }
 
 std::string kind_text(const XlsxCell& cell) {
@@ -60,7 +56,8 @@ std::string kind_text(const XlsxCell& cell) {
     case XlsxKind::error:
       return fmt::format("is the error {}; expected a number", shown(cell.text));
     case XlsxKind::no_result:
-      return "has a formula without a result; open the workbook in Excel and save it again";
+      return "has a formula that was never computed, as programs write it; open the workbook in "
+             "Excel and save it again";
     case XlsxKind::number:
       break;
   }
@@ -176,8 +173,8 @@ class SheetReader {
               const std::string& time_name)
       : book_(book), sheet_(sheet), names_(std::move(names)), time_name_(time_name) {}
 
-  /// One vector per name, of the same length.
-  std::vector<std::vector<double>> read(std::size_t most_values) {
+  /// One column per name, of the same length.
+  RecordTable read(std::size_t most_values) {
     most_values_ = most_values;
     HeaderFinder finder;
     const auto merged = book_.read(sheet_, [&](const XlsxCell& cell) {
@@ -196,8 +193,11 @@ class SheetReader {
                        fmt::format("{}: no rows below the header in row {}; expected at least one "
                                    "row of numbers",
                                    shown(sheet_.name), finder.header().row));
-    std::vector<std::vector<double>> table;
-    for (const std::string& name : names_) table.push_back(values_.at(columns_.at(name)));
+    RecordTable table;
+    for (const std::string& name : names_) {
+      table.columns.push_back(values_.at(columns_.at(name)));
+      table.labels.push_back(label_of(finder.header(), columns_.at(name)));
+    }
     return table;
   }
 
@@ -205,6 +205,15 @@ class SheetReader {
   [[noreturn]] void fail(std::size_t row, std::size_t column, const std::string& message) const {
     throw InputError({book_.name()}, fmt::format("{}!{} {}", shown(sheet_.name),
                                                  xlsx_address(row, column), message));
+  }
+
+  ColumnLabel label_of(const SheetHeader& header, std::size_t column) const {
+    ColumnLabel label{header.names[column - 1].full, {}, {}, 0};
+    const bool has_units = !header.units.empty() && !header.units[column - 1].empty();
+    if (has_units) label.unit = header.units[column - 1];
+    label.place = fmt::format("{}!{}", shown(sheet_.name),
+                              xlsx_address(header.row + (has_units ? 1 : 0), column));
+    return label;
   }
 
   /// Once the header is known.
@@ -341,12 +350,13 @@ std::vector<RecordColumn> list_xlsx_columns(const std::filesystem::path& path) {
   return columns;
 }
 
-std::vector<std::vector<double>> read_xlsx_columns(const std::filesystem::path& path,
-                                                   const RecordRequest& request) {
+RecordTable read_xlsx_columns(const std::filesystem::path& path, const RecordRequest& request) {
   const XlsxBook book(path);
   std::vector<SheetColumn> places;
   for (const std::string& column : request.columns) places.push_back(place_of(book, column));
-  std::vector<std::vector<double>> table(places.size());
+  RecordTable table;
+  table.columns.resize(places.size());
+  table.labels.resize(places.size());
   std::size_t values = 0;
   for (std::size_t sheet = 0; sheet < book.sheets().size(); ++sheet) {
     std::vector<std::string> names;
@@ -359,16 +369,19 @@ std::vector<std::vector<double>> read_xlsx_columns(const std::filesystem::path& 
     if (names.empty()) continue;
     auto own = SheetReader(book, book.sheets()[sheet], names, time_name)
                    .read(kMostValues - std::min(kMostValues, values));
-    values += own.size() * own.front().size();
-    for (std::size_t i = 0, k = 0; i < places.size(); ++i)
-      if (places[i].sheet == sheet) table[i] = std::move(own[k++]);
+    values += own.columns.size() * own.columns.front().size();
+    for (std::size_t i = 0, k = 0; i < places.size(); ++i) {
+      if (places[i].sheet != sheet) continue;
+      table.labels[i] = std::move(own.labels[k]);
+      table.columns[i] = std::move(own.columns[k++]);
+    }
   }
-  for (std::size_t i = 1; i < table.size(); ++i)
-    if (table[i].size() != table[0].size())
+  for (std::size_t i = 1; i < table.columns.size(); ++i)
+    if (table.columns[i].size() != table.columns[0].size())
       throw InputError(
           {book.name()},
           fmt::format("'{}' has {} rows, but '{}' has {}; expected as many", request.columns[i],
-                      table[i].size(), request.columns[0], table[0].size()));
+                      table.columns[i].size(), request.columns[0], table.columns[0].size()));
   return table;
 }
 

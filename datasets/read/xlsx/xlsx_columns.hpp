@@ -11,7 +11,6 @@ namespace rigcal::datasets {
 ///
 /// @throws InputError
 std::vector<RecordColumn> list_xlsx_columns(const std::filesystem::path& path);
-std::vector<std::vector<double>> read_xlsx_columns(const std::filesystem::path& path,
-                                                   const RecordRequest& request);
+RecordTable read_xlsx_columns(const std::filesystem::path& path, const RecordRequest& request);
 
 }  // namespace rigcal::datasets

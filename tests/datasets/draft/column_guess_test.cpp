@@ -37,6 +37,9 @@ TEST_CASE("guess_column: channels and units by name", "[datasets]") {
                                 {"log.position", Channel::position, ""},
                                 {"F_kN", Channel::force, "kN"},
                                 {"temp_C", Channel::temperature, "degC"},
+                                {"pl_bar [psi]", Channel::load_pressure, "psi"},
+                                {"p_A [kgf/cm2]", Channel::pressure_a, "kgf/cm2"},
+                                {"/m/position", Channel::position, ""},
                                 {"block", std::nullopt, ""},
                                 {"data(:,2)", std::nullopt, ""},
                                 {"", std::nullopt, ""}};

@@ -487,3 +487,27 @@ TEST_CASE("load_csv: a file that may have been cut within its last number", "[da
   CHECK(cut("t,x\n0.0,3.4", {"t", "x"}).empty());         // nothing to compare with
   CHECK(cut("t,x\n0,1\n1,10\n2,3", {"t", "x"}).empty());  // not the shortest
 }
+
+TEST_CASE("load_csv: decimal comma and decimal point in one file are refused", "[datasets]") {
+  const auto refusal = [](const std::string& content) {
+    return refusal_of(File(content).path(), request({"t", "x"}, "t"));
+  };
+  CHECK_THAT(refusal("t;x\n0,5;1,5\n1,5;1.234\n"),
+             Contains("a.csv:3:5: '1.234' has a decimal point, but line 2 has a decimal comma"));
+  CHECK_THAT(refusal("t;x\n0.5;1.5\n1.5;2.5\n2.5;1,5\n"),
+             Contains("a.csv:4:5: '1,5' has a decimal comma, but line 2 has a decimal point"));
+  CHECK_THAT(refusal("t\tx\n0,5\t1.5\n"), Contains("has a decimal point, but line 2"));
+  CHECK(load("t;x\n0;1\n1;2,5\n2;3\n").columns == Columns{{0, 1, 2}, {1, 2.5, 3}});
+  CHECK(load("t;x\n0;1\n1;2.5\n2;3\n").columns == Columns{{0, 1, 2}, {1, 2.5, 3}});
+  // A column that nobody asked for may be a date.
+  CHECK(load("t;date;x\n0;12.03.2026;1,5\n1;12.03.2026;2,5\n").columns ==
+        Columns{{0, 1}, {1.5, 2.5}});
+}
+
+TEST_CASE("load_csv: how the columns are labelled", "[datasets]") {
+  const CsvTable table = load("# rig 2\nt [s],x [mm]\n0,1\n", request({"x", "t"}));
+  REQUIRE(table.labels.size() == 2);
+  CHECK(table.labels[0].name == "x [mm]");
+  CHECK(table.labels[1].name == "t [s]");
+  CHECK(table.labels[1].line == 2);
+}

@@ -296,3 +296,64 @@ TEST_CASE("load_hdf5: what is no HDF5 file", "[datasets]") {
   CHECK(record_reader(folder.path() / "data.bin").name == "HDF5");
   CHECK(record_reader("x.HDF5").name == "HDF5");
 }
+
+TEST_CASE("load_hdf5: numbers are unpacked, and missing ones refused", "[datasets]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "run.h5";
+  {
+    const Hdf5Writer file(path);
+    for (const char* name : {"/x", "/lines", "/text", "/gone", "/lost", "/two"})
+      file.array(name, {1, 2, 3, 4}, {}, H5T_STD_I16LE);
+    file.number("/x", "scale_factor", 0.5);
+    file.number("/x", "add_offset", -10);
+    file.number("/x", "_FillValue", -32768);
+    file.text("/text", "scale_factor", "0.5");
+    file.number("/gone", "_FillValue", 3);
+    file.number("/lost", "missing_value", 4);
+    file.number("/lost", "scale_factor", 100);
+  }
+  CHECK(read_columns(path, {"/x", "/lines"}) == Table{{-9.5, -9, -8.5, -8}, {1, 2, 3, 4}});
+  CHECK_THAT(read_refusal(path, {"/text"}),
+             Contains("the attribute 'scale_factor' of '/text' is not one finite number"));
+  CHECK_THAT(read_refusal(path, {"/gone"}),
+             Contains("row 3 of '/gone' is 3, which stands for a missing value"));
+  CHECK_THAT(read_refusal(path, {"/lost"}), Contains("row 4 of '/lost' is 4, which stands for"));
+}
+
+TEST_CASE("load_hdf5: what was written in part only is refused", "[datasets]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "run.h5";
+  const double fill = 3.25;
+  {
+    const Hdf5Writer file(path);
+    file.partly_written("/whole", {1, 2, 3, 4, 5}, 5, 2);
+    file.partly_written("/half", {1, 2, 3}, 7, 2);
+    file.partly_written("/torn", {1, 2, 3}, 4, 4, &fill);
+    file.partly_written("/zero", {1, 2, 3}, 4, 4);
+  }
+  CHECK(read_columns(path, {"/whole"}) == Table{{1, 2, 3, 4, 5}});
+  CHECK_THAT(read_refusal(path, {"/half"}), Contains("rows 5 to 6 of '/half' were never written"));
+  CHECK_THAT(read_refusal(path, {"/torn"}), Contains("row 4 of '/torn' is 3.25, which stands for"));
+  // A zero may be meant.
+  CHECK(read_columns(path, {"/zero"}) == Table{{1, 2, 3, 0}});
+}
+
+TEST_CASE("load_hdf5: how the columns are labelled", "[datasets]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "run.h5";
+  {
+    const Hdf5Writer file(path);
+    file.array("/t", {0, 1, 2});
+    file.array("/x", {1, 2, 3});
+    file.array("/m", {1, 2, 3, 4, 5, 6}, {3, 2});
+    file.text("/x", "units", "psi");
+    file.texts("/m", "units", {"bar", "mm"});
+  }
+  const auto table = record_reader(path).load(path, {{"t", "/x", "/m(:,2)"}, "t"});
+  REQUIRE(table.labels.size() == 3);
+  CHECK(table.labels[0].unit.empty());
+  CHECK(table.labels[1].name == "/x");
+  CHECK(table.labels[1].unit == "psi");
+  CHECK(table.labels[2].unit == "mm");
+  CHECK_FALSE(table.labels[2].place.empty());
+}

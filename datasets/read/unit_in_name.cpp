@@ -1,0 +1,189 @@
+#include "datasets/read/unit_in_name.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+#include <vector>
+
+#include "common/quantity.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr std::array<std::string_view, 28> kUnits{
+    "s",   "ms",  "us",  "min", "V",  "mV",  "m", "cm", "mm",   "um",   "in", "bar", "mbar", "Pa",
+    "kPa", "MPa", "psi", "N",   "kN", "lbf", "K", "C",  "degC", "degF", "mA", "A",   "inch", "hPa"};
+
+/// What is written for a unit, in lower case, and the unit.
+constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c", "degC"},
+                                std::pair<std::string_view, std::string_view>{"deg c", "degC"},
+                                std::pair<std::string_view, std::string_view>{"deg f", "degF"},
+                                std::pair<std::string_view, std::string_view>{"psig", "psi"},
+                                std::pair<std::string_view, std::string_view>{"psia", "psi"},
+                                std::pair<std::string_view, std::string_view>{"barg", "bar"},
+                                std::pair<std::string_view, std::string_view>{"bara", "bar"},
+                                std::pair<std::string_view, std::string_view>{"bar(g)", "bar"},
+                                std::pair<std::string_view, std::string_view>{"bar(a)", "bar"},
+                                std::pair<std::string_view, std::string_view>{"kg/cm2", "kgf/cm2"},
+                                std::pair<std::string_view, std::string_view>{"kg/cm^2", "kgf/cm2"},
+                                std::pair<std::string_view, std::string_view>{"lbs", "lbf"}};
+
+/// Words behind which a lone A is a chamber, not amperes.
+constexpr std::array<std::string_view, 5> kChamberWords{"p", "pressure", "chamber", "druck",
+                                                        "kammer"};
+
+/// Units that are words, or names of chambers and gauges, too.
+constexpr std::array<std::string_view, 6> kWords{"in", "min", "A", "at", "h", "d"};
+
+template <typename List>
+bool holds(const List& list, std::string_view text) {
+  return std::find(list.begin(), list.end(), text) != list.end();
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
+  while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
+  return text;
+}
+
+bool is_unit(std::string_view text) {
+  try {
+    unit_conversion(text, text);
+    return true;
+  } catch (const QuantityError&) {
+    return false;
+  }
+}
+
+/// Whether it is a unit of a pure number, "1" or "-".
+bool is_one(const std::string& unit) {
+  try {
+    return unit_conversion(unit, "1").scale == 1.0;
+  } catch (const QuantityError&) {
+    return false;
+  }
+}
+
+/// The bracket that closes the one at `open`.
+std::size_t closing(std::string_view name, std::size_t open) {
+  const char left = name[open];
+  const char right = left == '[' ? ']' : ')';
+  int depth = 0;
+  for (std::size_t i = open; i < name.size(); ++i) {
+    if (name[i] == left) ++depth;
+    if (name[i] == right && --depth == 0) return i;
+  }
+  return std::string_view::npos;
+}
+
+/// A text between underscores, blanks and brackets.
+struct Part {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+std::vector<Part> parts_of(std::string_view name) {
+  constexpr std::string_view kBetween = "_ []()-/";
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    if (kBetween.find(name[i]) != std::string_view::npos) continue;
+    const bool continues = !parts.empty() && parts.back().end == i;
+    if (!continues) parts.push_back({i, i});
+    parts.back().end = i + 1;
+  }
+  return parts;
+}
+
+bool is_chamber(std::string_view unit, std::string_view before) {
+  return unit == "A" && holds(kChamberWords, lower(before));
+}
+
+std::optional<UnitInName> in_brackets(std::string_view name) {
+  std::optional<UnitInName> found;
+  for (std::size_t open = 1; open < name.size(); ++open) {
+    if (name[open] != '[' && name[open] != '(') continue;
+    const std::size_t close = closing(name, open);
+    if (close == std::string_view::npos) continue;
+    const std::string_view inside = trimmed(name.substr(open + 1, close - open - 1));
+    const std::string_view last = trimmed(name.substr(0, open));
+    const auto before = parts_of(last);
+    const std::string_view word =
+        before.empty() ? last
+                       : last.substr(before.back().begin, before.back().end - before.back().begin);
+    const std::string unit = unit_of_text(inside);
+    // A lone letter such as the "g" of a gauge pressure is a unit only where it is a usual one.
+    const bool is_letter =
+        inside.size() == 1 && std::isalpha(static_cast<unsigned char>(inside[0])) != 0;
+    const bool is_usual = !is_letter || holds(kUnits, unit);
+    if (!unit.empty() && is_usual && !is_one(unit) && !is_chamber(inside, word))
+      found = UnitInName{unit, open, close + 1, name[open] == '[' || !holds(kWords, inside)};
+    open = close;
+  }
+  return found;
+}
+
+/// Where the last part of "/run1/x", "Sheet1!x" or "log.signals(2).values" begins.
+std::size_t begin_of_last(std::string_view path) {
+  std::size_t begin = path.starts_with('/') ? path.rfind('/') + 1 : 0;
+  for (const char before : {'!', '.'})
+    if (const std::size_t at = path.rfind(before); at != std::string_view::npos)
+      begin = std::max(begin, at + 1);
+  return begin;
+}
+
+/// Behind others: a last "pa" is no chamber.
+std::optional<UnitInName> behind_a_word(std::string_view name) {
+  auto parts = parts_of(name);
+  std::erase_if(parts, [first = begin_of_last(name)](const Part& p) { return p.begin < first; });
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    const std::string_view text = name.substr(parts[i].begin, parts[i].end - parts[i].begin);
+    const std::string_view before =
+        name.substr(parts[i - 1].begin, parts[i - 1].end - parts[i - 1].begin);
+    const bool is_pascal = text == "pa" && i + 1 == parts.size();
+    if (!is_pascal && (!holds(kUnits, text) || is_chamber(text, before))) continue;
+    return UnitInName{is_pascal ? "Pa" : unit_of_text(text), parts[i].begin, parts[i].end, false};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string unit_of_text(std::string_view text) {
+  text = trimmed(text.substr(0, text.find(" since ")));
+  if (text.empty()) return {};
+  const std::string small = lower(text);
+  for (const auto& [spelling, unit] : kSpellings)
+    if (small == spelling && (text.size() > 1 || text == "C")) return std::string(unit);
+  if (holds(kUnits, text)) return std::string(text);
+  for (const std::string_view unit : kUnits)
+    if (lower(unit) == small && (text.size() > 1 || text == "S" || text == "M"))
+      return std::string(unit);
+  return is_unit(text) ? std::string(text) : std::string();
+}
+
+std::optional<UnitInName> unit_in_name(std::string_view name) {
+  const auto found = in_brackets(name);
+  return found ? found : behind_a_word(name);
+}
+
+std::optional<std::size_t> brackets_at_end(std::string_view name) {
+  if (name.empty() || (name.back() != ']' && name.back() != ')')) return std::nullopt;
+  const char close = name.back();
+  const char open = close == ']' ? '[' : '(';
+  int depth = 0;
+  for (std::size_t i = name.size(); i-- > 0;) {
+    if (name[i] == close) ++depth;
+    if (name[i] == open && --depth == 0) return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace rigcal::datasets

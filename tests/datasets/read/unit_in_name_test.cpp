@@ -1,0 +1,59 @@
+#include "datasets/read/unit_in_name.hpp"
+
+#include <catch2/catch.hpp>
+#include <string>
+#include <vector>
+
+using namespace rigcal::datasets;
+
+TEST_CASE("unit_in_name: in brackets, or behind a word", "[datasets]") {
+  struct Case {
+    std::string name;
+    std::string unit;
+    bool is_certain = true;
+  };
+  const std::vector<Case> cases{{"pl_bar [psi]", "psi"},
+                                {"x_mm (m)", "m"},
+                                {"t_s [ms]", "ms"},
+                                {"x [mm]", "mm"},
+                                {"p [kgf/cm2]", "kgf/cm2"},
+                                {"p [kg/cm2]", "kgf/cm2"},
+                                {"p [PSI]", "psi"},
+                                {"p [psig]", "psi"},
+                                {"p [MPA]", "MPa"},
+                                {"T [C]", "degC"},
+                                {"/run1/v [m/s]", "m/s"},
+                                {"u [%]", "%"},
+                                {"q (m3/(s Pa))", "m3/(s Pa)"},
+                                {"x [mm] filtered", "mm"},
+                                {"x_mm", "mm", false},
+                                {"/run1/x_mm", "mm", false},
+                                {"Log!pA_bar_03", "bar", false},
+                                {"p (in)", "in", false},
+                                {"t (min)", "min", false}};
+  for (const Case& each : cases) {
+    CAPTURE(each.name);
+    const auto found = unit_in_name(each.name);
+    REQUIRE(found);
+    CHECK(found->unit == each.unit);
+    CHECK(found->is_certain == each.is_certain);
+  }
+  for (const char* name :
+       {"x", "x (ist)", "p (A)", "pressure (g)", "x [-]", "x [1]", "data(:,3)", "ans(2,:)", "p_A",
+        "/s/x", "run (2)", "", "[mm]", "x [", "log.s.values"}) {
+    CAPTURE(name);
+    CHECK_FALSE(unit_in_name(name));
+  }
+}
+
+TEST_CASE("unit_of_text: what UDUNITS calls it", "[datasets]") {
+  CHECK(unit_of_text(" mm ") == "mm");
+  CHECK(unit_of_text("seconds since 2026-01-01 00:00:00") == "seconds");
+  CHECK(unit_of_text("BAR") == "bar");
+  CHECK(unit_of_text("S") == "s");
+  CHECK(unit_of_text("Volt") == "Volt");
+  for (const char* text : {"", "raw", "2 mm", "see note", "-"}) {
+    CAPTURE(text);
+    CHECK(unit_of_text(text).empty());
+  }
+}
