@@ -49,6 +49,12 @@ inline XlsxFixtureCell no_cell() { return {}; }
 
 using XlsxRows = std::vector<std::vector<XlsxFixtureCell>>;
 
+/// "AB" of column 27, from 0; written down apart from the code that reads it.
+inline std::string column_letters(std::size_t column) {
+  std::string letters(1, static_cast<char>('A' + column % 26));
+  return column < 26 ? letters : column_letters(column / 26 - 1) + letters;
+}
+
 /// The XML of a sheet.
 /// @param behind  what follows the rows, such as merged cells
 inline std::string sheet_xml(const XlsxRows& rows, const std::string& behind = "") {
@@ -60,7 +66,7 @@ inline std::string sheet_xml(const XlsxRows& rows, const std::string& behind = "
     text += fmt::format("<row r=\"{}\">", i + 1);
     for (std::size_t k = 0; k < rows[i].size(); ++k) {
       std::string xml = rows[i][k].xml;
-      const std::string address = static_cast<char>('A' + k) + std::to_string(i + 1);
+      const std::string address = column_letters(k) + std::to_string(i + 1);
       if (const std::size_t at = xml.find('@'); at != std::string::npos)
         xml.replace(at, 1, address);
       text += xml;

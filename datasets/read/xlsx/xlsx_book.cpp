@@ -86,14 +86,18 @@ class RelationsHandler : public XmlHandler {
   std::map<std::string, Relation> relations;
 };
 
+bool is_true(std::string_view text) { return text == "1" || text == "true"; }
+
 /// Names of the sheets, and the ids of the references to their parts.
 class WorkbookHandler : public XmlHandler {
  public:
   void start(std::string_view element, const XmlAttributes& attributes) override {
+    if (element == "calcPr") is_to_be_computed = is_true(attributes.text("fullCalcOnLoad"));
     if (element == "sheet" && sheets.size() < kMostSheets)
       sheets.emplace_back(attributes.text("name"), attributes.text("id"));
   }
   std::vector<std::pair<std::string, std::string>> sheets;
+  bool is_to_be_computed = false;
 };
 
 /// Texts that cells share, without the reading aids of Japanese ones.
@@ -156,21 +160,27 @@ class StylesHandler : public XmlHandler {
 class SheetHandler : public XmlHandler {
  public:
   SheetHandler(std::string file, std::string sheet, const std::vector<std::string>& texts,
-               const std::vector<bool>& shows_a_date,
+               const std::vector<bool>& shows_a_date, bool is_to_be_computed,
                const std::function<bool(const XlsxCell&)>& take)
       : file_(std::move(file)),
         sheet_(std::move(sheet)),
         texts_(texts),
         shows_a_date_(shows_a_date),
+        is_to_be_computed_(is_to_be_computed),
         take_(take) {}
 
   void start(std::string_view element, const XmlAttributes& attributes) override {
+    if (gathers_) fail("holds an element within its value");
+    if (element == "sheetData") in_table_ = true;
+    if (element == "extLst") in_extension_ = true;
     if (element == "row") start_row(attributes);
     if (element == "c") start_cell(attributes);
     if (element == "f") has_formula_ = true;
     gathers_ = in_cell_ && (element == "v" || (element == "t" && !in_aid_));
-    if (element == "v") has_value_ = true;
-    if (element == "is") has_value_ = true;
+    if (element == "v" || element == "is") {
+      if (has_value_) fail("holds two values");
+      has_value_ = true;
+    }
     if (element == "rPh") in_aid_ = true;
     if (element == "mergeCell") add_merged(attributes.text("ref"));
   }
@@ -178,9 +188,17 @@ class SheetHandler : public XmlHandler {
   void end(std::string_view element) override {
     gathers_ = false;
     if (element == "rPh") in_aid_ = false;
+    if (element == "sheetData") in_table_ = false;
+    if (element == "extLst") in_extension_ = false;
+    if (element == "row") in_row_ = false;
     if (element != "c" || !in_cell_) return;
     in_cell_ = false;
     finish_cell();
+  }
+
+  /// Rows or cells of another program would be missing from the record.
+  void foreign() override {
+    if (in_table_ && !in_extension_) fail("or a cell behind it is of no known kind");
   }
 
   void text(std::string_view text) override {
@@ -205,6 +223,7 @@ class SheetHandler : public XmlHandler {
       row_ = whole_number<std::size_t>(*given).value_or(0);
     cell_ = {row_, 1, XlsxKind::number, {}};
     column_ = 0;
+    in_row_ = true;
     if (row_ < next || row_ > kMostRows) fail("begins a row that is out of order");
   }
 
@@ -212,7 +231,8 @@ class SheetHandler : public XmlHandler {
     Place place{row_, column_ + 1};
     cell_ = {place.row, place.column, XlsxKind::number, {}};
     if (const auto given = attributes.find("r")) place = parsed_address(*given).value_or(Place{});
-    if (place.row != row_ || place.column <= column_ || place.column > kMostSheetColumns)
+    if (!in_row_ || in_cell_ || place.row != row_ || place.column <= column_ ||
+        place.column > kMostSheetColumns)
       fail("or a cell behind it is out of order");
     column_ = place.column;
     cell_.column = place.column;
@@ -225,10 +245,13 @@ class SheetHandler : public XmlHandler {
 
   void finish_cell() {
     if (!has_value_ && !has_formula_) return;
-    if (!has_value_) {
+    const bool is_numeric = type_.empty() || type_ == "n";
+    const bool is_empty = !has_value_ || (is_numeric && cell_.text.empty());
+    const bool is_placeholder = is_to_be_computed_ && cell_.text == "0";
+    if (has_formula_ && (is_empty || is_placeholder)) {
       cell_.kind = XlsxKind::no_result;
-    } else if (type_.empty() || type_ == "n") {
-      if (cell_.text.empty()) return;
+    } else if (is_numeric) {
+      if (is_empty) return;
       const bool is_date = style_ < shows_a_date_.size() && shows_a_date_[style_];
       cell_.kind = is_date ? XlsxKind::date : XlsxKind::number;
     } else if (type_ == "s") {
@@ -261,7 +284,11 @@ class SheetHandler : public XmlHandler {
   std::string sheet_;
   const std::vector<std::string>& texts_;
   const std::vector<bool>& shows_a_date_;
+  bool is_to_be_computed_;
   const std::function<bool(const XlsxCell&)>& take_;
+  bool in_table_ = false;
+  bool in_extension_ = false;
+  bool in_row_ = false;
   std::size_t row_ = 0;
   std::size_t column_ = 0;
   XlsxCell cell_;
@@ -316,6 +343,7 @@ XlsxBook::XlsxBook(const std::filesystem::path& path) : archive_(path) {
   const auto parts = relations(archive_, relations_of(workbook));
   WorkbookHandler handler;
   read_xml(archive_, workbook, kMostPartBytes, handler);
+  is_to_be_computed_ = handler.is_to_be_computed;
   for (const auto& [sheet, id] : handler.sheets) {
     const auto found = parts.find(id);
     if (found != parts.end() && found->second.kind == "worksheet")
@@ -339,7 +367,7 @@ XlsxBook::XlsxBook(const std::filesystem::path& path) : archive_(path) {
 
 std::vector<XlsxMerged> XlsxBook::read(const Sheet& sheet,
                                        const std::function<bool(const XlsxCell&)>& take) const {
-  SheetHandler handler(name(), shown(sheet.name), texts_, shows_a_date_, take);
+  SheetHandler handler(name(), shown(sheet.name), texts_, shows_a_date_, is_to_be_computed_, take);
   read_xml(archive_, sheet.part, kMostSheetBytes, handler);
   return handler.take_merged();
 }

@@ -10,7 +10,9 @@
 
 namespace rigcal::datasets {
 
-/// What a cell holds; a formula counts as its last result.
+/// What a cell holds; a formula counts as its last result. It has none (no_result) where the
+/// program that wrote it computed nothing: no value, an empty one (openpyxl), or 0 in a workbook
+/// that is to be computed when it is opened (`fullCalcOnLoad`; XlsxWriter).
 enum class XlsxKind { number, date, text, truth, error, no_result };
 
 struct XlsxCell {
@@ -59,6 +61,7 @@ class XlsxBook {
   XlsxArchive archive_;
   std::vector<Sheet> sheets_;
   std::vector<std::string> texts_;  ///< that cells share
+  bool is_to_be_computed_ = false;  ///< when it is opened (`fullCalcOnLoad`)
   std::vector<bool> shows_a_date_;  ///< by the number of a cell's style
 };
 

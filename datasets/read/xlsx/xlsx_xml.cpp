@@ -7,6 +7,8 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
+#include <string>
 #include <type_traits>
 
 #include "common/error.hpp"
@@ -27,9 +29,17 @@ std::uint64_t current_line(XML_Parser parser) { return XML_GetCurrentLineNumber(
 std::int64_t current_byte(XML_Parser parser) { return XML_GetCurrentByteIndex(parser); }
 #endif
 
+/// Stands between the address of a namespace and a name, both in what Expat passes on.
+constexpr char kBehindNamespace = '|';
+
 std::string_view without_namespace(std::string_view name) {
-  const std::size_t colon = name.rfind(':');
-  return colon == std::string_view::npos ? name : name.substr(colon + 1);
+  const std::size_t end = name.rfind(kBehindNamespace);
+  return end == std::string_view::npos ? name : name.substr(end + 1);
+}
+
+std::string_view namespace_of(std::string_view name) {
+  const std::size_t end = name.rfind(kBehindNamespace);
+  return end == std::string_view::npos ? std::string_view() : name.substr(0, end);
 }
 
 /// What Expat calls. Exceptions wait here until it has returned.
@@ -38,6 +48,8 @@ struct Listener {
   XmlHandler* handler = nullptr;
   std::exception_ptr error;
   bool has_document_type = false;
+  std::optional<std::string> own_namespace{};  ///< that of the part's outermost element
+  int foreign_depth = 0;  ///< elements that are open from the first of another namespace on
 
   template <typename Call>
   void guarded(Call call) {
@@ -53,14 +65,27 @@ struct Listener {
   static Listener& of(void* user) { return *static_cast<Listener*>(user); }
   static void start(void* user, const char* name, const char** attributes) {
     Listener& self = of(user);
-    self.guarded([&] { self.handler->start(without_namespace(name), XmlAttributes(attributes)); });
+    self.guarded([&] {
+      const std::string_view space = namespace_of(name);
+      if (!self.own_namespace) self.own_namespace = space;
+      const bool is_foreign = self.foreign_depth > 0 || space != *self.own_namespace;
+      if (!is_foreign)
+        return self.handler->start(without_namespace(name), XmlAttributes(attributes));
+      if (++self.foreign_depth == 1) self.handler->foreign();
+    });
   }
   static void end(void* user, const char* name) {
     Listener& self = of(user);
-    self.guarded([&] { self.handler->end(without_namespace(name)); });
+    self.guarded([&] {
+      if (self.foreign_depth > 0)
+        --self.foreign_depth;
+      else
+        self.handler->end(without_namespace(name));
+    });
   }
   static void text(void* user, const char* text, int length) {
     Listener& self = of(user);
+    if (self.foreign_depth > 0) return;
     self.guarded(
         [&] { self.handler->text(std::string_view(text, static_cast<std::size_t>(length))); });
   }
@@ -79,17 +104,20 @@ struct FreeParser {
 }  // namespace
 
 std::optional<std::string_view> XmlAttributes::find(std::string_view name) const {
-  for (const char** pair = pairs_; *pair != nullptr; pair += 2)
-    if (without_namespace(pair[0]) == name) return std::string_view(pair[1]);
-  return std::nullopt;
+  std::optional<std::string_view> qualified;  // "r:id"
+  for (const char** pair = pairs_; *pair != nullptr; pair += 2) {
+    if (pair[0] == name) return std::string_view(pair[1]);
+    if (!qualified && without_namespace(pair[0]) == name) qualified = pair[1];
+  }
+  return qualified;
 }
 
 void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t most_bytes,
               XmlHandler& handler) {
   const std::unique_ptr<std::remove_pointer_t<XML_Parser>, FreeParser> parser(
-      XML_ParserCreate(nullptr));
+      XML_ParserCreateNS(nullptr, kBehindNamespace));
   if (!parser) throw std::bad_alloc();
-  Listener listener{parser.get(), &handler, nullptr, false};
+  Listener listener{parser.get(), &handler, nullptr, false, {}, 0};
   XML_SetUserData(parser.get(), &listener);
   XML_SetElementHandler(parser.get(), Listener::start, Listener::end);
   XML_SetCharacterDataHandler(parser.get(), Listener::text);

@@ -119,7 +119,14 @@ TEST_CASE("load_xlsx: what is no number is named with its cell", "[datasets]") {
       {"<c r=\"@\" t=\"e\"><f>1/0</f><v>#DIV/0!</v></c>", "Log!B3 is the error #DIV/0!"},
       {"<c r=\"@\" t=\"str\"><f>A1</f><v>open</v></c>", "Log!B3 is the text 'open'"},
       {"<c r=\"@\" t=\"b\"><v>1</v></c>", "Log!B3 is a truth value"},
-      {"<c r=\"@\"><f>A1+1</f></c>", "Log!B3 has a formula without a result"},
+      {"<c r=\"@\"><f>A1+1</f></c>", "Log!B3 has a formula that was never computed"},
+      {"<c r=\"@\"><f>A1+1</f><v></v></c>", "Log!B3 has a formula that was never computed"},
+      {"<c r=\"@\" t=\"n\"><f>A1+1</f><v/></c>", "Log!B3 has a formula that was never computed"},
+      {"<c r=\"@\"><v>1</v><v>2</v></c>", "Log!B3 holds two values"},
+      {"<c r=\"@\"><v>1<y/>2</v></c>", "Log!B3 holds an element within its value"},
+      {"<c r=\"@\"><v>1</v><x:v xmlns:x=\"urn:x\">2</x:v></c>",
+       "Log!B3 or a cell behind it is of no"},
+      {"<x:c xmlns:x=\"urn:x\" r=\"@\"><v>1</v></x:c>", "Log!A3 or a cell behind it is of no"},
       {"<c r=\"@\" s=\"1\"><v>45000.5</v></c>",
        "Log!B3 shows a date or a time of day (stored as 45000.5); expected a number"},
       {"<c r=\"@\" s=\"3\"><v>0.001</v></c>", "Log!B3 shows a date or a time of day"},
@@ -159,6 +166,81 @@ TEST_CASE("load_xlsx: rows and headers that do not fit", "[datasets]") {
              Contains("Log row 1: unknown column 'x'") && Contains("known: t, y"));
   CHECK_THAT(refusal_of_sheet({{cell("t"), cell("x"), cell("x")}, row}),
              Contains("Log: columns B1 and C1 are both named 'x'; expected one"));
+}
+
+/// What openpyxl, pandas and XlsxWriter write is a formula that nobody has computed.
+TEST_CASE("load_xlsx: formulas at the end do not end the record", "[datasets]") {
+  const auto rows = [](const std::string& formula) {
+    return XlsxRows{{cell("t"), cell("x")},
+                    {cell(0), cell(1)},
+                    {cell(1), cell(2)},
+                    {raw_cell(formula), raw_cell(formula)},
+                    {raw_cell(formula), raw_cell(formula)}};
+  };
+  for (const char* formula : {"<c r=\"@\"><f>A3+1</f><v></v></c>", "<c r=\"@\"><f>A3+1</f><v/></c>",
+                              "<c r=\"@\"><f>A3+1</f></c>"}) {
+    CAPTURE(formula);
+    CHECK_THAT(refusal_of_sheet(rows(formula)), Contains("Log!A4 has a formula that was never"));
+  }
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "a.xlsx";
+  const auto read_anew = [&](const std::string& formula, const std::string& computing) {
+    auto parts = xlsx_parts({{"Log", sheet_xml({{cell("t"), cell("x")},
+                                                {cell(0), raw_cell(formula)},
+                                                {cell(1), raw_cell(formula)}})}});
+    for (auto& [name, text] : parts)
+      if (name == "xl/workbook.xml") text.insert(text.find("</workbook>"), computing);
+    write_zip(path, parts);
+    return message_when([&] { read_columns(path, {"t", "x"}, "t"); });
+  };
+  const std::string zero = "<c r=\"@\"><f>A2</f><v>0</v></c>";
+  CHECK_THAT(read_anew(zero, "<calcPr fullCalcOnLoad=\"1\"/>"),
+             Contains("Log!B2 has a formula that was never computed"));
+  CHECK(read_anew(zero, "<calcPr/>") == "no error");
+  CHECK(read_anew("<c r=\"@\"><f>A2</f><v>3</v></c>", "<calcPr fullCalcOnLoad=\"1\"/>") ==
+        "no error");
+}
+
+TEST_CASE("load_xlsx: rows and cells out of order are refused", "[datasets]") {
+  const auto refusal = [](const std::string& rows) {
+    const TemporaryFolder folder;
+    std::string sheet = sheet_xml({{cell("t"), cell("x")}});
+    sheet.insert(sheet.find("</sheetData>"), rows);
+    write_zip(folder.path() / "a.xlsx", xlsx_parts({{"Log", sheet}}));
+    return read_refusal(folder.path() / "a.xlsx", {"t", "x"}, "t");
+  };
+  const auto row = [](int number, const std::string& cells) {
+    return "<row r=\"" + std::to_string(number) + "\">" + cells + "</row>";
+  };
+  const std::string second = row(2, "<c r=\"A2\"><v>0</v></c><c r=\"B2\"><v>1</v></c>");
+  CHECK(refusal(second) == "no error");
+  CHECK_THAT(refusal(second + second), Contains("Log!A2 begins a row that is out of order"));
+  CHECK_THAT(refusal(row(3, "") + second), Contains("out of order"));
+  CHECK_THAT(refusal(row(2, "<c r=\"A2\"><v>0</v></c><c r=\"A2\"><v>1</v></c>")),
+             Contains("out of order"));
+  CHECK_THAT(refusal(row(2, "<c r=\"B2\"><v>0</v></c><c r=\"A2\"><v>1</v></c>")),
+             Contains("out of order"));
+  CHECK_THAT(refusal(row(2, "<c r=\"A3\"><v>0</v></c><c r=\"B3\"><v>1</v></c>")),
+             Contains("out of order"));
+  CHECK_THAT(refusal(second + "<c><v>1</v></c>"), Contains("out of order"));
+  CHECK_THAT(refusal(second + "<x:row xmlns:x=\"urn:x\"/>"), Contains("of no known kind"));
+}
+
+TEST_CASE("load_xlsx: columns beyond Z", "[datasets]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "wide.xlsx";
+  XlsxRows rows(3);
+  for (int column = 0; column < 60; ++column) {
+    rows[0].push_back(cell("c" + std::to_string(column)));
+    rows[1].push_back(cell(column));
+    rows[2].push_back(cell(100 + column));
+  }
+  write_xlsx(path, {{"Log", rows}});
+  CHECK(read_columns(path, {"c0", "c25", "c26", "c51", "c52", "c59"}) ==
+        Table{{0, 100}, {25, 125}, {26, 126}, {51, 151}, {52, 152}, {59, 159}});
+  rows[2][26] = cell("open");
+  write_xlsx(path, {{"Log", rows}});
+  CHECK_THAT(read_refusal(path, {"c26"}), Contains("Log!AA3 is the text 'open'"));
 }
 
 TEST_CASE("load_xlsx: sheets by their names", "[datasets]") {
@@ -220,4 +302,20 @@ TEST_CASE("load_xlsx: what is no workbook", "[datasets]") {
   CHECK(record_reader("x.XLSX").name == "Excel");
   write_xlsx(folder.path() / "data.bin", {{"A", {{cell("t")}, {cell(1)}}}});
   CHECK(record_reader(folder.path() / "data.bin").name == "Excel");
+}
+
+TEST_CASE("load_xlsx: how the columns are labelled", "[datasets]") {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "run.xlsx";
+  write_xlsx(path, {{"Log",
+                     {{cell("t [s]"), cell("p"), cell("x")},
+                      {cell("-"), cell("psi"), cell("-")},
+                      {cell(0), cell(1), cell(2)}}}});
+  const auto table = record_reader(path).load(path, {{"t", "p", "x"}, "t"});
+  REQUIRE(table.labels.size() == 3);
+  CHECK(table.labels[0].name == "t [s]");
+  CHECK(table.labels[0].unit.empty());
+  CHECK(table.labels[1].unit == "psi");
+  CHECK(table.labels[1].place == "Log!B2");
+  CHECK(table.labels[2].unit.empty());
 }
