@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <map>
 #include <optional>
@@ -38,12 +39,20 @@ const std::vector<ChannelInfo>& channel_table();
 const ChannelInfo& info(Channel channel);
 std::optional<Channel> channel_from_key(std::string_view key);
 
+/// A step of time so long that samples are missing there.
+struct TimeHole {
+  std::size_t row = 0;  ///< the sample behind it, from 1
+  double from_s = 0.0;
+  double to_s = 0.0;
+};
+
 /// One recorded run as it came from a file, in SI.
 struct Repeat {
   std::string source;  ///< file, and the column set where one file holds several repeats
   std::vector<double> time_s;
   std::map<Channel, std::vector<double>> values;  ///< each of the shape of time_s
   std::vector<std::string> warnings{};            ///< in words: what its files look like
+  std::vector<TimeHole> holes{};                  ///< in the times of its file, increasing
 };
 
 /// Mean over the repeats of one channel.
@@ -90,7 +99,9 @@ struct Record {
   std::vector<TimeWindow> windows;
   std::vector<std::string> notes;     ///< in words: what was done to it, such as decimation
   std::vector<std::string> warnings;  ///< in words: outliers, gaps, spikes, sensors
-  std::vector<FileState> files;       ///< every file read for it, as it stood before
+  /// In words: where samples are missing in what counts, so that nothing can be compared with it.
+  std::vector<std::string> holes;
+  std::vector<FileState> files;  ///< every file read for it, as it stood before
 };
 
 }  // namespace rigcal::datasets

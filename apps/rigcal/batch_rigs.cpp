@@ -28,8 +28,11 @@ std::optional<std::string> hash_of(const fs::path& file) {
 
 /// Relative record paths start at the campaign file's folder wherever the command runs.
 std::vector<std::string> arguments_for(const char* verb, const BatchRig& rig, const RigTask& task) {
-  return {verb,        rig.campaign.string(),           "--out",  (task.out / rig.folder).string(),
-          "--threads", fmt::format("{}", task.threads), "--quiet"};
+  std::vector<std::string> arguments{
+      verb,        rig.campaign.string(),           "--out",  (task.out / rig.folder).string(),
+      "--threads", fmt::format("{}", task.threads), "--quiet"};
+  if (!task.root.empty()) arguments.insert(arguments.end(), {"--root", task.root.string()});
+  return arguments;
 }
 
 ChildEnd fit_rig(const BatchRig& rig, const RigTask& task, const std::atomic<bool>& cancel) {

@@ -60,6 +60,9 @@ void add_campaign_options(CLI::App& verb, CampaignOptions& options) {
   verb.add_option("--data", options.data,
                   "Where relative record paths start (default: the campaign file's folder)")
       ->check(not_empty());
+  verb.add_option("--root", options.root,
+                  "Read no campaign and no recording outside this folder, wherever links lead")
+      ->check(not_empty());
   verb.add_option("--out", options.out, "Folder of the results")
       ->check(not_empty())
       ->capture_default_str();

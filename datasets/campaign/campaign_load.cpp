@@ -7,6 +7,7 @@
 #include "datasets/campaign/campaign_sections.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "datasets/campaign/toml/toml_reader.hpp"
+#include "datasets/read/reading_root.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -119,7 +120,10 @@ Alignment read_alignment(const TomlNode& node) {
 
 }  // namespace
 
-Campaign load_campaign(const std::filesystem::path& file, const std::filesystem::path& data_dir) {
+Campaign load_campaign(const std::filesystem::path& file, const std::filesystem::path& data_dir,
+                       const std::filesystem::path& reading_root) {
+  require_within(reading_root, file);
+  if (!data_dir.empty()) require_within(reading_root, data_dir);
   const FileState file_state = state_of_file(file);
   const toml::table parsed = parse_toml_file(file);
   const TomlNode root(parsed, file.string(), "");
@@ -131,6 +135,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   campaign.file = file;
   campaign.file_state = file_state;
   campaign.data_dir = data_dir.empty() ? file.parent_path() : data_dir;
+  campaign.root = reading_root;
   campaign.name = file.stem().string();
   if (const auto name = root.find("name")) campaign.name = name->name();
   read_rig(root.require("rig", "a table [rig] with model and parameters"), campaign);

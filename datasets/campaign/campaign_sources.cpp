@@ -5,11 +5,14 @@
 #include <system_error>
 
 #include "datasets/campaign/campaign.hpp"
+#include "datasets/read/reading_root.hpp"
 
 namespace rigcal::datasets {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFitting = 100'000;
 
 bool is_pattern(std::string_view text) {
   return text.find_first_of("*?") != std::string_view::npos;
@@ -57,7 +60,9 @@ struct Expansion {
   fs::path searched;            ///< folder in which the first pattern was looked for
 };
 
-Expansion expand(const fs::path& base, const std::string& pattern) {
+/// @param root  nothing outside of it is looked at; empty: no limit
+Expansion expand(const fs::path& base, const std::string& pattern, const fs::path& root,
+                 const Location& where) {
   Expansion result;
   std::vector<fs::path> reached{base};
   bool searched = false;
@@ -71,12 +76,18 @@ Expansion expand(const fs::path& base, const std::string& pattern) {
       }
       if (!searched) result.searched = folder;
       searched = true;
+      require_within(root, folder);
       const auto found = entries_that_fit(folder, text);
       next.insert(next.end(), found.begin(), found.end());
+      if (next.size() > kMostFitting)
+        throw InputError(where, fmt::format("more than {} files and folders fit '{}'; expected the "
+                                            "repeats of one condition",
+                                            kMostFitting, pattern));
     }
     reached = std::move(next);
   }
   for (const fs::path& path : reached) {
+    require_within(root, path);
     std::error_code error;
     if (fs::is_regular_file(path, error)) result.files.push_back(path);
   }
@@ -117,7 +128,7 @@ std::string shown(const fs::path& path) {
 std::vector<RepeatSource> sources_of(const Campaign& campaign, const Condition& condition,
                                      const RepeatPattern& pattern, const std::string& number) {
   const std::string file = filled_in(pattern.file, number);
-  const Expansion expansion = expand(campaign.data_dir, file);
+  const Expansion expansion = expand(campaign.data_dir, file, campaign.root, condition.where);
   if (expansion.files.empty()) {
     throw InputError(
         condition.where,

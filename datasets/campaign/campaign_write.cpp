@@ -119,7 +119,7 @@ void write_nuisance_start(toml::table& root, const model::ParameterSpec& spec,
 
 /// What --set and --free changed since the file was read.
 void write_changed_values(toml::table& root, const Campaign& campaign) {
-  const Campaign original = load_campaign(campaign.file, campaign.data_dir);
+  const Campaign original = load_campaign(campaign.file, campaign.data_dir, campaign.root);
   for (const ParameterSetting& setting : campaign.parameters) {
     if (setting.fit) continue;
     const ParameterSetting* before = original.setting(setting.index);

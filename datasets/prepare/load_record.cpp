@@ -9,11 +9,16 @@
 
 #include "common/parallel.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
+#include "datasets/checks/drive_sampling.hpp"
 #include "datasets/checks/sensor_warnings.hpp"
 #include "datasets/checks/short_records.hpp"
+#include "datasets/checks/travel.hpp"
 #include "datasets/prepare/average.hpp"
 #include "datasets/prepare/condition_repeats.hpp"
 #include "datasets/prepare/moving_windows.hpp"
+#include "datasets/prepare/stated_units.hpp"
+#include "datasets/prepare/time_holes.hpp"
+#include "datasets/read/reading_root.hpp"
 #include "datasets/read/record_reader.hpp"
 
 namespace rigcal::datasets {
@@ -34,15 +39,33 @@ AverageOptions options_of(const Campaign& campaign, const Condition& condition) 
   throw InputError(condition.where, fmt::format("condition \"{}\": {}", condition.id, message));
 }
 
+/// A campaign may name any file. What stands in one that is no recording is shown of files only
+/// that whoever runs it points at.
+bool may_be_shown(const Campaign& campaign, const std::filesystem::path& path) {
+  return lies_within(campaign.data_dir, path) || lies_within(campaign.file.parent_path(), path) ||
+         (!campaign.root.empty() && lies_within(campaign.root, path));
+}
+
 /// Columns of a file of any format, the time first; what is doubtful about the file goes to the
 /// repeat.
-std::vector<std::vector<double>> read_columns(const Campaign& campaign,
-                                              const std::filesystem::path& path,
-                                              std::vector<std::string> names, Repeat& repeat) {
-  RecordTable table =
-      record_reader(path).load(path, {std::move(names), campaign.time_column, campaign.separator});
-  if (!table.warning.empty()) repeat.warnings.push_back(table.warning);
-  return std::move(table.columns);
+RecordTable read_columns(const Campaign& campaign, const std::filesystem::path& path,
+                         const std::vector<std::string>& names, Repeat& repeat) {
+  try {
+    RecordTable table =
+        record_reader(path).load(path, {names, campaign.time_column, campaign.separator});
+    if (!table.warning.empty()) repeat.warnings.push_back(table.warning);
+    table.labels.resize(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (table.labels[i].name.empty()) table.labels[i].name = names[i];
+    return table;
+  } catch (const InputError& error) {
+    if (may_be_shown(campaign, path)) throw;
+    throw InputError(
+        error.where(),
+        "is no recording that this campaign fits. What stands in the file is not shown, "
+        "since it lies neither in the campaign's folder nor in that of --data; expected "
+        "a recording (`rigcal init` and its name tell more)");
+  }
 }
 
 /// Sums of squares stay finite. A damaged number may be as large as a double can be.
@@ -127,7 +150,12 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
     if (const auto minus = minus_of(channel, column); !minus.empty()) names.push_back(minus);
   Repeat repeat;
   repeat.source = source.label;
-  auto columns = read_columns(campaign, source.path, std::move(names), repeat);
+  RecordTable table = read_columns(campaign, source.path, names, repeat);
+  std::vector<std::vector<double>>& columns = table.columns;
+  const auto require_unit = [&](std::size_t index, const StatedUnit& stated,
+                                const std::string& key) {
+    require_stated_unit(stated, key, source.path, table.labels[index]);
+  };
 
   const auto converted = [&](std::size_t column, const std::string& name,
                              const UnitConversion& to_si) {
@@ -136,16 +164,22 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
     require_measurable(source, name, values);
     return values;
   };
+  require_unit(0, campaign.stated_time, "time");
   repeat.time_s = converted(0, campaign.time_column, campaign.time_to_s);
+  if (!campaign.time_in_counts) repeat.holes = time_holes(repeat.time_s);
   std::size_t column = 1;
   std::size_t minus = 1 + source.columns.size();
   for (const auto& [channel, name] : source.columns) {
+    const ChannelSetting& setting = campaign.channels.at(channel);
+    const std::string key(info(channel).key);
+    require_unit(column, setting.stated, key);
     if (!minus_of(channel, name).empty()) {
+      require_unit(minus, setting.stated, key);
       const std::vector<double>& taken_off = columns[minus++];
       std::transform(columns[column].begin(), columns[column].end(), taken_off.begin(),
                      columns[column].begin(), std::minus<>());
     }
-    repeat.values[channel] = converted(column++, name, campaign.channels.at(channel).to_si);
+    repeat.values[channel] = converted(column++, name, setting.to_si);
   }
   return repeat;
 }
@@ -175,6 +209,11 @@ Record average_of(const Campaign& campaign, const Condition& condition,
     record.warnings.insert(record.warnings.end(), seen.begin(), seen.end());
     record.windows = condition.windows;
     if (condition.moving_windows) find_moving_windows(campaign, condition, record);
+    record.holes = holes_in_what_counts(campaign, condition, repeats, record.windows);
+    record.warnings.insert(record.warnings.end(), record.holes.begin(), record.holes.end());
+    for (const std::string& warning :
+         {drive_sampling_warning(condition, record), travel_warning(campaign, condition, record)})
+      if (!warning.empty()) record.warnings.push_back(warning);
     const auto stuck = sensor_warnings(faults, record.windows);
     record.warnings.insert(record.warnings.end(), stuck.begin(), stuck.end());
     return record;
@@ -200,6 +239,7 @@ std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use
   std::vector<Record> records(wanted.size());
   parallel_for(wanted.size(), threads, [&](std::size_t i) {
     records[i] = load_record(campaign, *wanted[i], keep_deviations);
+    require_no_holes(campaign, records[i]);
   });
   std::vector<Record*> all;
   for (Record& record : records) all.push_back(&record);

@@ -6,6 +6,7 @@
 #include "datasets/prepare/alignment.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/prepare/resample.hpp"
+#include "datasets/prepare/time_holes.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -69,6 +70,7 @@ RepeatRecords repeat_records(const Campaign& campaign, const Condition& conditio
 RepeatRecords load_repeats(const Campaign& campaign, const Condition& condition) {
   std::vector<FileState> files = files_of(campaign, condition);
   RepeatRecords result = repeat_records(campaign, condition, load_all_repeats(campaign, condition));
+  require_no_holes(campaign, result.average);
   result.average.files = std::move(files);
   return result;
 }

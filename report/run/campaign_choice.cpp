@@ -6,7 +6,7 @@
 namespace rigcal::report {
 
 datasets::Campaign load(const CampaignChoice& choice) {
-  datasets::Campaign campaign = datasets::load_campaign(choice.campaign, choice.data);
+  datasets::Campaign campaign = datasets::load_campaign(choice.campaign, choice.data, choice.root);
   for (const std::string& assignment : choice.set) datasets::set_value(campaign, assignment);
   if (!choice.free.empty()) datasets::set_free(campaign, choice.free);
   if (!choice.set.empty() || !choice.free.empty()) datasets::check_values(campaign);

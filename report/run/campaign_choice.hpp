@@ -13,6 +13,7 @@ namespace rigcal::report {
 struct CampaignChoice {
   std::filesystem::path campaign;
   std::filesystem::path data;     ///< where relative record paths start; empty: the file's folder
+  std::filesystem::path root;     ///< outside of this folder nothing is read; empty: no limit
   std::vector<std::string> set;   ///< name="value unit"
   std::vector<std::string> free;  ///< exactly these are fitted; empty: the campaign's
 };

@@ -8,6 +8,7 @@
 #include "common/error.hpp"
 #include "common/parallel.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "datasets/prepare/time_holes.hpp"
 #include "report/store/csv.hpp"
 
 namespace rigcal::report {
@@ -26,6 +27,7 @@ SimulationTask simulation_task(const Campaign& campaign, const Condition& condit
                          condition.duration_s && condition.sample_rate_hz;
   if (!generated && condition.has_record()) {
     task.record = datasets::load_record(campaign, condition);
+    datasets::require_no_holes(campaign, *task.record);
     const calib::InitialPlan plan =
         calib::plan_initial_state(campaign, condition, *task.record, task.values);
     task.rig.initial = plan.state;

@@ -188,3 +188,42 @@ TEST_CASE("recordings: a text that a spreadsheet would run stays text", "[apps]"
   const std::string scores = folder.read("v/scorecard.csv");
   CHECK_THAT(scores, Contains(",'" + formula) && !Contains("," + formula));
 }
+
+TEST_CASE("recordings: samples that are missing in one repeat", "[apps]") {
+  const Twin twin;
+  // All repeats, since repeats of different times are refused already.
+  for (const int repeat : {1, 2, 3}) {
+    Rows rows = rows_of(twin.read("sine", repeat));
+    rows.erase(rows.begin() + 150, rows.begin() + 250);
+    twin.write("sine", repeat, text_of_rows(rows));
+  }
+  const std::string words = "samples are missing before sample 149";
+  const Outcome check = twin.run("check");
+  CHECK(check.exit_code == 0);
+  CHECK_THAT(check.out, Contains("warning: ") && Contains(words));
+  CHECK(twin.run("average", {"--out", "a"}).exit_code == 0);
+  for (const char* verb : {"fit", "validate", "plan"}) {
+    CAPTURE(verb);
+    const Outcome outcome = twin.run(verb, {"--out", verb});
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains("condition \"sine\": ") && Contains("sine_r1.csv") &&
+                                Contains(words) && Contains("two windows"));
+  }
+  const std::string campaign = twin.folder.read("twin/campaign.toml");
+  twin.folder.write(
+      "twin/campaign.toml",
+      replaced(campaign, "id = \"sine\"",
+               "id = \"sine\"\nwindow = [[\"0 s\", \"0.73 s\"], [\"1.25 s\", \"2 s\"]]"));
+  CHECK_THAT(twin.run("check").out, !Contains(words));
+  CHECK(twin.run("fit", {"--out", "f"}).exit_code == 0);
+}
+
+TEST_CASE("recordings: a time in ms that is read as s, and a position in other units", "[apps]") {
+  const Twin twin;
+  const int time = column_of(twin, "t_s");
+  twin.change("sine", time, [](std::size_t, double t) { return 1e3 * t; });
+  CHECK_THAT(twin.run("check").out, Contains("is its time in ms?"));
+  const Twin other;
+  other.change("sine", column_of(other, "x_mm"), [](std::size_t, double x) { return 1e3 * x; });
+  CHECK_THAT(other.run("check").out, Contains("m of travel") && Contains("is the unit"));
+}

@@ -29,6 +29,7 @@ constexpr int kMostJobs = 1024;
 struct BatchRequest {
   fs::path folder;
   fs::path out = "rigcal-out";
+  fs::path root;
   std::vector<fs::path> earlier;
   FitChoices choices;
   int jobs = 1;
@@ -138,6 +139,7 @@ class EndedRigs {
 RigTask task_of(const BatchRequest& options) {
   RigTask task;
   task.out = options.out;
+  task.root = options.root;
   task.fit_arguments = arguments_of(options.choices);
   task.threads = std::max(1, options.threads / options.jobs);
   task.resume = options.resume;
@@ -203,6 +205,9 @@ Run add_batch(CLI::App& verb) {
   verb.add_option("--out", options->out, "Folder of the results: one folder for each rig")
       ->check(not_empty())
       ->capture_default_str();
+  verb.add_option("--root", options->root,
+                  "Read no campaign and no recording outside this folder, wherever links lead")
+      ->check(not_empty());
   verb.add_option("--earlier", options->earlier,
                   "--out of an earlier batch, for the trends; repeatable")
       ->allow_extra_args(false)

@@ -8,6 +8,7 @@
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "datasets/prepare/time_holes.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
@@ -33,8 +34,9 @@ ExitCode run_plan(const PlanRequest& options, const Invocation& invocation) {
   for (const datasets::Condition& condition : campaign.conditions) {
     const bool taken =
         condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
-    if (taken && condition.has_record())
-      records.push_back(datasets::load_record(campaign, condition));
+    if (!taken || !condition.has_record()) continue;
+    records.push_back(datasets::load_record(campaign, condition));
+    datasets::require_no_holes(campaign, records.back());
   }
   const report::HeldFolder held(options.common.out);
   const report::Provenance provenance{invocation.command, 1, recorded(options.common),

@@ -1,0 +1,70 @@
+#include "datasets/checks/travel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "datasets/campaign/campaign_sections.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr double kBeyondStroke = 1.1;  // sensors are off by some per cent
+constexpr double kBeyondReference = 10.0;
+constexpr double kOfReference = 0.002;
+constexpr double kLongestCylinderM = 20.0;
+
+double range(const std::vector<double>& x) {
+  const auto [low, high] = std::minmax_element(x.begin(), x.end());
+  return *high - *low;
+}
+
+/// Known, not to be found.
+std::optional<double> stroke_m(const Campaign& campaign, const Condition& condition) {
+  constexpr const char* kStroke = "stroke";
+  const int index = model::parameter_index(campaign.rig.plant, kStroke);
+  const ParameterSetting* setting = index < 0 ? nullptr : campaign.setting(index);
+  if (setting == nullptr || setting->fit) return std::nullopt;
+  return values_in(campaign, condition)[kStroke];
+}
+
+/// How far the reference of a closed loop goes.
+std::optional<double> reference_range_m(const Campaign& campaign, const Condition& condition,
+                                        const Record& record) {
+  if (drive_channel(campaign) != Channel::reference) return std::nullopt;
+  if (condition.waveform != Waveform::recorded && condition.amplitude)
+    return 2.0 * *condition.amplitude;
+  const auto found = record.channels.find(Channel::reference);
+  if (found == record.channels.end()) return std::nullopt;
+  return range(found->second.mean);
+}
+
+}  // namespace
+
+std::string travel_warning(const Campaign& campaign, const Condition& condition,
+                           const Record& record) {
+  const auto position = record.channels.find(Channel::position);
+  if (position == record.channels.end() || campaign.channels.at(Channel::position).in_counts)
+    return {};
+  const double travel = range(position->second.mean);
+  constexpr const char* kUnit = "is the unit of its column right?";
+  if (const auto stroke = stroke_m(campaign, condition)) {
+    if (travel <= kBeyondStroke * *stroke) return {};
+    return fmt::format("position: {:.4g} m of travel, beyond the stroke of {:.4g} m: {}", travel,
+                       *stroke, kUnit);
+  }
+  const auto reference = reference_range_m(campaign, condition, record);
+  if (reference && *reference > 0.0) {
+    const double share = travel / *reference;
+    if (share <= kBeyondReference && share >= kOfReference) return {};
+    return fmt::format("position: {:.4g} m of travel, where the reference covers {:.4g} m: {}",
+                       travel, *reference, kUnit);
+  }
+  if (travel <= kLongestCylinderM) return {};
+  return fmt::format("position: {:.4g} m of travel: {}", travel, kUnit);
+}
+
+}  // namespace rigcal::datasets

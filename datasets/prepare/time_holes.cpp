@@ -1,0 +1,72 @@
+#include "datasets/prepare/time_holes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/error.hpp"
+#include "datasets/campaign/campaign_sections.hpp"
+#include "datasets/prepare/median.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr double kLongestStep = 3.0;  // in median steps
+
+bool counts(const TimeHole& hole, const std::vector<TimeWindow>& windows, bool is_felt_later) {
+  return windows.empty() || std::any_of(windows.begin(), windows.end(), [&](const TimeWindow& own) {
+           return hole.from_s < own.end_s && (is_felt_later || hole.to_s > own.start_s);
+         });
+}
+
+}  // namespace
+
+std::vector<TimeHole> time_holes(const std::vector<double>& time_s) {
+  if (time_s.size() < 3) return {};
+  std::vector<double> steps;
+  steps.reserve(time_s.size() - 1);
+  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
+  const double longest = kLongestStep * median(steps);
+  std::vector<TimeHole> holes;
+  for (std::size_t i = 1; i < time_s.size(); ++i)
+    if (time_s[i] - time_s[i - 1] > longest) holes.push_back({i + 1, time_s[i - 1], time_s[i]});
+  return holes;
+}
+
+std::vector<std::string> holes_in_what_counts(const Campaign& campaign, const Condition& condition,
+                                              const std::vector<Repeat>& repeats,
+                                              const std::vector<TimeWindow>& windows) {
+  const bool is_felt_later =
+      condition.waveform == Waveform::recorded && drive_channel(campaign) == Channel::command;
+  std::vector<std::string> texts;
+  for (const Repeat& repeat : repeats) {
+    std::vector<TimeHole> holes = repeat.holes;
+    std::erase_if(holes,
+                  [&](const TimeHole& hole) { return !counts(hole, windows, is_felt_later); });
+    if (holes.empty()) continue;
+    const TimeHole& first = holes.front();
+    const std::string others = holes.size() == 1
+                                   ? std::string()
+                                   : fmt::format(", and {} more such step{}", holes.size() - 1,
+                                                 holes.size() == 2 ? "" : "s");
+    texts.push_back(fmt::format(
+        "{}: samples are missing before sample {}: nothing stands between {:.6g} s and {:.6g} s{}; "
+        "{}",
+        repeat.source, first.row, first.from_s, first.to_s, others,
+        is_felt_later
+            ? "what the command did there moves the piston for good: end the window before "
+              "it, or save what follows as a recording of its own"
+            : "leave the hole out with two windows, or save both sides as recordings of "
+              "their own"));
+  }
+  return texts;
+}
+
+void require_no_holes(const Campaign& campaign, const Record& record) {
+  if (record.holes.empty()) return;
+  const Condition* condition = campaign.find(record.condition);
+  throw InputError(condition == nullptr ? Location{campaign.file.string()} : condition->where,
+                   fmt::format("condition \"{}\": {}", record.condition, record.holes.front()));
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,83 @@
+#include <catch2/catch.hpp>
+#include <filesystem>
+#include <string>
+
+#include "tests/apps/cli_fixture.hpp"
+
+using namespace rigcal::test;
+using Catch::Contains;
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr const char* kSecret = "swordfish:1:2";
+
+/// A campaign in `lab/rig` that reads a file of another folder.
+void write_in_lab(const CommandFolder& folder, const std::string& repeats) {
+  write_campaign(folder, {{"records/sine_*.csv", repeats}});
+  fs::create_directories(folder.work() / "lab/rig");
+  fs::rename(folder.work() / "campaign.toml", folder.work() / "lab/rig/campaign.toml");
+  fs::rename(folder.work() / "records", folder.work() / "lab/rig/records");
+  folder.write("secret.txt", std::string(kSecret) + "\n");
+}
+
+}  // namespace
+
+TEST_CASE("--root: what a campaign names outside of it is not read", "[apps]") {
+  const CommandFolder folder;
+  const auto check = [&](const std::string& repeats, const std::string& root) {
+    write_in_lab(folder, repeats);
+    const Outcome outcome =
+        folder.run({"check", "lab/rig/campaign.toml", "--root", root, "--quiet"});
+    fs::remove_all(folder.work() / "lab");
+    CHECK_THAT(outcome.err, !Contains("swordfish"));
+    return outcome;
+  };
+  CHECK(check("records/sine_*.csv", "lab").exit_code == 0);
+  CHECK(check("records/sine_*.csv", "lab/rig/../rig").exit_code == 0);
+  for (const std::string& repeats :
+       {std::string("../../secret.txt"), (folder.work() / "secret.txt").string(),
+        std::string("../../*.txt"), std::string("/*/passwd"), std::string("../../none.csv")}) {
+    CAPTURE(repeats);
+    const Outcome outcome = check(repeats, "lab");
+    CHECK(outcome.exit_code == 2);
+    CHECK_THAT(outcome.err, Contains("leads out of 'lab', the folder of --root"));
+  }
+  CHECK_THAT(check("records/sine_*.csv", "lab/rig/records").err,
+             Contains("campaign.toml: leads out"));
+  CHECK_THAT(check("records/sine_*.csv", "none").err, Contains("none: is no folder"));
+}
+
+TEST_CASE("--root: links are followed before it is decided", "[apps]") {
+  const CommandFolder folder;
+  write_in_lab(folder, "records/sine_*.csv");
+  fs::create_symlink("../../../secret.txt", folder.work() / "lab/rig/records/sine_9.csv");
+  const Outcome outcome = folder.run({"check", "lab/rig/campaign.toml", "--root", "lab"});
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("sine_9.csv: leads out of 'lab'") && !Contains("swordfish"));
+  const Outcome data =
+      folder.run({"check", "lab/rig/campaign.toml", "--root", "lab", "--data", "."});
+  CHECK(data.exit_code == 2);
+  CHECK_THAT(data.err, Contains("leads out of 'lab'"));
+}
+
+TEST_CASE("--root: batch passes it on to every rig", "[apps]") {
+  const CommandFolder folder;
+  write_in_lab(folder, "../../secret.txt");
+  const Outcome outcome = folder.run({"batch", "lab", "--root", "lab", "--out", "out"});
+  CHECK_THAT(outcome.out + outcome.err, Contains("leads out of"));
+}
+
+TEST_CASE("records: what stands in files elsewhere is not shown", "[apps]") {
+  const CommandFolder folder;
+  write_in_lab(folder, "../../secret.txt");
+  const Outcome outcome = folder.run({"check", "lab/rig/campaign.toml"});
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err,
+             Contains("secret.txt") && Contains("is not shown") && !Contains("swordfish"));
+  // Whoever runs the command may point at the folder.
+  const Outcome pointed = folder.run({"check", "lab/rig/campaign.toml", "--data", "lab/rig"});
+  CHECK_THAT(pointed.err, !Contains("swordfish"));
+  write_campaign(folder, {{"records/sine_*.csv", "secret.txt"}});
+  CHECK_THAT(folder.run({"check", "campaign.toml"}).err, Contains("swordfish"));
+}
