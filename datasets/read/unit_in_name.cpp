@@ -141,8 +141,9 @@ std::size_t begin_of_last(std::string_view path) {
 
 /// Behind others: a last "pa" is no chamber.
 std::optional<UnitInName> behind_a_word(std::string_view name) {
-  auto parts = parts_of(name);
-  std::erase_if(parts, [first = begin_of_last(name)](const Part& p) { return p.begin < first; });
+  const std::size_t first = begin_of_last(name);
+  std::vector<Part> parts = parts_of(name.substr(first));
+  for (Part& part : parts) part = {part.begin + first, part.end + first};
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const std::string_view text = name.substr(parts[i].begin, parts[i].end - parts[i].begin);
     const std::string_view before =

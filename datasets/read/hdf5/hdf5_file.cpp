@@ -212,6 +212,7 @@ Hdf5Id type_in_memory(const Hdf5Series& series, hid_t native, std::size_t bytes)
 struct Packing {
   double factor = 1.0;
   double offset = 0.0;
+  bool is_given = false;        ///< else numbers stay as they are, to the last bit
   std::vector<double> missing;  ///< numbers that stand for none
 };
 
@@ -356,13 +357,14 @@ void Hdf5File::require_readable(hid_t dataset, const std::string& column) const 
 void Hdf5File::require_written(hid_t dataset, const Hdf5Series& series, const Hdf5Line& line,
                                const std::string& column) const {
   const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
+  const Hdf5Id space(H5Dget_space(dataset), H5Sclose);
   const std::size_t rank = dims_of_dataset(series);
   if (!plan || rank == 0 || H5Pget_layout(plan.get()) != H5D_CHUNKED) return;
   std::vector<hsize_t> chunk(rank);
   hsize_t written = 0;
   if (H5Pget_chunk(plan.get(), static_cast<int>(rank), chunk.data()) != static_cast<int>(rank) ||
       std::count(chunk.begin(), chunk.end(), 0U) > 0 ||
-      H5Dget_num_chunks(dataset, H5S_ALL, &written) < 0)
+      H5Dget_num_chunks(dataset, space.get(), &written) < 0)
     fail(
         fmt::format("is damaged at '{}' (HDF5: {}); copy or save it again", column, hdf5_reason()));
   hsize_t wanted = 1;
@@ -400,6 +402,7 @@ std::vector<double> Hdf5File::unpacked(hid_t dataset, std::vector<double> values
                       "its values are unpacked",
                       attribute, column));
     number = found->front();
+    packing.is_given = true;
   };
   number_of("scale_factor", packing.factor);
   number_of("add_offset", packing.offset);
@@ -414,7 +417,7 @@ std::vector<double> Hdf5File::unpacked(hid_t dataset, std::vector<double> values
           fmt::format("row {} of '{}' is {}, which stands for a missing value there; expected a "
                       "number in each row",
                       i + 1, column, values[i]));
-    values[i] = packing.factor * values[i] + packing.offset;
+    if (packing.is_given) values[i] = packing.factor * values[i] + packing.offset;
   }
   return values;
 }

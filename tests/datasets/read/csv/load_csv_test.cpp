@@ -119,7 +119,7 @@ TEST_CASE("load_csv: decimal commas where the separator allows them", "[datasets
   const Columns expected{{0, 0.5}, {-1.5, 2e-3}};
   CHECK(load("t;x\n0,0;-1,5\n0,5;2,0e-3\n").columns == expected);
   CHECK(load("t\tx\n0,0\t-1,5\n0,5\t2,0e-3\n").columns == expected);
-  CHECK(load("t;x\n0.0;-1,5\n0,5;2.0e-3\n").columns == expected);
+  CHECK(load("t;x\n0.0;-1.5\n0.5;2.0e-3\n").columns == expected);
 }
 
 TEST_CASE("load_csv: units behind names", "[datasets]") {
