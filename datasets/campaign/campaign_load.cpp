@@ -6,8 +6,8 @@
 #include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
+#include "datasets/campaign/reading_root.hpp"
 #include "datasets/campaign/toml/toml_reader.hpp"
-#include "datasets/read/reading_root.hpp"
 
 namespace rigcal::datasets {
 namespace {

@@ -5,7 +5,7 @@
 #include <system_error>
 
 #include "datasets/campaign/campaign.hpp"
-#include "datasets/read/reading_root.hpp"
+#include "datasets/campaign/reading_root.hpp"
 
 namespace rigcal::datasets {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "common/parallel.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
+#include "datasets/campaign/reading_root.hpp"
 #include "datasets/checks/drive_sampling.hpp"
 #include "datasets/checks/sensor_warnings.hpp"
 #include "datasets/checks/short_records.hpp"
@@ -18,7 +19,6 @@
 #include "datasets/prepare/moving_windows.hpp"
 #include "datasets/prepare/stated_units.hpp"
 #include "datasets/prepare/time_holes.hpp"
-#include "datasets/read/reading_root.hpp"
 #include "datasets/read/record_reader.hpp"
 
 namespace rigcal::datasets {

@@ -1,4 +1,4 @@
-#include "datasets/read/reading_root.hpp"
+#include "datasets/campaign/reading_root.hpp"
 
 #include <fmt/format.h>
 
