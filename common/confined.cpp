@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -43,9 +44,12 @@ std::size_t address_bytes() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-void limit(decltype(RLIMIT_AS) resource, std::size_t most) {
-  const rlimit both{most, most};
-  ::setrlimit(resource, &both);  // fails where a lower limit is in force, which is as good
+/// A lower limit that is in force stays.
+void limit(decltype(RLIMIT_AS) resource, rlim_t soft, rlim_t hard) {
+  rlimit now{};
+  ::getrlimit(resource, &now);
+  const rlimit least{std::min(soft, now.rlim_cur), std::min(hard, now.rlim_max)};
+  ::setrlimit(resource, &least);
 }
 
 bool write_all(int descriptor, const char* bytes, std::size_t count) {
@@ -75,11 +79,20 @@ bool write_all(int descriptor, const char* bytes, std::size_t count) {
     ::dup2(nothing, STDOUT_FILENO);
     ::dup2(nothing, STDERR_FILENO);
   }
-  limit(RLIMIT_CORE, 0);
-  limit(RLIMIT_CPU, static_cast<std::size_t>(confinement.cpu_seconds));
-  if (kLimitsMemory) limit(RLIMIT_AS, addresses + confinement.bytes);
+  limit(RLIMIT_CORE, 0, 0);
+  const auto seconds = static_cast<rlim_t>(confinement.cpu_seconds);
+  limit(RLIMIT_CPU, seconds, seconds + 2);  // SIGXCPU first: SIGKILL is that of want of memory
+  const rlim_t bytes = addresses + confinement.bytes;
+  if (kLimitsMemory) limit(RLIMIT_AS, bytes, bytes);
   const std::string result = work();
   ::_exit(write_all(out, result.data(), result.size()) ? 0 : 1);
+}
+
+std::string no_process(int error) {
+  return fmt::format(
+      "no process can be made in which to read a file: {}; try again later, or with "
+      "fewer threads",
+      std::strerror(error));
 }
 
 /// Starts the child. Its end of the pipe is closed here before another child can inherit it.
@@ -89,8 +102,7 @@ pid_t start_child(const std::function<std::string()>& work, const Confinement& c
   const std::size_t addresses = address_bytes();
   const std::lock_guard lock(mutex);
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw ConfinedFailure(fmt::format("no process for it: {}", std::strerror(errno)));
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) throw NoResources(no_process(errno));
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child == 0) work_in_child(work, confinement, addresses, parent, ends[1]);
@@ -99,7 +111,7 @@ pid_t start_child(const std::function<std::string()>& work, const Confinement& c
   from_child = ends[0];
   if (child > 0) return child;
   ::close(ends[0]);
-  throw ConfinedFailure(fmt::format("no process for it: {}", std::strerror(error)));
+  throw NoResources(no_process(error));
 }
 
 /// Appends all that the child writes; false if it has not finished by the deadline.
@@ -118,7 +130,29 @@ bool read_until(Clock::time_point deadline, int descriptor, std::string& text) {
   }
 }
 
+constexpr const char* kShortMemory =
+    "out of memory in the process that reads a file: a limit of memory is in force (ulimit -v)";
+
 }  // namespace
+
+Confinement Confinement::of_file(std::uintmax_t file_bytes) {
+  constexpr int kLeastSeconds = 4;
+  constexpr int kSecondsPerMB = 2;
+  constexpr std::uintmax_t kMostMB = 1000;
+  Confinement result;
+  result.cpu_seconds =
+      kLeastSeconds + kSecondsPerMB * static_cast<int>(std::min(file_bytes >> 20, kMostMB));
+  // On a busy machine a second of computing takes long.
+  constexpr int kWallPerCpu = 10;
+  result.wall_seconds = std::max(result.wall_seconds, kWallPerCpu * result.cpu_seconds);
+  return result;
+}
+
+bool Confinement::memory_is_short() const {
+  rlimit now{};
+  return ::getrlimit(RLIMIT_AS, &now) == 0 && now.rlim_cur != RLIM_INFINITY &&
+         now.rlim_cur < address_bytes() + bytes;
+}
 
 std::string run_confined(const std::function<std::string()>& work, const Confinement& confinement) {
   int from_child = -1;
@@ -129,14 +163,21 @@ std::string run_confined(const std::function<std::string()>& work, const Confine
   if (!in_time) ::kill(child, SIGKILL);
   ::close(from_child);
   int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  rusage used{};
+  while (::wait4(child, &status, 0, &used) < 0 && errno == EINTR) {
   }
   if (!in_time)
     throw ConfinedFailure(fmt::format("it took more than {} s", confinement.wall_seconds));
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return text;
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
-  if (signal == SIGXCPU || signal == SIGKILL)
+  if (signal == SIGXCPU ||
+      (signal == SIGKILL && used.ru_utime.tv_sec + used.ru_stime.tv_sec >= confinement.cpu_seconds))
     throw ConfinedFailure(fmt::format("it took more than {} s", confinement.cpu_seconds));
+  if (signal == SIGKILL)
+    throw NoResources(
+        "the system ended the process that reads a file, as it does where memory "
+        "runs out");
+  if (confinement.memory_is_short()) throw NoResources(kShortMemory);
   throw ConfinedFailure(
       fmt::format("it crashed, or needed more than {} MB of memory", confinement.bytes >> 20));
 }

@@ -215,10 +215,10 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
   try {
     const LeakCurve curve =
         leak_curve_of(problem, *prepared.condition, average, record.fit.coefficient,
-                      std::max(error.half_width(), least));
+                      std::max(error.half_width(), least), *prepared.leaks);
     const double share_rig_se =
         share_rig_error(problem, rig, *prepared.condition, average, record.fit,
-                        curve.share_slope(record.fit.coefficient));
+                        curve.share_slope(record.fit.coefficient), prepared.negligible());
     record.estimate = estimate_leak(record.fit.coefficient, error, curve, share_rig_se,
                                     problem.campaign.diagnosis);
     if (!prepared.is_healthy) return;
@@ -229,8 +229,8 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
             : std::optional(error);
     if (!of_healthy || !(of_healthy->total() > 0.0)) return;
     const double limit = detection_limit(*of_healthy, problem.campaign.diagnosis);
-    const LeakCurve beyond =
-        leak_curve_of(problem, *prepared.condition, average, limit, std::max(limit, least));
+    const LeakCurve beyond = leak_curve_of(problem, *prepared.condition, average, limit,
+                                           std::max(limit, least), *prepared.leaks);
     const double share = beyond.share(limit);
     if (share <= 1.0) record.smallest_leak = {limit, beyond.leak_flow_m3_per_s(limit), share};
   } catch (const NoResultError& failure) {
@@ -286,7 +286,8 @@ Diagnosable diagnosable(const Campaign& campaign) {
 Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatRecords>& records,
                    const RigFit& rig, const DiagnosisOptions& options) {
   Diagnosis result;
-  const LeakProblem problem(campaign, rig);
+  LeakProblem problem(campaign, rig);
+  problem.cancel = options.cancel;
   std::vector<Prepared> prepared(records.size());
   parallel_for(prepared.size(), options.threads,
                [&](std::size_t i) { prepared[i] = prepare(problem, records[i], options); });
@@ -299,11 +300,15 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
       tasks.push_back({&each, single});
   }
   result.records.resize(tasks.size());
-  std::atomic<int> done{0};
+  // A record is done when its leak is found, and when it is told what that means.
+  std::atomic<int> halves{0};
+  const auto half_done = [&] {
+    const int done = ++halves / 2;
+    if (options.progress) options.progress(done, static_cast<int>(tasks.size()));
+  };
   parallel_for(tasks.size(), options.threads, [&](std::size_t i) {
     result.records[i] = diagnose_record(problem, rig, tasks[i], prepared, options);
-    const int finished = ++done;
-    if (options.progress) options.progress(finished, static_cast<int>(tasks.size()));
+    half_done();
   });
 
   const auto signals = by_signal(campaign, result.records);
@@ -316,6 +321,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     RecordDiagnosis& record = result.records[i];
     if (record.fit.ok())
       estimate(problem, rig, *tasks[i].prepared, errors.at(record.signal), record);
+    half_done();
   });
   for (const auto& [signal, members] : signals) {
     const double healthy_m = healthy_misfit(members);

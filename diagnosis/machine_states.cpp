@@ -71,10 +71,10 @@ void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& 
   try {
     const datasets::Record& average = duty.records->average;
     const LeakCurve curve =
-        leak_curve_of(problem, *duty.condition, average, leak.coefficient, reach);
+        leak_curve_of(problem, *duty.condition, average, leak.coefficient, reach, *duty.leaks);
     state.share_slope = curve.share_slope(leak.coefficient);
-    const double share_rig_se =
-        share_rig_error(problem, rig, *duty.condition, average, leak, state.share_slope);
+    const double share_rig_se = share_rig_error(problem, rig, *duty.condition, average, leak,
+                                                state.share_slope, duty.negligible());
     state.estimate = estimate_leak(leak.coefficient, state.pooled.error, curve,
                                    state.pooled.widened * share_rig_se, campaign.diagnosis);
   } catch (const NoResultError& failure) {

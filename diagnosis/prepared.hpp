@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/leak/leak_fit.hpp"
+#include "diagnosis/leak/leak_memo.hpp"
 #include "diagnosis/leak/leak_scan.hpp"
 
 namespace rigcal::diagnosis {
@@ -20,11 +22,14 @@ struct Prepared {
   std::string failure;
   std::optional<double> true_share;
   bool is_healthy = false;
+  std::shared_ptr<LeakMemo> leaks = std::make_shared<LeakMemo>();
 
   const std::vector<double>& time_s() const { return records->average.time_s; }
   /// Least half width of a curve of shares: where a record is its own reference there is no error,
   /// and any width will do that leaks at all.
   double least_reach() const { return 1e-2 * scan.largest_coefficient; }
+  /// Of this coefficient a part in ten thousand of the smallest share that is told apart leaks.
+  double negligible() const { return 1e-4 * least_reach(); }
 };
 
 }  // namespace rigcal::diagnosis

@@ -13,6 +13,7 @@
 #include "model/plant/layout.hpp"
 #include "model/plant/plants.hpp"
 #include "model/plant/sensors.hpp"
+#include "model/signal/same_instant.hpp"
 #include "model/signal/sampled_period.hpp"
 #include "model/solver/simulate_sized.hpp"
 
@@ -180,6 +181,20 @@ bool all_finite(const Eigen::MatrixXd& values) {
   return sums.sum() + (0.0 * rest).sum() == 0.0;
 }
 
+/// Whether an input changes faster than instants can be told apart: no solver could follow it.
+bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
+  constexpr double kInstants = 4.0;
+  constexpr double kMostEdges = 16.0;  // of a waveform, in a period
+  const double least_s = kInstants * same_instant_s(times_s);
+  const auto fast = [least_s](const std::optional<Signal>& signal) {
+    if (!signal) return false;
+    const double period_s = signal->period_s().value_or(0.0);
+    return signal->max_step() < least_s || (period_s > 0.0 && period_s < kMostEdges * least_s);
+  };
+  return fast(inputs.drive) || fast(inputs.external_force_n) || fast(inputs.supply_pressure_pa) ||
+         fast(inputs.tank_pressure_pa);
+}
+
 /// @param state  to go on from; null: the rig's initial one
 Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
                            const ParameterValues& parameters, std::span<const int> free,
@@ -215,6 +230,12 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
     result.failed_at_s = times_s.front();
     return result;
   }
+  if (too_fast(inputs, times_s)) {
+    result.status = SimulationStatus::step_too_small;
+    result.failed_at_s = times_s.front();
+    result.reason = "an input changes faster than the times of its samples can be told apart";
+    return result;
+  }
   const std::optional<SensorTimes> at = sensor_times(outputs, parameters, times_s);
   const std::span<const double> at_s = at ? std::span<const double>(at->times_s) : times_s;
   const auto samples = static_cast<Eigen::Index>(at_s.size());
@@ -233,6 +254,9 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
     const std::optional<double> tick_s =
         layout.sampled() ? std::optional(parameters["sample_time"]) : std::nullopt;
     period = sampled_period(inputs, at_s, reversible(rig.plant, layout.terms, outputs), tick_s);
+    // What the periods to come add is summed for each of them anew.
+    constexpr std::size_t kMostPeriods = 20'000;
+    if (period && at_s.size() / period->samples > kMostPeriods) period.reset();
   }
   dispatch({layout, rig.initial, state, parameters, free, inputs, at_s, outputs, options, period,
             started},

@@ -45,8 +45,10 @@ class Descriptor {
   int value_;
 };
 
-[[noreturn]] void fail(const char* what) {
-  throw WriteError(fmt::format("{}: {}", what, std::generic_category().message(errno)));
+ChildEnd not_started(const char* what) {
+  ChildEnd end;
+  end.error = fmt::format("{}: {}", what, std::generic_category().message(errno));
+  return end;
 }
 
 /// Calls only what is safe between fork and exec in a process with several threads.
@@ -105,14 +107,14 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const std::atomic<
   variables.push_back(nullptr);
 
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail("a pipe cannot be made");
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return not_started("a pipe to it cannot be made");
   const Descriptor out(ends[0]);
   Descriptor in(ends[1]);
   const Descriptor null(::open("/dev/null", O_RDWR | O_CLOEXEC));
-  if (null.get() < 0) fail("/dev/null cannot be opened");
+  if (null.get() < 0) return not_started("/dev/null cannot be opened");
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
-  if (child < 0) fail("a process cannot be made");
+  if (child < 0) return not_started("a process for it cannot be made");
   if (child == 0) become(argv.data(), variables.data(), in.get(), null.get(), parent);
   in.close();
 
@@ -123,7 +125,9 @@ ChildEnd run_child(const std::vector<std::string>& arguments, const std::atomic<
   ChildEnd end;
   end.error = message_of(said);
   if (WIFSIGNALED(status)) {
-    end.error = fmt::format("ended by signal {}", WTERMSIG(status));
+    end.error = fmt::format(
+        "ended by signal {}{}", WTERMSIG(status),
+        WTERMSIG(status) == SIGKILL ? ", as the system does where memory runs out" : "");
     if (WTERMSIG(status) == SIGTERM) end.code = ExitCode::stopped;
   } else if (WEXITSTATUS(status) <= static_cast<int>(ExitCode::internal)) {
     end.code = static_cast<ExitCode>(WEXITSTATUS(status));

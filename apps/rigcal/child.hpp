@@ -18,9 +18,7 @@ struct ChildEnd {
 /// Runs `rigcal` with these arguments in a child process, so that a crash or lack of memory there
 /// does not end this one, and waits for it. Of its output only the error message is kept. It is not
 /// an MPI process, even if this one is. It gets SIGTERM when `cancel` becomes true or this process
-/// ends. Thread-safe.
-///
-/// @throws WriteError  no process can be started
+/// ends. Thread-safe. Where no process can be started it ends with ExitCode::internal and says why.
 ChildEnd run_child(const std::vector<std::string>& arguments, const std::atomic<bool>& cancel);
 
 }  // namespace rigcal::app

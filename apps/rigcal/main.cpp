@@ -19,6 +19,7 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/memory.hpp"
+#include "common/printable.hpp"
 #include "common/suggest.hpp"
 #include "common/uninterrupted.hpp"
 #include "report/store/folder.hpp"
@@ -178,7 +179,7 @@ ExitCode run(int argc, char** argv) {
 }
 
 ExitCode complain(ExitCode code, const std::string& message) {
-  std::fputs(fmt::format("rigcal: {}\n", message).c_str(), stderr);
+  rigcal::say(fmt::format("rigcal: {}\n", message));
   return code;
 }
 

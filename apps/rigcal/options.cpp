@@ -15,6 +15,7 @@
 
 #include "apps/rigcal/processes.hpp"
 #include "common/error.hpp"
+#include "common/printable.hpp"
 #include "report/run/fit_choices.hpp"
 #include "report/text/text_table.hpp"
 
@@ -113,8 +114,11 @@ report::Style terminal_style() {
 
 void print(const PrintOptions& options, const std::string& text, const report::Json& json) {
   if (options.quiet) return;
+  // JSON reads the escapes of the few characters that its own writer leaves as they are.
   const std::string shown =
-      options.json ? report::json_text(json) : report::wrapped_lines(text, output_columns());
+      options.json
+          ? printable(report::json_text(json))
+          : report::wrapped_lines(printable(text, terminal_style().colour), output_columns());
   const bool written = std::fwrite(shown.data(), 1, shown.size(), stdout) == shown.size();
   if (!written || std::fflush(stdout) != 0) {
     throw WriteError("standard output: cannot be written: " +

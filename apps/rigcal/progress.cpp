@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "apps/rigcal/options.hpp"
+#include "common/printable.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -41,7 +42,7 @@ void StatusLine::show(const std::function<std::string(double)>& text) {
   const auto pause = std::chrono::milliseconds(is_open_ ? 100 : 1000);
   if (now - last_shown_ < pause) return;
   last_shown_ = now;
-  std::string line = text(std::chrono::duration<double>(now - begin_).count());
+  std::string line = printable(text(std::chrono::duration<double>(now - begin_).count()));
   if (terminal_) {
     // A line that is wrapped could not be rewritten.
     const std::size_t columns = terminal_columns(STDERR_FILENO);
@@ -49,7 +50,7 @@ void StatusLine::show(const std::function<std::string(double)>& text) {
     std::fputs(fmt::format("\r\x1b[K{}", line).c_str(), stderr);
     is_open_ = true;
   } else {
-    std::fputs((line + "\n").c_str(), stderr);
+    say(line + "\n");
   }
   std::fflush(stderr);
 }

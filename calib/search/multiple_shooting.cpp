@@ -72,7 +72,16 @@ struct PieceEvaluation {
 std::vector<std::size_t> cuts(const ProblemCondition& condition, double interval_s) {
   const auto times = condition.fit_times();
   const double span_s = times.back() - times.front();
-  const auto pieces = static_cast<std::size_t>(std::max(1.0, std::round(span_s / interval_s)));
+  const double wanted = std::max(1.0, std::round(span_s / interval_s));
+  const auto refuse = [&] {
+    throw InputError(condition.condition->where,
+                     fmt::format("condition \"{}\": [fit] shooting_interval = \"{:g} s\" holds "
+                                 "fewer than {} samples of its record",
+                                 condition.condition->id, interval_s, kLeastSamples));
+  };
+  // Before anything is as long as that.
+  if (wanted > 1.0 && wanted * kLeastSamples > static_cast<double>(times.size() - 1)) refuse();
+  const auto pieces = static_cast<std::size_t>(wanted);
   std::vector<std::size_t> result{0};
   for (std::size_t k = 1; k < pieces; ++k) {
     const double at_s =
@@ -82,11 +91,7 @@ std::vector<std::size_t> cuts(const ProblemCondition& condition, double interval
   }
   result.push_back(times.size() - 1);
   for (std::size_t k = 1; pieces > 1 && k < result.size(); ++k) {
-    if (result[k] >= result[k - 1] + kLeastSamples) continue;
-    throw InputError(condition.condition->where,
-                     fmt::format("condition \"{}\": [fit] shooting_interval = \"{:g} s\" holds "
-                                 "fewer than {} samples of its record",
-                                 condition.condition->id, interval_s, kLeastSamples));
+    if (result[k] < result[k - 1] + kLeastSamples) refuse();
   }
   return result;
 }

@@ -11,7 +11,6 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr long kMostRepeats = 10'000;
-constexpr double kMostSamples = 1e8;
 constexpr std::string_view kPlaceholder = "{n}";
 
 bool contains(std::string_view text, std::string_view part) {
@@ -126,7 +125,7 @@ TimeWindow read_window(const TomlNode& node) {
     node.fail(fmt::format("has {} entries: expected start and end, such as [\"0.5 s\", \"12 s\"]",
                           items.size()));
   }
-  const TimeWindow window{items[0].quantity("s"), items[1].quantity("s")};
+  const TimeWindow window{items[0].quantity("s", kInstants_s), items[1].quantity("s", kInstants_s)};
   if (!(window.start_s < window.end_s)) {
     node.fail(
         fmt::format("the start ({} s) is not before the end ({} s)", window.start_s, window.end_s));
@@ -188,28 +187,29 @@ void read_waveform(const TomlNode& node, const Campaign& campaign, Condition& co
   if (const auto frequency = node.find("frequency")) {
     const bool from_zero = condition.waveform == Waveform::chirp && !condition.logarithmic_sweep;
     condition.frequency_hz =
-        from_zero ? frequency->non_negative_quantity("Hz") : frequency->positive_quantity("Hz");
+        frequency->quantity("Hz", from_zero ? kFrequenciesFromZero_hz : kFrequencies_hz);
   }
   if (const auto end = node.find("end_frequency")) {
-    condition.end_frequency_hz = end->positive_quantity("Hz");
+    condition.end_frequency_hz = end->quantity("Hz", kFrequencies_hz);
   }
-  if (const auto sweep = node.find("sweep_time")) condition.sweep_s = sweep->positive_quantity("s");
+  if (const auto sweep = node.find("sweep_time"))
+    condition.sweep_s = sweep->quantity("s", kDurations_s);
   if (const auto amplitude = node.find("amplitude")) {
     const bool pid = campaign.rig.controller == model::ControllerKind::pid;
     condition.amplitude =
         amplitude
             ->noted(pid ? "with a pid controller the waveform is the position reference, in m"
                         : "without a controller the waveform is the valve command, in V")
-            .positive_quantity(pid ? "m" : "V");
+            .quantity(pid ? "m" : "V", kAmplitudes);
   }
 }
 
 void read_time(const TomlNode& node, Condition& condition) {
   if (const auto duration = node.find("duration")) {
-    condition.duration_s = duration->positive_quantity("s");
+    condition.duration_s = duration->quantity("s", kDurations_s);
   }
   if (const auto rate = node.find("sample_rate")) {
-    condition.sample_rate_hz = rate->positive_quantity("Hz");
+    condition.sample_rate_hz = rate->quantity("Hz", kSampleRates_hz);
   }
   if (condition.duration_s && condition.sample_rate_hz &&
       *condition.duration_s * *condition.sample_rate_hz > kMostSamples) {
@@ -276,7 +276,7 @@ Condition read_condition(const TomlNode& unnamed, const Campaign& campaign) {
     condition.acceptance = read_limits(*limits, campaign);
   }
   if (const auto temperature = node.find("temperature")) {
-    condition.temperature_k = temperature->non_negative_quantity("K");
+    condition.temperature_k = temperature->quantity("K", kTemperatures_k);
   }
   if (const auto date = node.find("date")) condition.date = date->date();
   if (const auto specimen = node.find("specimen"))

@@ -21,7 +21,7 @@ void read_limits(const TomlNode& node, DiagnosisSettings& settings) {
   double lower = 0.0;
   for (std::size_t i = 0; i < bounded.size(); ++i) {
     if (const auto entry = node.find(bounded[i])) {
-      settings.limits[i] = entry->number() / 100.0;
+      settings.limits[i] = entry->number({-kSizes.upper, kSizes.upper}) / 100.0;
       if (!(settings.limits[i] > lower)) {
         entry->fail(fmt::format("{} % is not above {} %, where the class begins", entry->number(),
                                 100.0 * lower));

@@ -5,6 +5,7 @@
 
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
+#include "datasets/campaign/toml/quantity_range.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -80,6 +81,11 @@ std::vector<double> sample_times(const Condition& condition, const Record* recor
                                  "sample_rate",
                                  condition.id));
   }
+  if (*condition.duration_s * *condition.sample_rate_hz > kMostSamples)
+    throw InputError(
+        condition.where,
+        fmt::format("condition \"{}\": {} s at {} Hz are more than {:.0f} samples", condition.id,
+                    *condition.duration_s, *condition.sample_rate_hz, kMostSamples));
   // A duration of a whole number of samples must not lose the last one to rounding.
   constexpr double kSlack = 1e-9;
   const auto intervals = static_cast<std::size_t>(

@@ -52,17 +52,13 @@ std::optional<Prior> read_prior(const TomlNode& node, const model::ParameterSpec
   if (!mean && !sd) return std::nullopt;
   if (!sd) mean->fail("has no prior_sd beside it: expected the standard deviation of the prior");
   if (!mean) sd->fail("has no prior beside it: expected the mean of the prior");
-  const Prior prior{read_value(*mean, spec), sd->difference(spec.unit)};
-  if (!(prior.sd > 0.0)) sd->fail_type("a standard deviation above zero");
-  return prior;
+  return Prior{read_value(*mean, spec), sd->difference(spec.unit, kParameterDeviations)};
 }
 
 void read_between_repeats(const TomlNode& node, const model::ParameterSpec& spec,
                           ParameterSetting& setting) {
   if (const auto problem = cannot_be_fitted(spec)) node.fail(*problem);
-  const double sd = node.difference(spec.unit);
-  if (!(sd > 0.0)) node.fail_type("a standard deviation above zero");
-  differ_between_repeats(spec, sd, setting);
+  differ_between_repeats(spec, node.difference(spec.unit, kParameterDeviations), setting);
 }
 
 /// { start = ..., lower = ..., ... }

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/quantity.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
@@ -42,11 +43,14 @@ UnitConversion read_conversion(const TomlNode& node, std::string_view si_unit, S
   if (const auto entry = node.find("gain")) {
     stated.gain = entry->number();
     if (stated.gain == 0.0) entry->fail_type("a number other than zero");
+    if (std::abs(*stated.gain) < kSizes.lower || std::abs(*stated.gain) > kSizes.upper)
+      entry->fail_type(
+          fmt::format("a number from {:g} to {:g}, of either sign", kSizes.lower, kSizes.upper));
   }
   const double gain = stated.gain.value_or(1.0);
   double offset = 0.0;
   if (const auto entry = node.find("offset")) {
-    offset = entry->difference(name);
+    offset = entry->difference(name, {-kSizes.upper, kSizes.upper});
     stated.has_offset = true;
   }
   if (const auto entry = node.find("ignore_unit"))
@@ -104,8 +108,7 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel,
   setting.to_si = setting.in_counts ? read_counts(node)
                                     : read_conversion(node, info(channel).unit, setting.stated);
   if (const auto sd = node.find("sd")) {
-    setting.sd = sd->non_negative_difference(info(channel).unit);
-    if (*setting.sd == 0.0) sd->fail_type("a standard deviation above zero");
+    setting.sd = sd->difference(info(channel).unit, kStandardDeviations);
   }
   if (const auto sd = node.find("gain_sd")) {
     setting.gain_sd = sd->number();
@@ -113,7 +116,7 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel,
       sd->fail_type("a relative standard uncertainty, at least 0 and below 1");
   }
   if (const auto sd = node.find("offset_sd"))
-    setting.offset_sd = sd->non_negative_difference(info(channel).unit);
+    setting.offset_sd = sd->difference(info(channel).unit, kDisturbances);
   setting.role = default_role(channel, controller);
   if (const auto role = node.find("role")) {
     setting.role = role->choice<ChannelRole>({{"input", ChannelRole::input},
@@ -157,7 +160,7 @@ void read_recording(const TomlNode& node, Campaign& campaign) {
                                                                : model::InitialState::given;
   campaign.initial_window_s = kDefaultWindowS;
   if (const auto window = node.find("initial_window")) {
-    campaign.initial_window_s = window->positive_quantity("s");
+    campaign.initial_window_s = window->quantity("s", kDurations_s);
     if (campaign.initial == InitialMode::rest) {
       window->fail("has no meaning where all states start at zero: expected initial = \"record\"");
     }
@@ -166,7 +169,7 @@ void read_recording(const TomlNode& node, Campaign& campaign) {
     campaign.separator = separator->choice<char>({{",", ','}, {";", ';'}, {"\t", '\t'}});
   }
   if (const auto rate = node.find("decimate_to")) {
-    campaign.decimate_to_hz = rate->positive_quantity("Hz");
+    campaign.decimate_to_hz = rate->quantity("Hz", kSampleRates_hz);
   }
   if (const auto spikes = node.find("spikes")) {
     campaign.spikes = spikes->choice<SpikeTreatment>(

@@ -72,7 +72,7 @@ std::vector<std::pair<Channel, double>> read_channel_values(const TomlNode& tabl
   std::vector<std::pair<Channel, double>> values;
   for (const auto& [key, node] : table.entries()) {
     const Channel channel = read_channel_key(table, key);
-    values.emplace_back(channel, node.non_negative_difference(info(channel).unit));
+    values.emplace_back(channel, node.difference(info(channel).unit, kDisturbances));
   }
   return values;
 }
@@ -165,8 +165,7 @@ void read_acceptance(const TomlNode& node, Campaign& campaign) {
         {{"simple", DecisionRule::simple}, {"guard_band", DecisionRule::guard_band}});
   }
   if (const auto ratio = node.find(kModelError)) {
-    campaign.acceptance_bounds.model_error_to_noise = ratio->number();
-    if (!(ratio->number() > 0.0)) ratio->fail_type("a number above zero");
+    campaign.acceptance_bounds.model_error_to_noise = ratio->number(kSizes);
   }
   if (const auto table = node.find(kNegligible)) {
     for (const auto& [index, value] :
@@ -186,16 +185,15 @@ FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
                                    {"soft_l1", Loss::soft_l1}});
   }
   if (const auto scale = node.find("loss_scale")) {
-    fit.loss_scale = scale->number();
-    if (!(fit.loss_scale > 0.0)) scale->fail_type("a number above zero");
+    fit.loss_scale = scale->number(kSizes);
   }
   if (const auto count = node.find("max_iterations")) {
     fit.max_iterations = count->integer(1, 1'000'000);
   }
   if (const auto count = node.find("starts")) fit.starts = count->integer(1, 100'000);
-  if (const auto time = node.find("max_time")) fit.max_seconds = time->positive_quantity("s");
+  if (const auto time = node.find("max_time")) fit.max_seconds = time->quantity("s", kDurations_s);
   if (const auto interval = node.find("shooting_interval")) {
-    fit.shooting_interval_s = interval->positive_quantity("s");
+    fit.shooting_interval_s = interval->quantity("s", kDurations_s);
   }
   const auto outputs = node.find("outputs");
   if (!outputs) return fit;
@@ -222,8 +220,7 @@ SimulationSettings read_simulation(const TomlNode& node) {
     }
   }
   if (const auto seconds = node.find("max_seconds")) {
-    simulation.max_seconds = seconds->number();
-    if (!(simulation.max_seconds > 0.0)) seconds->fail_type("a number of seconds above zero");
+    simulation.max_seconds = seconds->number(kDurations_s);
   }
   return simulation;
 }
@@ -241,10 +238,10 @@ SyntheticSettings read_synthetic(const TomlNode& node, model::PlantKind plant) {
   }
   if (const auto count = node.find("repeats")) synthetic.repeats = count->integer(1, 10'000);
   if (const auto value = node.find("duration")) {
-    synthetic.duration_s = value->positive_quantity("s");
+    synthetic.duration_s = value->quantity("s", kDurations_s);
   }
   if (const auto value = node.find("sample_rate")) {
-    synthetic.sample_rate_hz = value->positive_quantity("Hz");
+    synthetic.sample_rate_hz = value->quantity("Hz", kSampleRates_hz);
   }
   synthetic.noise_sd = channel_values(node, "noise");
   synthetic.ar1_sd = channel_values(node, "ar1_noise");
@@ -257,13 +254,13 @@ SyntheticSettings read_synthetic(const TomlNode& node, model::PlantKind plant) {
   synthetic.quantisation = channel_values(node, "quantisation");
   synthetic.drift = channel_values(node, "drift");
   if (const auto value = node.find("trigger_jitter")) {
-    synthetic.trigger_jitter_s = value->non_negative_quantity("s");
+    synthetic.trigger_jitter_s = value->quantity("s", kJitters_s);
   }
   if (const auto value = node.find("supply_ripple")) {
-    synthetic.supply_ripple_pa = value->non_negative_quantity("Pa");
+    synthetic.supply_ripple_pa = value->quantity("Pa", kDisturbances);
   }
   if (const auto value = node.find("supply_ripple_frequency")) {
-    synthetic.supply_ripple_hz = value->positive_quantity("Hz");
+    synthetic.supply_ripple_hz = value->quantity("Hz", kFrequencies_hz);
   }
   if (const auto table = node.find("variation")) {
     synthetic.variation = read_variation(*table, plant);

@@ -13,6 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostFitting = 100'000;
+/// Entries of folders that the patterns of one condition may look at.
+constexpr long kMostEntries = 200'000;
 
 bool is_pattern(std::string_view text) {
   return text.find_first_of("*?") != std::string_view::npos;
@@ -43,11 +45,14 @@ bool fits(std::string_view name, std::string_view pattern) {
 }
 
 /// Entries of a folder that fit a pattern; hidden ones only where the pattern names the dot.
-std::vector<fs::path> entries_that_fit(const fs::path& folder, const std::string& pattern) {
+/// @param left  how many entries may still be looked at
+std::vector<fs::path> entries_that_fit(const fs::path& folder, const std::string& pattern,
+                                       long& left) {
   std::vector<fs::path> found;
   std::error_code error;
   for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end;
-       !error && entry != end; entry.increment(error)) {
+       !error && entry != end && left > 0; entry.increment(error)) {
+    --left;
     const std::string name = entry->path().filename().string();
     if (name.front() == '.' && pattern.front() != '.') continue;
     if (fits(name, pattern)) found.push_back(folder / name);
@@ -61,8 +66,9 @@ struct Expansion {
 };
 
 /// @param root  nothing outside of it is looked at; empty: no limit
+/// @param left  how many entries of folders may still be looked at
 Expansion expand(const fs::path& base, const std::string& pattern, const fs::path& root,
-                 const Location& where) {
+                 const Location& where, long& left) {
   Expansion result;
   std::vector<fs::path> reached{base};
   bool searched = false;
@@ -77,7 +83,7 @@ Expansion expand(const fs::path& base, const std::string& pattern, const fs::pat
       if (!searched) result.searched = folder;
       searched = true;
       require_within(root, folder);
-      const auto found = entries_that_fit(folder, text);
+      const auto found = entries_that_fit(folder, text, left);
       next.insert(next.end(), found.begin(), found.end());
       if (next.size() > kMostFitting)
         throw InputError(where, fmt::format("more than {} files and folders fit '{}'; expected the "
@@ -126,9 +132,17 @@ std::string shown(const fs::path& path) {
 }
 
 std::vector<RepeatSource> sources_of(const Campaign& campaign, const Condition& condition,
-                                     const RepeatPattern& pattern, const std::string& number) {
+                                     const RepeatPattern& pattern, const std::string& number,
+                                     long& entries_left) {
   const std::string file = filled_in(pattern.file, number);
-  const Expansion expansion = expand(campaign.data_dir, file, campaign.root, condition.where);
+  const Expansion expansion =
+      expand(campaign.data_dir, file, campaign.root, condition.where, entries_left);
+  if (entries_left <= 0) {
+    throw InputError(condition.where,
+                     fmt::format("condition \"{}\": '{}' looks through more than {} files and "
+                                 "folders; expected a pattern that names the folder of the records",
+                                 condition.id, file, kMostEntries));
+  }
   if (expansion.files.empty()) {
     throw InputError(
         condition.where,
@@ -165,11 +179,12 @@ std::vector<RepeatSource> repeat_sources(const Campaign& campaign, const Conditi
   std::vector<RepeatPattern> patterns = condition.repeats;
   if (condition.averaged) patterns.push_back({*condition.averaged, {}, {}});
   std::vector<RepeatSource> sources;
+  long entries_left = kMostEntries;
   for (const RepeatPattern& pattern : patterns) {
     const std::vector<std::string> numbers =
         pattern.numbers.empty() ? std::vector<std::string>{""} : pattern.numbers;
     for (const std::string& number : numbers) {
-      const auto found = sources_of(campaign, condition, pattern, number);
+      const auto found = sources_of(campaign, condition, pattern, number, entries_left);
       sources.insert(sources.end(), found.begin(), found.end());
     }
   }

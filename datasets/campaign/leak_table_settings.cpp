@@ -73,9 +73,10 @@ std::vector<double> read_targets(const TomlNode& node) {
 void read_drive(const TomlNode& node, const Campaign& campaign, LeakSignal& signal) {
   signal.waveform =
       node.require("waveform", "\"sine\" or \"square\"").choice<Waveform>(periodic_waveforms());
-  signal.frequency_hz = node.require("frequency", "such as \"0.1 Hz\"").positive_quantity("Hz");
-  signal.amplitude =
-      node.require("amplitude", "half of peak to peak").positive_quantity(amplitude_unit(campaign));
+  signal.frequency_hz =
+      node.require("frequency", "such as \"0.1 Hz\"").quantity("Hz", kFrequencies_hz);
+  signal.amplitude = node.require("amplitude", "half of peak to peak")
+                         .quantity(amplitude_unit(campaign), kAmplitudes);
 }
 
 LeakSignal read_signal(const TomlNode& node, const Campaign& campaign,
@@ -117,8 +118,7 @@ PrintedFeatures read_level(const TomlNode& node) {
   PrintedFeatures row;
   row.level = node.require("level", "the name of the level").name();
   const TomlNode coefficient = node.require("coefficient", "the leakage coefficient of the level");
-  row.coefficient = coefficient.number();
-  if (!(row.coefficient > 0.0)) coefficient.fail_type("a number above zero");
+  row.coefficient = coefficient.number(kSizes);
   if (const auto leaking = node.find("leaking")) row.leaking = leaking->boolean();
   std::vector<std::pair<std::string, Feature>> names;
   for (const FeatureName& name : kFeatures) {
@@ -126,9 +126,8 @@ PrintedFeatures read_level(const TomlNode& node) {
     const auto entry = node.find(name.key);
     if (!entry) continue;
     const bool flow = name.feature == Feature::servo_flow || name.feature == Feature::leak_flow;
-    const double value = flow ? entry->positive_quantity("m3/s") : entry->number();
-    if (!(value > 0.0)) entry->fail_type("a number above zero");
-    row.printed[name.feature] = value;
+    row.printed[name.feature] =
+        flow ? entry->quantity("m3/s", kFlows_m3_per_s) : entry->number(kSizes);
   }
   if (const auto left_out = node.find("left_out")) {
     for (const TomlNode& item : left_out->items()) row.left_out.push_back(item.choice(names));
@@ -325,6 +324,9 @@ LeakSignal signal_from_text(const Campaign& campaign, const LeakTableSettings& s
     fail(error.what());
   }
   if (!(signal.frequency_hz > 0.0)) fail("the frequency is not above zero");
+  if (signal.frequency_hz < kFrequencies_hz.lower || signal.frequency_hz > kFrequencies_hz.upper)
+    fail(fmt::format("the frequency is not within {:g} to {:g} Hz", kFrequencies_hz.lower,
+                     kFrequencies_hz.upper));
   if (parts.size() == 2) {
     signal.amplitude = settings.signals.front().amplitude;
     for (const LeakSignal& other : settings.signals) {
@@ -334,6 +336,9 @@ LeakSignal signal_from_text(const Campaign& campaign, const LeakTableSettings& s
     }
   }
   if (!(signal.amplitude > 0.0)) fail("the amplitude is not above zero");
+  if (signal.amplitude < kAmplitudes.lower || signal.amplitude > kAmplitudes.upper)
+    fail(fmt::format("the amplitude is not within {:g} to {:g} {}", kAmplitudes.lower,
+                     kAmplitudes.upper, amplitude_unit(campaign)));
   for (const LeakSignal& other : settings.signals) {
     if (same_drive(signal, other)) return other;
   }

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 #include <new>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "common/confined.hpp"
@@ -17,6 +19,7 @@ namespace {
 
 constexpr char kDone = 'd';
 constexpr char kRefused = 'r';
+constexpr char kNoMemory = 'm';
 
 /// The text that `read` returns there.
 std::string read_confined(const std::filesystem::path& path, const ConfinedReader& reader,
@@ -28,17 +31,27 @@ std::string read_confined(const std::filesystem::path& path, const ConfinedReade
     } catch (const InputError& error) {
       return kRefused + std::string(error.what()).substr(name.size() + 2);
     } catch (const std::bad_alloc&) {
-      return kRefused + fmt::format("needs more memory than {} may", reader.format);
+      return {kNoMemory};
     }
   };
   std::string text;
+  std::error_code unknown;  // a file that is gone is one that `read` refuses
+  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
+  const Confinement confinement = Confinement::of_file(unknown ? 0 : bytes);
   try {
-    text = run_confined(work, {});
+    text = run_confined(work, confinement);
   } catch (const ConfinedFailure& failure) {
     throw InputError({name}, fmt::format("cannot be read by {} ({}): the file is damaged; {}",
                                          reader.library, failure.what(), reader.advice));
   }
   if (text.empty()) throw InputError({name}, fmt::format("cannot be read by {}", reader.library));
+  if (text.front() == kNoMemory && confinement.memory_is_short())
+    throw NoResources(
+        fmt::format("{}: out of memory while it is read: a limit of memory is in force "
+                    "(ulimit -v)",
+                    name));
+  if (text.front() == kNoMemory)
+    throw InputError({name}, fmt::format("needs more memory than {} may", reader.format));
   if (text.front() != kDone) throw InputError({name}, text.substr(1));
   return text.substr(1);
 }

@@ -77,9 +77,11 @@ double LeakCurve::share_slope(double coefficient) const {
 
 LeakCurve curve_about(const LeakAt& leak_at, double coefficient, double reach) {
   const double low = coefficient - reach;
-  const double high = std::max(coefficient, 0.0) + reach;
+  // So near to none it is proportional: records without a leak share what is simulated.
+  const bool none = coefficient <= kProportional * reach;
+  const double high = none ? reach : coefficient + reach;
   std::vector<LeakPoint> points{low > 0.0 ? leak_at(low) : without_leak(leak_at, high)};
-  if (coefficient > 0.0) points.push_back(leak_at(coefficient));
+  if (!none) points.push_back(leak_at(coefficient));
   points.push_back(leak_at(high));
   return LeakCurve(std::move(points));
 }

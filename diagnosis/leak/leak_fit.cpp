@@ -343,7 +343,7 @@ LeakScan leak_scan_of(const LeakProblem& leak_problem, const Condition& conditio
 }
 
 LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condition,
-                        const Record& average, double coefficient, double reach) {
+                        const Record& average, double coefficient, double reach, LeakMemo& memo) {
   const std::vector<Record> records{average};
   const calib::Problem problem =
       problem_of(leak_problem, own_condition(leak_problem, condition), records);
@@ -351,26 +351,27 @@ LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condit
   const auto leak_at = [&](double each) {
     model::ParameterValues values = prepared.values;
     values.set(leak_problem.leak, each);
-    const SteadyLeak leak = steady_leak(problem, prepared, values, std::array{leak_problem.leak});
+    const SteadyLeak leak =
+        steady_leak(problem, prepared, values, std::array{leak_problem.leak}, leak_problem.cancel);
     return LeakPoint{each, leak.share, leak.leak_flow_m3_per_s, leak.share_slope(0),
                      leak.flow_slope(0)};
   };
-  return curve_about(leak_at, coefficient, reach);
+  return curve_about([&](double each) { return memo.at(each, leak_at); }, coefficient, reach);
 }
 
 double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
                        const Condition& condition, const Record& average, const LeakFit& fit,
-                       double share_slope) {
+                       double share_slope, double negligible) {
   if (rig.indices.empty()) return 0.0;
   Eigen::VectorXd moves = share_slope * fit.rig_moves;
-  if (fit.coefficient > 0.0) {  // else nothing leaks, whatever the rig
+  if (fit.coefficient > negligible) {  // else nothing leaks, whatever the rig
     const std::vector<Record> records{average};
     const calib::Problem problem =
         problem_of(leak_problem, own_condition(leak_problem, condition), records);
     const calib::ProblemCondition& prepared = problem.conditions.front();
     model::ParameterValues values = prepared.values;
     values.set(leak_problem.leak, fit.coefficient);
-    moves += steady_leak(problem, prepared, values, rig.indices).share_slope;
+    moves += steady_leak(problem, prepared, values, rig.indices, leak_problem.cancel).share_slope;
   }
   return std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)));
 }
@@ -383,8 +384,9 @@ Residuals healthy_residuals(const LeakProblem& leak_problem, const Condition& co
   const calib::ProblemCondition& prepared = problem.conditions.front();
   model::ParameterValues values = prepared.values;
   values.set(leak_problem.leak, 0.0);
-  const auto healthy = model::simulate(prepared.rig, values, {}, prepared.inputs, average.time_s,
-                                       prepared.outputs, problem.simulation_options());
+  const auto healthy =
+      model::simulate(prepared.rig, values, {}, prepared.inputs, average.time_s, prepared.outputs,
+                      problem.simulation_options(leak_problem.cancel));
   if (!healthy.ok())
     throw NoResultError(
         fmt::format("condition \"{}\": healthy model: {}", condition.id, in_words(healthy)));

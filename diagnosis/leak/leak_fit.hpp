@@ -11,6 +11,7 @@
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/leak/leak_curve.hpp"
+#include "diagnosis/leak/leak_memo.hpp"
 #include "diagnosis/leak/leak_scan.hpp"
 
 namespace rigcal::diagnosis {
@@ -32,6 +33,7 @@ struct LeakProblem {
   datasets::Campaign campaign;
   std::vector<datasets::FittedValue> values;  ///< of the rig
   int leak = 0;                               ///< table row of the leakage coefficient
+  const std::atomic<bool>* cancel = nullptr;  ///< ends what is simulated when it becomes true
 
   LeakProblem(const datasets::Campaign& original, const RigFit& rig);
   /// The same with another upper bound of the coefficient.
@@ -109,15 +111,19 @@ LeakScan leak_scan_of(const LeakProblem& leak_problem, const datasets::Condition
 ///
 /// @param coefficient  of the record; may be negative
 /// @param reach        half the width of the interval that matters, above 0
+/// @param memo         of the condition
 /// @throws NoResultError  as steady_leak()
 LeakCurve leak_curve_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
-                        const datasets::Record& average, double coefficient, double reach);
+                        const datasets::Record& average, double coefficient, double reach,
+                        LeakMemo& memo);
 
 /// Standard error of the share from the rig's parameters, the coefficient being fitted again: their
 /// own effect on it, and that of the coefficient which moves with them.
+///
+/// @param negligible  a coefficient of which the share is not worth simulating
 double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
                        const datasets::Condition& condition, const datasets::Record& average,
-                       const LeakFit& fit, double share_slope);
+                       const LeakFit& fit, double share_slope, double negligible = 0.0);
 
 /// Share of the servo flow that leaks in a condition at given values: of a truth that is known.
 double share_at(const datasets::Campaign& campaign, const datasets::Condition& condition,

@@ -21,8 +21,8 @@ bool has_periodic_state(const calib::ProblemCondition& condition) {
 /// Empty where the rig does not become periodic.
 std::optional<SteadyLeak> periodic(const calib::Problem& problem,
                                    const calib::ProblemCondition& condition,
-                                   const model::ParameterValues& values,
-                                   std::span<const int> free) {
+                                   const model::ParameterValues& values, std::span<const int> free,
+                                   const std::atomic<bool>* cancel) {
   const datasets::Condition& c = *condition.condition;
   calib::PeriodicDrive drive;
   drive.rig = condition.rig;
@@ -34,6 +34,7 @@ std::optional<SteadyLeak> periodic(const calib::Problem& problem,
   options.simulation.method = settings.method;
   options.simulation.tolerance = settings.tolerance.value_or(options.simulation.tolerance);
   options.simulation.max_seconds = settings.max_seconds;
+  options.simulation.cancel = cancel;
   const calib::PeriodicFlow flow = calib::periodic_flow(drive, values, free, options);
   if (!flow.ok()) return std::nullopt;
   SteadyLeak leak(flow.servo_flow_m3_per_s, flow.leak_flow_m3_per_s, flow.servo_slope,
@@ -43,10 +44,12 @@ std::optional<SteadyLeak> periodic(const calib::Problem& problem,
 }
 
 SteadyLeak over_record(const calib::Problem& problem, const calib::ProblemCondition& condition,
-                       const model::ParameterValues& values, std::span<const int> free) {
+                       const model::ParameterValues& values, std::span<const int> free,
+                       const std::atomic<bool>* cancel) {
   constexpr std::array kFlows{model::Output::servo_flow, model::Output::leakage_flow};
-  const auto run = model::simulate(condition.rig, values, free, condition.inputs,
-                                   condition.record->time_s, kFlows, problem.simulation_options());
+  const auto run =
+      model::simulate(condition.rig, values, free, condition.inputs, condition.record->time_s,
+                      kFlows, problem.simulation_options(cancel));
   if (!run.ok())
     throw NoResultError(fmt::format("condition \"{}\": share of the servo flow: {} at {:g} s",
                                     condition.condition->id, run.reason, run.failed_at_s));
@@ -60,11 +63,12 @@ bool is_generated_wave(const datasets::Condition& condition) {
 }
 
 SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
-                       const model::ParameterValues& values, std::span<const int> free) {
+                       const model::ParameterValues& values, std::span<const int> free,
+                       const std::atomic<bool>* cancel) {
   if (has_periodic_state(condition)) {
-    if (auto leak = periodic(problem, condition, values, free)) return *leak;
+    if (auto leak = periodic(problem, condition, values, free, cancel)) return *leak;
   }
-  return over_record(problem, condition, values, free);
+  return over_record(problem, condition, values, free, cancel);
 }
 
 }  // namespace rigcal::diagnosis

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
 #include <span>
 
 #include "calib/problem/problem.hpp"
@@ -35,7 +36,8 @@ struct SteadyLeak {
 /// @param free    table indices of the slopes that are wanted
 /// @throws NoResultError  the run fails, moves no oil, or has a single sample that counts
 SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
-                       const model::ParameterValues& values, std::span<const int> free);
+                       const model::ParameterValues& values, std::span<const int> free,
+                       const std::atomic<bool>* cancel = nullptr);
 
 /// Whether the condition is a sine or square of a known frequency.
 bool is_generated_wave(const datasets::Condition& condition);

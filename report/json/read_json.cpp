@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <vector>
 
 #include "common/error.hpp"
@@ -88,8 +89,10 @@ class JsonScan {
     const std::string_view number = text_.substr(begin, end - begin);
     double value = 0.0;
     const auto [rest, error] = std::from_chars(number.data(), number.data() + number.size(), value);
-    if (error == std::errc::result_out_of_range && !is_tiny(number))
-      fail(begin, fmt::format("the number {} is too large", number.substr(0, 40)));
+    const bool too_large = error == std::errc::result_out_of_range
+                               ? !is_tiny(number)
+                               : std::abs(value) > limits_.number;
+    if (too_large) fail(begin, fmt::format("the number {} is too large", number.substr(0, 40)));
     return end;
   }
 

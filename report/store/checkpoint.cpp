@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "common/error.hpp"
@@ -153,7 +154,10 @@ std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenanc
 }
 
 calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Provenance& provenance) {
-  const Json json = read_json(file, "a checkpoint of rigcal fit, or a fit without --resume");
+  JsonLimits limits;
+  limits.number = std::numeric_limits<double>::max();  // a cost on the way may be anything
+  const Json json =
+      read_json(file, "a checkpoint of rigcal fit, or a fit without --resume", limits);
   try {
     if (json.at("schema") != kSchema) {
       throw InputError({file.string()}, fmt::format("key 'schema': expected \"{}\"", kSchema));

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -52,11 +53,41 @@ double half_in_errors(const StoredParameter& p, double error) {
   return 0.5 * (p.ci95->high - p.ci95->low) / error;
 }
 
+/// Correlations of any parameters can be no others.
+void require_correlations(const StoredCorrelation& stored, const JsonNode& matrix) {
+  constexpr double kRounding = 1e-6;
+  const auto size = static_cast<Eigen::Index>(stored.names.size());
+  Eigen::MatrixXd all(size, size);
+  if (stored.matrix.size() != stored.names.size()) matrix.fail("one row per name");
+  for (std::size_t i = 0; i < stored.matrix.size(); ++i) {
+    const std::vector<double>& row = stored.matrix[i];
+    if (row.size() != stored.names.size()) matrix.items()[i].fail("one number per name");
+    for (std::size_t j = 0; j < row.size(); ++j)
+      all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = row[j];
+  }
+  // What is not known of one says nothing against the others.
+  std::vector<Eigen::Index> known;
+  for (Eigen::Index i = 0; i < size; ++i)
+    if (all.row(i).allFinite() && all.col(i).allFinite()) known.push_back(i);
+  if (known.empty()) return;
+  const Eigen::MatrixXd part = all(known, known);
+  const bool valid = (part - part.transpose()).cwiseAbs().maxCoeff() <= kRounding &&
+                     (part.diagonal().array() - 1.0).abs().maxCoeff() <= kRounding &&
+                     part.cwiseAbs().maxCoeff() <= 1.0 + kRounding;
+  if (valid && Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(part, Eigen::EigenvaluesOnly)
+                       .eigenvalues()(0) >= -kRounding * static_cast<double>(part.rows()))
+    return;
+  matrix.fail(
+      "correlations: numbers from -1 to 1, the same on both sides of a diagonal of ones, by which "
+      "no combination of the parameters has a negative variance");
+}
+
 Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::PlantKind plant) {
   const std::vector<std::string>& names = stored.correlation.names;
   const auto& rows = stored.correlation.matrix;
   const std::vector<JsonNode> nodes = root["parameters"].items();
   Estimates result;
+  require_correlations(stored.correlation, root["correlation"]["matrix"]);
   std::vector<std::optional<std::size_t>> places;  // in the matrix
   std::vector<double> errors;
   for (std::size_t i = 0; i < nodes.size(); ++i) {

@@ -43,6 +43,31 @@ void require_length(std::size_t found, std::size_t expected, const char* list,
   throw InputError({file}, fmt::format("{}: found {} entries, expected {}", list, found, expected));
 }
 
+/// What a page draws over each other.
+void require_matching(const StoredCurves& curves, const std::string& file) {
+  for (const auto& [condition, channels] : curves.conditions) {
+    for (const auto& [channel, found] : channels) {
+      if (!found) continue;
+      const auto require = [&, &id = condition, &key = channel](
+                               const auto& list, const auto& beside, const char* name) {
+        require_length(list.size(), beside.size(),
+                       fmt::format("{} of {}, condition {}", name, key, id).c_str(), file);
+      };
+      require(found->periodogram.density, found->periodogram.frequency_hz, "periodogram.density");
+      require(found->normality.residual_quantile, found->normality.normal_quantile,
+              "normality.residual_quantile");
+    }
+  }
+}
+
+void require_matching(const StoredFit& fit, const std::string& file) {
+  for (const StoredParameter& parameter : fit.parameters) {
+    if (parameter.profile)
+      require_length(parameter.profile->rises.size(), parameter.profile->values.size(),
+                     fmt::format("profile.rises of {}", parameter.name).c_str(), file);
+  }
+}
+
 }  // namespace
 
 ReadFile files_in(const std::filesystem::path& folder) {
@@ -79,7 +104,9 @@ std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read
   if (is_fit && is_of_tables(json)) return as<StoredTablesFit>(json, where, stored.file);
   stored.result = as<StoredFit>(json, where, stored.file);
   const ReadFile own = files_of_run(read, stored.result.provenance, where, stored.file);
+  require_matching(stored.result, path_in(where, stored.file));
   stored.curves = load<StoredCurves>(own, where, "residual_tests.json");
+  require_matching(stored.curves, path_in(where, "residual_tests.json"));
   std::vector<std::string> names;
   for (const StoredCondition& condition : stored.result.conditions) {
     require_id(condition.id, "id", path_in(where, stored.file));

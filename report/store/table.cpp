@@ -54,6 +54,8 @@ std::string csv_of(const Table& table) {
 
 Table parse_table(std::string_view text, const std::string& file) {
   Table table;
+  std::size_t time = 0;  // column of the instants, if there is one
+  double before_s = -std::numeric_limits<double>::infinity();
   long line_number = 0;
   while (!text.empty()) {
     ++line_number;
@@ -67,6 +69,8 @@ Table parse_table(std::string_view text, const std::string& file) {
         throw InputError({file, line_number}, fmt::format("{} columns; expected at most {}",
                                                           table.names.size(), kMostColumns));
       table.columns.resize(table.names.size());
+      time = static_cast<std::size_t>(std::find(table.names.begin(), table.names.end(), "time_s") -
+                                      table.names.begin());
       continue;
     }
     const char* at = line.data();
@@ -83,6 +87,8 @@ Table parse_table(std::string_view text, const std::string& file) {
         if (error != std::errc() || (next != stop && *next != ',')) fail("a number");
         at = next;
       }
+      if (i == time && !(value > before_s)) fail("a time after the one before it");
+      if (i == time) before_s = value;
       table.columns[i].push_back(value);
       const bool last = i + 1 == table.columns.size();
       if (last != (at == stop)) fail(fmt::format("{} fields in a row", table.names.size()));

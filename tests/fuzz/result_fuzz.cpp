@@ -29,9 +29,16 @@ void read_or_refuse(Attempt attempt) {
   }
 }
 
+/// A fit whose residuals were tested, so that their curves are drawn.
+std::string tested_fit() {
+  auto fit = test::stored_result();
+  fit["conditions"][0]["residual_tests"]["position"] = json_of(StoredResidualTests());
+  return fit.dump();
+}
+
 }  // namespace
 
-/// A fit.json, or another result in JSON, is read by all that reads such, or is refused.
+/// A fit.json, or another result in JSON or a table, is read by all that reads such, or is refused.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(fuzz::text_of_bytes(data, size));
   const auto file = fuzz::scratch_file("fit.json", text);
@@ -44,12 +51,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::vector<std::string> kinds{"residual_tests.json"};
   for (const Section& section : sections())
     kinds.insert(kinds.end(), section.files.begin(), section.files.end());
+  kinds.emplace_back("residuals/sine.csv");
   for (const std::string& kind : kinds) {
     const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
       if (path == kind) return text;
       // What lies beside what is read is whole.
-      if (path == "fit.json" && kind == "residual_tests.json") return test::stored_result().dump();
-      if (path == "residual_tests.json" && (kind == "fit.json" || kind == "validation.json"))
+      const bool of_fit = kind == "residual_tests.json" || kind == "residuals/sine.csv";
+      if (path == "fit.json" && of_fit) return tested_fit();
+      if (path == "residual_tests.json" &&
+          (kind == "fit.json" || kind == "validation.json" || of_fit))
         return test::kNoCurves;
       if (path.extension() == ".csv") return "time_s,position_residual_m\n0,1\n";
       return std::nullopt;

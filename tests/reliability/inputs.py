@@ -1,4 +1,7 @@
-"""Files that are damaged: a byte changed, the end cut off, something put in. Each is read, or refused with its name."""
+"""Files that are damaged: a byte changed, the end cut off, something put in, a value of a result replaced. Each is read, or
+refused with its name. A result names its files by their hashes, which are made right, else no parser would see them."""
+import hashlib
+import json
 import random
 import shutil
 
@@ -14,6 +17,92 @@ def damaged(data, rounds):
         yield f"cut at byte {at}", data[:at]
         yield f"more at byte {at}", data[:at] + random.choice([b"\0", b"\xff\xfe", b"1e999", b"[[", b"{", b",,", b"\n\n",
                                                               b"nan", b'"']) + data[at:]
+
+
+ODD = [None, True, "", "text", [], {}, [1.0], [None, None], 0, -1, 1, 0.5, 1e6, 2147483648, 1e149, -1e149, 1e-308, 1e308]
+
+
+def values_of(node, place=()):
+    """Places of all values of a JSON text."""
+    yield place
+    children = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    for key, child in children:
+        yield from values_of(child, (*place, key))
+
+
+def replaced(data, rounds):
+    """Texts of a JSON in which one value is another, or gone, evenly over its values."""
+    random.seed(len(data))
+    places = [place for place in values_of(json.loads(data)) if place]
+    for k in range(rounds):
+        place = places[(2 * k + 1) * len(places) // (2 * rounds)]
+        text = json.loads(data)
+        above = text
+        for key in place[:-1]:
+            above = above[key]
+        at = ".".join(map(str, place))
+        if k % 4 == 0:
+            del above[place[-1]]
+            yield f"{at} gone", json.dumps(text).encode()
+            continue
+        number = isinstance(above[place[-1]], float) and k % 2 == 0
+        value = above[place[-1]] * random.choice([-1.0, 1e6, 1e100, 1e300]) if number else random.choice(ODD)
+        above[place[-1]] = max(-1e308, min(1e308, value)) if number else value
+        yield f"{at} = {str(above[place[-1]])[:40]}", json.dumps(text).encode()
+
+
+def cells_replaced(data, rounds):
+    """Texts of a table in which one cell is empty or another."""
+    random.seed(len(data))
+    rows = data.split(b"\n")
+    for k in range(rounds):
+        row = 1 + (2 * k + 1) * (len(rows) - 2) // (2 * rounds)
+        cells = rows[row].split(b",")
+        column = k % len(cells)
+        cell = random.choice([b"", b"nan", b"inf", b"0", b"-1", b"1e300", b"-1e300", b"1e-300", b"x", b"1,2"])
+        changed = b",".join([*cells[:column], cell, *cells[column + 1:]])
+        yield f"row {row}, column {column}: {cell.decode()}", b"\n".join([*rows[:row], changed, *rows[row + 1:]])
+
+
+def make_right(result, file):
+    """The hash of a file of the result in fit.json."""
+    fit = json.loads((result / "fit.json").read_text())
+    for each in fit["provenance"]["files"]:
+        if result / each["path"] == file:
+            each["sha256"] = hashlib.sha256(file.read_bytes()).hexdigest()
+    (result / "fit.json").write_text(json.dumps(fit))
+
+
+def behind_hashes(rigcal, folder, fit, rounds):
+    """Files that fit.json names, and fit.json by its values."""
+    other = folder / "other"
+    shutil.copytree(fit, other)
+    diagnose = ["diagnose", folder / "twin" / "campaign.toml", "--fit", fit / "fit.json", "--out", folder / "diagnosis",
+                "--quiet"]
+    rows = []
+    for name, file, change, arguments in (
+            ("fit.json by value, report", fit / "fit.json", replaced, ["report", fit]),
+            ("fit.json by value, diagnose", fit / "fit.json", replaced, diagnose),
+            ("fit.json by value, compare", fit / "fit.json", replaced,
+             ["compare", fit, other, "--out", folder / "compared", "--quiet"]),
+            ("residual_tests.json, hash made right", fit / "residual_tests.json", replaced, ["report", fit]),
+            ("residual_tests.json by byte, hash made right", fit / "residual_tests.json", damaged, ["report", fit]),
+            ("residuals/*.csv, hash made right", sorted((fit / "residuals").glob("*.csv"))[0], cells_replaced,
+             ["report", fit])):
+        row = Count(f"inputs: {name}")
+        before = {path: path.read_bytes() for path in (file, fit / "fit.json")}
+        for what, data in change(before[file], rounds):
+            file.write_bytes(data)
+            if file.name != "fit.json":
+                make_right(fit, file)
+            code, _, err = run(rigcal, arguments)
+            row.ended(code, what)
+            if code == 5 or b"bug" in err:
+                row.is_wrong(f"{what}: exit {code}: {err.decode(errors='replace')[-200:]}")
+        for path, data in before.items():
+            path.write_bytes(data)
+        rows.append(row)
+    return rows
 
 
 def study(rigcal, folder, size):
@@ -47,4 +136,4 @@ def study(rigcal, folder, size):
                 row.is_wrong(f"{what}: exit {code}: {err.decode(errors='replace')[-200:]}")
         file.write_bytes(whole)
         rows.append(row)
-    return rows
+    return rows + behind_hashes(rigcal, folder, fit, 3 * rounds)

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <memory>
 #include <mutex>
 #include <system_error>
@@ -15,6 +14,7 @@
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "common/printable.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/stored.hpp"
@@ -122,11 +122,9 @@ class EndedRigs {
     const std::lock_guard lock(mutex_);
     ++ended_;
     if (quiet_) return;
-    std::fputs(fmt::format("{} of {} rigs: {}: {}, exit {}, {:.1f} s{}\n", ended_, all_, rig.rig,
-                           end.unchanged ? "unchanged" : "done", static_cast<int>(end.code),
-                           end.seconds, end.error.empty() ? "" : ": " + end.error)
-                   .c_str(),
-               stderr);
+    say(fmt::format("{} of {} rigs: {}: {}, exit {}, {:.1f} s{}\n", ended_, all_, rig.rig,
+                    end.unchanged ? "unchanged" : "done", static_cast<int>(end.code), end.seconds,
+                    end.error.empty() ? "" : ": " + end.error));
   }
 
  private:

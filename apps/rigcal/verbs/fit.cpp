@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -14,6 +13,7 @@
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/memory.hpp"
+#include "common/printable.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/kept_tasks.hpp"
@@ -31,11 +31,8 @@ struct FitRequest {
 
 /// A fit that begins anew must not look as if it went on.
 void say_nothing_to_resume(const FitRequest& options, int starts) {
-  std::fputs(
-      fmt::format("no checkpoint in {}{}: the fit begins anew\n", options.common.out.string(),
-                  starts > 1 ? "" : " (a fit of one start keeps none)")
-          .c_str(),
-      stderr);
+  say(fmt::format("no checkpoint in {}{}: the fit begins anew\n", options.common.out.string(),
+                  starts > 1 ? "" : " (a fit of one start keeps none)"));
 }
 
 /// Exit code of the result that is there already, if it is the one that would be made.

@@ -202,17 +202,20 @@ double TomlNode::quantity(std::string_view unit) const {
   }
 }
 
-double TomlNode::positive_quantity(std::string_view unit) const {
-  const double value = quantity(unit);
-  if (!(value > 0.0)) fail_type("a quantity above zero");
-  return value;
+double TomlNode::within(QuantityRange range, std::string_view unit, double value) const {
+  if (value >= range.lower && value <= range.upper) return value;
+  const std::string_view what = unit == "1" ? "number" : "quantity";
+  if (range.lower == 0.0 && value < 0.0) fail_type(fmt::format("a {} that is not negative", what));
+  if (range.lower > 0.0 && value <= 0.0) fail_type(fmt::format("a {} above zero", what));
+  fail_type(fmt::format("a {} from {:g} to {:g}{}{}", what, range.lower, range.upper,
+                        unit == "1" ? "" : " ", unit == "1" ? "" : unit));
 }
 
-double TomlNode::non_negative_quantity(std::string_view unit) const {
-  const double value = quantity(unit);
-  if (!(value >= 0.0)) fail_type("a quantity that is not negative");
-  return value;
+double TomlNode::quantity(std::string_view unit, QuantityRange range) const {
+  return within(range, unit, quantity(unit));
 }
+
+double TomlNode::number(QuantityRange range) const { return within(range, "1", number()); }
 
 double TomlNode::difference(std::string_view unit) const {
   const double value = quantity(unit);
@@ -223,10 +226,8 @@ double TomlNode::difference(std::string_view unit) const {
   return zero == 0.0 ? value : value - zero;
 }
 
-double TomlNode::non_negative_difference(std::string_view unit) const {
-  const double value = difference(unit);
-  if (!(value >= 0.0)) fail_type("a quantity that is not negative");
-  return value;
+double TomlNode::difference(std::string_view unit, QuantityRange range) const {
+  return within(range, unit, difference(unit));
 }
 
 std::string TomlNode::date() const {

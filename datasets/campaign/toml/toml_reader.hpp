@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "datasets/campaign/toml/quantity_range.hpp"
 
 namespace rigcal::datasets {
 
@@ -63,12 +64,14 @@ class TomlNode {
   int integer(int lowest, int highest) const;
   /// Text "number unit" in `unit` ("1": a plain number instead).
   double quantity(std::string_view unit) const;
-  double positive_quantity(std::string_view unit) const;
-  double non_negative_quantity(std::string_view unit) const;
+  /// The same, within a range.
+  double quantity(std::string_view unit, QuantityRange range) const;
   /// Like quantity(), of a difference: "2 degC" is 2 K.
   double difference(std::string_view unit) const;
-  /// Text that is not negative in `unit` and counts a difference: standard deviations, steps.
-  double non_negative_difference(std::string_view unit) const;
+  /// The same, within a range: standard deviations, steps.
+  double difference(std::string_view unit, QuantityRange range) const;
+  /// Plain number within a range.
+  double number(QuantityRange range) const;
   /// TOML date, or date and time, as text.
   std::string date() const;
   std::vector<TomlNode> items() const;
@@ -106,6 +109,7 @@ class TomlNode {
 
  private:
   const toml::table& table() const;
+  double within(QuantityRange range, std::string_view unit, double value) const;
   Location location(const toml::source_region& source) const;
   TomlNode child(std::string_view key, const toml::node& node) const;
   [[noreturn]] void fail_choice(const std::string& found,

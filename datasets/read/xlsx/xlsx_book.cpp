@@ -346,8 +346,17 @@ XlsxBook::XlsxBook(const std::filesystem::path& path) : archive_(path) {
   is_to_be_computed_ = handler.is_to_be_computed;
   for (const auto& [sheet, id] : handler.sheets) {
     const auto found = parts.find(id);
-    if (found != parts.end() && found->second.kind == "worksheet")
-      sheets_.push_back({sheet, resolved(workbook, found->second.target)});
+    if (found == parts.end() || found->second.kind != "worksheet") continue;
+    const std::string part = resolved(workbook, found->second.target);
+    // Each would be read as if it were one more.
+    const auto same = std::find_if(sheets_.begin(), sheets_.end(),
+                                   [&](const Sheet& each) { return each.part == part; });
+    if (same != sheets_.end())
+      throw InputError({name()},
+                       fmt::format("stores its worksheets '{}' and '{}' in one part, '{}'; "
+                                   "save the workbook again",
+                                   shown(same->name), shown(sheet), shown(part)));
+    sheets_.push_back({sheet, part});
   }
   if (sheets_.empty())
     throw InputError({name()}, "holds no worksheet; expected one with a table of numbers");

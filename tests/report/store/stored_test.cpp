@@ -117,3 +117,26 @@ TEST_CASE("stored: what a diagnosis says of a leak has another kind", "[report]"
   CHECK_THROWS_WITH(load_diagnosis(files.reader(), "folder"),
                     Contains("class_limits: found 1 entries, expected 2"));
 }
+
+TEST_CASE("stored: lists that belong together are of the same length", "[report]") {
+  StoredFiles files;
+  files.json["fit.json"] = rigcal::test::stored_result();
+  Json& all = files.json["residual_tests.json"] = Json::parse(rigcal::test::kNoCurves);
+  all["conditions"]["sine"]["position"] = Json::parse(R"({
+    "autocorrelation": {"first_lag_s": 0, "lag_step_s": 0.1, "band": 0.2, "values": [1, 0.5]},
+    "cross_correlation": null,
+    "periodogram": {"frequency_hz": [1, 2], "density": [3, 4]},
+    "normality": {"normal_quantile": [-1, 1], "residual_quantile": [-1, 1]}})");
+  CHECK_NOTHROW(load_calibration(files.reader(), "folder", 1));
+  const Json whole = all;
+  for (const char* list : {"/periodogram/density", "/periodogram/frequency_hz",
+                           "/normality/residual_quantile", "/normality/normal_quantile"}) {
+    for (const Json& other : {Json::array(), Json{1.0}, Json{1.0, 2.0, 3.0}}) {
+      all = whole;
+      all["conditions"]["sine"]["position"][Json::json_pointer(list)] = other;
+      CHECK_THROWS_WITH(load_calibration(files.reader(), "folder", 1),
+                        Contains("folder/residual_tests.json") && Contains("position") &&
+                            Contains("sine") && Contains("entries"));
+    }
+  }
+}
