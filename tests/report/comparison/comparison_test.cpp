@@ -422,7 +422,7 @@ TEST_CASE("comparison: fits to published tables, which have no records", "[repor
   CHECK(json["results"][0]["synthetic"] == false);
   CHECK_THAT(json["parameters"][0]["differences"][1]["reason"].get<std::string>(),
              Contains("same data"));
-  CHECK_THAT(json["warnings"].dump(), Contains("share published numbers"));
+  CHECK_THAT(json["warnings"].dump(), Contains("fitted to the same published numbers"));
   json = comparison_json({tables_fit("a", 85.0, "C"), tables_fit("b", 90.0, "other")}, {});
   CHECK(json["parameters"][0]["differences"][1]["significant"] == true);
 }
