@@ -397,6 +397,20 @@ TEST_CASE("load_xlsx: parts by their references, whatever these look like", "[da
   CHECK_THAT(with_target("../sheet1.xml").refusal(), Contains("lacks its part 'sheet1.xml'"));
 }
 
+TEST_CASE("load_xlsx: two sheets of one part are refused, not read twice", "[datasets]") {
+  const std::string log = sheet_of(kHeader + numbers(2, 0, 1));
+  const Parts parts = xlsx_parts({{"Log", log}, {"Copy", log}});
+  CHECK(Book(parts).read() == Table{{0}, {1}});
+  std::string references;
+  for (const char* id : {"rId1", "rId2"})
+    references += fmt::format(
+        "<Relationship Id=\"{}\" Type=\"x/worksheet\" Target=\"worksheets/sheet1.xml\"/>", id);
+  CHECK_THAT(Book(with_part(parts, "xl/_rels/workbook.xml.rels",
+                            "<Relationships>" + references + "</Relationships>"))
+                 .refusal(),
+             Contains("'Log' and 'Copy' in one part"));
+}
+
 TEST_CASE("load_xlsx: the header is the first row that holds something and is no comment",
           "[datasets]") {
   CHECK(Book(sheet_of(row(3, text_cell("A3", "# a comment") + number_cell("B3", 1)) +
