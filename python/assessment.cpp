@@ -18,7 +18,8 @@ void bind_assessment(py::module_& module) {
   py::class_<Reason>(module, "Reason", "One reason of an aspect.")
       .def_property_readonly(
           "state", named(&Reason::state),
-          "What it speaks for: \"pass\", \"reservation\", \"fail\" or \"not_assessed\".")
+          "What it speaks for: \"pass\", \"reservation\", \"fail\" or \"not_assessed\"; or\n"
+          "\"note\", which changes nothing.")
       .def_readonly("code", &Reason::code, "\"limit_broken\", \"lack_of_fit\"...: docs/report.md")
       .def_readonly("subject", &Reason::subject, "Condition or parameter; empty: the whole result.")
       .def_property_readonly(

@@ -53,7 +53,7 @@ void warn_of_fit(const LeakTableInput& input, const report::EarlierFit& earlier,
   if (earlier.status == calib::FitStatus::stopped)
     warnings.push_back("the fit was stopped before it converged: " + earlier.message);
   for (const calib::Reason& reason : earlier.parameters.reasons) {
-    if (reason.state != calib::AspectState::pass) warnings.push_back("of the fit: " + reason.words);
+    if (calib::is_against(reason.state)) warnings.push_back("of the fit: " + reason.words);
   }
   std::vector<std::string_view> unknown;
   for (const Assumption& each : input.settings.assumptions) {

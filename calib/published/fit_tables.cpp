@@ -12,6 +12,7 @@
 #include "calib/published/table_residuals.hpp"
 #include "calib/search/descend.hpp"
 #include "calib/search/optimum.hpp"
+#include "calib/trust/identifiability.hpp"
 #include "common/error.hpp"
 #include "metrics/distributions.hpp"
 
@@ -76,7 +77,8 @@ Descent minimise(TableResiduals& residuals, const std::vector<UnitInterval>& int
 }
 
 /// Standard errors, intervals and correlation from the Jacobian at the optimum [SI].
-void add_uncertainty(const TableResiduals::Evaluation& optimum, TablesFit& fit) {
+void add_uncertainty(const TableResiduals::Evaluation& optimum, model::PlantKind plant,
+                     TablesFit& fit) {
   const ScaledSvd svd(optimum.jacobian, kRankThreshold);
   const auto n = optimum.jacobian.cols();
   const auto freedom = static_cast<double>(optimum.residuals.size() - svd.rank());
@@ -95,6 +97,9 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, TablesFit& fit) 
     parameter.degrees_of_freedom = freedom;
     parameter.ci95 = {parameter.value - t * *parameter.standard_error,
                       parameter.value + t * *parameter.standard_error};
+    parameter.identifiability =
+        grade_of(datasets::assumption_spec(plant, parameter.index), parameter.value,
+                 t * *parameter.standard_error, parameter.lower < 0.0 && parameter.upper > 0.0);
     for (Eigen::Index k = 0; k < n; ++k) {
       if (covariance(k, k) > 0.0) {
         fit.correlation(j, k) = covariance(j, k) / std::sqrt(covariance(j, j) * covariance(k, k));
@@ -176,7 +181,7 @@ TablesFit fit_tables(const datasets::Campaign& campaign,
       fit.residuals.push_back(
           {residuals.name(i), weight, optimum.residuals(static_cast<Eigen::Index>(i)) / weight});
     }
-    add_uncertainty(optimum, fit);
+    add_uncertainty(optimum, campaign.rig.plant, fit);
   }
   if (cancelled) {
     fit.status = FitStatus::stopped;

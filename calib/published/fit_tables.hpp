@@ -23,6 +23,7 @@ struct FittedAssumption {
   std::optional<std::pair<double, double>> ci95;
   std::optional<double> degrees_of_freedom;  ///< of the standard error
   bool at_bound = false;
+  Identifiability identifiability = Identifiability::not_identifiable;
 };
 
 /// One published number against the computed one, at the end of the fit.

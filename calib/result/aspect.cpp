@@ -9,12 +9,14 @@ namespace {
 int rank(AspectState state) {
   switch (state) {
     case AspectState::fail:
-      return 3;
+      return 4;
     case AspectState::not_assessed:
-      return 2;
+      return 3;
     case AspectState::reservation:
-      return 1;
+      return 2;
     case AspectState::pass:
+      return 1;
+    case AspectState::note:
       break;
   }
   return 0;
@@ -32,9 +34,13 @@ std::string_view to_string(AspectState state) {
       return "fail";
     case AspectState::not_assessed:
       return "not_assessed";
+    case AspectState::note:
+      return "note";
   }
   return "";
 }
+
+bool is_against(AspectState state) { return rank(state) > rank(AspectState::pass); }
 
 Reason reason(AspectState state, std::string code, std::string words, std::string subject,
               std::vector<std::pair<std::string, double>> numbers) {
@@ -45,7 +51,8 @@ Aspect aspect_of(std::vector<Reason> reasons) {
   std::stable_sort(reasons.begin(), reasons.end(),
                    [](const Reason& a, const Reason& b) { return rank(a.state) > rank(b.state); });
   Aspect aspect;
-  if (!reasons.empty()) aspect.state = reasons.front().state;
+  if (!reasons.empty() && reasons.front().state != AspectState::note)
+    aspect.state = reasons.front().state;
   aspect.reasons = std::move(reasons);
   return aspect;
 }

@@ -1,5 +1,7 @@
 #include "calib/result/condition_score.hpp"
 
+#include <algorithm>
+
 namespace rigcal::calib {
 
 std::string_view to_string(Verdict verdict) {
@@ -12,6 +14,15 @@ std::string_view to_string(Verdict verdict) {
       return "FAIL";
   }
   return "";
+}
+
+std::optional<Verdict> ConditionScore::verdict_of(datasets::Channel of) const {
+  if (!failure.empty()) return verdict;
+  std::optional<Verdict> worst;
+  for (const LimitCheck& check : checks) {
+    if (check.channel == of) worst = std::max(worst.value_or(check.verdict), check.verdict);
+  }
+  return worst;
 }
 
 }  // namespace rigcal::calib

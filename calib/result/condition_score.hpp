@@ -72,6 +72,10 @@ struct ConditionScore {
   /// Simulated flows at time_s [m3/s]; empty if it could not be simulated.
   std::vector<double> servo_flow_m3_per_s, leakage_flow_m3_per_s;
   std::vector<bool> in_window;  ///< empty: all
+
+  /// Of one channel, the worst of its checks; that of the condition where this could not be
+  /// simulated. Nothing where no limit judges the channel.
+  std::optional<Verdict> verdict_of(datasets::Channel of) const;
 };
 
 }  // namespace rigcal::calib

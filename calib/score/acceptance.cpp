@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "common/significant.hpp"
 #include "metrics/metric_table.hpp"
 
 namespace rigcal::calib {
@@ -34,6 +35,17 @@ double used_of(const metrics::MetricSpec& spec, double value, double bound) {
   const double allowed = std::abs(bound - metrics::ideal(spec));
   if (distance == 0.0) return 0.0;
   return distance / allowed;
+}
+
+/// Whether a score keeps its limit only by more than its expanded uncertainty.
+bool counts_uncertainty(datasets::DecisionRule rule) {
+  switch (rule) {
+    case datasets::DecisionRule::simple:
+      return false;
+    case datasets::DecisionRule::guard_band:
+      break;
+  }
+  return true;
 }
 
 LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule rule,
@@ -75,7 +87,7 @@ LimitCheck check(const datasets::AcceptanceLimit& limit, datasets::DecisionRule 
   } else if (beyond(limit.warn)) {
     result.verdict = Verdict::warn;
     result.words = text(*limit.warn);
-  } else if (limit.limit && rule == datasets::DecisionRule::guard_band) {
+  } else if (limit.limit && counts_uncertainty(rule)) {
     const auto& uncertainty = result.expanded_uncertainty;
     const double worse = spec.higher_is_better ? -1.0 : 1.0;
     result.in_guard_band = !uncertainty || !keeps(value + worse * *uncertainty, *limit.limit);
@@ -113,6 +125,27 @@ void judge(const std::vector<datasets::AcceptanceLimit>& limits, datasets::Decis
       if (!made.words.empty()) score.reasons.push_back(made.words);
     }
   }
+}
+
+std::string_view words_of(datasets::DecisionRule rule) {
+  switch (rule) {
+    case datasets::DecisionRule::simple:
+      return "simple acceptance";
+    case datasets::DecisionRule::guard_band:
+      return "guard band";
+  }
+  throw std::logic_error("words_of: no words for a decision rule");
+}
+
+std::string tolerance_used_text(double used) {
+  constexpr int kMostDigits = 6;
+  if (used > 10.0) return "over 1000 %";
+  std::string text = significant(100.0 * used, 2);
+  // Beside 1 as many digits as tell which side of it.
+  for (int digits = 3; text == "100" && used != 1.0 && digits <= kMostDigits; ++digits)
+    text = significant(100.0 * used, digits);
+  if (used < 1.0 && text.starts_with("100")) return "just below 100 %";
+  return text + " %";
 }
 
 }  // namespace rigcal::calib

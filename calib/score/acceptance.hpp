@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <string_view>
+
 #include "calib/result/condition_score.hpp"
 
 namespace rigcal::calib {
@@ -12,5 +15,14 @@ namespace rigcal::calib {
 /// fails.
 void judge(const std::vector<datasets::AcceptanceLimit>& limits, datasets::DecisionRule rule,
            ConditionScore& score);
+
+/// What a decision rule is called where somebody signs: "simple acceptance", "guard band".
+std::string_view words_of(datasets::DecisionRule rule);
+
+/// How much of a tolerance is used, rounded so that a limit that is kept never looks used up:
+/// "37 %", "99.96 %", "over 1000 %".
+///
+/// @param used  share of it; above 1: the limit is broken
+std::string tolerance_used_text(double used);
 
 }  // namespace rigcal::calib

@@ -24,4 +24,9 @@ std::optional<Verdict> verdict_of(const Assessment& assessment) {
   return all ? Verdict::pass : Verdict::warn;
 }
 
+bool has_range_of_validity(AspectState agreement, AspectState validation) {
+  const bool validated = validation == AspectState::pass || validation == AspectState::reservation;
+  return validated && agreement != AspectState::fail;
+}
+
 }  // namespace rigcal::calib

@@ -25,6 +25,23 @@ std::string signal_of(const std::string& condition, datasets::Channel channel) {
   return fmt::format("{} of {}", datasets::info(channel).key, condition);
 }
 
+/// The largest model error of signals that pass. An estimate may lie above what is allowed and be
+/// no error of the model at all, but the chance of the draw.
+std::string error_words(double largest, double largest_significant, double bound) {
+  if (largest <= bound)
+    return fmt::format("model error at most {:.2g} times the noise ({:.2g} allowed)", largest,
+                       bound);
+  const std::string noise = fmt::format(
+      "estimates of up to {:.2g} times the noise are not significantly above none", largest);
+  if (largest_significant > 0.0) {
+    return fmt::format(
+        "significant model error at most {:.2g} times the noise ({:.2g} allowed); {}",
+        largest_significant, bound, noise);
+  }
+  return fmt::format("no significant model error ({:.2g} times the noise allowed); {}", bound,
+                     noise);
+}
+
 /// What the records of known noise say.
 void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   /// A residual of less than half of the stated noise means that this is stated too large, and
@@ -36,12 +53,14 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   std::vector<const LackOfFit*> beyond;
   std::vector<const LackOfFit*> overstated;
   std::vector<const LackOfFit*> powerless;
-  double largest = 0.0;
+  double largest = 0.0;            // of all signals
+  double significant_error = 0.0;  // of those that differ from the noise significantly
   for (const LackOfFit& test : tests) {
     if (test.failed() && model_error(test) > bound) beyond.push_back(&test);
     if (!test.passed() && !test.failed()) powerless.push_back(&test);
     if (test.ratio < kOverstated && !test.by_repeats) overstated.push_back(&test);
     largest = std::max(largest, model_error(test));
+    if (test.failed()) significant_error = std::max(significant_error, model_error(test));
   }
   std::stable_sort(beyond.begin(), beyond.end(),
                    [](const auto* a, const auto* b) { return a->ratio > b->ratio; });
@@ -78,15 +97,15 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
         first.condition, {{"signals", static_cast<double>(powerless.size())}}));
   }
   if (beyond.empty() && overstated.empty() && powerless.empty()) {
-    reasons.push_back(
-        reason(AspectState::pass, "no_lack_of_fit",
-               fmt::format("no lack of fit beyond what is allowed in {} signal{} of known noise: "
-                           "model error at most {:.2g} times the noise ({:.2g} allowed)",
-                           tests.size(), tests.size() == 1 ? "" : "s", largest, bound),
-               {},
-               {{"signals", static_cast<double>(tests.size())},
-                {"model_error_to_noise", largest},
-                {"allowed", bound}}));
+    reasons.push_back(reason(
+        AspectState::pass, "no_lack_of_fit",
+        fmt::format("no lack of fit beyond what is allowed in {} signal{} of known noise: {}",
+                    tests.size(), tests.size() == 1 ? "" : "s",
+                    error_words(largest, significant_error, bound)),
+        {},
+        {{"signals", static_cast<double>(tests.size())},
+         {"model_error_to_noise", largest},
+         {"allowed", bound}}));
   }
 }
 

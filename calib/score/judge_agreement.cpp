@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
 
 #include "calib/score/judge_limits.hpp"
+#include "datasets/checks/sensor_doubts.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -57,6 +61,61 @@ void judge_recordings(const Fit& fit, std::vector<Reason>& reasons) {
              first->id, {{"conditions", static_cast<double>(count)}}));
 }
 
+/// A channel that is compared somewhere without a limit.
+struct WithoutLimit {
+  std::size_t conditions = 0;
+  const ConditionScore* worst = nullptr;  ///< of lowest rho2; of the first where none exists
+  double rho2 = std::numeric_limits<double>::infinity();
+};
+
+/// What the limits pass over.
+void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
+  std::map<std::pair<datasets::Channel, bool>, WithoutLimit> found;
+  for (const ConditionScore& score : fit.conditions) {
+    const datasets::Condition* condition = campaign.find(score.id);
+    if (condition == nullptr || !score.failure.empty()) continue;
+    for (const ChannelScore& channel : score.channels) {
+      if (score.verdict_of(channel.channel)) continue;
+      const bool stated = campaign.may_lack_limits(*condition, channel.channel);
+      WithoutLimit& each = found[{channel.channel, stated}];
+      ++each.conditions;
+      const double rho2 =
+          channel.agreement ? channel.agreement->rho2 : std::numeric_limits<double>::infinity();
+      if (each.worst != nullptr && rho2 >= each.rho2) continue;
+      each.worst = &score;
+      each.rho2 = rho2;
+    }
+  }
+  for (const auto& [key, each] : found) {
+    const auto& [channel, stated] = key;
+    const auto name = datasets::info(channel).key;
+    const bool scored = std::isfinite(each.rho2);
+    std::vector<std::pair<std::string, double>> numbers{
+        {"conditions", static_cast<double>(each.conditions)}};
+    if (scored) numbers.emplace_back("rho2", each.rho2);
+    const std::string where = fmt::format(
+        "{} ({} in {})", conditions_text(each.conditions),
+        scored ? fmt::format("lowest rho2 {:.4g}", each.rho2) : "no rho2 exists", each.worst->id);
+    reasons.push_back(
+        stated
+            ? reason(AspectState::note, "not_judged_as_stated",
+                     fmt::format("{} is not judged in {}: `not_judged` says so", name, where),
+                     each.worst->id, numbers)
+            : reason(AspectState::reservation, "not_judged",
+                     fmt::format("no limit judges {} in {}, though the model is held against it: "
+                                 "expected limits in [acceptance.{}], or not_judged = [\"{}\"]",
+                                 name, where, name, name),
+                     each.worst->id, numbers));
+  }
+}
+
+/// What the sensors of [report] leave open.
+void judge_sensors(const Campaign& campaign, std::vector<Reason>& reasons) {
+  for (const datasets::SensorDoubt& doubt : datasets::sensor_doubts(campaign))
+    reasons.push_back(reason(doubt.grave ? AspectState::reservation : AspectState::note, doubt.code,
+                             doubt.words));
+}
+
 /// The least rho2 of all signals, where the campaign gives no limits.
 void name_poor_agreement(const Fit& fit, std::vector<Reason>& reasons) {
   const ConditionScore* where = nullptr;
@@ -98,6 +157,8 @@ Aspect judge_agreement(const Campaign& campaign, const Fit& fit) {
         reason(AspectState::not_assessed, "not_scored",
                scores.empty() ? "no condition was scored" : "no scored condition has a limit"));
   }
+  judge_without_limits(campaign, fit, reasons);
+  judge_sensors(campaign, reasons);
   return aspect_of(std::move(reasons));
 }
 

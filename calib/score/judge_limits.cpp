@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "common/significant.hpp"
+#include "calib/score/acceptance.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -14,11 +14,6 @@ double largest_use(const ConditionScore& score) {
   double used = 0.0;
   for (const LimitCheck& check : score.checks) used = std::max(used, check.used);
   return used;
-}
-
-/// "37 %", "1.8 %", "over 1000 %".
-std::string percent(double share) {
-  return share > 10.0 ? std::string("over 1000 %") : significant(100.0 * share, 2) + " %";
 }
 
 /// Scores in the order of how far they use their tolerances, the worst first.
@@ -82,9 +77,11 @@ void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<
   reasons.push_back(reason(
       AspectState::pass, "limits_kept",
       scores.size() == 1
-          ? fmt::format("{} keeps its limits: {} of the tolerance used", nearest->id, percent(used))
+          ? fmt::format("{} keeps its limits: {} of the tolerance used", nearest->id,
+                        tolerance_used_text(used))
           : fmt::format("{} of {} keep their limits; closest to one: {}, {} of the tolerance used",
-                        kept, conditions_text(scores.size()), nearest->id, percent(used)),
+                        kept, conditions_text(scores.size()), nearest->id,
+                        tolerance_used_text(used)),
       nearest->id,
       {{"conditions", static_cast<double>(scores.size())},
        {"kept", static_cast<double>(kept)},

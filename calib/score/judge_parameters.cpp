@@ -1,9 +1,12 @@
 #include "calib/score/judge_parameters.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string_view>
 
 #include "calib/problem/parameter_map.hpp"
 
@@ -55,6 +58,35 @@ Reason judge_bounded(const Campaign& campaign, const Fit& fit, const FittedParam
                 {{"upper_limit", limit}, {"allowed", allowed}});
 }
 
+/// The known values on which the estimates rest as if they were exact: those that somebody might
+/// give an uncertainty (`prior_sd`) and has not.
+void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  std::set<int> uncertain;
+  for (const FittedParameter& each : fit.parameters) {
+    if (each.fitted) uncertain.insert(each.index);
+  }
+  for (const datasets::ParameterSetting& setting : campaign.parameters) {
+    if (setting.prior) uncertain.insert(setting.index);
+  }
+  std::vector<std::string_view> names;
+  std::set<int> seen;
+  for (const FittedParameter& each : fit.parameters) {
+    const model::ParameterSpec& spec = table[static_cast<std::size_t>(each.index)];
+    if (uncertain.contains(each.index) || !spec.can_be_fitted ||
+        spec.kind == model::ParameterKind::initial || !seen.insert(each.index).second) {
+      continue;
+    }
+    names.push_back(spec.key);
+  }
+  if (names.empty()) return;
+  reasons.push_back(
+      reason(AspectState::note, "exact_values",
+             fmt::format("conditional on {} known value{} taken as exact: {}", names.size(),
+                         names.size() == 1 ? "" : "s", fmt::join(names, ", ")),
+             {}, {{"values", static_cast<double>(names.size())}}));
+}
+
 }  // namespace
 
 Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
@@ -98,6 +130,7 @@ Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
                              {{"identified", static_cast<double>(identified)},
                               {"estimated", static_cast<double>(estimated)}}));
   }
+  note_exact_values(campaign, fit, reasons);
   return aspect_of(std::move(reasons));
 }
 

@@ -135,8 +135,8 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
     if (std::find(symmetric.begin(), symmetric.end(), j) != symmetric.end()) continue;
     if (rests_on_known(problem, spread, optimum.z, j)) {
       each.reason += fmt::format(
-          "; most of that is what is uncertain of {}: with fit = true there, and its prior, the "
-          "records may tell more",
+          "; most of that is what is uncertain of {}: as a free parameter with its prior (of a "
+          "sensor: its gain or offset) the records may tell more",
           fmt::join(spread.known.names, ", "));
       continue;
     }

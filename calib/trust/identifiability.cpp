@@ -63,6 +63,11 @@ std::string partner(const Problem& problem, const Uncertainty& found, std::size_
                      problem.name(static_cast<std::size_t>(best)));
 }
 
+/// Half width over value; beyond what is identifiable where the value is zero.
+double share_of_value(double value, double half_width) {
+  return value != 0.0 ? half_width / std::abs(value) : kNotIdentifiable * 2.0;
+}
+
 void add_reason(FittedParameter& parameter, const std::string& text) {
   parameter.reason += parameter.reason.empty() ? text : "; " + text;
 }
@@ -73,30 +78,27 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
            FittedParameter& parameter) {
   const Unknown& u = problem.map.unknowns()[unknown];
   const ParameterSpec& spec = spec_of(problem, u.index);
-  const bool holds_zero = std::abs(parameter.value) <= half_width;
-  if (holds_zero && may_be_absent(spec)) {
-    parameter.identifiability = Identifiability::bounded;
-    add_reason(parameter, fmt::format("not significantly different from zero: at most {} (95 %)",
-                                      number(spec, parameter.value + half_width)));
-    return;
+  parameter.identifiability =
+      grade_of(spec, parameter.value, half_width, zero_is_arbitrary(spec, u));
+  switch (parameter.identifiability) {
+    case Identifiability::identified:
+      return;
+    case Identifiability::bounded:
+      add_reason(parameter,
+                 may_be_absent(spec)
+                     ? fmt::format("not significantly different from zero: at most {} (95 %)",
+                                   number(spec, parameter.value + half_width))
+                     : fmt::format("not significantly different from zero: {} to {} (95 %)",
+                                   number(spec, parameter.value - half_width),
+                                   number(spec, parameter.value + half_width)));
+      return;
+    case Identifiability::weak:
+    case Identifiability::not_identifiable:
+      break;
   }
-  if (holds_zero && zero_is_arbitrary(spec, u)) {
-    parameter.identifiability = Identifiability::bounded;
-    add_reason(parameter, fmt::format("not significantly different from zero: {} to {} (95 %)",
-                                      number(spec, parameter.value - half_width),
-                                      number(spec, parameter.value + half_width)));
-    return;
-  }
-  const double share =
-      parameter.value != 0.0 ? half_width / std::abs(parameter.value) : kNotIdentifiable * 2.0;
-  if (share > kNotIdentifiable) {
-    parameter.identifiability = Identifiability::not_identifiable;
-  } else if (share > kWeak) {
-    parameter.identifiability = Identifiability::weak;
-  }
-  if (parameter.identifiability == Identifiability::identified) return;
   add_reason(parameter, fmt::format("half width of the 95 % interval is {:.0f} % of the value{}",
-                                    100.0 * share, partner(problem, found, unknown)));
+                                    100.0 * share_of_value(parameter.value, half_width),
+                                    partner(problem, found, unknown)));
 }
 
 /// As student_t() takes it; known variances have no end of it.
@@ -171,6 +173,15 @@ FittedParameter known(int index, Scope scope, std::string level, double value) {
 }
 
 }  // namespace
+
+Identifiability grade_of(const ParameterSpec& spec, double value, double half_width,
+                         bool arbitrary_zero) {
+  const bool holds_zero = std::abs(value) <= half_width;
+  if (holds_zero && (may_be_absent(spec) || arbitrary_zero)) return Identifiability::bounded;
+  const double share = share_of_value(value, half_width);
+  if (share > kNotIdentifiable) return Identifiability::not_identifiable;
+  return share > kWeak ? Identifiability::weak : Identifiability::identified;
+}
 
 std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Evaluation& optimum,
                                                const OptimumCheck& check,

@@ -10,6 +10,13 @@
 
 namespace rigcal::calib {
 
+/// How well a value is known by the half width of its 95 % interval, as describe_unknowns() says.
+///
+/// @param arbitrary_zero  zero lies within its range like any other value: offsets, initial
+///                           states, bounds of both signs
+Identifiability grade_of(const model::ParameterSpec& spec, double value, double half_width,
+                         bool arbitrary_zero);
+
 /// The unknowns of a solved problem as results: values, errors, intervals, bounds and how well each
 /// is identified, in words where it is not.
 ///

@@ -1,6 +1,9 @@
 #include "calib/trust/known_uncertainty.hpp"
 
-#include <algorithm>
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
 
 #include "calib/problem/evaluation.hpp"
 #include "common/parallel.hpp"
@@ -8,27 +11,62 @@
 namespace rigcal::calib {
 namespace {
 
-std::vector<datasets::ParameterSetting> uncertain_settings(const Problem& problem) {
+/// One thing that is known with a stated uncertainty.
+struct Known {
+  std::string name;  ///< as messages call it
+  int index = 0;     ///< row of the parameter table
+  double sd = 0.0;   ///< SI
+  bool of_sensor = false;
+};
+
+/// What the certificates of the sensors leave open of a channel: the same as a prior of its gain or
+/// offset, unless these are estimated or have one.
+void add_sensor(const Problem& problem, const datasets::ChannelSetting& channel,
+                std::vector<Known>& result) {
+  const auto key = datasets::info(channel.channel).key;
+  const auto add = [&](const char* what, double sd) {
+    const int index =
+        model::parameter_index(problem.campaign->rig.plant, fmt::format("{}_{}", key, what));
+    const auto* setting = index < 0 ? nullptr : problem.campaign->setting(index);
+    const bool elsewhere = setting != nullptr && (setting->fit || setting->prior);
+    if (!(sd > 0.0) || index < 0 || elsewhere) return;
+    result.push_back({fmt::format("{}_sd of {}", what, key), index, sd, true});
+  };
+  const auto* gain = problem.campaign->setting(
+      model::parameter_index(problem.campaign->rig.plant, fmt::format("{}_gain", key)));
+  add("gain", channel.gain_sd * (gain != nullptr ? std::abs(gain->value) : 1.0));
+  add("offset", channel.offset_sd);
+}
+
+std::vector<Known> uncertain_values(const Problem& problem) {
   const auto table = model::parameter_table(problem.campaign->rig.plant);
-  std::vector<datasets::ParameterSetting> result;
+  std::vector<Known> result;
   for (const auto& setting : problem.campaign->parameters) {
-    const bool usable = table[static_cast<std::size_t>(setting.index)].can_be_fitted;
-    if (setting.prior && !setting.fit && usable) result.push_back(setting);
+    const auto& spec = table[static_cast<std::size_t>(setting.index)];
+    if (setting.prior && !setting.fit && spec.can_be_fitted)
+      result.push_back({std::string(spec.name), setting.index, setting.prior->sd, false});
   }
+  std::set<datasets::Channel> compared;
+  for (const ProblemCondition& condition : problem.conditions)
+    for (const ProblemChannel& channel : condition.channels) compared.insert(channel.channel);
+  for (const datasets::Channel channel : compared)
+    add_sensor(problem, problem.campaign->channels.at(channel), result);
   return result;
 }
 
 /// Sensitivities to known values times their standard deviations.
 Eigen::MatrixXd known_rows(const Problem& problem, std::size_t i, std::span<const double> z,
-                           const std::vector<datasets::ParameterSetting>& settings) {
+                           const std::vector<Known>& values) {
   std::vector<int> indices;
-  for (const auto& setting : settings) indices.push_back(setting.index);
+  for (const Known& each : values) indices.push_back(each.index);
   Eigen::MatrixXd rows = known_sensitivities(problem, i, z, indices);
   if (rows.size() == 0) return rows;
-  for (std::size_t p = 0; p < settings.size(); ++p) {
-    const bool own =
-        known_in(*problem.campaign, *problem.conditions[i].condition, settings[p].index);
-    rows.col(static_cast<Eigen::Index>(p)) *= own ? 0.0 : settings[p].prior->sd;
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const Known& each = values[p];
+    // A prior is that of the rig's value; a certificate is that of the sensor, wherever it is used.
+    const bool own = !each.of_sensor &&
+                     known_in(*problem.campaign, *problem.conditions[i].condition, each.index);
+    rows.col(static_cast<Eigen::Index>(p)) *= own ? 0.0 : each.sd;
   }
   return rows;
 }
@@ -55,20 +93,24 @@ Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t conditio
   return rows;
 }
 
+std::vector<std::string> uncertain_names(const Problem& problem) {
+  std::vector<std::string> names;
+  for (const Known& each : uncertain_values(problem)) names.push_back(each.name);
+  return names;
+}
+
 KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
                                    const std::vector<ConditionRows>& rows,
                                    const Eigen::MatrixXd& root, int threads) {
   KnownUncertainty result;
-  const auto settings = uncertain_settings(problem);
-  const auto table = model::parameter_table(problem.campaign->rig.plant);
-  for (const auto& setting : settings)
-    result.names.emplace_back(table[static_cast<std::size_t>(setting.index)].name);
-  const auto knowns = static_cast<Eigen::Index>(settings.size());
+  const std::vector<Known> values = uncertain_values(problem);
+  result.names = uncertain_names(problem);
+  const auto knowns = static_cast<Eigen::Index>(values.size());
   result.response = Eigen::MatrixXd::Zero(root.rows(), knowns);
-  if (settings.empty()) return result;
+  if (values.empty()) return result;
   std::vector<Eigen::MatrixXd> parts(problem.conditions.size());
   parallel_for(parts.size(), threads, [&](std::size_t i) {
-    const Eigen::MatrixXd known = known_rows(problem, i, z, settings);
+    const Eigen::MatrixXd known = known_rows(problem, i, z, values);
     if (known.size() == 0) return;
     parts[i] = root(problem.map.acting(i), Eigen::all).transpose() *
                (rows[i].jacobian.transpose() * known);

@@ -9,14 +9,18 @@
 
 namespace rigcal::calib {
 
-/// Known values of the rig whose uncertainty the campaign states (`prior` and `prior_sd` of a
-/// parameter that is not fitted), and what it does to the estimates.
+/// Known values whose uncertainty the campaign states (`prior` and `prior_sd` of a parameter that
+/// is not fitted; `gain_sd` and `offset_sd` of a channel that is compared, which are those of its
+/// sensor's gain and offset), and what it does to the estimates.
 struct KnownUncertainty {
   std::vector<std::string> names;
   /// Change of the unknowns in the unit box per standard deviation of each, to first order:
   /// -(J^T J)^-1 J^T J_known sd. Shape (unknowns, names).
   Eigen::MatrixXd response;
 };
+
+/// What they are called in messages.
+std::vector<std::string> uncertain_names(const Problem& problem);
 
 /// Weighted sensitivities of one condition to parameters that are known in it: shape (channels *
 /// samples that count, indices), per SI unit; empty where it cannot be simulated.

@@ -9,6 +9,7 @@
 #include "calib/problem/r_factor.hpp"
 #include "calib/search/evaluator.hpp"
 #include "calib/trust/information.hpp"
+#include "calib/trust/known_uncertainty.hpp"
 #include "calib/trust/symmetry.hpp"
 #include "datasets/synthetic/model_output.hpp"
 
@@ -213,13 +214,9 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
       leave_open(j, result);
     }
   }
-  for (const auto& setting : campaign.parameters) {
-    if (!setting.prior || setting.fit) continue;
-    const auto& spec =
-        model::parameter_table(campaign.rig.plant)[static_cast<std::size_t>(setting.index)];
+  for (const std::string& name : uncertain_names(problem)) {
     result.messages.push_back(fmt::format(
-        "the uncertainty of {} is not in these figures: a fit adds what it does to them",
-        spec.key));
+        "the uncertainty of {} is not in these figures: a fit adds what it does to them", name));
   }
   for (std::size_t j = 0; j < z.size(); ++j) {
     const auto half = relative_half_width(result.all[j], result.parameters[j].value);

@@ -75,9 +75,10 @@ struct ChannelSetting {
   std::string minus;     ///< second column that is taken off `column`; empty: none
   UnitConversion to_si;  ///< SI = conversion(gain * raw + offset), from the file's number
   StatedUnit stated;
-  std::optional<double> sd;  ///< of the samples in the file, SI, after `gain`
-  double gain_sd = 0.0;      ///< standard uncertainty of the sensor's gain, relative
-  double offset_sd = 0.0;    ///< that of its offset, SI
+  std::optional<double> sd;               ///< of the samples in the file, SI, after `gain`
+  double gain_sd = 0.0;                   ///< standard uncertainty of the sensor's gain, relative
+  std::optional<Location> gain_sd_where;  ///< of the channel's own `gain_sd`
+  double offset_sd = 0.0;                 ///< that of its offset, SI
   ChannelRole role = ChannelRole::output;
   Interpolation interpolation = Interpolation::hold;
   bool in_counts = false;  ///< raw numbers of a converter: nothing says what they measure
@@ -116,6 +117,7 @@ struct AcceptanceBounds {
   double model_error_to_noise = 0.5;
   /// Parameters of which an estimate that cannot be told from zero does not matter up to here, SI.
   std::map<int, double> negligible;
+  std::vector<Channel> not_judged;  ///< output channels that are to have no limit
 };
 
 struct Condition {
@@ -135,6 +137,7 @@ struct Condition {
   std::vector<TimeWindow> windows;  ///< empty: the whole record counts
   bool moving_windows = false;      ///< `windows = "moving"`: found from the record
   std::optional<std::vector<AcceptanceLimit>> acceptance;  ///< in place of the campaign's
+  std::vector<Channel> not_judged;                         ///< beside those of the campaign
   std::optional<double> duration_s;
   std::optional<double> sample_rate_hz;
   std::optional<double> temperature_k;
@@ -222,6 +225,8 @@ struct Campaign {
   const ParameterSetting* setting(int index) const;
   /// What a condition is judged by: its own limits, or the campaign's.
   const std::vector<AcceptanceLimit>& limits(const Condition& condition) const;
+  /// Whether `not_judged` says that a channel of a condition is to have no limit.
+  bool may_lack_limits(const Condition& condition, Channel channel) const;
 };
 
 /// Reads and checks a campaign file.

@@ -180,6 +180,24 @@ void add_missing_drive(const Campaign& campaign, const Condition& condition,
 
 }  // namespace
 
+std::optional<GainKnownTwice> gain_known_twice(const Campaign& campaign) {
+  for (const auto& [channel, setting] : campaign.channels) {
+    if (!setting.gain_sd_where || !(setting.gain_sd > 0.0)) continue;
+    const std::string key = fmt::format("{}_gain", info(channel).key);
+    const int index = model::parameter_index(campaign.rig.plant, key);
+    const ParameterSetting* gain = index < 0 ? nullptr : campaign.setting(index);
+    if (gain == nullptr || !(gain->fit || gain->prior)) continue;
+    return GainKnownTwice{
+        *setting.gain_sd_where,
+        fmt::format(
+            "key 'recording.channels.{}.gain_sd': {} {} too{}: the uncertainty of this gain "
+            "would count twice: expected one of the two",
+            info(channel).key, key, gain->fit ? "is estimated" : "has a prior",
+            gain->where.line > 0 ? fmt::format(" ({})", gain->where.text()) : "")};
+  }
+  return std::nullopt;
+}
+
 std::vector<std::string> lacks_for_model(const Campaign& campaign, const Condition& condition) {
   std::vector<std::string> lacks;
   const auto values = values_in(campaign, condition);
@@ -215,6 +233,7 @@ void check_campaign(const Campaign& campaign, const Location& start) {
   check_initial(campaign);
   check_controller(campaign);
   check_tank(campaign);
+  if (const auto twice = gain_known_twice(campaign)) throw InputError(twice->where, twice->message);
   for (const Condition& condition : campaign.conditions) {
     if (condition.use == Use::ignore) continue;
     if (condition.use == Use::diagnose) {

@@ -274,6 +274,7 @@ Condition read_condition(const TomlNode& unnamed, const Campaign& campaign) {
   read_time(node, condition);
   if (const auto limits = node.find("acceptance")) {
     condition.acceptance = read_limits(*limits, campaign);
+    condition.not_judged = read_not_judged(*limits, campaign, *condition.acceptance);
   }
   if (const auto temperature = node.find("temperature")) {
     condition.temperature_k = temperature->quantity("K", kTemperatures_k);

@@ -146,6 +146,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   if (const auto node = root.find("acceptance")) read_acceptance(*node, campaign);
   if (const auto node = root.find("fit")) campaign.fit = read_fit(*node, campaign);
   if (const auto node = root.find("report")) campaign.report = read_report(*node);
+  apply_sensors(root, campaign);
   if (const auto node = root.find("simulation")) campaign.simulation = read_simulation(*node);
   if (const auto node = root.find("diagnosis")) campaign.diagnosis = read_diagnosis(*node);
   if (const auto node = root.find("synthetic")) read_synthetic_entry(*node, campaign);

@@ -62,4 +62,12 @@ struct ParameterConflict {
 std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                                                const model::ParameterValues& values);
 
+/// A `gain_sd` of a channel whose sensor has a gain in [rig.parameters] that is estimated or has a
+/// prior: the same uncertainty would count twice.
+struct GainKnownTwice {
+  Location where;  ///< of the channel's `gain_sd`
+  std::string message;
+};
+std::optional<GainKnownTwice> gain_known_twice(const Campaign& campaign);
+
 }  // namespace rigcal::datasets

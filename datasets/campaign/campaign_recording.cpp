@@ -112,6 +112,7 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel,
   }
   if (const auto sd = node.find("gain_sd")) {
     setting.gain_sd = sd->number();
+    setting.gain_sd_where = sd->where();
     if (!(setting.gain_sd >= 0.0 && setting.gain_sd < 1.0))
       sd->fail_type("a relative standard uncertainty, at least 0 and below 1");
   }

@@ -1,3 +1,11 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <utility>
+
 #include "datasets/campaign/campaign_sections.hpp"
 
 namespace rigcal::datasets {
@@ -25,7 +33,71 @@ std::vector<std::string> keys_of(const std::array<ReportField, count>& known) {
   return keys;
 }
 
+/// One statement of a sensor's uncertainty, with where it stands.
+struct Statement {
+  double sd = 0.0;
+  TomlNode node;
+};
+
+/// Brings what sensors and [recording.channels] state of one number of a channel together.
+class Statements {
+ public:
+  explicit Statements(const TomlNode& root) : root_(root) {}
+
+  /// @param key  of the channel: "gain_sd" or "offset_sd"
+  /// @throws InputError  they differ
+  void merge(Channel channel, std::string_view key, Statement stated, double& into) {
+    constexpr double kSame = 1e-6;
+    std::optional<Statement>& other = known_[{channel, std::string(key)}];
+    if (!other) {
+      if (const auto own = own_of(channel, key)) other = Statement{into, *own};
+    }
+    if (other && std::abs(other->sd - stated.sd) > kSame * std::max(other->sd, stated.sd)) {
+      stated.node.fail(
+          fmt::format("is a standard uncertainty of {:.6g}, but '{}' at {} states {:.6g}: expected "
+                      "the same, or "
+                      "one of them",
+                      stated.sd, other->node.path(), other->node.where().text(), other->sd));
+    }
+    if (!other) other = stated;
+    into = other->sd;
+  }
+
+ private:
+  std::optional<TomlNode> own_of(Channel channel, std::string_view key) const {
+    const auto recording = root_.find("recording");
+    const auto channels = recording ? recording->find("channels") : std::nullopt;
+    const auto own = channels ? channels->find(info(channel).key) : std::nullopt;
+    return own ? own->find(key) : std::nullopt;
+  }
+
+  TomlNode root_;
+  std::map<std::pair<Channel, std::string>, std::optional<Statement>> known_;
+};
+
 }  // namespace
+
+void apply_sensors(const TomlNode& root, Campaign& campaign) {
+  const auto report = root.find("report");
+  const auto sensors = report ? report->find("sensor") : std::nullopt;
+  if (!sensors) return;
+  Statements statements(root);
+  for (const TomlNode& sensor : sensors->items()) {
+    const auto text = sensor.find("uncertainty");
+    const auto channel = channel_from_key(sensor.require("channel", "a channel").name());
+    if (!text || !channel) continue;
+    const auto setting = campaign.channels.find(*channel);
+    if (setting == campaign.channels.end() || setting->second.in_counts) continue;
+    const StatedUncertainty stated = stated_uncertainty(text->name(), info(*channel).unit);
+    if (stated.gain_sd && *stated.gain_sd >= 1.0)
+      text->fail_type("an uncertainty of the gain below 100 % (k = 1)");
+    if (stated.gain_sd)
+      statements.merge(*channel, "gain_sd", {*stated.gain_sd, *text}, setting->second.gain_sd);
+    if (stated.offset_sd)
+      statements.merge(*channel, "offset_sd", {*stated.offset_sd, *text},
+                       setting->second.offset_sd);
+  }
+}
 
 ReportSettings read_report(const TomlNode& node) {
   std::vector<std::string> keys = keys_of(kReportFields);

@@ -16,6 +16,10 @@ void read_recording(const TomlNode& node, Campaign& campaign);
 /// The limits in an `acceptance` of a condition; needs the channels.
 std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& campaign);
 
+/// Channels in `not_judged` of an `acceptance` that has these limits.
+std::vector<Channel> read_not_judged(const TomlNode& node, const Campaign& campaign,
+                                     const std::vector<AcceptanceLimit>& limits);
+
 /// [acceptance] into the campaign: limits, and what is asked beside them; needs rig and channels.
 void read_acceptance(const TomlNode& node, Campaign& campaign);
 
@@ -29,6 +33,11 @@ void check_duty(const TomlNode& node, const Campaign& campaign);
 
 /// [report]
 ReportSettings read_report(const TomlNode& node);
+/// What the sensors of [report] state of their uncertainty, into the channels.
+///
+/// @param root  the whole file
+/// @throws InputError  two statements of one channel differ: both places
+void apply_sensors(const TomlNode& root, Campaign& campaign);
 
 /// [simulation]
 SimulationSettings read_simulation(const TomlNode& node);

@@ -15,6 +15,7 @@ constexpr std::string_view kWarnPrefix = "warn_";
 constexpr const char* kDecision = "decision";
 constexpr const char* kModelError = "model_error_to_noise";
 constexpr const char* kNegligible = "negligible";
+constexpr const char* kNotJudged = "not_judged";
 
 using metrics::kMetrics;
 using metrics::MetricSpec;
@@ -155,11 +156,37 @@ Limits limits_but(const TomlNode& node, const Campaign& campaign,
 }  // namespace
 
 std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& campaign) {
-  return limits_but(node, campaign, {});
+  return limits_but(node, campaign, {kNotJudged});
+}
+
+std::vector<Channel> read_not_judged(const TomlNode& node, const Campaign& campaign,
+                                     const std::vector<AcceptanceLimit>& limits) {
+  std::vector<Channel> channels;
+  const auto list = node.find(kNotJudged);
+  if (!list) return channels;
+  std::vector<std::pair<std::string, Channel>> choices;
+  for (const Channel channel : output_channels(campaign))
+    choices.emplace_back(info(channel).key, channel);
+  for (const TomlNode& item : list->items()) {
+    const Channel channel = item.choice(choices);
+    const auto limit = std::find_if(limits.begin(), limits.end(), [&](const AcceptanceLimit& each) {
+      return each.channel == channel;
+    });
+    if (limit != limits.end()) {
+      item.fail(
+          fmt::format("{0} has a limit of {1} in the same table: expected either limits of "
+                      "{0}, or its name here",
+                      info(channel).key, limit->metric));
+    }
+    channels.push_back(channel);
+  }
+  return channels;
 }
 
 void read_acceptance(const TomlNode& node, Campaign& campaign) {
-  campaign.acceptance = limits_but(node, campaign, {kDecision, kModelError, kNegligible});
+  campaign.acceptance =
+      limits_but(node, campaign, {kDecision, kModelError, kNegligible, kNotJudged});
+  campaign.acceptance_bounds.not_judged = read_not_judged(node, campaign, campaign.acceptance);
   if (const auto decision = node.find(kDecision)) {
     campaign.acceptance_bounds.decision = decision->choice<DecisionRule>(
         {{"simple", DecisionRule::simple}, {"guard_band", DecisionRule::guard_band}});

@@ -87,7 +87,13 @@ std::string_view to_string(Use use) {
 }
 
 std::string_view to_string(DecisionRule rule) {
-  return rule == DecisionRule::simple ? "simple" : "guard_band";
+  switch (rule) {
+    case DecisionRule::simple:
+      return "simple";
+    case DecisionRule::guard_band:
+      return "guard_band";
+  }
+  return "";
 }
 
 const Condition* Campaign::find(std::string_view id) const {
@@ -98,6 +104,13 @@ const Condition* Campaign::find(std::string_view id) const {
 
 const std::vector<AcceptanceLimit>& Campaign::limits(const Condition& condition) const {
   return condition.acceptance ? *condition.acceptance : acceptance;
+}
+
+bool Campaign::may_lack_limits(const Condition& condition, Channel channel) const {
+  const auto names = [&](const std::vector<Channel>& stated) {
+    return std::find(stated.begin(), stated.end(), channel) != stated.end();
+  };
+  return names(acceptance_bounds.not_judged) || names(condition.not_judged);
 }
 
 const ParameterSetting* Campaign::setting(int index) const {
@@ -175,6 +188,8 @@ void set_free(Campaign& campaign, const std::vector<std::string>& names) {
 }
 
 void check_values(const Campaign& campaign) {
+  if (const auto twice = gain_known_twice(campaign))
+    throw UsageError(fmt::format("--set, --free: {}: {}", twice->where.text(), twice->message));
   for (const Condition& condition : campaign.conditions) {
     if (condition.use == Use::ignore) continue;
     if (const auto conflict = find_conflict(campaign.rig, values_in(campaign, condition))) {

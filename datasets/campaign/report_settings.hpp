@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -48,5 +49,22 @@ struct ReportSettings {
 
   bool empty() const { return fields.empty() && sensors.empty(); }
 };
+
+/// The text of a key; empty where it is not given.
+std::string text_of(const ReportSettings::Fields& fields, std::string_view key);
+
+/// What a text says of the standard uncertainty of a sensor.
+struct StatedUncertainty {
+  std::optional<double> gain_sd;    ///< relative
+  std::optional<double> offset_sd;  ///< SI
+  std::string problem;              ///< why it says nothing that counts, in words; empty: it does
+};
+
+/// Reads "0.02 mm (k = 2)", an expanded uncertainty of the offset, or "0.1 % (k = 2)", one of the
+/// gain: over k they are standard uncertainties (JCGM 100:2008, 6.2). Any other text counts
+/// nothing.
+///
+/// @param unit  of the sensor's channel, SI
+StatedUncertainty stated_uncertainty(std::string_view text, std::string_view unit);
 
 }  // namespace rigcal::datasets

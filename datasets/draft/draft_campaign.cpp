@@ -363,6 +363,18 @@ const ChannelColumns* find(const FileColumns& columns, Channel channel) {
   return found == columns.channels.end() ? nullptr : &*found;
 }
 
+/// Limits for what is compared beside the position, which holds those of [acceptance] itself.
+std::string limits_of_others(const FileColumns& columns) {
+  std::string text;
+  for (const Channel channel : {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b}) {
+    if (find(columns, channel) == nullptr || find(columns, Channel::position) == nullptr) continue;
+    const auto key = info(channel).key;
+    text += fmt::format(
+        "# [acceptance.{0}]\n# rho2 = 0.95  # or, in [acceptance]: not_judged = [\"{0}\"]\n", key);
+  }
+  return text;
+}
+
 /// What drives the rig, as far as it is recorded.
 const ChannelColumns* drive_of(const FileColumns& columns) {
   const ChannelColumns* reference = find(columns, Channel::reference);
@@ -554,7 +566,8 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
       "align = \"correlate\"  # or \"none\" if all repeats share one trigger\n"
       "\n# [acceptance]  # what PASS means\n# rho2 = 0.99\n# absolute_error_percent = 1.0\n"
       "# decision = \"guard_band\"  # PASS where a limit is kept by more than the score is "
-      "uncertain\n";
+      "uncertain\n" +
+      limits_of_others(columns);
   for (const FileGroup& group : groups) {
     const FileColumns own = columns_of(group.files.front());
     text += fmt::format("\n[[condition]]\nid = {}\n", toml_quoted(group.id));

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 Path_ = Union[str, PathLike[str]]
 Scope = Literal["rig", "leak_level", "condition"]
 State = Literal["pass", "reservation", "fail", "not_assessed"]
+ReasonState = Literal["pass", "reservation", "fail", "not_assessed", "note"]
 Status = Literal["converged", "stopped", "failed"]
 Use = Literal["fit", "validate", "diagnose", "ignore"]
 Verdict = Literal["PASS", "WARN", "FAIL"]
@@ -216,7 +217,7 @@ class Simulation:
 
 class Reason:
     @property
-    def state(self) -> State: ...
+    def state(self) -> ReasonState: ...
     @property
     def code(self) -> str: ...
     @property

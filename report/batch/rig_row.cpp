@@ -47,13 +47,13 @@ std::vector<StoredRigScore> worst_scores(const StoredFit& fit) {
   return scores;
 }
 
-/// Of each aspect that is no pass.
+/// What speaks against each aspect.
 std::vector<std::string> reasons_of(const StoredFit& fit) {
   std::vector<std::string> reasons;
   if (!fit.assessment) return reasons;
   StoredAssessment::describe(*fit.assessment, [&](const char* name, const StoredAspect& aspect) {
     for (const StoredReason& reason : aspect.reasons) {
-      if (reason.state != calib::AspectState::pass)
+      if (calib::is_against(reason.state))
         reasons.push_back(fmt::format("{}: {}", name, reason.words));
     }
   });

@@ -29,7 +29,7 @@ std::optional<StoredComparedScore> score_of(const StoredFit& fit, const std::str
   score.samples = condition->samples;
   score.date = condition->date;
   score.temperature_k = condition->temperature_k;
-  score.verdict = condition->verdict;
+  score.verdict = condition->verdict_of(channel);
   score.failure = condition->failure;
   const StoredScore* scores = find(condition->metrics, channel);
   if (scores == nullptr || !is_usable(fit)) return score;

@@ -13,26 +13,15 @@ namespace {
 using calib::FitStatus;
 using Align = TextTable::Align;
 
-constexpr double kWeakHalfWidth = 0.2;  ///< of an interval, over the value
-constexpr double kOpenHalfWidth = 1.0;
-
-/// Relative half width of the interval; infinite without one.
-double half_width(const calib::FittedAssumption& p) {
-  if (!p.ci95 || p.value == 0.0) return HUGE_VAL;
-  return 0.5 * (p.ci95->second - p.ci95->first) / std::abs(p.value);
-}
-
-calib::Identifiability identifiability(const calib::FittedAssumption& p) {
-  if (half_width(p) > kOpenHalfWidth) return calib::Identifiability::not_identifiable;
-  return half_width(p) > kWeakHalfWidth ? calib::Identifiability::weak
-                                        : calib::Identifiability::identified;
-}
-
 std::string reason(const calib::FittedAssumption& p) {
   if (p.at_bound) return "at its bound";
-  if (!p.standard_error) return "the published numbers do not determine it";
-  if (identifiability(p) == calib::Identifiability::identified) return "";
-  return fmt::format("half width of the interval is {:.0f} % of the value", 100.0 * half_width(p));
+  if (!p.standard_error || !p.ci95) return "the published numbers do not determine it";
+  if (p.identifiability == calib::Identifiability::identified) return "";
+  if (p.identifiability == calib::Identifiability::bounded)
+    return "not significantly different from zero";
+  const double half_width = 0.5 * (p.ci95->second - p.ci95->first);
+  return fmt::format("half width of the interval is {:.0f} % of the value",
+                     100.0 * half_width / std::abs(p.value));
 }
 
 StoredParameter stored(const TablesFitResult& result, const calib::FittedAssumption& p) {
@@ -54,7 +43,7 @@ StoredParameter stored(const TablesFitResult& result, const calib::FittedAssumpt
     parameter.degrees_of_freedom = p.degrees_of_freedom;
   }
   parameter.at_bound = p.at_bound;
-  parameter.identifiability = identifiability(p);
+  parameter.identifiability = p.identifiability;
   parameter.reason = reason(p);
   return parameter;
 }
@@ -105,7 +94,7 @@ std::string tables_fit_text(const TablesFitResult& result, const Style& style) {
     table.add({std::string(spec.key), fit.status == FitStatus::failed ? "-" : shown(p.value),
                std::string(unit.name), p.standard_error ? shown(*p.standard_error) : "-",
                p.ci95 ? shown(p.ci95->first) + " .. " + shown(p.ci95->second) : "-", shown(p.start),
-               std::string(to_string(identifiability(p)))});
+               std::string(to_string(p.identifiability))});
   }
   text += table.text();
   if (fit.correlation.rows() > 1) {

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "datasets/checks/sensor_doubts.hpp"
 #include "datasets/checks/short_records.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "report/store/stored/stored_record.hpp"
@@ -20,7 +21,8 @@ struct StoredCheck {
   bool synthetic = false;
   std::vector<StoredRecord> records;
   std::vector<std::string> without_record;
-  RIGCAL_DESCRIBE(campaign, synthetic, records, without_record)
+  std::vector<std::string> warnings;  ///< of no single record
+  RIGCAL_DESCRIBE(campaign, synthetic, records, without_record, warnings)
 };
 
 }  // namespace
@@ -53,6 +55,10 @@ Check check(const datasets::Campaign& campaign, const std::function<void(dataset
     told.records[i].warnings.push_back(warnings[i]);
   }
   std::string text = fmt::format("{}", fmt::join(texts, ""));
+  for (const datasets::SensorDoubt& doubt : datasets::sensor_doubts(campaign)) {
+    text += fmt::format("{}: {}\n", doubt.grave ? "warning" : "note", doubt.words);
+    if (doubt.grave) told.warnings.push_back(doubt.words);
+  }
   if (campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
   return {std::move(text), json_of(told)};
 }

@@ -66,7 +66,8 @@ calib::Fit validate(const Campaign& campaign, const std::vector<datasets::Record
   calib::Fit fit = calib::validate(campaign, records, &earlier->values, settings, &origin);
   const auto validity = coverage(campaign, records, fit, {Use::fit, Use::validate});
   for (const auto& warnings :
-       {doubts_about(*earlier, campaign), outside(validity, earlier->validity)})
+       {doubts_about(*earlier, campaign),
+        outside(validity, earlier->validity, earlier->validated ? &*earlier->validated : nullptr)})
     fit.warnings.insert(fit.warnings.end(), warnings.begin(), warnings.end());
   return fit;
 }

@@ -77,18 +77,18 @@ std::string scorecard_csv(const Result& result) {
   for (const calib::ConditionScore& score : result.fit.conditions) {
     const datasets::Condition* condition = result.campaign.find(score.id);
     if (condition == nullptr) continue;
-    const std::vector<std::string> of_condition{
-        score.id,
-        std::string(to_string(score.use)),
-        std::string(to_string(condition->waveform)),
-        csv_number(condition->frequency_hz),
-        csv_number(condition->amplitude),
-        csv_text(condition->leak_level.value_or("")),
-        fmt::format("{}", score.samples),
-        score.verdict ? std::string(to_string(*score.verdict)) : std::string()};
-    const auto add = [&](const std::string& channel, const std::string& unit,
-                         const calib::ChannelScore& values, const std::string& problem) {
+    const std::vector<std::string> of_condition{score.id,
+                                                std::string(to_string(score.use)),
+                                                std::string(to_string(condition->waveform)),
+                                                csv_number(condition->frequency_hz),
+                                                csv_number(condition->amplitude),
+                                                csv_text(condition->leak_level.value_or("")),
+                                                fmt::format("{}", score.samples)};
+    const auto add = [&](const std::string& verdict, const std::string& channel,
+                         const std::string& unit, const calib::ChannelScore& values,
+                         const std::string& problem) {
       std::vector<std::string> fields = of_condition;
+      fields.push_back(verdict);
       fields.push_back(channel);
       fields.push_back(unit);
       for (std::string& field : score_fields(values)) fields.push_back(std::move(field));
@@ -96,10 +96,13 @@ std::string scorecard_csv(const Result& result) {
       add_agreement(values.expanded_uncertainty, fields);
       text += csv_row(fields);
     };
-    if (score.channels.empty()) add("", "", {}, score.failure);
+    if (score.channels.empty())
+      add(score.verdict ? std::string(to_string(*score.verdict)) : "", "", "", {}, score.failure);
     for (const calib::ChannelScore& channel : score.channels) {
       const datasets::ChannelInfo& about = info(channel.channel);
-      add(std::string(about.key), std::string(about.unit), channel,
+      const auto verdict = score.verdict_of(channel.channel);
+      add(verdict ? std::string(to_string(*verdict)) : "not judged", std::string(about.key),
+          std::string(about.unit), channel,
           channel.problem.empty() ? score.failure : channel.problem);
     }
   }

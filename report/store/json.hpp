@@ -38,6 +38,7 @@ struct EarlierFit {
   calib::Aspect adequacy;
   calib::Aspect parameters;
   Validity validity;
+  std::optional<Validity> validated;            ///< what it was validated on
   std::optional<calib::EstimateSpread> spread;  ///< of `values`; none where it did not converge
   std::vector<int> indices;  ///< table rows of the fitted values of scope rig that have an error
   /// Of these, SI, shape (indices)^2: the larger of standard and robust error, and the correlation.

@@ -210,6 +210,7 @@ EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKi
   result.message = stored.message;
   read_values(stored, root, plant, result);
   result.validity = validity_of(stored.validity);
+  if (stored.validated) result.validated = validity_of(*stored.validated);
   read_covariance(stored, root, plant, result);
   for (const StoredCondition& condition : stored.conditions)
     result.conditions.emplace_back(condition.id, condition.use);

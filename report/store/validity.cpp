@@ -59,13 +59,16 @@ double value_in(const Campaign& campaign, const Condition& condition, const cali
 constexpr double kSlack = 0.1;
 
 void compare(std::vector<std::string>& result, std::string_view what, std::string_view unit,
-             const std::optional<Range>& asked, const std::optional<Range>& covered) {
+             const std::optional<Range>& asked, const std::optional<Range>& covered,
+             const std::optional<Range>& validated) {
   if (!asked || !covered) return;
   const bool below = asked->low < covered->low - kSlack * std::abs(covered->low);
   const bool above = asked->high > covered->high + kSlack * std::abs(covered->high);
   if (!below && !above) return;
-  result.push_back(fmt::format("{} {} is used, but the fit covers only {}", what,
-                               in_words(*asked, unit), in_words(*covered, unit)));
+  result.push_back(
+      fmt::format("{} {} is used, but the fit covers only {}{}", what, in_words(*asked, unit),
+                  in_words(*covered, unit),
+                  validated ? fmt::format(", validated at {}", in_words(*validated, unit)) : ""));
 }
 
 }  // namespace
@@ -110,13 +113,18 @@ Validity coverage(const Campaign& campaign, const std::vector<Record>& records,
   return result;
 }
 
-std::vector<std::string> outside(const Validity& asked, const Validity& covered) {
+std::vector<std::string> outside(const Validity& asked, const Validity& covered,
+                                 const Validity* validated) {
   std::vector<std::string> result;
-  compare(result, "frequency", "Hz", asked.frequency_hz, covered.frequency_hz);
-  compare(result, "amplitude", asked.amplitude_unit, asked.amplitude, covered.amplitude);
-  compare(result, "supply pressure", "Pa", asked.supply_pressure_pa, covered.supply_pressure_pa);
-  compare(result, "leakage coefficient", "1", asked.leakage_coefficient,
-          covered.leakage_coefficient);
+  const auto add = [&](std::optional<Range> Validity::*range, std::string_view what,
+                       std::string_view unit) {
+    compare(result, what, unit, asked.*range, covered.*range,
+            validated != nullptr ? validated->*range : std::nullopt);
+  };
+  add(&Validity::frequency_hz, "frequency", "Hz");
+  add(&Validity::amplitude, "amplitude", asked.amplitude_unit);
+  add(&Validity::supply_pressure_pa, "supply pressure", "Pa");
+  add(&Validity::leakage_coefficient, "leakage coefficient", "1");
   return result;
 }
 

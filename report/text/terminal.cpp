@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 
+#include "calib/score/acceptance.hpp"
 #include "common/significant.hpp"
 #include "report/text/groups.hpp"
 #include "report/text/readable.hpp"
@@ -216,10 +217,11 @@ std::vector<std::string> worst_conditions(const calib::Fit& fit) {
     if (check != score.checks.end()) {
       ranked.emplace_back(
           check->value ? check->used : kWithoutScore,
-          check->value ? fmt::format("{}: {} of {}, {} % of the tolerance used", score.id,
-                                     metric_text(check->metric, *check->value),
-                                     info(check->channel).key, significant(100.0 * check->used, 2))
-                       : fmt::format("{}: {}", score.id, check->words));
+          check->value
+              ? fmt::format("{}: {} of {}, {} of the tolerance used", score.id,
+                            metric_text(check->metric, *check->value), info(check->channel).key,
+                            calib::tolerance_used_text(check->used))
+              : fmt::format("{}: {}", score.id, check->words));
       continue;
     }
     for (const calib::ChannelScore& channel : score.channels) {
@@ -244,9 +246,12 @@ std::string rule_text(const Result& result) {
   const bool judged = std::any_of(scores.begin(), scores.end(),
                                   [](const auto& score) { return !score.checks.empty(); });
   if (!judged) return {};
-  return result.campaign.acceptance_bounds.decision == datasets::DecisionRule::guard_band
-             ? " by guard band"
-             : " by simple acceptance";
+  return fmt::format(" by {}", calib::words_of(result.campaign.acceptance_bounds.decision));
+}
+
+const char* mark_of(AspectState state) {
+  if (state == AspectState::note) return "note:";
+  return calib::is_against(state) ? "-" : "+";
 }
 
 /// State of an aspect; what speaks against it, the gravest first; then what speaks for it.
@@ -256,13 +261,12 @@ std::string aspect_text(std::string_view name, const calib::Aspect& aspect, cons
   std::map<AspectState, std::size_t> told;
   for (const calib::Reason& reason : aspect.reasons) {
     if (++told[reason.state] > kShown) continue;
-    const char* mark = reason.state == AspectState::pass ? "+" : "-";
+    const char* mark = mark_of(reason.state);
     text += wrapped(fmt::format("    {} {}", mark, reason.words), style.columns, 6) + "\n";
   }
   for (const auto& [state, count] : told) {
     if (count <= kShown) continue;
-    text +=
-        fmt::format("    {} and {} more\n", state == AspectState::pass ? "+" : "-", count - kShown);
+    text += fmt::format("    {} and {} more\n", mark_of(state), count - kShown);
   }
   return text;
 }

@@ -42,6 +42,7 @@ position = { column = "x_mm", unit = "mm" }
 load_pressure = { column = "pl_bar", unit = "bar" }
 [acceptance]
 rho2 = 0.9
+not_judged = ["load_pressure"]
 [[condition]]
 id = "sine"
 waveform = "sine"

@@ -120,7 +120,7 @@ const std::vector<BadCampaign> kBadCampaigns{
     {"missing parameter", {{"density = \"850 kg/m3\"\n", ""}}, {"campaign.toml", "density"}},
     {"rad/s for Hz, unit of another kind",
      {{"\"2 Hz\"", "\"2 1/s\""}},
-     {"campaign.toml:33:", "frequency"}},
+     {"campaign.toml:34:", "frequency"}},
     {"start outside its bounds",
      {{"start = \"2000 N s/m\"", "start = \"1 N s/m\""}},
      {"campaign.toml:8:", "damping", "bounds"}},
@@ -143,18 +143,24 @@ const std::vector<BadCampaign> kBadCampaigns{
      {{"column = \"x_mm\", unit = \"mm\"", "column = \"x_mm\", unit = \"bar\""}},
      {"campaign.toml:26:", "bar"}},
     {"unknown metric", {{"rho2 = 0.9", "rho3 = 0.9"}}, {"campaign.toml:29:", "rho2"}},
+    {"unknown channel that is not judged",
+     {{"not_judged = [\"load_pressure\"]", "not_judged = [\"load\"]"}},
+     {"campaign.toml:30:15", "acceptance.not_judged[1]", "load_pressure"}},
+    {"a limit for what is not judged",
+     {{"not_judged = [\"load_pressure\"]", "not_judged = [\"position\"]"}},
+     {"campaign.toml:30:15", "position", "rho2"}},
     {"metric out of range", {{"rho2 = 0.9", "rho2 = 1.9"}}, {"campaign.toml:29:", "rho2"}},
     {"unknown waveform",
      {{"waveform = \"sine\"", "waveform = \"sinus\""}},
-     {"campaign.toml:32:", "sine"}},
-    {"unknown use", {{"use = \"fit\"", "use = \"fitt\""}}, {"campaign.toml:36:", "validate"}},
+     {"campaign.toml:33:", "sine"}},
+    {"unknown use", {{"use = \"fit\"", "use = \"fitt\""}}, {"campaign.toml:37:", "validate"}},
     {"sine without frequency", {{"frequency = \"2 Hz\"\n", ""}}, {"campaign.toml:", "frequency"}},
     {"two conditions of one id",
      {{"id = \"square\"", "id = \"sine\""}},
-     {"campaign.toml:39:", "sine"}},
+     {"campaign.toml:40:", "sine"}},
     {"id that is no file name",
      {{"id = \"sine\"", "id = \"../sine\""}},
-     {"campaign.toml:31:", "id"}},
+     {"campaign.toml:32:", "id"}},
     {"repeats that match nothing",
      {{"records/sine_*.csv", "records/sinus_*.csv"}},
      {"campaign.toml:", "sinus_*.csv", "records"}},
@@ -163,7 +169,7 @@ const std::vector<BadCampaign> kBadCampaigns{
      {"sine_1.csv:1", "y_mm", "x_mm"}},
     {"window the wrong way",
      {{"use = \"fit\"", "use = \"fit\"\nwindow = [\"1 s\", \"0.5 s\"]"}},
-     {"campaign.toml:37:", "window"}},
+     {"campaign.toml:38:", "window"}},
 };
 
 struct BadRecord {
@@ -350,7 +356,7 @@ TEST_CASE("fit: what cannot be fitted is refused", "[apps]") {
   }
   SECTION("a condition without a record") {
     write_campaign(folder, {{"repeats = [\"records/sine_*.csv\"]\n", ""}});
-    check_bad_input(folder, {"fit", "campaign.toml"}, {"campaign.toml:30", "sine", "repeats"});
+    check_bad_input(folder, {"fit", "campaign.toml"}, {"campaign.toml:31", "sine", "repeats"});
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "tests/apps/cli_fixture.hpp"
 
@@ -74,6 +76,92 @@ TEST_CASE("fit: by the guard band a limit is kept by more than the score's uncer
   CHECK(one.exit_code == 0);
   CHECK_THAT(one.out, Catch::Contains("its uncertainty is not known"));
   CHECK(result_of(folder, "one/validation.json")["verdict"] == "WARN");
+}
+
+TEST_CASE("fit: what a certificate states of a sensor counts, or is told", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  const std::string text = folder.read("twin/campaign.toml");
+  const auto judged = [&](const std::string& sensor, const Edits& more = {}) {
+    folder.write(
+        "twin/judged.toml",
+        edited(edited(text, {{"rho2 = 0.9\n", "rho2 = 0.9\ndecision = \"guard_band\"\n"}}), more) +
+            "\n[[report.sensor]]\nchannel = \"position\"\n" + sensor);
+    return folder.run({"fit", "twin/judged.toml", "--out", "judged", "--strict"});
+  };
+  const auto uncertainty = [&](const char* condition) {
+    for (const Json& each : result_of(folder, "judged/fit.json")["conditions"]) {
+      if (each["id"] == condition)
+        return each["expanded_uncertainty"]["position"]["rho2"].get<double>();
+    }
+    return 0.0;
+  };
+  CHECK(judged("uncertainty = \"0.002 mm (k = 2)\"\n").exit_code == 0);
+  const double small = uncertainty("sine");
+  // As large as the motion: by the guard band nothing is shown to keep its limit.
+  const Outcome large = judged("uncertainty = \"20 mm (k = 2)\"\n");
+  CHECK(large.exit_code == 1);
+  CHECK_THAT(large.out, Catch::StartsWith("verdict: WARN by guard band"));
+  CHECK(uncertainty("sine") > 100.0 * small);
+
+  const Outcome other = judged("uncertainty = \"class 0.1\"\n");
+  CHECK(other.exit_code == 1);
+  CHECK_THAT(other.out, Catch::Contains("\"class 0.1\", does not count"));
+  CHECK_THAT(folder.run({"check", "twin/judged.toml"}).out,
+             Catch::Contains("warning: the uncertainty of the sensor of position"));
+
+  const std::string dates = "calibrated = 2024-01-31\ndue = 2025-01-31\n";
+  CHECK(judged(dates).exit_code == 0);  // nobody says when the tests were
+  const Edits tested{{"use = \"validate\"", "use = \"validate\"\ndate = 2026-02-26"}};
+  const Outcome overdue = judged(dates, tested);
+  CHECK(overdue.exit_code == 1);
+  CHECK_THAT(overdue.out, Catch::Contains("was due for calibration on 2025-01-31"));
+  CHECK_THAT(folder.read("judged/report.html"), Catch::Contains("square was tested on 2026-02-26"));
+  CHECK_THAT(folder.run({"check", "twin/judged.toml"}).out,
+             Catch::Contains("warning: the sensor of position was due"));
+  CHECK_THAT(judged("calibrated = 2024-01-31\ndue = 2023-01-31\n").out,
+             Catch::Contains("before it was"));
+}
+
+TEST_CASE("fit: a channel that is compared and not judged is a reservation", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder).exit_code == 0);
+  const std::string text = folder.read("twin/campaign.toml");
+  const auto csv_verdict = [&](const std::string& channel) {
+    const std::string csv = folder.read("out/scorecard.csv");
+    const auto end = csv.find("," + channel + ",");
+    REQUIRE(end != std::string::npos);
+    return csv.substr(csv.rfind(',', end - 1) + 1, end - csv.rfind(',', end - 1) - 1);
+  };
+  const std::vector<std::string> fit{"fit", "twin/campaign.toml", "--out", "out", "--strict"};
+  const Outcome stated = folder.run(fit);
+  CHECK(stated.exit_code == 0);
+  CHECK_THAT(stated.out, Catch::Contains("note: load_pressure is not judged in 2 conditions"));
+  CHECK(csv_verdict("position") == "PASS");
+  CHECK(csv_verdict("load_pressure") == "not judged");
+  CHECK(result_of(folder, "out/fit.json")["not_judged"] == Json{"load_pressure"});
+  CHECK_THAT(folder.read("out/report.html"), Catch::Contains("load_pressure is not judged in"));
+
+  folder.write("twin/campaign.toml", edited(text, {{"not_judged = [\"load_pressure\"]\n", ""}}));
+  const Outcome silent = folder.run(fit);
+  CHECK(silent.exit_code == 1);
+  CHECK_THAT(silent.out, Catch::StartsWith("verdict: WARN") &&
+                             Catch::Contains("no limit judges load_pressure in 2 conditions"));
+  CHECK_FALSE(result_of(folder, "out/fit.json").contains("not_judged"));
+  // A comparison gives no tick to what nobody judged.
+  REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "two", "--quiet"}).exit_code == 0);
+  REQUIRE(folder.run({"compare", "out", "two", "--out", "both", "--quiet"}).exit_code == 0);
+  for (const Json& each : result_of(folder, "both/comparison.json")["conditions"]) {
+    CAPTURE(each["id"], each["channel"]);
+    const Json& verdict = each["scores"][0]["verdict"];
+    if (each["channel"] == "position") CHECK(verdict == "PASS");
+    if (each["channel"] == "load_pressure") CHECK(verdict.is_null());
+  }
+
+  folder.write("twin/campaign.toml", edited(text, {{"not_judged = [\"load_pressure\"]\n",
+                                                    "[acceptance.load_pressure]\nrho2 = 0.5\n"}}));
+  CHECK(folder.run(fit).exit_code == 0);
+  CHECK(csv_verdict("load_pressure") == "PASS");
 }
 
 }  // namespace rigcal::test

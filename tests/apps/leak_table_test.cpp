@@ -272,6 +272,13 @@ TEST_CASE("fit-tables: finds the values behind tables that leak-table made", "[a
   CAPTURE(outcome.err, outcome.out);
   REQUIRE(outcome.exit_code == 0);
   const json fit = json::parse(folder.read("out/fit.json"));
+  CHECK(violations(fit, "result") == "");
+  json broken = fit;
+  broken.erase("residuals");
+  CHECK_FALSE(violations(broken, "result").empty());
+  broken = fit;
+  broken["of"] = "hearsay";
+  CHECK_FALSE(violations(broken, "result").empty());
   CHECK(fit["status"] == "converged");
   CHECK(fit["residual_count"] == 4);
   CHECK(violations(json::parse(folder.read("out/leak_table.json")), "leak_table") == "");

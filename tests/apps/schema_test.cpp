@@ -68,4 +68,7 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
   broken = fit;
   broken.erase("status");
   CHECK_FALSE(violations(broken, "result").empty());
+  broken = fit;
+  broken["of"] = "published tables";  // whose results have other keys
+  CHECK_FALSE(violations(broken, "result").empty());
 }

@@ -50,6 +50,7 @@ load_pressure = {{ column = "pl_bar", unit = "bar" }}
 [acceptance]
 rho2 = 0.9
 warn_rho2 = 0.95
+not_judged = ["load_pressure"]
 [[condition]]
 id = "sine"
 waveform = "sine"
@@ -264,7 +265,7 @@ def check_bad(binary, work):
     check(rigcal(binary, work, "fit", "twin/hopeless.toml", "--out", "failed") == 3, "the fit fails")
     wrong = ["--set", "valve_gain=1e-6 m/V", "--set", "damping=90000 N s/m"]
     check(rigcal(binary, work, "validate", "twin/campaign.toml", "--out", "poor", *wrong) == 1, "the model is wrong")
-    unjudged = campaign.replace("[acceptance]", "").replace("warn_rho2 = 0.95", "").replace("rho2 = 0.9", "")
+    unjudged = campaign.replace("[acceptance]", "").replace("warn_rho2 = 0.95", "").replace("rho2 = 0.9", "").replace('not_judged = ["load_pressure"]', "")
     (work / "twin" / "unjudged.toml").write_text(unjudged)
     check(rigcal(binary, work, "validate", "twin/unjudged.toml", "--out", "unjudged", *wrong) == 0, "not judged")
     for folder, word in (("failed", "FAILED"), ("poor", "FAIL"), ("unjudged", "POOR")):

@@ -110,7 +110,7 @@ void warn_of_fit(const report::EarlierFit& fit, diagnosis::Diagnosis& found) {
   for (const calib::Aspect* aspect : {&fit.adequacy, &fit.parameters}) {
     if (aspect->state == calib::AspectState::pass) continue;
     for (const calib::Reason& reason : aspect->reasons)
-      if (reason.state != calib::AspectState::pass)
+      if (calib::is_against(reason.state))
         found.warnings.push_back("the fit that this rests on: " + reason.words);
   }
 }

@@ -32,6 +32,7 @@ StateBadge state_badge(AspectState state) {
     case AspectState::fail:
       return {"fail", "✕", "bad"};
     case AspectState::not_assessed:
+    case AspectState::note:
       break;
   }
   return {"not assessed", "○", "none"};
@@ -52,10 +53,13 @@ Json assessment_view(const StoredFit& fit) {
     const StoredAspect& found = (*fit.assessment).*aspect.aspect;
     Json against = Json::array();
     Json in_favour = Json::array();
+    Json notes = Json::array();
     std::size_t more = 0;
     for (const StoredReason& reason : found.reasons) {
       const Json entry{{"text", reason.words}, {"link", link_of(fit, reason, aspect.link)}};
-      if (reason.state == AspectState::pass) {
+      if (reason.state == AspectState::note) {
+        notes.push_back(entry);
+      } else if (!calib::is_against(reason.state)) {
         in_favour.push_back(entry);
       } else if (against.size() < kShown) {
         against.push_back(entry);
@@ -68,6 +72,7 @@ Json assessment_view(const StoredFit& fit) {
                     {"badge", {{"word", badge.word}, {"mark", badge.mark}, {"class", badge.css}}},
                     {"against", std::move(against)},
                     {"for", std::move(in_favour)},
+                    {"notes", std::move(notes)},
                     {"has_more", more > 0},
                     {"more", fmt::format("{}", more)}});
   }

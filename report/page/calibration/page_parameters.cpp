@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "calib/trust/collinearity.hpp"
 #include "common/significant.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
@@ -121,26 +123,23 @@ Json correlation_rows(const StoredCorrelation& correlation) {
   return rows;
 }
 
-/// Pairs that can hardly be told apart, in words.
+/// How well estimates are told apart, in words; those without a number are left out.
 std::string correlation_reading(const StoredCorrelation& correlation) {
-  const std::vector<std::string>& names = correlation.names;
-  double strongest = 0.0;
-  std::string pair;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const double value = at(correlation, i, j);
-      if (!(std::abs(value) > std::abs(strongest))) continue;
-      strongest = value;
-      pair = names[j] + " and " + names[i];
-    }
+  std::vector<std::string> names;
+  std::vector<std::size_t> known;
+  for (std::size_t i = 0; i < correlation.names.size(); ++i) {
+    if (std::isnan(at(correlation, i, i))) continue;
+    known.push_back(i);
+    names.push_back(correlation.names[i]);
   }
-  if (pair.empty()) return {};
-  const char* meaning =
-      std::abs(strongest) > 0.99  ? "these records tell a combination of the two far better "
-                                    "than each alone"
-      : std::abs(strongest) > 0.9 ? "an error of one is mostly made up by the other"
-                                  : "all can be told apart";
-  return fmt::format("Strongest: {:.3f} between {}; {}.", strongest, pair, meaning);
+  const auto n = static_cast<Eigen::Index>(known.size());
+  Eigen::MatrixXd matrix(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j)
+      matrix(i, j) =
+          at(correlation, known[static_cast<std::size_t>(i)], known[static_cast<std::size_t>(j)]);
+  }
+  return calib::collinearity_words(names, matrix);
 }
 
 std::vector<std::string> parts_of_reason(const std::string& reason) {

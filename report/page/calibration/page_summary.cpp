@@ -3,8 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
+#include "calib/score/acceptance.hpp"
+#include "calib/score/assessment.hpp"
 #include "report/page/page_parts.hpp"
+#include "report/store/validity.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -78,25 +82,61 @@ Json headline_of(const StoredFit& fit) {
       "The campaign gives no limits: whether this is good enough is for you to say.");
 }
 
-Json coverage_rows(const StoredValidity& validity) {
+/// What one quantity was, where the model was fitted and where it was validated.
+std::string coverage_text(const std::optional<Range>& fitted, const std::optional<Range>& validated,
+                          std::string_view unit) {
+  if (!validated || (fitted && fitted->low == validated->low && fitted->high == validated->high))
+    return in_words(*fitted, unit);
+  if (!fitted) return fmt::format("validated {}", in_words(*validated, unit));
+  return fmt::format("fitted {}, validated {}", in_words(*fitted, unit),
+                     in_words(*validated, unit));
+}
+
+Json coverage_rows(const StoredFit& fit) {
   Json rows = Json::array();
-  const auto add = [&](const std::optional<Range>& range, const char* name, std::string_view unit) {
-    if (!range) return;
-    const Json low = shown(range->low, unit, 4);
-    const Json high = shown(range->high, unit, 4);
-    rows.push_back({{"name", name}, {"low", low}, {"high", high}, {"single", low == high}});
+  const auto add = [&](std::optional<Range> StoredValidity::*range, const char* name,
+                       std::string_view unit) {
+    const std::optional<Range>& fitted = fit.validity.*range;
+    // A validation covers both at once.
+    const std::optional<Range> validated =
+        fit.schema == kFitSchema && fit.validated ? (*fit.validated).*range : std::nullopt;
+    if (!fitted && !validated) return;
+    rows.push_back({{"name", name}, {"text", coverage_text(fitted, validated, unit)}});
   };
-  add(validity.frequency_hz, "Frequency", "Hz");
+  add(&StoredValidity::frequency_hz, "Frequency", "Hz");
   if (rows.empty()) {
-    const Json unstated{{"exact", ""}, {"text", "not stated: the signals are recorded ones"}};
-    rows.push_back(
-        {{"name", "Frequency"}, {"low", unstated}, {"high", unstated}, {"single", true}});
+    rows.push_back({{"name", "Frequency"}, {"text", "not stated: the signals are recorded ones"}});
   }
-  add(validity.amplitude_m, "Amplitude (half of peak to peak)", "m");
-  add(validity.amplitude_v, "Amplitude (half of peak to peak)", "V");
-  add(validity.supply_pressure_pa, "Supply pressure", "Pa");
-  add(validity.leakage_coefficient, "Leakage coefficient", "1");
+  add(&StoredValidity::amplitude_m, "Amplitude (half of peak to peak)", "m");
+  add(&StoredValidity::amplitude_v, "Amplitude (half of peak to peak)", "V");
+  add(&StoredValidity::supply_pressure_pa, "Supply pressure", "Pa");
+  add(&StoredValidity::leakage_coefficient, "Leakage coefficient", "1");
   return rows;
+}
+
+/// What the ranges are: of a model that is not validated, no more than what was tried.
+std::string coverage_title(const StoredFit& fit) {
+  const bool valid =
+      fit.assessment && calib::has_range_of_validity(fit.assessment->agreement.state,
+                                                     fit.assessment->validation.state);
+  return valid && fit.schema == kFitSchema
+             ? "Range of validity: outside it the model is not validated"
+             : "Conditions tested";
+}
+
+/// What a decision rule means for who reads the verdict (ISO/IEC 17025, 7.8.6).
+std::string rule_text(datasets::DecisionRule rule) {
+  switch (rule) {
+    case datasets::DecisionRule::simple:
+      return "Scores are compared with the campaign's limits as they are; their own uncertainty is "
+             "not taken off.";
+    case datasets::DecisionRule::guard_band:
+      return "PASS where a score keeps its limit by more than its expanded uncertainty (95 %, from "
+             "the repeats and the stated uncertainty of the sensors); WARN where by less; FAIL "
+             "where "
+             "it breaks the limit.";
+  }
+  throw std::logic_error("rule_text: no words for a decision rule");
 }
 
 /// Frequency to sort by, and "0.1 Hz sine".
@@ -167,8 +207,11 @@ Json headline_view(const StoredFit& fit) {
   view["aspects"] = assessment_view(fit);
   view["has_aspects"] = !view["aspects"].empty();
   view["has_rule"] = !fit.acceptance.empty();
-  view["guard_band"] = fit.decision == datasets::DecisionRule::guard_band;
-  view["coverage"] = coverage_rows(fit.validity);
+  const auto rule = fit.decision.value_or(datasets::DecisionRule::simple);
+  view["rule"] = std::string(calib::words_of(rule));
+  view["rule_text"] = rule_text(rule);
+  view["coverage"] = coverage_rows(fit);
+  view["coverage_title"] = coverage_title(fit);
   view["levels"] = fmt::format("{}", fmt::join(fit.validity.leak_levels, "; "));
   view["has_levels"] = !fit.validity.leak_levels.empty();
   view["has_coverage"] = fit.status != FitStatus::failed;

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <set>
 
 #include "calib/problem/known_sd.hpp"
 #include "metrics/distributions.hpp"
@@ -26,6 +26,12 @@ std::optional<Range> range_of(const std::optional<std::pair<double, double>>& en
 }
 
 std::string key_of(datasets::Channel channel) { return std::string(info(channel).key); }
+
+std::vector<std::string> keys_of(const std::vector<datasets::Channel>& channels) {
+  std::vector<std::string> keys;
+  for (const datasets::Channel channel : channels) keys.push_back(key_of(channel));
+  return keys;
+}
 
 StoredAspect stored(const calib::Aspect& aspect) {
   StoredAspect result{aspect.state, {}};
@@ -136,12 +142,9 @@ std::vector<StoredWeight> weights(const Result& result) {
   return list;
 }
 
-StoredValidity validity(const Result& result, bool closed_loop) {
-  using datasets::Use;
-  const Validity covered =
-      coverage(result.campaign, result.records, result.fit,
-               result.kind == ResultKind::fit ? std::vector<Use>{Use::fit}
-                                              : std::vector<Use>{Use::fit, Use::validate});
+StoredValidity validity(const Result& result, const std::vector<datasets::Use>& uses,
+                        bool closed_loop) {
+  const Validity covered = coverage(result.campaign, result.records, result.fit, uses);
   const std::optional<Range> none;
   return {covered.frequency_hz,
           closed_loop ? covered.amplitude : none,
@@ -175,7 +178,6 @@ StoredScore stored(const calib::ChannelScore& score) {
 }
 
 void add_checks(const calib::ConditionScore& score, StoredCondition& condition) {
-  std::map<datasets::Channel, calib::Verdict> worst;
   for (const calib::LimitCheck& check : score.checks) {
     condition.limit_checks.push_back(
         {key_of(check.channel), check.metric, finite(check.value), finite(check.limit),
@@ -183,10 +185,11 @@ void add_checks(const calib::ConditionScore& score, StoredCondition& condition) 
          check.expanded_uncertainty ? Omittable<double>(*check.expanded_uncertainty)
                                     : Omittable<double>(),
          check.verdict});
-    worst[check.channel] = std::max(worst[check.channel], check.verdict);
   }
-  for (const auto& [channel, verdict] : worst)
-    condition.channel_verdicts.emplace_back(key_of(channel), verdict);
+  std::set<datasets::Channel> judged;
+  for (const calib::LimitCheck& check : score.checks) judged.insert(check.channel);
+  for (const datasets::Channel channel : judged)
+    condition.channel_verdicts.emplace_back(key_of(channel), score.verdict_of(channel).value());
 }
 
 void add_stated(const Result& result, const calib::ConditionScore& score, bool closed_loop,
@@ -204,6 +207,7 @@ void add_stated(const Result& result, const calib::ConditionScore& score, bool c
   if (condition->temperature_k) stated.temperature_k = *condition->temperature_k;
   if (condition->date) stated.date = *condition->date;
   if (condition->acceptance) stated.acceptance = stored(*condition->acceptance);
+  if (!condition->not_judged.empty()) stated.not_judged = keys_of(condition->not_judged);
 }
 
 /// Of the files that a record is made from, as the provenance has them.
@@ -412,9 +416,19 @@ StoredFit stored(const Result& result) {
     json.parameters.push_back(stored(p, table[static_cast<std::size_t>(p.index)]));
   add_trust(fit, json);
   if (result.kind == ResultKind::fit) json.weights = weights(result);
-  json.validity = validity(result, closed_loop);
+  using datasets::Use;
+  json.validity =
+      validity(result,
+               result.kind == ResultKind::fit ? std::vector<Use>{Use::fit}
+                                              : std::vector<Use>{Use::fit, Use::validate},
+               closed_loop);
+  const bool validated = std::any_of(fit.conditions.begin(), fit.conditions.end(),
+                                     [](const auto& score) { return score.use == Use::validate; });
+  if (validated) json.validated = validity(result, {Use::validate}, closed_loop);
   json.decision = result.campaign.acceptance_bounds.decision;
   json.acceptance = stored(result.campaign.acceptance);
+  const auto& not_judged = result.campaign.acceptance_bounds.not_judged;
+  if (!not_judged.empty()) json.not_judged = keys_of(not_judged);
   for (const calib::ConditionScore& score : fit.conditions)
     json.conditions.push_back(stored(result, score, closed_loop));
   json.groups = gathered(result);

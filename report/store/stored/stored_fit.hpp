@@ -43,8 +43,8 @@ inline std::vector<calib::Verdict> every() {
 template <>
 inline std::vector<calib::AspectState> every() {
   using calib::AspectState;
-  return {AspectState::pass, AspectState::reservation, AspectState::fail,
-          AspectState::not_assessed};
+  return {AspectState::pass, AspectState::reservation, AspectState::fail, AspectState::not_assessed,
+          AspectState::note};
 }
 template <>
 inline std::vector<calib::Identifiability> every() {
@@ -252,6 +252,7 @@ struct StoredCondition {
   Omittable<std::vector<Range>> windows_s;        ///< empty: the whole record
   Omittable<std::vector<std::string>> notes;
   Omittable<std::vector<StoredLimit>> acceptance;  ///< its own, in place of the campaign's
+  Omittable<std::vector<std::string>> not_judged;  ///< beside those of the campaign
   Later<std::vector<std::string>> warnings;
   Later<std::optional<std::string>> not_scored;
   std::optional<std::string> failure;
@@ -265,8 +266,9 @@ struct StoredCondition {
   std::vector<std::string> reasons;
   RIGCAL_DESCRIBE(id, waveform, frequency_hz, amplitude_m, amplitude_v, leak_level, use,
                   temperature_k, date, samples, record_sha256, windows_s, notes, acceptance,
-                  warnings, not_scored, failure, metrics, noise_floor, expanded_uncertainty,
-                  residual_tests, limit_checks, channel_verdicts, verdict, reasons)
+                  not_judged, warnings, not_scored, failure, metrics, noise_floor,
+                  expanded_uncertainty, residual_tests, limit_checks, channel_verdicts, verdict,
+                  reasons)
 
   /// Of one channel; nothing where it has no limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;
@@ -336,8 +338,10 @@ struct StoredFit {
   Later<std::optional<double>> aic, bic;
   Omittable<std::vector<StoredWeight>> weights;
   StoredValidity validity;
+  Omittable<StoredValidity> validated;  ///< what the conditions cover that were not fitted
   Omittable<datasets::DecisionRule> decision;
   std::vector<StoredLimit> acceptance;
+  Omittable<std::vector<std::string>> not_judged;  ///< channels that are to have no limit
   std::vector<StoredCondition> conditions;
   std::vector<StoredGroup> groups;
   std::vector<StoredStart> starts;
@@ -351,8 +355,8 @@ struct StoredFit {
                   simulation_tolerance, parameters, correlation, rank, singular_values,
                   reduced_chi_square, independent_residuals, interval_advice, combinations,
                   lack_of_fit, between_repeats, basins, agreement, bootstrap, cross_validation, aic,
-                  bic, weights, validity, decision, acceptance, conditions, groups, starts,
-                  best_start, failure_count, failures, warnings, provenance)
+                  bic, weights, validity, validated, decision, acceptance, not_judged, conditions,
+                  groups, starts, best_start, failure_count, failures, warnings, provenance)
 
   const StoredCondition* find(const std::string& condition) const;
 };

@@ -27,4 +27,23 @@ TEST_CASE("assessment: PASS needs all four aspects", "[calib]") {
   CHECK(verdict_of(all) == Verdict::fail);
 }
 
+TEST_CASE("assessment: a note makes no state", "[calib]") {
+  const Reason note = reason(AspectState::note, "exact_values", "conditional on 2 known values");
+  CHECK(aspect_of({note}).state == AspectState::not_assessed);
+  const Aspect passed = aspect_of({note, reason(AspectState::pass, "identified", "1 of 1")});
+  CHECK(passed.state == AspectState::pass);
+  CHECK(passed.reasons.back().code == "exact_values");
+  CHECK(is_against(AspectState::not_assessed));
+  CHECK_FALSE(is_against(AspectState::note));
+}
+
+TEST_CASE("assessment: what is not validated has no range of validity", "[calib]") {
+  using enum AspectState;
+  CHECK(has_range_of_validity(pass, pass));
+  CHECK(has_range_of_validity(reservation, reservation));
+  CHECK_FALSE(has_range_of_validity(fail, pass));
+  CHECK_FALSE(has_range_of_validity(pass, fail));
+  CHECK_FALSE(has_range_of_validity(pass, not_assessed));
+}
+
 }  // namespace rigcal::calib

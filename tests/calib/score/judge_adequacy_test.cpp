@@ -26,6 +26,10 @@ TEST_CASE("adequacy: lack of fit counts where it is significant and larger than 
   test.ratio = 100.0;
   test.outcome = metrics::TestOutcome::passed;  // not significant
   CHECK(scene.assessed().adequacy.state == AspectState::pass);
+  // What is not significant may lie above what is allowed, and is not told as if it did not.
+  CHECK_THAT(find(scene.assessed().adequacy, "no_lack_of_fit")->words,
+             Contains("no significant model error (0.6 times the noise allowed)") &&
+                 Contains("9.9 times the noise are not significantly above none"));
   test.outcome = metrics::TestOutcome::not_judged;
   CHECK(find(scene.assessed().adequacy, "lack_of_fit_not_judged") != nullptr);
   test.outcome = metrics::TestOutcome::passed;

@@ -77,6 +77,68 @@ TEST_CASE("agreement: a doubtful recording and a condition that was not scored a
   CHECK(scene.verdict() == Verdict::warn);
 }
 
+TEST_CASE("agreement: a channel without a limit is a reservation, unless it may have none",
+          "[calib]") {
+  AssessmentScene scene;
+  ChannelScore pressure;
+  pressure.channel = Channel::pressure_a;
+  pressure.agreement.emplace();
+  pressure.agreement->rho2 = -15.0;
+  ConditionScore& other = scene.fit.conditions[1];
+  other.channels.push_back(pressure);
+  scene.rejudge(1, 0.998);
+  const Assessment assessed = scene.assessed();
+  const Reason* told = find(assessed.agreement, "not_judged");
+  REQUIRE(told != nullptr);
+  CHECK(assessed.agreement.state == AspectState::reservation);
+  CHECK(told->subject == "other");
+  CHECK_THAT(told->words, Contains("pressure_a") && Contains("-15"));
+  CHECK(other.verdict_of(Channel::position) == Verdict::pass);
+  CHECK_FALSE(other.verdict_of(Channel::pressure_a).has_value());
+
+  const auto stated = [&] {
+    const Assessment now = scene.assessed();
+    CHECK(find(now.agreement, "not_judged") == nullptr);
+    const Reason* note = find(now.agreement, "not_judged_as_stated");
+    REQUIRE(note != nullptr);
+    CHECK(note->state == AspectState::note);
+    CHECK(now.agreement.state == AspectState::pass);
+  };
+  scene.campaign.acceptance_bounds.not_judged = {Channel::pressure_a};
+  stated();
+  scene.campaign.acceptance_bounds.not_judged.clear();
+  scene.campaign.conditions[1].not_judged = {Channel::pressure_a};
+  stated();
+  scene.campaign.conditions[1].not_judged.clear();
+  scene.campaign.conditions[0].not_judged = {Channel::pressure_a};  // another condition
+  CHECK(scene.assessed().agreement.state == AspectState::reservation);
+}
+
+TEST_CASE("agreement: a sensor that was overdue on the day of the test is a reservation",
+          "[calib]") {
+  AssessmentScene scene;
+  scene.campaign.report.sensors = {
+      datasets::ReportSettings::Fields{{"channel", "position"}, {"due", "2026-01-31"}}};
+  CHECK(scene.verdict() == Verdict::pass);
+  scene.campaign.conditions[1].date = "2026-01-31";
+  CHECK(scene.verdict() == Verdict::pass);
+  scene.campaign.conditions[1].date = "2026-02-01T09:00:00";
+  CHECK(scene.verdict() == Verdict::warn);
+  CHECK_THAT(find(scene.assessed().agreement, "sensor_overdue")->words,
+             Contains("other was tested on 2026-02-01"));
+}
+
+TEST_CASE("agreement: a limit that is kept is never used up", "[calib]") {
+  CHECK(tolerance_used_text(0.37) == "37 %");
+  CHECK(tolerance_used_text(0.996) == "99.6 %");
+  CHECK(tolerance_used_text(0.99996) == "99.996 %");
+  CHECK(tolerance_used_text(1.0 - 1e-9) == "just below 100 %");
+  CHECK(tolerance_used_text(1.0) == "100 %");
+  CHECK(tolerance_used_text(1.004) == "100.4 %");
+  CHECK(tolerance_used_text(2.2) == "220 %");
+  CHECK(tolerance_used_text(11.0) == "over 1000 %");
+}
+
 TEST_CASE("agreement: without limits there is no verdict, but poor agreement is named", "[calib]") {
   AssessmentScene scene;
   scene.campaign.acceptance.clear();

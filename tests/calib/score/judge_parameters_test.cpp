@@ -77,6 +77,27 @@ TEST_CASE("parameters: each is identified, or negligible", "[calib]") {
     scene.fit.status = FitStatus::stopped;
     CHECK(scene.verdict() == Verdict::warn);
   }
+  SECTION("known values that are taken as exact are named, and change nothing") {
+    const auto add = [&](const char* key) {
+      FittedParameter known;
+      known.index = model::parameter_index(model::PlantKind::load_pressure, key);
+      scene.fit.parameters.push_back(known);
+      return known.index;
+    };
+    add("piston_area");
+    add("leakage_smoothing");  // of the computation
+    add("initial_position");
+    datasets::ParameterSetting supply;
+    supply.index = add("supply_pressure");
+    CHECK_THAT(find(scene.assessed().parameters, "exact_values")->words,
+               Catch::Contains("2 known values taken as exact: piston_area, supply_pressure"));
+    CHECK(find(scene.assessed().parameters, "exact_values")->state == AspectState::note);
+    CHECK(scene.verdict() == Verdict::pass);
+    supply.prior = datasets::Prior{6.2e6, 1e4};
+    scene.campaign.parameters = {supply};
+    CHECK_THAT(find(scene.assessed().parameters, "exact_values")->words,
+               Catch::Contains("1 known value taken as exact: piston_area"));
+  }
   SECTION("those of the fit whose values are validated") {
     Aspect earlier;
     earlier.state = AspectState::reservation;

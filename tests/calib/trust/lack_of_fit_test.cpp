@@ -213,7 +213,7 @@ TEST_CASE("known values: their uncertainty is carried into the errors", "[calib]
   const Fit open = fit(twin.campaign, records, {});
   CHECK(parameter(open, "valve_gain").identifiability == Identifiability::not_identifiable);
   CHECK_THAT(parameter(open, "valve_gain").reason,
-             Contains("what is uncertain of supply_pressure_pa: with fit = true there"));
+             Contains("what is uncertain of supply_pressure_pa: as a free parameter"));
 }
 
 TEST_CASE("known values: a sensor's gain or offset widens as it would if it were free", "[calib]") {
@@ -251,6 +251,39 @@ TEST_CASE("known values: a sensor's gain or offset widens as it would if it were
   // variances whose scale, the reduced chi-square, moves by a few 1e-3.
   CHECK_THAT(carried / joint, WithinRel(1.0 + prior_sd * prior_sd / of_gain, 0.1));
   CHECK_THAT(known.interval_advice, Contains(sensor.key));
+}
+
+TEST_CASE("known values: a certificate of the sensor counts as the prior of its gain", "[calib]") {
+  Twin twin = one_square();
+  const auto records = twin.records(500, 500.0, 3);
+  const auto error = [&](const Twin& each) {
+    const Fit found = fit(each.campaign, records, {});
+    REQUIRE(found.status == FitStatus::converged);
+    return parameter(found, "valve_gain").standard_error.value();
+  };
+  const double exact = error(twin);
+  struct Way {
+    const char* key;
+    double value, sd;
+    double datasets::ChannelSetting::*stated;
+  };
+  const auto way =
+      GENERATE(Way{"position_gain", 1.0, 0.005, &datasets::ChannelSetting::gain_sd},
+               Way{"position_offset", 0.0, 1e-4, &datasets::ChannelSetting::offset_sd});
+  CAPTURE(way.key);
+  Twin prior = twin;
+  prior.setting(way.key).value = way.value;
+  prior.setting(way.key).prior = datasets::Prior{way.value, way.sd};
+  twin.campaign.channels.at(datasets::Channel::position).*way.stated = way.sd;
+  CHECK_THAT(error(twin), WithinRel(error(prior), 1e-6));
+  CHECK(error(twin) > exact);
+  // An estimate of the gain or offset itself holds it already.
+  Twin open = twin;
+  open.campaign.channels.at(datasets::Channel::position).*way.stated = 0.0;
+  open.free(way.key, way.value, way.value - 0.01, way.value + 0.01);
+  const double alone = error(open);
+  open.campaign.channels.at(datasets::Channel::position).*way.stated = way.sd;
+  CHECK_THAT(error(open), WithinRel(alone, 1e-6));
 }
 
 }  // namespace rigcal::calib

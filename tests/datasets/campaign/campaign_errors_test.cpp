@@ -337,6 +337,18 @@ TEST_CASE("load_campaign: recording, acceptance and settings", "[datasets]") {
       {"sd = \"0.05 mm\"", "gain_sd = 1.5", "position = {", {"position.gain_sd", "below 1"}},
       {"sd = \"0.05 mm\"", "offset_sd = \"-1 mm\"", "position = {", {"position.offset_sd"}},
       {"sd = \"0.05 mm\"", "gain = 0", "position = {", {"position.gain", "zero"}},
+      {"rho2 = 0.99\n",
+       "rho2 = 0.99\nnot_judged = [\"pressure_c\"]\n",
+       "not_judged",
+       {"acceptance.not_judged[1]", "pressure_a"}},
+      {"rho2 = 0.99\n",
+       "rho2 = 0.99\nnot_judged = [\"position\"]\n",
+       "not_judged",
+       {"acceptance.not_judged[1]", "limit of rho2"}},
+      {"parameters = { }",
+       "acceptance = { not_judged = [\"pressure_a\"], pressure_a = { rho2 = 0.9 } }",
+       "acceptance = {",
+       {"not_judged[1]", "pressure_a"}},
       {"sd = \"0.05 mm\"",
        "role = \"input\"",
        "position = {",
@@ -386,6 +398,23 @@ TEST_CASE("load_campaign: recording, acceptance and settings", "[datasets]") {
        "trigger_",
        {"not negative"}},
   });
+}
+
+TEST_CASE("load_campaign: the gain of a sensor is not uncertain twice", "[datasets]") {
+  const std::string stated = replaced(kExample, "sd = \"0.05 mm\"", "gain_sd = 0.005");
+  for (const char* gain : {"{ start = 1, lower = 0.9, upper = 1.1, fit = true }",
+                           "{ start = 1, prior = 1, prior_sd = 0.01 }"}) {
+    const std::string text = replaced(stated, kMass, kMass + "\nposition_gain = " + gain);
+    const Failure failure = failure_of(text);
+    CAPTURE(failure.message);
+    CHECK(failure.line == line_of(text, "gain_sd"));
+    CHECK_THAT(failure.message,
+               Catch::Contains("channels.position.gain_sd") && Catch::Contains("position_gain") &&
+                   Catch::Contains(":" + std::to_string(line_of(text, "position_gain")) + ":"));
+  }
+  Campaign campaign = load_text(replaced(stated, kMass, kMass + "\nposition_gain = 1.0"));
+  set_free(campaign, {"position_gain"});
+  CHECK_THROWS_WITH(check_values(campaign), Catch::Contains("position.gain_sd"));
 }
 
 TEST_CASE("load_campaign: the column is told as well", "[datasets]") {

@@ -3,6 +3,7 @@
 #include "tests/datasets/campaign_fixture.hpp"
 
 using namespace rigcal;
+using Catch::WithinRel;
 using rigcal::test::kExample;
 using rigcal::test::line_of;
 using rigcal::test::load_text;
@@ -55,4 +56,51 @@ TEST_CASE("load_campaign: a wrong report names key and line", "[datasets]") {
   }
   CHECK_THROWS_WITH(load_text(test::replaced(kExample + kReport, "channel = \"position\"\n", "")),
                     Catch::Contains("the channel that the sensor is of"));
+}
+
+TEST_CASE("load_campaign: the uncertainty of a sensor is that of its channel", "[datasets]") {
+  const auto loaded = [](const std::string& uncertainty) {
+    return load_text(kExample + kReport + "uncertainty = \"" + uncertainty + "\"\n")
+        .channels.at(datasets::Channel::position);
+  };
+  CHECK_THAT(loaded("0.02 mm (k = 2)").offset_sd, WithinRel(1e-5, 1e-12));
+  CHECK(loaded("0.02 mm (k = 2)").gain_sd == 0.0);
+  CHECK_THAT(loaded("20 um (k=1)").offset_sd, WithinRel(2e-5, 1e-12));
+  CHECK_THAT(loaded("0.3 % (k = 3)").gain_sd, WithinRel(1e-3, 1e-12));
+  CHECK(loaded("0.3 % (k = 3)").offset_sd == 0.0);
+  for (const char* other :
+       {"0.02 mm", "0.1 % of full scale (k = 2)", "0,02 mm (k = 2)", "0.02 bar (k = 2)",
+        "-0.02 mm (k = 2)", "0.02 mm (k = 0)", "0.02 (k = 2)", "see certificate (k = 2)"}) {
+    CAPTURE(other);
+    CHECK(loaded(other).offset_sd == 0.0);
+    CHECK(loaded(other).gain_sd == 0.0);
+    CHECK_FALSE(datasets::stated_uncertainty(other, "m").problem.empty());
+  }
+}
+
+TEST_CASE("load_campaign: two statements of one sensor are the same, or both are named",
+          "[datasets]") {
+  const auto with = [](const std::string& channel) {
+    return test::replaced(kExample, "sd = \"0.05 mm\"", "sd = \"0.05 mm\", " + channel) + kReport +
+           "uncertainty = \"0.02 mm (k = 2)\"\n";
+  };
+  CHECK_THAT(
+      load_text(with("offset_sd = \"0.01 mm\"")).channels.at(datasets::Channel::position).offset_sd,
+      WithinRel(1e-5, 1e-9));
+  CHECK(load_text(with("gain_sd = 0.001")).channels.at(datasets::Channel::position).gain_sd ==
+        0.001);
+  const std::string text = with("offset_sd = \"0.02 mm\"");
+  try {
+    load_text(text);
+    FAIL("loaded");
+  } catch (const InputError& error) {
+    CHECK(error.where().line == line_of(text, "(k = 2)"));
+    CHECK_THAT(error.what(),
+               Catch::Contains("recording.channels.position.offset_sd") &&
+                   Catch::Contains(":" + std::to_string(line_of(text, "position = {")) + ":"));
+  }
+  CHECK_THROWS_WITH(load_text(kExample + kReport + "uncertainty = \"0.02 mm (k = 2)\"\n" +
+                              "[[report.sensor]]\nchannel = \"position\"\n"
+                              "uncertainty = \"0.04 mm (k = 2)\"\n"),
+                    Catch::Contains("expected the same"));
 }

@@ -141,6 +141,20 @@ TEST_CASE("load_campaign: decision rule and uncertainty of a sensor", "[datasets
   CHECK_THAT(guarded.channels.at(Channel::position).offset_sd, WithinRel(1e-4, kRounding));
 }
 
+TEST_CASE("load_campaign: channels that are to have no limit", "[datasets]") {
+  const Campaign campaign = load_text(
+      replaced(replaced(kExample, "rho2 = 0.99\n", "rho2 = 0.99\nnot_judged = [\"pressure_a\"]\n"),
+               "parameters = { }", "acceptance = { not_judged = [\"position\"] }"));
+  const Condition& own = campaign.conditions.at(0);
+  const Condition& other = campaign.conditions.at(1);
+  CHECK(campaign.may_lack_limits(own, Channel::position));
+  CHECK(campaign.may_lack_limits(own, Channel::pressure_a));
+  CHECK_FALSE(campaign.may_lack_limits(other, Channel::position));
+  CHECK(campaign.may_lack_limits(other, Channel::pressure_a));
+  CHECK_FALSE(campaign.may_lack_limits(own, Channel::pressure_b));
+  CHECK(own.acceptance->empty());
+}
+
 TEST_CASE("load_campaign: acceptance limits", "[datasets]") {
   const Campaign campaign =
       load_text(replaced(kExample, "absolute_error_percent = 1.0\n",

@@ -108,6 +108,11 @@ TEST_CASE("outside: one sentence in the units of the field", "[report]") {
             "amplitude 5 to 50.8 mm is used, but the fit covers only 5 to 10 mm",
             "supply pressure 6.2 to 7 MPa is used, but the fit covers only 6.2 MPa",
             "leakage coefficient 0.1 to 0.6 is used, but the fit covers only 0.3 to 0.6"});
+  Validity validated;
+  validated.frequency_hz = Range{20.0, 25.0};
+  CHECK(outside(asked, covered, &validated).at(0) ==
+        "frequency 20 Hz is used, but the fit covers only 0.1 to 10 Hz, validated at 20 to 25 Hz");
+  CHECK(outside(asked, covered, &validated).at(1) == outside(asked, covered).at(1));
 }
 
 TEST_CASE("outside: what neither side tells is not compared", "[report]") {

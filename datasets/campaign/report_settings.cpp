@@ -1,0 +1,78 @@
+#include "datasets/campaign/report_settings.hpp"
+
+#include <algorithm>
+#include <charconv>
+
+#include "common/quantity.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+std::string_view without_blanks(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t";
+  const auto first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
+}
+
+/// A number at the start of a text, which goes on behind it.
+std::optional<double> take_number(std::string_view& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc()) return std::nullopt;
+  text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  return value;
+}
+
+/// A word or sign at the start of a text, which goes on behind it and blanks.
+bool take(std::string_view& text, std::string_view word) {
+  text = without_blanks(text);
+  if (!text.starts_with(word)) return false;
+  text.remove_prefix(word.size());
+  text = without_blanks(text);
+  return true;
+}
+
+/// The coverage factor of "... (k = 2)", which is taken off the text.
+std::optional<double> take_coverage_factor(std::string_view& text) {
+  const auto open = text.rfind('(');
+  if (open == std::string_view::npos) return std::nullopt;
+  std::string_view rest = text.substr(open);
+  if (!take(rest, "(") || !take(rest, "k") || !take(rest, "=")) return std::nullopt;
+  const auto factor = take_number(rest);
+  if (!factor || !(*factor > 0.0) || !take(rest, ")") || !rest.empty()) return std::nullopt;
+  text = without_blanks(text.substr(0, open));
+  return factor;
+}
+
+}  // namespace
+
+std::string text_of(const ReportSettings::Fields& fields, std::string_view key) {
+  const auto found = std::find_if(fields.begin(), fields.end(),
+                                  [&](const auto& field) { return field.first == key; });
+  return found == fields.end() ? std::string() : found->second;
+}
+
+StatedUncertainty stated_uncertainty(std::string_view text, std::string_view unit) {
+  StatedUncertainty result;
+  const auto factor = take_coverage_factor(text);
+  const auto expanded = factor ? take_number(text) : std::nullopt;
+  const std::string_view of = without_blanks(text);
+  if (!expanded || !(*expanded >= 0.0) || of.empty()) {
+    result.problem = "expected \"NUMBER UNIT (k = N)\" or \"NUMBER % (k = N)\"";
+    return result;
+  }
+  const double standard = *expanded / *factor;
+  if (of == "%") {
+    result.gain_sd = standard / 100.0;
+    return result;
+  }
+  try {
+    result.offset_sd = unit_conversion(of, unit).scale * standard;
+  } catch (const QuantityError& error) {
+    result.problem = error.what();
+  }
+  return result;
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,43 @@
+#include "calib/trust/collinearity.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::Contains;
+using Catch::WithinRel;
+
+Eigen::MatrixXd pair(double r) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(2, 2);
+  matrix(0, 1) = matrix(1, 0) = r;
+  return matrix;
+}
+
+}  // namespace
+
+TEST_CASE("collinearity: variance inflation is the diagonal of the inverse", "[calib]") {
+  const Eigen::VectorXd two = variance_inflation(pair(0.6));
+  CHECK_THAT(two(0), WithinRel(1.0 / (1.0 - 0.36), 1e-12));
+  CHECK_THAT(two(1), WithinRel(two(0), 1e-12));
+  CHECK(std::isinf(variance_inflation(pair(1.0))(0)));
+}
+
+TEST_CASE("collinearity: estimates that others make up together are named", "[calib]") {
+  CHECK_THAT(collinearity_words({"a", "b"}, pair(-0.5)),
+             Contains("-0.500 between a and b") && Contains("all can be told apart"));
+  CHECK_THAT(collinearity_words({"a", "b"}, pair(0.95)), !Contains("all can be told apart"));
+  CHECK_THAT(collinearity_words({"a", "b"}, pair(0.999)),
+             Contains("combination of the two") && Contains("a 500 times"));
+  // c is the sum of a and b but for a hundredth of its variance: no pair beyond 0.71, yet c is not
+  // told apart.
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Identity(3, 3);
+  sum(0, 2) = sum(2, 0) = sum(1, 2) = sum(2, 1) = std::sqrt(0.99 / 2.0);
+  CHECK_THAT(variance_inflation(sum)(2), WithinRel(100.0, 1e-9));
+  CHECK_THAT(collinearity_words({"a", "b", "c"}, sum),
+             Contains("c 100 times") && !Contains("all can be told apart"));
+  CHECK(collinearity_words({"a"}, Eigen::MatrixXd::Identity(1, 1)).empty());
+}
+
+}  // namespace rigcal::calib
