@@ -48,7 +48,7 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_spaces(std::string_view text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
   while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
   return text;
@@ -112,8 +112,8 @@ std::optional<UnitInName> in_brackets(std::string_view name) {
     if (name[open] != '[' && name[open] != '(') continue;
     const std::size_t close = closing(name, open);
     if (close == std::string_view::npos) continue;
-    const std::string_view inside = trimmed(name.substr(open + 1, close - open - 1));
-    const std::string_view last = trimmed(name.substr(0, open));
+    const std::string_view inside = without_spaces(name.substr(open + 1, close - open - 1));
+    const std::string_view last = without_spaces(name.substr(0, open));
     const auto before = parts_of(last);
     const std::string_view word =
         before.empty() ? last
@@ -158,7 +158,7 @@ std::optional<UnitInName> behind_a_word(std::string_view name) {
 }  // namespace
 
 std::string unit_of_text(std::string_view text) {
-  text = trimmed(text.substr(0, text.find(" since ")));
+  text = without_spaces(text.substr(0, text.find(" since ")));
   if (text.empty()) return {};
   const std::string small = lower(text);
   for (const auto& [spelling, unit] : kSpellings)
