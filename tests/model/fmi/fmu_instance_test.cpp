@@ -239,6 +239,7 @@ TEST_CASE("fmu instance: inputs act at once, each on what it is", "[model]") {
   const ParameterValues values = exported().values;
   const auto acceleration = [&] { return instance.derivatives()[1]; };
   const double before = acceleration();
+  CHECK(before == Approx(-30.0 / values["mass"]));  // at rest, without pressure
   instance.set_real(kForce, 30.0 + values["mass"]);
   CHECK(acceleration() == Approx(before - 1.0).margin(1e-9));
   instance.set_real(kForce, 30.0);
@@ -299,6 +300,42 @@ TEST_CASE("fmu instance: the slope of an input holds for one step, from where it
   Importer early(false);
   CHECK_THAT(complaint([&] { early.instance.set_input_derivative(kForce, 1, 1.0); }),
              Contains("is instantiated"));
+}
+
+TEST_CASE("fmu instance: however a ramp is cut into steps, it leads to the same end", "[model]") {
+  const auto position_after = [](const std::vector<double>& steps_s, double tolerance) {
+    Importer importer(false);
+    importer.instance.set_up(0.0, &tolerance);
+    importer.instance.enter_initialization();
+    importer.instance.exit_initialization();
+    double t = 0.0;
+    for (const double step_s : steps_s) {
+      importer.instance.set_input_derivative(kReference, 1, 0.01);
+      importer.instance.step(t, step_s);
+      t += step_s;
+    }
+    return importer.instance.real(kStateReference);
+  };
+  const double whole = position_after({0.2}, 1e-9);
+  CHECK(std::abs(whole) > 1e-4);
+  CHECK(position_after({0.1, 0.1}, 1e-9) == Approx(whole).epsilon(1e-6));
+  CHECK(position_after({0.05, 0.15}, 1e-9) == Approx(whole).epsilon(1e-6));
+  // A millionth of the peak in each step.
+  CHECK(position_after({0.2}, 1e-6) == Approx(whole).epsilon(1e-4));
+}
+
+TEST_CASE("exported_rig: a choice is one of two", "[model]") {
+  const TemporaryFolder folder;
+  for (const char* line : {"controller pdi", "controller", "initial gone", "controller given"}) {
+    CAPTURE(line);
+    folder.write(kRigFile, std::string("rigcal.rig/1\nplant load_pressure\n") + line + "\n");
+    CHECK_THAT(complaint([&] { read_exported_rig(folder / kRigFile); }),
+               Contains(std::string(kRigFile) + ":3: found"));
+  }
+  folder.write(kRigFile, "rigcal.rig/1\nplant load_pressure\ncontroller none\ninitial given\n");
+  const ExportedRig rig = read_exported_rig(folder / kRigFile);
+  CHECK(rig.rig.controller == ControllerKind::none);
+  CHECK(rig.rig.initial == InitialState::given);
 }
 
 TEST_CASE("fmu instance: ticks of a sampled controller, a period apart from the start", "[model]") {

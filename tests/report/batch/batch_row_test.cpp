@@ -312,7 +312,10 @@ TEST_CASE("batch: a CSV line for each rig, columns for every estimate of any", "
   leak.level = "33 %";
   leak.value = 0.25;
   StoredRig c = rig_of("c", FitStatus::converged, Verdict::pass, 0);
-  c.parameters = {leak, mass};
+  StoredRigEstimate more = leak;
+  more.level = "66 %";
+  more.value = 0.75;
+  c.parameters = {leak, mass, more};
   batch.rigs = {a, b, c};
   const std::string csv = batch_csv(batch);
   for (const auto& [column, expected] :
@@ -334,6 +337,7 @@ TEST_CASE("batch: a CSV line for each rig, columns for every estimate of any", "
   CHECK(cell(csv, 2, "exit_code") == "2");
   CHECK(cell(csv, 3, "leakage_coefficient[33 %]") == "0.25");
   CHECK(cell(csv, 3, "leakage_coefficient[33 %]_ci95_low").empty());
+  CHECK(cell(csv, 3, "leakage_coefficient[66 %]") == "0.75");
   CHECK(cell(csv, 3, "mass_kg") == "85");
-  CHECK(cells(csv, 0).size() == 20);
+  CHECK(cells(csv, 0).size() == 23);
 }

@@ -135,6 +135,8 @@ TEST_CASE("load_hdf5: what may stand between the brackets", "[datasets]") {
   CHECK(read_columns(path, {"/v", "/v(:)", "/row", "/row(1,:)", "/thin", "/thin(1,:,1)"}) ==
         Table{{7, 8, 9}, {7, 8, 9}, {7, 8, 9}, {7, 8, 9}, {7, 8, 9}, {7, 8, 9}});
   CHECK(read_columns(path, {"/one"}) == Table{{5}});
+  CHECK_THAT(read_refusal(path, {"/row(:,1)", "/m(1,:)"}),
+             Contains("'/m(1,:)' has 2 rows, but '/row(:,1)' has 1"));
   CHECK_THAT(read_refusal(path, {"/m(1,:)", "/row(:,1)"}),
              Contains("'/row(:,1)' has 1 rows, but '/m(1,:)' has 2"));
   for (const char* bad :
