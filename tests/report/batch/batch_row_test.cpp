@@ -163,7 +163,7 @@ TEST_CASE("batch row: every reason that is no pass, with its aspect", "[report]"
   result["assessment"]["agreement"]["reasons"] =
       Json::array({reason("fail", "beyond"), reason("pass", "kept")});
   result["assessment"]["adequacy"]["reasons"] = Json::array({reason("reservation", "misfit")});
-  result["assessment"]["parameters"]["reasons"] = Json::array({reason("not_assessed", "none")});
+  result["assessment"]["parameters"]["reasons"] = Json::array({reason("reservation", "none")});
   CHECK(rig_row(run_of(result)).reasons ==
         std::vector<std::string>{"agreement: beyond", "adequacy: misfit", "parameters: none"});
 }
