@@ -64,12 +64,21 @@ def scaled(value, unit):
 
 
 def in_steps_of(uncertainty, *values):
-    """Values in the digits that two digits of an uncertainty leave; all with the exponent of the largest."""
+    """Values in the digits that two digits of an uncertainty leave, two of their own at least; all with the exponent of
+    the largest, but for those that are far smaller."""
     power = math.floor(math.log10(max(abs(value) for value in values)))
     power = 0 if power >= -3 else power
     decimals = 1 - math.floor(math.log10(uncertainty)) + power
     suffix = f"e{power}" if power else ""
-    return [f"{round(value / 10.0 ** power, decimals) + 0.0:.{max(decimals, 0)}f}{suffix}" for value in values]
+
+    def text(value):
+        scaled_value = value / 10.0 ** power
+        own = decimals if value == 0.0 else max(decimals, 1 - math.floor(math.log10(abs(scaled_value))))
+        if own > decimals + 3:
+            return f"{value:.1e}"
+        return f"{round(scaled_value, own) + 0.0:.{max(own, 0)}f}{suffix}"
+
+    return [text(value) for value in values]
 
 
 def print_table(header, rows):

@@ -91,9 +91,10 @@ void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Rea
 
 Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
   const auto table = model::parameter_table(campaign.rig.plant);
-  std::vector<Reason> reasons;
+  // What is known of an estimate is known at a minimum.
   if (!fit.has_converged())
-    reasons.push_back(reason(AspectState::reservation, "not_converged", fit.message));
+    return aspect_of({reason(AspectState::reservation, "not_converged", fit.message)});
+  std::vector<Reason> reasons;
   std::size_t estimated = 0;
   std::size_t identified = 0;
   for (const FittedParameter& each : fit.parameters) {

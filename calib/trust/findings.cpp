@@ -184,7 +184,11 @@ std::vector<std::size_t> describe_findings(const Problem& problem, const Evaluat
   judge_residuals(problem, check, spread, fit);
   add_correlation(problem, spread, fit);
   warn_of_noise(problem, spread, fit);
-  warn_of_parameters(problem, fit.parameters, fit);
+  if (fit.status == FitStatus::stopped) {
+    withhold_grades(fit.parameters);
+  } else {
+    warn_of_parameters(problem, fit.parameters, fit);
+  }
   warn_of_priors(problem, fit.parameters, fit);
   return open;
 }

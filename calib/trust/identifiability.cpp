@@ -96,9 +96,8 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
     case Identifiability::not_identifiable:
       break;
   }
-  add_reason(parameter, fmt::format("half width of the 95 % interval is {:.0f} % of the value{}",
-                                    100.0 * share_of_value(parameter.value, half_width),
-                                    partner(problem, found, unknown)));
+  add_reason(parameter, half_width_words(share_of_value(parameter.value, half_width)) +
+                            partner(problem, found, unknown));
 }
 
 /// As student_t() takes it; known variances have no end of it.
@@ -181,6 +180,22 @@ Identifiability grade_of(const ParameterSpec& spec, double value, double half_wi
   const double share = share_of_value(value, half_width);
   if (share > kNotIdentifiable) return Identifiability::not_identifiable;
   return share > kWeak ? Identifiability::weak : Identifiability::identified;
+}
+
+std::string half_width_words(double share) {
+  constexpr double kMeaningless = 10.0;
+  if (!(share <= kMeaningless))
+    return "not determined: the 95 % interval is more than 10 times as wide as the value to each "
+           "side";
+  return fmt::format("half width of the 95 % interval is {:.0f} % of the value", 100.0 * share);
+}
+
+void withhold_grades(std::vector<FittedParameter>& parameters) {
+  for (FittedParameter& each : parameters) {
+    if (!each.fitted) continue;
+    each.identifiability = Identifiability::not_identifiable;
+    each.reason = "not judged: the search was stopped before it converged";
+  }
 }
 
 std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Evaluation& optimum,

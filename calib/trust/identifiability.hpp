@@ -31,6 +31,15 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
                                                const OptimumCheck& check,
                                                const Uncertainty& uncertainty);
 
+/// "half width of the 95 % interval is 37 % of the value".
+///
+/// @param share  half width over the value
+std::string half_width_words(double share);
+
+/// Of a search that was stopped before it converged: no estimate is graded by the derivatives at a
+/// point that is no minimum.
+void withhold_grades(std::vector<FittedParameter>& parameters);
+
 /// Whether most of a standard error is what known values leave uncertain, not what the records do.
 bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
                     const std::vector<double>& z, std::size_t unknown);

@@ -28,7 +28,7 @@ std::string worst_of(const StoredRig& rig) {
   const StoredRigScore& worst = rig.worst_scores.front();
   if (!worst.failure.empty()) return worst.condition + ": not simulated";
   return fmt::format("{} {}: {}", worst.condition, worst.channel,
-                     worst.rho2 ? fmt::format("rho2 {:.4f}", *worst.rho2) : "no rho2");
+                     worst.rho2 ? "rho2 " + agreement_text(*worst.rho2) : std::string("no rho2"));
 }
 
 /// Names of all estimates of any rig, in the order in which they come up.

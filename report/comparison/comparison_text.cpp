@@ -58,10 +58,10 @@ std::string results_table(const StoredComparison& comparison, std::size_t column
 /// "85.011 [84.96, 85.06]", "6.2 (known)", "-" in the unit of the row.
 std::string estimate_text(const std::optional<StoredEstimate>& estimate, const RowUnit& unit) {
   if (!estimate || !estimate->value) return "-";
-  const std::string text =
-      text_of(shown_matched(estimate->value, estimate->ci95, unit.si, 6), "text");
+  const Json shown = shown_estimate(estimate->value, estimate->ci95, unit.si);
+  const std::string text = text_of(shown.at("value"), "text");
   if (!estimate->fitted) return text + " (known)";
-  const Json interval = shown_interval(estimate->ci95, unit.si);
+  const Json& interval = shown.at("interval");
   if (!interval.at("known").get<bool>()) return text + " (no interval)";
   return fmt::format("{} [{}, {}]", text, text_of(interval.at("low"), "text"),
                      text_of(interval.at("high"), "text"));

@@ -73,6 +73,15 @@ std::vector<double> thinned_where(std::span<const double> values, std::span<cons
   return result;
 }
 
+std::vector<double> thinned_times(std::span<const double> time_s, std::span<const double> values,
+                                  const Buckets& buckets) {
+  std::vector<double> result = thinned_where(time_s, values, buckets);
+  const std::vector<double> shared = thinned_times(time_s, buckets);
+  for (std::size_t i = 0; i < result.size(); ++i)
+    if (std::isnan(result[i])) result[i] = shared[i];
+  return result;
+}
+
 std::vector<double> thinned(std::span<const double> values, const Buckets& buckets) {
   return thinned_where(values, values, buckets);
 }

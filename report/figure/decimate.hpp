@@ -18,8 +18,14 @@ struct Buckets {
 /// The smallest buckets that leave at most about `points` points of `samples`.
 Buckets buckets(std::size_t samples, std::size_t points);
 
-/// Where the points of thinned series stand: the first and the middle sample of each bucket.
+/// Where the points of series stand that share their times: the first and the middle sample of each
+/// bucket.
 std::vector<double> thinned_times(std::span<const double> time_s, const Buckets& buckets);
+
+/// Where the samples stand that thinned() keeps of a series: a line through them passes through no
+/// point that was not measured. As above where a bucket holds no number.
+std::vector<double> thinned_times(std::span<const double> time_s, std::span<const double> values,
+                                  const Buckets& buckets);
 
 /// Least and largest value of each bucket in the order in which they occur; NaN where a bucket
 /// holds no number.

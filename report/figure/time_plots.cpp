@@ -113,7 +113,8 @@ Trace prediction_band(const TimePlot& plot, const std::vector<double>& time_s) {
   Trace band = empty_trace(Trace::Kind::band, "model", "95 % prediction");
   const bool follows = plot.prediction_middle != nullptr;
   const Buckets thin = buckets(time_s.size(), follows ? kStaticPoints : kBandPoints);
-  band.x = thinned_times(time_s, thin);
+  band.x = follows ? thinned_times(time_s, *plot.prediction_middle, thin)
+                   : thinned_times(time_s, *plot.prediction_sd, thin);
   const std::vector<double> sd =
       follows ? thinned_where(*plot.prediction_sd, *plot.prediction_middle, thin)
               : thinned(*plot.prediction_sd, thin);
@@ -139,7 +140,6 @@ bool shows_band(const TimePlot& plot) {
 Plot picture(const TimePlot& plot, const Table& table, const std::string& condition) {
   const std::vector<double>& time_s = table.columns.front();
   const Buckets thin = buckets(time_s.size(), kStaticPoints);
-  const std::vector<double> times = thinned_times(time_s, thin);
   Plot result;
   result.title = fmt::format("{} of {} over time, in {}", plot.title, condition, plot.unit);
   result.x_label = "time [s]";
@@ -149,7 +149,7 @@ Plot picture(const TimePlot& plot, const Table& table, const std::string& condit
     Trace trace;
     trace.name = plot.lines.size() > 1 ? line.name : std::string();
     trace.style = line.style;
-    trace.x = times;
+    trace.x = thinned_times(time_s, *line.values, thin);
     trace.y = scaled(thinned(*line.values, thin), plot.si);
     result.traces.push_back(std::move(trace));
   }
@@ -162,7 +162,7 @@ Plot picture(const TimePlot& plot, const Table& table, const std::string& condit
     band.kind = Trace::Kind::band;
     band.name = "sd of repeats";
     band.style = "measured";
-    band.x = times;
+    band.x = result.traces.back().x;
     const std::vector<double> sd =
         scaled(thinned_where(*plot.sd, *plot.lines.front().values, thin), plot.si);
     const std::vector<double>& middle = result.traces.back().y;

@@ -4,6 +4,9 @@
 
 #include <cmath>
 
+#include "calib/trust/identifiability.hpp"
+#include "common/significant.hpp"
+#include "report/text/estimate_text.hpp"
 #include "report/text/readable.hpp"
 #include "report/text/text_table.hpp"
 
@@ -20,8 +23,7 @@ std::string reason(const calib::FittedAssumption& p) {
   if (p.identifiability == calib::Identifiability::bounded)
     return "not significantly different from zero";
   const double half_width = 0.5 * (p.ci95->second - p.ci95->first);
-  return fmt::format("half width of the interval is {:.0f} % of the value",
-                     100.0 * half_width / std::abs(p.value));
+  return calib::half_width_words(half_width / std::abs(p.value));
 }
 
 StoredParameter stored(const TablesFitResult& result, const calib::FittedAssumption& p) {
@@ -90,11 +92,15 @@ std::string tables_fit_text(const TablesFitResult& result, const Style& style) {
   for (const calib::FittedAssumption& p : fit.parameters) {
     const auto& spec = datasets::assumption_spec(result.campaign.rig.plant, p.index);
     const ReadableUnit unit = readable_unit(p.value, spec.unit);
-    const auto shown = [&](double value) { return fmt::format("{:.4g}", value / unit.si); };
-    table.add({std::string(spec.key), fit.status == FitStatus::failed ? "-" : shown(p.value),
-               std::string(unit.name), p.standard_error ? shown(*p.standard_error) : "-",
-               p.ci95 ? shown(p.ci95->first) + " .. " + shown(p.ci95->second) : "-", shown(p.start),
-               std::string(to_string(p.identifiability))});
+    std::optional<Range> ci95;
+    if (p.ci95) ci95 = {p.ci95->first / unit.si, p.ci95->second / unit.si};
+    const EstimateText estimate =
+        estimate_text(p.value / unit.si, ci95, {p.lower / unit.si, p.upper / unit.si});
+    table.add({std::string(spec.key), fit.status == FitStatus::failed ? "-" : estimate.value,
+               std::string(unit.name),
+               p.standard_error ? significant(*p.standard_error / unit.si, kErrorDigits) : "-",
+               ci95 ? estimate.low + " .. " + estimate.high : "-",
+               significant(p.start / unit.si, 4), std::string(to_string(p.identifiability))});
   }
   text += table.text();
   if (fit.correlation.rows() > 1) {
@@ -105,7 +111,7 @@ std::string tables_fit_text(const TablesFitResult& result, const Style& style) {
         return datasets::assumption_spec(result.campaign.rig.plant, index).key;
       };
       for (Eigen::Index j = 0; j < i; ++j) {
-        text += fmt::format("  {}, {}: {:.2f}\n", name(j), name(i), fit.correlation(i, j));
+        text += fmt::format("  {}, {}: {}\n", name(j), name(i), fixed(fit.correlation(i, j), 2));
       }
     }
   }

@@ -47,7 +47,7 @@ std::string trend_sentence(const LeakTrend& trend) {
   const auto [low, high] = trend.share_per_day_ci95;
   const double points = kInPercent * kDays;  // of the servo flow, in these days
   const double error = std::max(0.005, points * (high - low) / 4.0);
-  const auto text = [&](double per_day) { return matched(points * per_day, error); };
+  const auto text = [&](double per_day) { return to_uncertainty(points * per_day, error); };
   const std::string over =
       fmt::format("over {} dates from {} to {}, {}", trend.dates, date_of(trend.first_day),
                   date_of(trend.last_day), p_value_text(trend.p));

@@ -73,7 +73,9 @@ std::string state_sentence(const MachineState& state) {
   }
   // Two decimals at most: of an operator's percentages no more can be meant.
   const double error = std::max(0.1, kInPercent * (e.share_ci95.second - e.share_ci95.first) / 4.0);
-  const auto percent = [&](double fraction) { return matched(kInPercent * fraction, error); };
+  const auto percent = [&](double fraction) {
+    return to_uncertainty(kInPercent * fraction, error);
+  };
   std::string text;
   if (e.leak_detected) {
     const std::string low = percent(e.share_ci95.first);

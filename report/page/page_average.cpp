@@ -13,7 +13,8 @@
 namespace rigcal::report {
 namespace {
 
-constexpr std::size_t kAveragePoints = 300;
+/// About one for each pixel of the width.
+constexpr std::size_t kAveragePoints = 600;
 
 std::string offsets_text(const StoredRecord& record) {
   if (record.repeats < 2 || !record.offset_range_s) return "–";
@@ -64,7 +65,6 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
   const auto* time_s = series.find("time_s");
   if (time_s == nullptr || time_s->empty()) return figures;
   const Buckets thin = buckets(time_s->size(), kAveragePoints);
-  const std::vector<double> times = thinned_times(*time_s, thin);
   for (const datasets::ChannelInfo& about : datasets::channel_table()) {
     const auto* mean = series.find(fmt::format("{}_mean", about.name));
     const auto* sd = series.find(fmt::format("{}_sd", about.name));
@@ -88,13 +88,13 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
         fmt::format("{} of {}, mean and standard deviation of its repeats", words, condition),
         words, largest(*mean), si);
     Trace line = empty_trace(Trace::Kind::line, "measured", "mean");
-    line.x = times;
+    line.x = thinned_times(*time_s, *mean, thin);
     line.y = thinned(*mean, thin);
     for (double& value : line.y) value /= si;
     const bool scatter = sd != nullptr && largest(*sd) > 0.0;
     if (scatter) {
       Trace band = empty_trace(Trace::Kind::band, "measured", "sd of repeats");
-      band.x = times;
+      band.x = line.x;
       const std::vector<double> half = thinned_where(*sd, *mean, thin);
       for (std::size_t i = 0; i < half.size(); ++i) {
         band.y.push_back(line.y[i] - half[i] / si);
@@ -110,7 +110,7 @@ std::vector<Figure> average_figures(const std::string& condition, const Table& s
         "sd of " + words, largest(*sd), si);
     spread.height = 130.0;
     Trace trace = empty_trace(Trace::Kind::line, "residual");
-    trace.x = times;
+    trace.x = thinned_times(*time_s, *sd, thin);
     trace.y = thinned(*sd, thin);
     for (double& value : trace.y) value /= si;
     spread.traces.push_back(std::move(trace));

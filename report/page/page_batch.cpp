@@ -50,10 +50,11 @@ Json rig_estimate_views(const StoredRig& rig) {
   Json list = Json::array();
   for (const StoredRigEstimate& each : rig.parameters) {
     const RowUnit unit = row_unit(each.value, each.unit);
-    const Json interval = shown_interval(each.ci95, unit.si);
+    const Json shown = shown_estimate(each.value, each.ci95, unit.si);
+    const Json& interval = shown.at("interval");
     list.push_back({{"name", parameter_label(each)},
                     {"unit", unit.name},
-                    {"value", shown_matched(each.value, each.ci95, unit.si, 6)},
+                    {"value", shown.at("value")},
                     {"interval", interval.at("known")},
                     {"low", interval.at("low")},
                     {"high", interval.at("high")},

@@ -13,9 +13,10 @@ namespace {
 
 Json estimate_cell(const std::optional<StoredEstimate>& estimate, const RowUnit& unit) {
   if (!estimate) return {{"there", false}};
-  const Json interval = shown_interval(estimate->ci95, unit.si);
+  const Json shown = shown_estimate(estimate->value, estimate->ci95, unit.si);
+  const Json& interval = shown.at("interval");
   return {{"there", true},
-          {"value", shown_matched(estimate->value, estimate->ci95, unit.si, 6)},
+          {"value", shown.at("value")},
           {"fitted", estimate->fitted},
           {"interval", interval.at("known")},
           {"low", interval.at("low")},

@@ -207,7 +207,7 @@ Plot levels_plot(const std::vector<std::pair<std::string, Table>>& levels) {
     Trace trace;
     trace.name = level;
     trace.style = kLevelStyles[std::min(plot.traces.size(), kLevelStyles.size() - 1)];
-    trace.x = thinned_times(*time_s, thin);
+    trace.x = thinned_times(*time_s, *residual, thin);
     trace.y = thinned(*residual, thin);
     for (double& y : trace.y) {
       y = -y;  // the file holds leaking minus healthy
@@ -229,7 +229,7 @@ Trace level_trace(const Table& table, const char* column, double factor) {
   const auto* time_s = table.find("time_s");
   if (values == nullptr || time_s == nullptr || values->empty()) return trace;
   const Buckets thin = buckets(values->size(), kLevelPoints);
-  trace.x = thinned_times(*time_s, thin);
+  trace.x = thinned_times(*time_s, *values, thin);
   trace.y = thinned(*values, thin);
   for (double& y : trace.y) y *= factor;
   return trace;

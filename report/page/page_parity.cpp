@@ -84,7 +84,7 @@ void add_lines(const Table& series, const std::string& column, const char* style
   for (const auto& title : series.names) {
     if (title.rfind(column + "_", 0) != 0) continue;
     Trace line = empty_trace(Trace::Kind::line, style, plot.traces.empty() ? name : "");
-    line.x = thinned_times(*time, thin);
+    line.x = thinned_times(*time, *series.find(title), thin);
     line.y = thinned(in_millimetres(*series.find(title)), thin);
     plot.traces.push_back(std::move(line));
   }

@@ -9,6 +9,7 @@
 #include "common/significant.hpp"
 #include "datasets/record.hpp"
 #include "metrics/metric_table.hpp"
+#include "report/text/estimate_text.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
@@ -27,13 +28,31 @@ Json shown_in(const Number& number, double si_per_unit, int digits) {
 }
 
 Json shown_interval(const Interval& interval, double si_per_unit) {
-  constexpr int kDigits = 5;
   const auto& ends = interval.ends;
-  const auto end = [&](double Range::*side) {
-    return shown_matched(ends ? std::optional((*ends).*side) : std::nullopt, interval, si_per_unit,
-                         kDigits);
+  return shown_estimate(ends ? std::optional(0.5 * (ends->low + ends->high)) : std::nullopt,
+                        interval, si_per_unit)
+      .at("interval");
+}
+
+Json shown_estimate(const Number& number, const Interval& interval, double si_per_unit,
+                    const Range& bounds) {
+  const auto in_unit = [&](const Range& range) {
+    return Range{range.low / si_per_unit, range.high / si_per_unit};
   };
-  return {{"known", ends.has_value()}, {"low", end(&Range::low)}, {"high", end(&Range::high)}};
+  const Json missing{{"exact", ""}, {"text", "–"}};
+  Json view{{"value", missing},
+            {"interval", {{"known", false}, {"low", missing}, {"high", missing}}}};
+  if (!number.value) return view;
+  const auto& ends = interval.ends;
+  const EstimateText text =
+      estimate_text(*number.value / si_per_unit,
+                    ends ? std::optional(in_unit(*ends)) : std::nullopt, in_unit(bounds));
+  view["value"] = exact_and(*number.value, text.value);
+  if (ends)
+    view["interval"] = {{"known", true},
+                        {"low", exact_and(ends->low, text.low)},
+                        {"high", exact_and(ends->high, text.high)}};
+  return view;
 }
 
 Json shown(const Number& number, std::string_view si_unit, int digits) {
@@ -53,12 +72,6 @@ Json shown_score(const std::string& metric, const Number& number) {
   const int decimals =
       missing > 0.0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(missing))) + 1, 3, 10) : 3;
   return exact_and(v, fmt::format("{:.{}f}", v, decimals));
-}
-
-Json shown_matched(const Number& number, const Interval& interval, double si_per_unit, int digits) {
-  if (!number.value || !interval.ends) return shown_in(number, si_per_unit, digits);
-  return exact_and(*number.value,
-                   matched(*number.value / si_per_unit, interval.half_width() / si_per_unit));
 }
 
 RowUnit row_unit(double value_si, std::string_view si_unit) {

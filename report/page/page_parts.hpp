@@ -12,6 +12,7 @@
 #include "report/json/json_fields.hpp"
 #include "report/store/stored.hpp"
 #include "report/store/table.hpp"
+#include "report/text/estimate_text.hpp"
 
 // What the templates of report/page/ show, section by section, from the stored results alone.
 // Texts are plain: the template engine escapes them. A key that ends in _html holds markup made
@@ -46,13 +47,15 @@ struct Interval {
 Json shown(const Number& value, std::string_view si_unit, int digits = 5);
 /// The same in a unit that others share.
 Json shown_in(const Number& value, double si_per_unit, int digits = 5);
-/// Both ends of an interval, to the second digit of its half width; `known` false where an end is
-/// missing.
+/// Both ends of an interval, as estimate_text() writes them; `known` false where an end is missing.
 Json shown_interval(const Interval& interval, double si_per_unit);
 /// rho2, R or CCC: "0.9996", "> 0.9999".
 Json shown_agreement(const Number& value);
-/// An estimate with no more digits than its 95 % interval supports; `digits` where it has none.
-Json shown_matched(const Number& value, const Interval& interval, double si_per_unit, int digits);
+/// An estimate as estimate_text() writes it: {"value": ..., "interval": {"known", "low", "high"}}.
+///
+/// @param bounds  that hold the value, SI
+Json shown_estimate(const Number& value, const Interval& interval, double si_per_unit,
+                    const Range& bounds = kAnywhere);
 /// A score by its metric: agreement as above, errors in percent to four digits.
 Json shown_score(const std::string& metric, const Number& value);
 
@@ -65,6 +68,12 @@ struct RowUnit {
 /// That of a parameter's value and of others like it.
 RowUnit row_unit(double value_si, std::string_view si_unit);
 inline RowUnit unit_of(const StoredParameter& p) { return row_unit(p.value.value_or(0.0), p.unit); }
+
+/// The farther end of the 95 % interval from the value, over the value: the end that no limit of
+/// the parameter has cut. Infinite where there is no interval, or the value is zero.
+double relative_half_width(const StoredParameter& parameter);
+/// "± 2.1 %", "± 220 %"; "not determined" of what is more than ten times the value.
+std::string half_width_text(double relative);
 
 /// "not identifiable"; empty where nothing was estimated.
 std::string grade_words(const std::optional<calib::Identifiability>& grade);
@@ -123,8 +132,9 @@ Json tables_headline(const StoredTablesFit& fit);
 /// Per channel: signals by leak levels.
 Json matrix_view(const StoredFit& fit);
 Json groups_view(const StoredFit& fit);
+/// @param judged  whether a search came to its end, so that there are grades
 Json parameters_view(const std::vector<StoredParameter>& parameters,
-                     const StoredCorrelation& correlation);
+                     const StoredCorrelation& correlation, bool judged);
 Json identifiability_view(const StoredFit& fit);
 /// What tells how far the estimates can be trusted, as far as the fit holds it: profiles,
 /// bootstrap, lack of fit, predictions, where starts ended.

@@ -52,21 +52,22 @@ std::string readable(double value_si, std::string_view si_unit, int digits) {
   return text;
 }
 
-std::string matched(double value, double uncertainty) {
-  constexpr int kUnknown = 6;
-  constexpr int kMostDecimals = 15;
-  if (value == 0.0) return "0";
-  if (!(uncertainty > 0.0) || !std::isfinite(uncertainty)) return significant(value, kUnknown);
+std::string to_uncertainty(double value, double uncertainty) {
   constexpr double kRounding = 1e-9;  // 0.1 may have become 0.0999999999
   const int decimals = 1 - static_cast<int>(std::floor(std::log10(uncertainty) + kRounding));
-  if (decimals > kMostDecimals) return significant(value, kUnknown);
-  if (decimals >= 0) return fmt::format("{:.{}f}", value, decimals);
+  if (decimals >= 0) return fixed(value, decimals);
   const double step = std::pow(10.0, -decimals);
-  return fmt::format("{:.0f}", std::round(value / step) * step);
+  return fixed(std::round(value / step) * step, 0);
+}
+
+std::string fixed(double value, int decimals) {
+  std::string text = fmt::format("{:.{}f}", value, decimals);
+  if (text.front() == '-' && text.find_first_not_of("-0.") == std::string::npos) text.erase(0, 1);
+  return text;
 }
 
 std::string agreement_text(double value) {
-  const std::string text = fmt::format("{:.4f}", value);
+  const std::string text = fixed(value, 4);
   return text == "1.0000" && value < 1.0 ? std::string("> 0.9999") : text;
 }
 

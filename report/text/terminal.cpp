@@ -7,11 +7,14 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "calib/score/acceptance.hpp"
 #include "common/significant.hpp"
+#include "report/text/estimate_text.hpp"
 #include "report/text/groups.hpp"
 #include "report/text/readable.hpp"
+#include "report/text/stopped_sentence.hpp"
 #include "report/text/text_table.hpp"
 
 namespace rigcal::report {
@@ -32,32 +35,44 @@ std::string coloured(Verdict verdict, const Style& style) {
   return coloured(std::string(to_string(verdict)), code, style);
 }
 
-/// The channel of the terminal's scorecard.
-std::optional<Channel> shown_channel(const calib::Fit& fit) {
-  std::optional<Channel> first;
-  for (const calib::ConditionScore& condition : fit.conditions) {
-    for (const calib::ChannelScore& score : condition.channels) {
-      if (score.channel == Channel::position) return score.channel;
-      if (!first) first = score.channel;
-    }
-  }
-  return first;
+/// The channel that speaks most against the model: by the verdict on its limits, then by the lowest
+/// rho2; null where none was compared.
+const calib::ChannelScore* worst_channel(const calib::ConditionScore& condition) {
+  const auto badness = [&](const calib::ChannelScore& score) {
+    const bool known = score.agreement && std::isfinite(score.agreement->rho2);
+    return std::pair(condition.verdict_of(score.channel).value_or(Verdict::pass),
+                     known ? -score.agreement->rho2 : -std::numeric_limits<double>::infinity());
+  };
+  const auto found = std::max_element(
+      condition.channels.begin(), condition.channels.end(),
+      [&](const auto& one, const auto& other) { return badness(one) < badness(other); });
+  return found == condition.channels.end() ? nullptr : &*found;
+}
+
+std::set<Channel> compared_channels(const calib::Fit& fit) {
+  std::set<Channel> channels;
+  for (const calib::ConditionScore& condition : fit.conditions)
+    for (const calib::ChannelScore& score : condition.channels) channels.insert(score.channel);
+  return channels;
 }
 
 std::string percent(double value) { return fmt::format("{:.3f}", value); }
 
-TextTable condition_table(const Result& result, Channel channel, const Style& style) {
-  TextTable table({{"condition"},
-                   {"use", Align::left, 1},
-                   {"waveform", Align::left, 6},
-                   {"frequency", Align::right, 5},
-                   {"leak level", Align::left, 4},
-                   {"rho2", Align::right},
-                   {"R", Align::right, 3},
-                   {"CCC", Align::right},
-                   {"error %", Align::right},
-                   {"floor %", Align::right, 2},
-                   {"verdict"}});
+/// @param several  channels were compared, so that each row names its own
+TextTable condition_table(const Result& result, bool several, const Style& style) {
+  std::vector<TextTable::Column> columns{{"condition"},
+                                         {"use", Align::left, 2},
+                                         {"waveform", Align::left, 7},
+                                         {"frequency", Align::right, 6},
+                                         {"leak level", Align::left, 5}};
+  if (several) columns.push_back({"channel"});
+  columns.insert(columns.end(), {{"rho2", Align::right},
+                                 {"R", Align::right, 4},
+                                 {"CCC", Align::right, 1},
+                                 {"error %", Align::right},
+                                 {"floor %", Align::right, 3},
+                                 {"verdict"}});
+  TextTable table(columns);
   for (const calib::ConditionScore& score : result.fit.conditions) {
     const datasets::Condition* condition = result.campaign.find(score.id);
     std::vector<std::string> row{score.id, std::string(to_string(score.use)), "-", "-", "-"};
@@ -66,10 +81,9 @@ TextTable condition_table(const Result& result, Channel channel, const Style& st
       if (condition->frequency_hz) row[3] = fmt::format("{:.6g} Hz", *condition->frequency_hz);
       row[4] = condition->leak_level.value_or("-");
     }
-    const auto found =
-        std::find_if(score.channels.begin(), score.channels.end(),
-                     [&](const calib::ChannelScore& s) { return s.channel == channel; });
-    const bool scored = found != score.channels.end() && found->agreement;
+    const calib::ChannelScore* found = worst_channel(score);
+    const bool scored = found != nullptr && found->agreement;
+    if (several) row.emplace_back(found != nullptr ? info(found->channel).key : "-");
     row.push_back(scored ? agreement_text(found->agreement->rho2) : "-");
     row.push_back(scored ? agreement_text(found->agreement->r) : "-");
     row.push_back(scored ? agreement_text(found->agreement->ccc) : "-");
@@ -85,25 +99,32 @@ TextTable condition_table(const Result& result, Channel channel, const Style& st
   return table;
 }
 
-TextTable group_table(const Result& result, Channel channel) {
-  TextTable table({{"by"},
-                   {"group"},
-                   {"conditions", Align::right, 2},
-                   {"rho2", Align::right},
-                   {"R", Align::right, 5},
-                   {"CCC", Align::right, 4},
-                   {"error %", Align::right},
-                   {"worst rho2", Align::right, 1},
-                   {"worst error %", Align::right, 3}});
+/// Of each group the channel with the lowest rho2.
+TextTable group_table(const Result& result, bool several) {
+  std::vector<TextTable::Column> columns{{"by"}, {"group"}, {"conditions", Align::right, 2}};
+  if (several) columns.push_back({"channel"});
+  columns.insert(columns.end(), {{"rho2", Align::right},
+                                 {"R", Align::right, 5},
+                                 {"CCC", Align::right, 4},
+                                 {"error %", Align::right},
+                                 {"worst rho2", Align::right, 1},
+                                 {"worst error %", Align::right, 3}});
+  TextTable table(columns);
   for (const Group& group : groups(result.campaign, result.fit)) {
-    const auto found = group.channels.find(channel);
+    const auto found = std::min_element(group.channels.begin(), group.channels.end(),
+                                        [](const auto& one, const auto& other) {
+                                          return one.second.worst.rho2 < other.second.worst.rho2;
+                                        });
     if (found == group.channels.end()) continue;
     const GroupScore& score = found->second;
-    table.add({group.by == "leak_level" ? "leak level" : group.by, group.label,
-               fmt::format("{}", score.conditions), agreement_text(score.mean.rho2),
-               agreement_text(score.mean.r), agreement_text(score.mean.ccc),
-               percent(score.mean.absolute_error_percent), agreement_text(score.worst.rho2),
-               percent(score.worst.absolute_error_percent)});
+    std::vector<std::string> row{group.by == "leak_level" ? "leak level" : group.by, group.label,
+                                 fmt::format("{}", score.conditions)};
+    if (several) row.emplace_back(info(found->first).key);
+    row.insert(row.end(),
+               {agreement_text(score.mean.rho2), agreement_text(score.mean.r),
+                agreement_text(score.mean.ccc), percent(score.mean.absolute_error_percent),
+                agreement_text(score.worst.rho2), percent(score.worst.absolute_error_percent)});
+    table.add(std::move(row));
   }
   return table;
 }
@@ -118,8 +139,10 @@ std::string narrow_note(const TextTable& table, const char* file, const Style& s
          "\n";
 }
 
-std::string identifiability_text(const calib::FittedParameter& p, const Style& style) {
+/// @param judged  the search came to its end
+std::string identifiability_text(const calib::FittedParameter& p, bool judged, const Style& style) {
   using calib::Identifiability;
+  if (!judged) return coloured("not judged", "33", style);
   std::string text = p.identifiability == Identifiability::not_identifiable
                          ? "not identifiable"
                          : std::string(to_string(p.identifiability));
@@ -145,11 +168,6 @@ double error_of(const calib::FittedParameter& p) {
   return p.interval == calib::IntervalSource::robust_standard_error
              ? p.robust_standard_error.value_or(0.0)
              : p.standard_error.value_or(0.0);
-}
-
-/// What the digits of a value are chosen by: half width of its interval; 0 where there is none.
-double uncertainty_of(const calib::FittedParameter& p) {
-  return p.ci95 ? 0.5 * (p.ci95->second - p.ci95->first) : 0.0;
 }
 
 /// One line per reason, led by all that it holds for; "all" where that is more than one and every
@@ -254,15 +272,39 @@ const char* mark_of(AspectState state) {
   return calib::is_against(state) ? "-" : "+";
 }
 
+/// What must be known before any verdict; empty for a result that was finished.
+std::string unfinished_text(const calib::Fit& fit, const Style& style) {
+  if (fit.status == FitStatus::converged) return {};
+  const bool stopped = fit.status == FitStatus::stopped;
+  return coloured(stopped ? "STOPPED" : "FAILED", stopped ? "33" : "31", style) + ": " +
+         fit.message + ". " +
+         (stopped ? stopped_sentence(fit.stopped_in) : std::string(kNoUsableResult));
+}
+
+/// Where a text tells the reason of a parameter, which the table of parameters tells already: its
+/// grade in place of that; nothing where it tells none.
+std::optional<std::string> without_reason(const calib::Fit& fit, const std::string& text) {
+  for (const calib::FittedParameter& parameter : fit.parameters) {
+    if (!parameter.fitted || parameter.reason.empty()) continue;
+    const std::size_t at = text.find(": " + parameter.reason);
+    if (at == std::string::npos) continue;
+    return text.substr(0, at + 2) + identifiability_text(parameter, true, {}) +
+           text.substr(at + 2 + parameter.reason.size());
+  }
+  return std::nullopt;
+}
+
 /// State of an aspect; what speaks against it, the gravest first; then what speaks for it.
-std::string aspect_text(std::string_view name, const calib::Aspect& aspect, const Style& style) {
+std::string aspect_text(std::string_view name, const calib::Aspect& aspect, const calib::Fit& fit,
+                        const Style& style) {
   constexpr std::size_t kShown = 3;  // of one state; the files hold all
   std::string text = fmt::format("  {}: {}\n", name, state_text(aspect.state, style));
   std::map<AspectState, std::size_t> told;
   for (const calib::Reason& reason : aspect.reasons) {
     if (++told[reason.state] > kShown) continue;
     const char* mark = mark_of(reason.state);
-    text += wrapped(fmt::format("    {} {}", mark, reason.words), style.columns, 6) + "\n";
+    const std::string words = without_reason(fit, reason.words).value_or(reason.words);
+    text += wrapped(fmt::format("    {} {}", mark, words), style.columns, 6) + "\n";
   }
   for (const auto& [state, count] : told) {
     if (count <= kShown) continue;
@@ -274,13 +316,15 @@ std::string aspect_text(std::string_view name, const calib::Aspect& aspect, cons
 }  // namespace
 
 std::string scorecard_text(const Result& result, const Style& style) {
-  const std::optional<Channel> channel = shown_channel(result.fit);
-  if (!channel) return "No channel was compared.\n";
-  const TextTable conditions = condition_table(result, *channel, style);
-  std::string text = coloured(fmt::format("Agreement of {}", info(*channel).key), "1", style) +
-                     "\n" + conditions.text(style.columns) +
+  const std::set<Channel> channels = compared_channels(result.fit);
+  if (channels.empty()) return "No channel was compared.\n";
+  const bool several = channels.size() > 1;
+  const TextTable conditions = condition_table(result, several, style);
+  const std::string title = several ? "Agreement of the worst channel of each condition"
+                                    : fmt::format("Agreement of {}", info(*channels.begin()).key);
+  std::string text = coloured(title, "1", style) + "\n" + conditions.text(style.columns) +
                      narrow_note(conditions, "scorecard.csv", style);
-  const TextTable gathered = group_table(result, *channel);
+  const TextTable gathered = group_table(result, several);
   if (!gathered.empty()) {
     text += "\n" + coloured("Summary by group (mean and worst)", "1", style) + "\n" +
             gathered.text(style.columns) +
@@ -302,20 +346,22 @@ std::string parameters_text(const Result& result, const Style& style) {
                   {"identifiability"}},
                  2);
   std::vector<std::pair<std::string, std::string>> reasons;  // whose, why
+  // Errors and intervals are those of a minimum, at which a search that was stopped is not.
+  const bool judged = result.fit.status != FitStatus::stopped || result.fit.has_converged();
   for (const calib::FittedParameter& p : result.fit.parameters) {
     if (!p.fitted) continue;
     const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
     const ReadableUnit unit = readable_unit(p.value, spec.unit);
     const std::string whose = p.scope == datasets::Scope::rig ? "rig" : p.level;
-    const double uncertainty = uncertainty_of(p);
-    text.add({std::string(spec.key) + (p.nuisance ? " (nuisance)" : ""), whose,
-              matched(p.value / unit.si, uncertainty / unit.si), std::string(unit.name),
-              p.standard_error ? in_unit(error_of(p), unit, 2) : "-",
-              p.ci95
-                  ? fmt::format("{} .. {}", matched(p.ci95->first / unit.si, uncertainty / unit.si),
-                                matched(p.ci95->second / unit.si, uncertainty / unit.si))
-                  : "-",
-              limits(p.lower, p.upper, unit, 4), identifiability_text(p, style)});
+    std::optional<Range> ci95;
+    if (p.ci95) ci95 = {p.ci95->first / unit.si, p.ci95->second / unit.si};
+    const EstimateText estimate =
+        estimate_text(p.value / unit.si, ci95, {p.lower / unit.si, p.upper / unit.si});
+    text.add({std::string(spec.key) + (p.nuisance ? " (nuisance)" : ""), whose, estimate.value,
+              std::string(unit.name),
+              judged && p.standard_error ? in_unit(error_of(p), unit, kErrorDigits) : "-",
+              judged && ci95 ? fmt::format("{} .. {}", estimate.low, estimate.high) : "-",
+              limits(p.lower, p.upper, unit, 4), identifiability_text(p, judged, style)});
     if (!p.reason.empty()) reasons.emplace_back(fmt::format("{} ({})", spec.key, whose), p.reason);
   }
   if (text.empty()) {
@@ -331,8 +377,11 @@ std::string summary_text(const Result& result, const std::vector<std::string>& f
   const calib::Fit& fit = result.fit;
   std::string text;
   const auto say = [&](const std::string& line) { text += wrapped(line, style.columns, 2) + "\n"; };
-  say((fit.verdict ? "verdict: " + coloured(*fit.verdict, style) + rule_text(result) +
-                         (*fit.verdict == Verdict::warn ? " (passed with reservations)" : "")
+  const std::string unfinished = unfinished_text(fit, style);
+  if (!unfinished.empty()) say(unfinished);
+  say((!fit.has_converged() ? std::string("verdict: none (there is no calibration to judge)")
+       : fit.verdict        ? "verdict: " + coloured(*fit.verdict, style) + rule_text(result) +
+                           (*fit.verdict == Verdict::warn ? " (passed with reservations)" : "")
        : fit.conditions.empty() ? std::string("verdict: none (no condition was scored)")
                                 : std::string("verdict: none (the campaign has no [acceptance])")) +
       (result.campaign.synthetic ? "; the records of this campaign are synthetic" : ""));
@@ -364,11 +413,12 @@ std::string reasons_text(const Result& result, const Style& style) {
   say(fit.message.empty() ? "status: " + word : fmt::format("status: {}: {}", word, fit.message),
       2);
   for (const auto& [name, aspect] : aspects_of(fit.assessment))
-    text += aspect_text(name, *aspect, style);
+    text += aspect_text(name, *aspect, fit, style);
   if (!fit.agreement.empty()) say("starts: " + fit.agreement, 2);
   if (!fit.bootstrap_message.empty()) say("bootstrap: " + fit.bootstrap_message, 2);
   if (!fit.interval_advice.empty()) say("intervals: " + fit.interval_advice, 2);
-  for (const std::string& warning : fit.warnings) say("warning: " + warning, 2);
+  for (const std::string& warning : fit.warnings)
+    if (!without_reason(fit, warning)) say("warning: " + warning, 2);
   return text;
 }
 

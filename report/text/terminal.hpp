@@ -15,14 +15,15 @@ struct Style {
 };
 
 /// Verdict with its four aspects, the three worst conditions, and where the files are: what is to
-/// be read first.
+/// be read first. Before these, where it was stopped or failed, that and why.
 ///
 /// @param files  paths
 std::string summary_text(const Result& result, const std::vector<std::string>& files,
                          const Style& style);
 
-/// Agreement per condition, then gathered by use, frequency, waveform and leak level. The channel
-/// is the position, or the first that was compared; every other is in scorecard.csv.
+/// Agreement per condition, then gathered by use, frequency, waveform and leak level. Of several
+/// channels the worst is shown by name: that which breaks a limit, else that with the lowest rho2;
+/// every other is in scorecard.csv.
 std::string scorecard_text(const Result& result, const Style& style);
 
 /// Fitted parameters in readable units with errors, bounds and what is to be thought of them.

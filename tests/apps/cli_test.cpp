@@ -646,8 +646,14 @@ TEST_CASE("fit: stopped by a limit of iterations it says so", "[apps]") {
   const Outcome outcome = folder.run({"fit", "twin/short.toml", "--out", "out"});
   CHECK(outcome.exit_code == 4);
   CHECK(files_in(folder, "out/") == kFitFiles);
-  CHECK_THAT(outcome.out, Contains("status: stopped"));
+  CHECK_THAT(outcome.out, StartsWith("STOPPED: ") && Contains("status: stopped"));
+  CHECK_THAT(outcome.out, !Contains("identified"));
   check_complete(folder.read("out/fit.json"));
+  for (const json& parameter : json::parse(folder.read("out/fit.json"))["parameters"]) {
+    if (!parameter["fitted"].get<bool>()) continue;
+    CHECK(parameter["identifiability"] == "not_identifiable");
+    CHECK_THAT(parameter["reason"].get<std::string>(), StartsWith("not judged: the search was"));
+  }
   const Outcome validation =
       folder.run({"validate", "twin/campaign.toml", "--fit", "out/fit.json", "--out", "val"});
   CHECK_THAT(validation.out, Contains("warning: the fit was stopped before it converged"));

@@ -44,7 +44,8 @@ Part tables_fit_part(const StoredTablesFit& fit) {
   part.campaign = fit.campaign;
   part.provenance = provenance_view(fit.provenance, "Calibration", "fit.json");
   add_making(fit, part.provenance);
-  part.view["parameters"] = parameters_view(fit.parameters, fit.correlation);
+  part.view["parameters"] =
+      parameters_view(fit.parameters, fit.correlation, fit.status != calib::FitStatus::stopped);
   part.view["has_records"] = false;
   part.headline = tables_headline(fit);
   part.nav = {{"parameters", "Parameters"}};
@@ -63,9 +64,10 @@ Part fit_part(const Calibration& stored, int threads) {
   part.synthetic = fit.synthetic;
   part.headline = headline_view(fit);
   part.overview = overview_view(stored);
-  part.view["parameters"] = parameters_view(fit.parameters, fit.correlation);
+  const bool unfinished = fit.status == calib::FitStatus::stopped && !searched_to_the_end(fit);
+  part.view["parameters"] = parameters_view(fit.parameters, fit.correlation, !unfinished);
   part.view["has_records"] = true;
-  part.view["unfinished"] = fit.status == calib::FitStatus::stopped && !searched_to_the_end(fit);
+  part.view["unfinished"] = unfinished;
   part.view["matrix"] = matrix_view(fit);
   part.view["has_matrix"] = !part.view["matrix"].empty();
   part.view["groups"] = groups_view(fit);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "common/significant.hpp"
@@ -73,62 +74,85 @@ Plot small_plot(const StoredCondition& condition, const Table& series, const std
     const auto* values = series.find(column_name(what, channel));
     if (values == nullptr) continue;
     Trace trace = empty_trace(Trace::Kind::line, style);
-    trace.x = thinned_times(times, thin);
-    trace.y = thinned(std::span(*values).subspan(begin), thin);
+    const std::span<const double> shown = std::span(*values).subspan(begin);
+    trace.x = thinned_times(times, shown, thin);
+    trace.y = thinned(shown, thin);
     plot.traces.push_back(std::move(trace));
   }
   return plot;
 }
 
-/// The condition with the least or the greatest of a metric.
+/// A score of one channel in one condition.
 struct Extreme {
   double value = 0.0;
-  std::string of;
+  const StoredCondition* condition = nullptr;
+  std::string channel;
 };
 
+/// The worst of a metric over every channel of every condition.
 template <typename Worse>
 std::optional<Extreme> extreme(const std::vector<StoredCondition>& conditions,
-                               const std::string& channel, double metrics::Agreement::*metric,
-                               Worse worse) {
+                               double metrics::Agreement::*metric, Worse worse) {
   std::optional<Extreme> found;
   for (const StoredCondition& condition : conditions) {
-    const StoredScore* scores = find(condition.metrics, channel);
-    if (scores == nullptr || std::isnan(scores->*metric)) continue;
-    if (!found || worse(scores->*metric, found->value))
-      found = Extreme{scores->*metric, condition.id};
+    for (const auto& [channel, scores] : condition.metrics) {
+      if (std::isnan(scores.*metric)) continue;
+      if (!found || worse(scores.*metric, found->value))
+        found = Extreme{scores.*metric, &condition, channel};
+    }
   }
   return found;
 }
 
-/// Half an interval over its value of the estimate that is known the least, nuisance parameters and
-/// those without an interval left out.
-std::optional<Extreme> widest_interval(const std::vector<StoredParameter>& parameters) {
-  std::optional<Extreme> widest;
-  for (const StoredParameter& p : parameters) {
-    const Interval interval(p.ci95);
-    if (!p.fitted || p.nuisance || !interval.ends || !p.value || *p.value == 0.0 ||
-        p.identifiability == calib::Identifiability::bounded)
-      continue;
-    const double half = interval.half_width() / std::abs(*p.value);
-    if (!widest || half > widest->value) widest = Extreme{half, parameter_label(p)};
-  }
-  return widest;
+/// "load pressure of sine_2Hz, limit 0.9, U 0.00021".
+std::string whose(const Extreme& worst, const std::string& metric,
+                  double metrics::Agreement::*value) {
+  const StoredCondition& condition = *worst.condition;
+  std::string text = fmt::format("{} of {}", spaced(worst.channel), condition.id);
+  const auto check = std::find_if(
+      condition.limit_checks.begin(), condition.limit_checks.end(),
+      [&](const auto& each) { return each.channel == worst.channel && each.metric == metric; });
+  if (check != condition.limit_checks.end() && check->limit)
+    text += fmt::format(", limit {:.6g}", *check->limit);
+  else
+    text += ", no limit";
+  if (!condition.expanded_uncertainty) return text;
+  const auto* uncertainty = find(*condition.expanded_uncertainty, worst.channel);
+  if (uncertainty != nullptr && *uncertainty && std::isfinite((**uncertainty).*value))
+    text += fmt::format(", U {}", significant((**uncertainty).*value, kErrorDigits));
+  return text;
 }
 
-Json three_numbers(const StoredFit& fit, const std::string& channel) {
+/// What is known the least of what was estimated, nuisance parameters left out; null where nothing
+/// was.
+const StoredParameter* least_certain(const std::vector<StoredParameter>& parameters) {
+  const StoredParameter* least = nullptr;
+  for (const StoredParameter& p : parameters) {
+    if (!p.fitted || p.nuisance) continue;
+    if (least == nullptr || relative_half_width(p) > relative_half_width(*least)) least = &p;
+  }
+  return least;
+}
+
+Json three_numbers(const StoredFit& fit) {
   using metrics::Agreement;
   Json numbers = Json::array();
   const auto add = [&](const char* name, const std::string& text, const std::string& of) {
     numbers.push_back({{"name", name}, {"text", text}, {"of", of}});
   };
-  if (const auto least = extreme(fit.conditions, channel, &Agreement::rho2, std::less<>()))
-    add("Lowest rho2", agreement_text(least->value), least->of);
+  if (const auto least = extreme(fit.conditions, &Agreement::rho2, std::less<>()))
+    add("Lowest rho2", agreement_text(least->value), whose(*least, "rho2", &Agreement::rho2));
   if (const auto largest =
-          extreme(fit.conditions, channel, &Agreement::absolute_error_percent, std::greater<>()))
-    add("Largest mean error", fmt::format("{:.3g} % of the range", largest->value), largest->of);
-  if (const auto widest = widest_interval(fit.parameters))
-    add("Least certain estimate", fmt::format("± {} %", significant(100.0 * widest->value, 2)),
-        widest->of);
+          extreme(fit.conditions, &Agreement::absolute_error_percent, std::greater<>()))
+    add("Largest mean error", fmt::format("{} % of the range", significant(largest->value, 3)),
+        whose(*largest, "absolute_error_percent", &Agreement::absolute_error_percent));
+  const StoredParameter* least = least_certain(fit.parameters);
+  // Stopped before it converged, a search knows nothing of its errors.
+  if (least == nullptr || (fit.status == calib::FitStatus::stopped && !searched_to_the_end(fit)))
+    return numbers;
+  const bool bounded = least->identifiability == calib::Identifiability::bounded;
+  add("Least certain estimate", half_width_text(relative_half_width(*least)),
+      parameter_label(*least) + (bounded ? ", not different from zero" : ""));
   return numbers;
 }
 
@@ -138,7 +162,7 @@ Json overview_view(const Calibration& stored) {
   const std::vector<StoredCondition>& conditions = stored.result.conditions;
   const std::string channel = shown_channel(conditions);
   Json view{{"there", !channel.empty()}, {"channel", spaced(channel)}, {"cells", Json::array()}};
-  view["numbers"] = channel.empty() ? Json::array() : three_numbers(stored.result, channel);
+  view["numbers"] = channel.empty() ? Json::array() : three_numbers(stored.result);
   view["has_numbers"] = !view["numbers"].empty();
   if (channel.empty()) return view;
   for (std::size_t i = 0; i < conditions.size(); ++i) {

@@ -13,6 +13,10 @@
 namespace rigcal::report {
 namespace {
 
+Range bounds_of(const StoredParameter& p) {
+  return {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)};
+}
+
 /// The 95 % interval of one of the errors alone, as if it were known exactly.
 Json interval_by(const StoredParameter& p, const std::optional<double>& error,
                  const RowUnit& unit) {
@@ -20,23 +24,13 @@ Json interval_by(const StoredParameter& p, const std::optional<double>& error,
   std::optional<Range> range;
   if (p.value && error)
     range = {*p.value - kNormalQuantile * *error, *p.value + kNormalQuantile * *error};
-  return shown_interval(range, unit.si);
+  return shown_estimate(p.value, range, unit.si, bounds_of(p)).at("interval");
 }
 
-/// "± 2.1 %" of the value; empty where that says nothing.
-std::string half_width_text(const StoredParameter& p) {
-  const auto ends = Interval(p.ci95).ends;
-  if (!ends || !p.value || *p.value == 0.0) return {};
-  // The end that no limit of the parameter has cut, as the grade and its reason count.
-  const double half = std::max(ends->high - *p.value, *p.value - ends->low);
-  const double percent = 100.0 * half / std::abs(*p.value);
-  if (percent > 1000.0) return "over 1000 %";
-  return fmt::format("± {} %",
-                     percent < 100.0 ? significant(percent, 2) : fmt::format("{:.0f}", percent));
-}
-
-Json grade(const StoredParameter& p) {
+/// @param judged  whether the search came to its end
+Json grade(const StoredParameter& p, bool judged) {
   using calib::Identifiability;
+  if (!judged) return {{"word", "not judged"}, {"mark", "○"}, {"class", "none"}};
   if (!p.identifiability) return {{"word", ""}, {"mark", "✓"}, {"class", "good"}};
   std::string word;
   switch (*p.identifiability) {
@@ -58,28 +52,30 @@ Json grade(const StoredParameter& p) {
 
 Json shown_error(const StoredParameter& p, const std::optional<double>& error,
                  const RowUnit& unit) {
-  Json view = shown_in(error, unit.si, 2);
+  Json view = shown_in(error, unit.si, kErrorDigits);
   view["interval"] = interval_by(p, error, unit);
   return view;
 }
 
-Json fitted_row(const StoredParameter& p) {
+Json fitted_row(const StoredParameter& p, bool judged) {
   const RowUnit unit = unit_of(p);
+  const Json estimate = shown_estimate(p.value, p.ci95, unit.si, bounds_of(p));
   Json row;
   row["name"] = p.key;
   row["symbol"] = p.symbol;
   row["whose"] = p.level.value_or("rig");
   row["nuisance"] = p.nuisance;
-  row["value"] = shown_matched(p.value, p.ci95, unit.si, 6);
+  row["value"] = estimate.at("value");
   row["unit"] = unit.name;
-  row["interval"] = shown_interval(p.ci95, unit.si);
-  row["half_width"] = half_width_text(p);
+  row["interval"] = estimate.at("interval");
+  const double half_width = relative_half_width(p);
+  row["half_width"] = std::isinf(half_width) ? std::string() : half_width_text(half_width);
   row["standard_error"] = shown_error(p, p.standard_error, unit);
   row["robust_standard_error"] = shown_error(p, p.robust_standard_error, unit);
   row["start"] = shown_in(p.start, unit.si, 5);
   row["lower"] = shown_in(p.lower, unit.si, 4);
   row["upper"] = shown_in(p.upper, unit.si, 4);
-  row["grade"] = grade(p);
+  row["grade"] = grade(p, judged);
   row["reason"] = p.reason;
   row["has_reason"] = !p.reason.empty();
   return row;
@@ -114,7 +110,7 @@ Json correlation_rows(const StoredCorrelation& correlation) {
                 {"sign", i == j    ? "self"
                          : r < 0.0 ? "minus"
                                    : "plus"}};
-      if (!std::isnan(value)) cell["r"]["text"] = fmt::format("{:.2f}", r);
+      if (!std::isnan(value)) cell["r"]["text"] = fixed(r, 2);
       cells.push_back(std::move(cell));
     }
     rows.push_back(
@@ -191,13 +187,26 @@ std::vector<std::string> not_identifiable(const StoredFit& fit) {
 
 }  // namespace
 
+double relative_half_width(const StoredParameter& parameter) {
+  const auto ends = Interval(parameter.ci95).ends;
+  const double value = parameter.value.value_or(0.0);
+  if (!ends || value == 0.0) return HUGE_VAL;
+  return std::max(ends->high - value, value - ends->low) / std::abs(value);
+}
+
+std::string half_width_text(double relative) {
+  constexpr double kMeaningless = 10.0;
+  if (!(relative <= kMeaningless)) return "not determined";
+  return fmt::format("± {} %", significant(100.0 * relative, kErrorDigits));
+}
+
 Json parameters_view(const std::vector<StoredParameter>& parameters,
-                     const StoredCorrelation& correlation) {
+                     const StoredCorrelation& correlation, bool judged) {
   Json fitted = Json::array();
   Json known = Json::array();
   for (const StoredParameter& p : parameters) {
     if (p.fitted) {
-      fitted.push_back(fitted_row(p));
+      fitted.push_back(fitted_row(p, judged));
     } else {
       known.push_back(known_row(p));
     }

@@ -54,10 +54,18 @@ Json starts_view(const StoredFit& fit) {
 Json ledger_view(const StoredFit& fit) {
   Json view;
   view["warnings"] = Json::array();
-  for (const std::string& warning : fit.warnings) view["warnings"].push_back({{"text", warning}});
-  view["has_warnings"] = !fit.warnings.empty();
-  view["warning_count"] = fmt::format("{}", fit.warnings.size());
-  view["few_warnings"] = fit.warnings.size() <= kFew;
+  for (const std::string& warning : fit.warnings) {
+    // Beside its parameter it was told already.
+    const bool told =
+        std::any_of(fit.parameters.begin(), fit.parameters.end(), [&](const StoredParameter& p) {
+          return p.fitted && !p.reason.empty() && warning.ends_with(": " + p.reason);
+        });
+    if (!told) view["warnings"].push_back({{"text", warning}});
+  }
+  const std::size_t count = view["warnings"].size();
+  view["has_warnings"] = count > 0;
+  view["warning_count"] = fmt::format("{}", count);
+  view["few_warnings"] = count <= kFew;
   view["failures"] = Json::array();
   for (const StoredFailure& failure : fit.failures) {
     std::string values;
@@ -73,7 +81,7 @@ Json ledger_view(const StoredFit& fit) {
   }
   view["has_failures"] = !fit.failures.empty();
   view["failure_count"] = fmt::format("{}", fit.failure_count);
-  view["nothing"] = fit.warnings.empty() && fit.failures.empty();
+  view["nothing"] = count == 0 && fit.failures.empty();
   return view;
 }
 

@@ -10,6 +10,7 @@
 #include "report/page/page_parts.hpp"
 #include "report/store/validity.hpp"
 #include "report/text/readable.hpp"
+#include "report/text/stopped_sentence.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -25,15 +26,10 @@ bool names(const StoredFit& fit, StoredAspect StoredAssessment::*aspect, std::st
                      [&](const StoredReason& reason) { return reason.code == code; });
 }
 
-Json failed_headline() {
-  return make_headline("FAILED", "✕", "bad",
-                       "There is no usable result: no number below may be used.");
-}
+Json failed_headline() { return make_headline("FAILED", "✕", "bad", kNoUsableResult); }
 
 Json stopped_headline() {
-  return make_headline(
-      "STOPPED", "✕", "bad",
-      "Ended before it converged: these are the best values so far, not a calibration.");
+  return make_headline("STOPPED", "✕", "bad", stopped_sentence(calib::StoppedIn::starts));
 }
 
 Json fail_headline(const StoredFit& fit) {
@@ -55,12 +51,7 @@ Json headline_of(const StoredFit& fit) {
   if (fit.verdict == Verdict::fail) return fail_headline(fit);
   // After FAIL: a limit that is broken stays broken, whatever else was not finished.
   if (stopped) {
-    return make_headline(
-        "STOPPED", "!", "warn",
-        fit.stopped_in == calib::StoppedIn::validation
-            ? "Some conditions were not scored."
-            : "The fit converged and was scored; not all that was asked for beside it was "
-              "finished.");
+    return make_headline("STOPPED", "!", "warn", stopped_sentence(*fit.stopped_in));
   }
   if (fit.verdict == Verdict::warn) {
     return make_headline("WARN", "!", "warn",

@@ -76,6 +76,8 @@ TEST_CASE("parameters: each is identified, or negligible", "[calib]") {
   SECTION("a fit that did not converge never passes") {
     scene.fit.status = FitStatus::stopped;
     CHECK(scene.verdict() == Verdict::warn);
+    CHECK(find(scene.assessed().parameters, "not_converged") != nullptr);
+    CHECK(find(scene.assessed().parameters, "identified") == nullptr);
   }
   SECTION("known values that are taken as exact are named, and change nothing") {
     const auto add = [&](const char* key) {

@@ -42,6 +42,27 @@ TEST_CASE("decimate: few samples stay as they are", "[report]") {
   CHECK(buckets(0, 10).points() == 0);
 }
 
+TEST_CASE("decimate: a smooth curve stays smooth", "[report]") {
+  // Drawn at times of their own, the least and largest values of a rise make a staircase.
+  std::vector<double> time(5000);
+  std::vector<double> sine(time.size());
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    time[i] = 1e-3 * static_cast<double>(i);
+    sine[i] = std::sin(time[i]);
+  }
+  const Buckets thin = buckets(time.size(), 200);
+  const std::vector<double> x = thinned_times(time, sine, thin);
+  const std::vector<double> y = thinned(sine, thin);
+  REQUIRE(x.size() == y.size());
+  for (std::size_t i = 0; i < x.size(); ++i) CHECK(y[i] == std::sin(x[i]));
+  CHECK(std::is_sorted(x.begin(), x.end()));
+  // A bucket without numbers has a place, too.
+  std::fill(sine.begin(), sine.begin() + 100, std::nan(""));
+  const std::vector<double> gap = thinned_times(time, sine, thin);
+  CHECK(std::all_of(gap.begin(), gap.end(), [](double t) { return std::isfinite(t); }));
+  CHECK(std::is_sorted(gap.begin(), gap.end()));
+}
+
 TEST_CASE("decimate: times and values have the same shape, in order", "[report]") {
   for (const std::size_t n : {11U, 100U, 101U, 999U}) {
     std::vector<double> time(n);

@@ -79,7 +79,7 @@ TEST_CASE("page: the plot library comes with its notice", "[report]") {
 TEST_CASE("page: the first screen has three numbers and every condition as a picture", "[report]") {
   Json json = stored_result();
   const std::string html = page(json);
-  CHECK_THAT(html, Contains("<dt>Lowest rho2</dt><dd>0.9988 <small>sine</small>"));
+  CHECK_THAT(html, Contains("<dt>Lowest rho2</dt><dd>0.9988 <small>position of sine, limit 0.9<"));
   CHECK_THAT(html, Contains("<dt>Largest mean error</dt><dd>") &&
                        Contains("<dt>Least certain estimate</dt><dd>± "));
   const std::size_t overview = html.find("<div class=\"overview\">");
@@ -97,6 +97,41 @@ TEST_CASE("page: the first screen has three numbers and every condition as a pic
              Contains("href=\"#condition-lost\"") && Contains("<small>not simulated</small>"));
   json["conditions"] = Json::array();
   CHECK_THAT(page(json), !Contains("<div class=\"overview\">"));
+}
+
+TEST_CASE("page: the three numbers are the worst of all channels and estimates", "[report]") {
+  Json json = stored_result();
+  Json& condition = json["conditions"][0];
+  condition["metrics"]["load_pressure"] = condition["metrics"]["position"];
+  condition["metrics"]["load_pressure"]["rho2"] = 0.9727;
+  condition["metrics"]["load_pressure"]["absolute_error_percent"] = 3.11;
+  condition["noise_floor"]["load_pressure"] = nullptr;
+  condition["residual_tests"]["load_pressure"] = nullptr;
+  Json force = json["parameters"][0];
+  force["key"] = "external_force";
+  force["name"] = "external_force_n";
+  force["value"] = 10.0;
+  force["ci95"] = {-4.0, 24.0};
+  force["identifiability"] = "bounded";
+  json["parameters"].push_back(force);
+  CHECK_THAT(page(json),
+             Contains("Lowest rho2</dt><dd>0.9727 <small>load pressure of sine, no limit<") &&
+                 Contains("Largest mean error</dt><dd>3.11 % of the range <small>load pressure") &&
+                 Contains("Least certain estimate</dt><dd>± 140 % <small>external_force, not"));
+  json["parameters"].back()["ci95"] = {-1e6, 1e6};
+  CHECK_THAT(page(json), Contains("Least certain estimate</dt><dd>not determined <small>"));
+  condition = json["conditions"][0];
+  json["conditions"][0]["expanded_uncertainty"] = {{"position", nullptr}};
+  json["conditions"][0]["expanded_uncertainty"]["load_pressure"] =
+      json["conditions"][0]["metrics"]["load_pressure"];
+  json["conditions"][0]["expanded_uncertainty"]["load_pressure"]["rho2"] = 0.00123;
+  CHECK_THAT(page(json), Contains("load pressure of sine, no limit, U 0.0012<"));
+  // A search that was stopped knows no uncertainty and grades nothing.
+  json["status"] = "stopped";
+  json["stopped_in"] = "starts";
+  const std::string stopped = page(json);
+  CHECK_THAT(stopped, !Contains("Least certain estimate") && Contains("not judged</span>") &&
+                          !Contains("> identified<"));
 }
 
 TEST_CASE("page: carries the exact numbers beside the readable ones", "[report]") {

@@ -60,6 +60,85 @@ TEST_CASE("summary_text: a tolerance that is far exceeded, without an exponent",
              Contains("sine: rho2 0.9000 of position, 220 % of the tolerance used"));
 }
 
+TEST_CASE("scorecard_text: each condition shows its worst channel, by name", "[report]") {
+  Scene scene;
+  const auto score = [](datasets::Channel channel, double rho2) {
+    calib::ChannelScore each;
+    each.channel = channel;
+    each.agreement.emplace();
+    each.agreement->rho2 = rho2;
+    return each;
+  };
+  calib::ConditionScore sine;
+  sine.id = "sine";
+  sine.channels = {score(datasets::Channel::position, 0.9996),
+                   score(datasets::Channel::pressure_a, 0.984),
+                   score(datasets::Channel::pressure_b, 0.99)};
+  scene.fit.conditions = {sine};
+  const auto text = [&] { return scorecard_text(scene.result(ResultKind::fit), {}); };
+  CHECK_THAT(text(), Contains("pressure_a") && Contains(" 0.9840 ") && !Contains("0.9996"));
+  // What fails comes before what nobody judges.
+  scene.fit.conditions[0].checks = {{.channel = datasets::Channel::pressure_b,
+                                     .metric = "rho2",
+                                     .value = 0.99,
+                                     .verdict = calib::Verdict::fail}};
+  scene.fit.conditions[0].verdict = calib::Verdict::fail;
+  CHECK_THAT(text(), Contains("pressure_b") && Contains(" 0.9900 ") && !Contains("0.9840"));
+}
+
+TEST_CASE("result_text: what was stopped says so first and grades nothing", "[report]") {
+  Scene scene;
+  scene.add_parameter("mass", "");
+  scene.fit.parameters[0].standard_error = 0.1;
+  scene.fit.parameters[0].ci95 = {0.8, 1.2};
+  scene.fit.parameters[0].upper = 500.0;
+  scene.fit.verdict = calib::Verdict::warn;
+  scene.fit.status = calib::FitStatus::stopped;
+  scene.fit.stopped_in = calib::StoppedIn::starts;
+  scene.fit.message = "stopped by the time limit";
+  const auto text = [&] { return result_text(scene.result(ResultKind::fit), {}, {}); };
+  CHECK_THAT(text(), Catch::StartsWith("STOPPED: stopped by the time limit. Ended before"));
+  CHECK_THAT(text(), !Contains("identified") && !Contains("WARN") && !Contains("0.80 .. 1.20"));
+  // After the search its estimates and verdict stand, beside what is missing.
+  scene.fit.stopped_in = calib::StoppedIn::bootstrap;
+  CHECK_THAT(text(), Catch::StartsWith("STOPPED: ") && Contains("verdict: WARN") &&
+                         Contains("not all that was asked for") && Contains("identified") &&
+                         Contains("0.80 .. 1.20"));
+  scene.fit.status = calib::FitStatus::converged;
+  CHECK_THAT(text(), Catch::StartsWith("verdict: WARN"));
+  scene.fit.status = calib::FitStatus::failed;
+  CHECK_THAT(text(), Catch::StartsWith("FAILED: ") && !Contains("WARN"));
+}
+
+TEST_CASE("result_text: the reason of a parameter is told once", "[report]") {
+  Scene scene;
+  scene.add_parameter("mass", "half width is 40 % of the value");
+  scene.fit.parameters[0].identifiability = calib::Identifiability::weak;
+  scene.fit.status = calib::FitStatus::converged;
+  scene.fit.warnings = {"mass_kg: half width is 40 % of the value", "mass_kg: something else"};
+  scene.fit.assessment.parameters.reasons = {calib::reason(
+      calib::AspectState::reservation, "weak", "mass_kg: half width is 40 % of the value")};
+  const std::string text = result_text(scene.result(ResultKind::fit), {}, {});
+  const std::size_t first = text.find("half width is 40 %");
+  REQUIRE(first != std::string::npos);
+  CHECK(text.find("half width is 40 %", first + 1) == std::string::npos);
+  CHECK_THAT(text, Contains("- mass_kg: weak\n") && Contains("warning: mass_kg: something else"));
+}
+
+TEST_CASE("parameters_text: no estimate is rounded to zero or out of its bounds", "[report]") {
+  Scene scene;
+  scene.add_parameter("mass", "");
+  calib::FittedParameter& mass = scene.fit.parameters[0];
+  scene.fit.status = calib::FitStatus::converged;
+  mass.value = 10.04;
+  mass.lower = 10.0;
+  mass.upper = 500.0;
+  mass.standard_error = 400.0;
+  mass.ci95 = {0.0, 810.0};
+  CHECK_THAT(parameters_text(scene.result(ResultKind::fit), {}),
+             Contains(" 10 ") && Contains("0 .. 810") && Contains("10 .. 500"));
+}
+
 TEST_CASE("parameters_text: a reason that several share is told once", "[report]") {
   Scene scene;
   scene.add_parameter("mass", "shared");

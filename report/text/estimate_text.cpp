@@ -1,0 +1,91 @@
+#include "report/text/estimate_text.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "report/text/readable.hpp"
+
+namespace rigcal::report {
+namespace {
+
+constexpr int kLeastDigits = 2;
+constexpr int kMostDigits = 7;
+constexpr int kUnknownDigits = 6;
+/// Powers of ten of the leading digit between which a number is written out.
+constexpr int kWrittenFrom = -3;
+constexpr int kWrittenTo = 5;
+
+struct Rounded {
+  std::string text;
+  double step = 0.0;  ///< of its last digit
+};
+
+double number_of(const std::string& text) {
+  double value = 0.0;
+  std::from_chars(text.data(), text.data() + text.size(), value);
+  return value;
+}
+
+/// Power of ten of the leading digit; 0.1 may have become 0.0999999999.
+int power_of(double value) {
+  constexpr double kRounding = 1e-9;
+  return static_cast<int>(std::floor(std::log10(std::abs(value)) + kRounding));
+}
+
+/// A value that is not zero, rounded to so many significant digits.
+Rounded rounded(double value, int digits) {
+  std::string text = fmt::format("{:.{}e}", value, digits - 1);
+  const int power = std::stoi(text.substr(text.find('e') + 1));
+  if (power < kWrittenFrom || power > kWrittenTo) return {text, std::pow(10.0, power + 1 - digits)};
+  const int decimals = digits - 1 - power;
+  if (decimals >= 0) return {fmt::format("{:.{}f}", value, decimals), std::pow(10.0, -decimals)};
+  return {fmt::format("{:.0f}", number_of(text)), std::pow(10.0, -decimals)};
+}
+
+bool holds(const Range& allowed, double value) {
+  constexpr double kSlack = 1e-12;  // that a change of the unit leaves
+  return value >= allowed.low - kSlack * std::abs(allowed.low) &&
+         value <= allowed.high + kSlack * std::abs(allowed.high);
+}
+
+int digits_of(double value, double uncertainty) {
+  if (!(uncertainty > 0.0) || !std::isfinite(uncertainty)) return kUnknownDigits;
+  return std::clamp(power_of(value) - power_of(uncertainty) + 2, kLeastDigits, kMostDigits);
+}
+
+}  // namespace
+
+std::string matched(double value, double uncertainty, const Range& allowed) {
+  if (!std::isfinite(value)) return "-";
+  if (value == 0.0) return "0";
+  Rounded found;
+  for (int digits = digits_of(value, uncertainty); digits <= kMostDigits; ++digits) {
+    found = rounded(value, digits);
+    if (holds(allowed, number_of(found.text))) return found.text;
+  }
+  // Beside its bound by less than these digits tell: the next number on its side.
+  for (const double side : {-0.5, 0.5}) {
+    const double inward = value + side * found.step;
+    if (inward == 0.0) continue;
+    const Rounded next = rounded(inward, kMostDigits);
+    if (holds(allowed, number_of(next.text))) return next.text;
+  }
+  return fmt::format("{}", value);
+}
+
+EstimateText estimate_text(double value, const std::optional<Range>& ci95, const Range& bounds) {
+  if (!ci95) return {matched(value, 0.0, bounds), {}, {}};
+  const auto [low, high] = *ci95;
+  const double half_width = 0.5 * (high - low);
+  const Range within{std::max(bounds.low, std::min(low, value)),
+                     std::min(bounds.high, std::max(high, value))};
+  const Range below{low < bounds.low ? kAnywhere.low : bounds.low, std::max(low, value)};
+  const Range above{std::min(high, value), high > bounds.high ? kAnywhere.high : bounds.high};
+  return {matched(value, half_width, within), matched(low, half_width, below),
+          matched(high, half_width, above)};
+}
+
+}  // namespace rigcal::report
