@@ -63,7 +63,7 @@ unsigned parameter(const char* key) {
 }
 constexpr unsigned kReference = 0;
 constexpr unsigned kForce = 1;
-constexpr unsigned kSupply = 2;
+constexpr unsigned kSupplyPressure = 2;
 constexpr unsigned kTank = 3;
 
 }  // namespace
@@ -248,7 +248,7 @@ TEST_CASE("fmu instance: inputs act at once, each on what it is", "[model]") {
   CHECK(instance.real(kOutputReference + static_cast<unsigned>(Output::command)) ==
         Approx(values["kp"] * (0.002 - instance.real(kStateReference))));
   const double flow = instance.derivatives()[2];
-  instance.set_real(kSupply, 4.0 * values["supply_pressure"]);
+  instance.set_real(kSupplyPressure, 4.0 * values["supply_pressure"]);
   CHECK(instance.derivatives()[2] / flow == Approx(2.0).epsilon(0.02));  // root of the pressure
   CHECK_THAT(complaint([&] { instance.set_real(kTank, 1e5); }), Contains("no input has"));
   CHECK_THAT(complaint([&] { instance.set_real(kReference, kNaN); }),
@@ -280,13 +280,13 @@ TEST_CASE("fmu instance: the slope of an input holds for one step, from where it
   importer.start();
   FmuInstance& instance = importer.instance;
   const std::vector<std::pair<unsigned, double>> slopes{
-      {kReference, 0.01}, {kForce, -5.0}, {kSupply, 1e5}};
+      {kReference, 0.01}, {kForce, -5.0}, {kSupplyPressure, 1e5}};
   for (const auto& [input, slope] : slopes) instance.set_input_derivative(input, 1, slope);
-  const double supply = instance.real(kSupply);
+  const double supply = instance.real(kSupplyPressure);
   instance.step(0.0, 0.5);
   CHECK(instance.real(kReference) == Approx(0.005));
   CHECK(instance.real(kForce) == Approx(30.0 - 2.5));
-  CHECK(instance.real(kSupply) == Approx(supply + 5e4));
+  CHECK(instance.real(kSupplyPressure) == Approx(supply + 5e4));
   instance.step(0.5, 0.5);
   CHECK(instance.real(kReference) == Approx(0.005));
   CHECK(instance.real(kForce) == Approx(27.5));
