@@ -649,7 +649,8 @@ TEST_CASE("fit: stopped by a limit of iterations it says so", "[apps]") {
   CHECK_THAT(outcome.out, StartsWith("STOPPED: ") && Contains("status: stopped"));
   CHECK_THAT(outcome.out, !Contains("identified"));
   check_complete(folder.read("out/fit.json"));
-  for (const json& parameter : json::parse(folder.read("out/fit.json"))["parameters"]) {
+  const json fit = json::parse(folder.read("out/fit.json"));
+  for (const json& parameter : fit["parameters"]) {
     if (!parameter["fitted"].get<bool>()) continue;
     CHECK(parameter["identifiability"] == "not_identifiable");
     CHECK_THAT(parameter["reason"].get<std::string>(), StartsWith("not judged: the search was"));
