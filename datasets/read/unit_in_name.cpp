@@ -37,11 +37,11 @@ constexpr std::array<std::string_view, 5> kChamberWords{"p", "pressure", "chambe
 constexpr std::array<std::string_view, 6> kWords{"in", "min", "A", "at", "h", "d"};
 
 template <typename List>
-bool holds(const List& list, std::string_view text) {
+bool is_among(const List& list, std::string_view text) {
   return std::find(list.begin(), list.end(), text) != list.end();
 }
 
-std::string lower(std::string_view text) {
+std::string lower_case(std::string_view text) {
   std::string result(text);
   std::transform(result.begin(), result.end(), result.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -90,7 +90,7 @@ struct Part {
   std::size_t end = 0;
 };
 
-std::vector<Part> parts_of(std::string_view name) {
+std::vector<Part> name_parts(std::string_view name) {
   constexpr std::string_view kBetween = "_ []()-/";
   std::vector<Part> parts;
   for (std::size_t i = 0; i < name.size(); ++i) {
@@ -103,7 +103,7 @@ std::vector<Part> parts_of(std::string_view name) {
 }
 
 bool is_chamber(std::string_view unit, std::string_view before) {
-  return unit == "A" && holds(kChamberWords, lower(before));
+  return unit == "A" && is_among(kChamberWords, lower_case(before));
 }
 
 std::optional<UnitInName> in_brackets(std::string_view name) {
@@ -114,7 +114,7 @@ std::optional<UnitInName> in_brackets(std::string_view name) {
     if (close == std::string_view::npos) continue;
     const std::string_view inside = without_spaces(name.substr(open + 1, close - open - 1));
     const std::string_view last = without_spaces(name.substr(0, open));
-    const auto before = parts_of(last);
+    const auto before = name_parts(last);
     const std::string_view word =
         before.empty() ? last
                        : last.substr(before.back().begin, before.back().end - before.back().begin);
@@ -122,9 +122,9 @@ std::optional<UnitInName> in_brackets(std::string_view name) {
     // A lone letter such as the "g" of a gauge pressure is a unit only where it is a usual one.
     const bool is_letter =
         inside.size() == 1 && std::isalpha(static_cast<unsigned char>(inside[0])) != 0;
-    const bool is_usual = !is_letter || holds(kUnits, unit);
+    const bool is_usual = !is_letter || is_among(kUnits, unit);
     if (!unit.empty() && is_usual && !is_one(unit) && !is_chamber(inside, word))
-      found = UnitInName{unit, open, close + 1, name[open] == '[' || !holds(kWords, inside)};
+      found = UnitInName{unit, open, close + 1, name[open] == '[' || !is_among(kWords, inside)};
     open = close;
   }
   return found;
@@ -142,14 +142,14 @@ std::size_t begin_of_last(std::string_view path) {
 /// Behind others: a last "pa" is no chamber.
 std::optional<UnitInName> behind_a_word(std::string_view name) {
   const std::size_t first = begin_of_last(name);
-  std::vector<Part> parts = parts_of(name.substr(first));
+  std::vector<Part> parts = name_parts(name.substr(first));
   for (Part& part : parts) part = {part.begin + first, part.end + first};
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const std::string_view text = name.substr(parts[i].begin, parts[i].end - parts[i].begin);
     const std::string_view before =
         name.substr(parts[i - 1].begin, parts[i - 1].end - parts[i - 1].begin);
     const bool is_pascal = text == "pa" && i + 1 == parts.size();
-    if (!is_pascal && (!holds(kUnits, text) || is_chamber(text, before))) continue;
+    if (!is_pascal && (!is_among(kUnits, text) || is_chamber(text, before))) continue;
     return UnitInName{is_pascal ? "Pa" : unit_of_text(text), parts[i].begin, parts[i].end, false};
   }
   return std::nullopt;
@@ -160,12 +160,12 @@ std::optional<UnitInName> behind_a_word(std::string_view name) {
 std::string unit_of_text(std::string_view text) {
   text = without_spaces(text.substr(0, text.find(" since ")));
   if (text.empty()) return {};
-  const std::string small = lower(text);
+  const std::string small = lower_case(text);
   for (const auto& [spelling, unit] : kSpellings)
     if (small == spelling && (text.size() > 1 || text == "C")) return std::string(unit);
-  if (holds(kUnits, text)) return std::string(text);
+  if (is_among(kUnits, text)) return std::string(text);
   for (const std::string_view unit : kUnits)
-    if (lower(unit) == small && (text.size() > 1 || text == "S" || text == "M"))
+    if (lower_case(unit) == small && (text.size() > 1 || text == "S" || text == "M"))
       return std::string(unit);
   return is_unit(text) ? std::string(text) : std::string();
 }

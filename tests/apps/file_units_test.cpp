@@ -9,7 +9,7 @@ using Catch::Contains;
 namespace {
 
 /// Renames a column in the first repeat of the sine.
-void rename(const CommandFolder& folder, const std::string& from, const std::string& to) {
+void rename_column(const CommandFolder& folder, const std::string& from, const std::string& to) {
   const std::string file = "records/sine_1.csv";
   folder.write(file, replaced(folder.read(file), from, to));
 }
@@ -26,7 +26,7 @@ TEST_CASE("file units: a contradiction is refused by every verb that reads the r
     folder.write(file, replaced(folder.read(file), "pl_bar", "pl [bar]"));
   }
   REQUIRE(folder.run({"check", "campaign.toml"}).exit_code == 0);
-  rename(folder, "pl [bar]", "pl [psi]");
+  rename_column(folder, "pl [bar]", "pl [psi]");
   for (const char* verb : {"check", "fit", "validate", "average"}) {
     CAPTURE(verb);
     const Outcome outcome = folder.run({verb, "campaign.toml"});
@@ -39,7 +39,7 @@ TEST_CASE("file units: a contradiction is refused by every verb that reads the r
   ignoring.emplace_back("unit = \"bar\" }", "unit = \"bar\", ignore_unit = \"psi\" }");
   folder.write("campaign.toml", edited(kCampaign, ignoring));
   CHECK(folder.run({"check", "campaign.toml"}).exit_code == 0);
-  rename(folder, "pl [psi]", "pl [kPa]");
+  rename_column(folder, "pl [psi]", "pl [kPa]");
   CHECK(folder.run({"check", "campaign.toml"}).exit_code == 2);
 }
 
@@ -57,7 +57,7 @@ TEST_CASE("file units: the time, and names without brackets", "[apps]") {
                                    "column = \"x_mm\", unit = \"m\", gain = 1e-3"}}));
   CHECK(folder.run({"check", "campaign.toml"}).exit_code == 0);
   write_campaign(folder, {{"column = \"t_s\", unit = \"s\"", "column = \"t\", unit = \"s\""}});
-  rename(folder, "t_s", "t [ms]");
+  rename_column(folder, "t_s", "t [ms]");
   CHECK_THAT(folder.run({"check", "campaign.toml"}).err,
              Contains("column 't [ms]' is in ms") && Contains("recording.channels.time says"));
 }

@@ -10,11 +10,11 @@ using rigcal::model::PlantKind;
 
 namespace {
 
-struct Case {
+struct TravelCase {
   Campaign campaign;
   Condition condition;
   Record record;
-  explicit Case(double travel_m, ControllerKind controller = ControllerKind::pid) {
+  explicit TravelCase(double travel_m, ControllerKind controller = ControllerKind::pid) {
     campaign.rig.controller = controller;
     campaign.channels[Channel::position].channel = Channel::position;
     condition.waveform = Waveform::sine;
@@ -27,12 +27,13 @@ struct Case {
 }  // namespace
 
 TEST_CASE("travel_warning: against the reference", "[datasets]") {
-  CHECK(Case(0.1).told().empty());
-  CHECK(Case(0.9).told().empty());
-  CHECK_THAT(Case(100.0).told(),
+  CHECK(TravelCase(0.1).told().empty());
+  CHECK(TravelCase(0.9).told().empty());
+  CHECK_THAT(TravelCase(100.0).told(),
              Contains("100 m of travel, where the reference covers 0.1 m: is the unit"));
-  CHECK_THAT(Case(1e-4).told(), Contains("0.0001 m of travel, where the reference covers 0.1 m"));
-  Case recorded(144.0);
+  CHECK_THAT(TravelCase(1e-4).told(),
+             Contains("0.0001 m of travel, where the reference covers 0.1 m"));
+  TravelCase recorded(144.0);
   recorded.condition.waveform = Waveform::recorded;
   CHECK_THAT(recorded.told(), Contains("position: 144 m of travel: is the unit"));
   recorded.record.channels[Channel::reference].mean = {0.0, 144.0};
@@ -42,15 +43,16 @@ TEST_CASE("travel_warning: against the reference", "[datasets]") {
 }
 
 TEST_CASE("travel_warning: without a reference, and in counts", "[datasets]") {
-  CHECK(Case(19.0, ControllerKind::none).told().empty());
-  CHECK_THAT(Case(144.0, ControllerKind::none).told(), Contains("144 m of travel: is the unit"));
-  Case counts(30000.0, ControllerKind::none);
+  CHECK(TravelCase(19.0, ControllerKind::none).told().empty());
+  CHECK_THAT(TravelCase(144.0, ControllerKind::none).told(),
+             Contains("144 m of travel: is the unit"));
+  TravelCase counts(30000.0, ControllerKind::none);
   counts.campaign.channels[Channel::position].in_counts = true;
   CHECK(counts.told().empty());
 }
 
 TEST_CASE("travel_warning: beyond the stroke", "[datasets]") {
-  Case test(0.5, ControllerKind::none);
+  TravelCase test(0.5, ControllerKind::none);
   test.campaign.rig.plant = PlantKind::two_chamber;
   ParameterSetting stroke;
   stroke.index = rigcal::model::parameter_index(PlantKind::two_chamber, "stroke");

@@ -12,36 +12,36 @@ using rigcal::test::message_when;
 
 namespace {
 
-StatedUnit stated(const std::string& unit) {
+StatedUnit stated_unit(const std::string& unit) {
   StatedUnit result;
   result.unit = unit;
   result.where = {"campaign.toml", 9, 3};
   return result;
 }
 
-std::string refusal(const StatedUnit& unit, const ColumnLabel& label) {
+std::string unit_refusal(const StatedUnit& unit, const ColumnLabel& label) {
   return message_when([&] { require_stated_unit(unit, "position", "run.csv", label); });
 }
 
 bool is_taken(const StatedUnit& unit, const std::string& name) {
-  return refusal(unit, {name, {}, {}, 1}) == "no error";
+  return unit_refusal(unit, {name, {}, {}, 1}) == "no error";
 }
 
 }  // namespace
 
 TEST_CASE("require_stated_unit: a contradiction names both units and both places", "[datasets]") {
-  CHECK_THAT(refusal(stated("bar"), {"pl_bar [psi]", {}, {}, 4}),
+  CHECK_THAT(unit_refusal(stated_unit("bar"), {"pl_bar [psi]", {}, {}, 4}),
              Contains("run.csv:4: column 'pl_bar [psi]' is in psi") &&
                  Contains("recording.channels.position says unit = \"bar\" (campaign.toml:9:3)") &&
                  Contains("ignore_unit = \"psi\""));
-  CHECK_THAT(refusal(stated("bar"), {"/run/p", "kPa", "attribute of its unit", 0}),
+  CHECK_THAT(unit_refusal(stated_unit("bar"), {"/run/p", "kPa", "attribute of its unit", 0}),
              Contains("run.csv: attribute of its unit: column '/run/p' is in kPa"));
   const std::vector<std::pair<std::string, std::string>> contradictions{
       {"mm", "x [m]"},   {"mm", "x_mm (m)"}, {"s", "t_s [ms]"},     {"mm", "x_m"},
       {"K", "T [degC]"}, {"mm", "x [V]"},    {"bar", "p [kgf/cm2]"}};
   for (const auto& [unit, name] : contradictions) {
     CAPTURE(unit, name);
-    CHECK_FALSE(is_taken(stated(unit), name));
+    CHECK_FALSE(is_taken(stated_unit(unit), name));
   }
 }
 
@@ -52,18 +52,18 @@ TEST_CASE("require_stated_unit: the same unit written otherwise is the same", "[
       {"psi", "p [lbf/in2]"},    {"um", "x [\u00b5m]"}, {"s", "t [sec]"}};
   for (const auto& [unit, name] : same) {
     CAPTURE(unit, name);
-    CHECK(is_taken(stated(unit), name));
+    CHECK(is_taken(stated_unit(unit), name));
   }
   // No unit, a number, or a word that only looks like a unit of another dimension.
   for (const char* name : {"x", "p (ist)", "p_in", "p_s", "p (A)", "u [%]", "p [-]", "p (in)"}) {
     CAPTURE(name);
-    CHECK(is_taken(stated("bar"), name));
+    CHECK(is_taken(stated_unit("bar"), name));
   }
 }
 
 TEST_CASE("require_stated_unit: a gain that converts, and what the campaign ignores",
           "[datasets]") {
-  StatedUnit unit = stated("bar");
+  StatedUnit unit = stated_unit("bar");
   unit.gain = 0.0689;
   CHECK(is_taken(unit, "p [psi]"));
   unit.gain = -0.0689476;
@@ -78,7 +78,7 @@ TEST_CASE("require_stated_unit: a gain that converts, and what the campaign igno
   CHECK(is_taken(unit, "p [psi]"));
   CHECK(is_taken(unit, "p [lbf/in2]"));
   CHECK_FALSE(is_taken(unit, "p [kPa]"));
-  StatedUnit kelvin = stated("K");
+  StatedUnit kelvin = stated_unit("K");
   kelvin.has_offset = true;
   CHECK(is_taken(kelvin, "T [degC]"));
   CHECK(is_taken({}, "p [psi]"));  // counts of a converter

@@ -19,11 +19,11 @@ std::vector<double> with_a_hole() {
   return time_s;
 }
 
-struct Case {
+struct TornRecord {
   Campaign campaign;
   Condition condition;
   std::vector<Repeat> repeats;
-  Case() {
+  TornRecord() {
     condition.id = "steps";
     condition.waveform = Waveform::sine;
     campaign.rig.controller = rigcal::model::ControllerKind::pid;
@@ -54,14 +54,14 @@ TEST_CASE("time_holes: steps above three times the median", "[datasets]") {
 }
 
 TEST_CASE("holes_in_what_counts: one repeat alone, with its file, row and times", "[datasets]") {
-  const auto told = Case().told({});
+  const auto told = TornRecord().told({});
   REQUIRE(told.size() == 1);
   CHECK_THAT(told[0], Contains("b.csv: samples are missing before sample 22") &&
                           Contains("between 2 s and 4 s"));
 }
 
 TEST_CASE("holes_in_what_counts: windows leave them out", "[datasets]") {
-  Case test;
+  TornRecord test;
   CHECK(test.told({{0.0, 2.0}, {4.0, 10.0}}).empty());
   CHECK(test.told({{0.0, 1.0}}).empty());
   CHECK(test.told({{0.0, 2.1}}).size() == 1);
