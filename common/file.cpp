@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "common/temporary_name.hpp"
 #include "common/uninterrupted.hpp"
 
 namespace rigcal {
@@ -132,30 +133,59 @@ class Sha256 {
 
 }  // namespace
 
-/// A new file beside the final place; removed again unless it was renamed.
+/// A new file beside its place; removed again unless it was put there. What it replaces is kept
+/// beside until all files of a set are in their places, so that each can be taken back.
 class TemporaryFile {
  public:
-  explicit TemporaryFile(const fs::path& target) : target_(target) {
-    // Process and running number keep writers of the same target apart; O_EXCL makes sure. What a
-    // killed process of the same number left, as in containers, where all are number 1, is passed
-    // over.
-    static std::atomic<unsigned> running_number{0};
+  TemporaryFile(const fs::path& target, std::string_view content) : target_(target) {
+    // O_EXCL: what a killed process of the same number left, as in containers, where all are
+    // number 1, is passed over.
     for (int tries = 0; descriptor_ < 0; ++tries) {
-      const std::string name =
-          fmt::format(".{}.{}.{}.tmp", target.filename().string(), ::getpid(), running_number++);
-      path_ = target.parent_path() / name;
+      path_ = temporary_name(target);
       descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
       if (descriptor_ < 0 && (errno != EEXIST || tries == kMostLeftovers))
         fail_to_write(target, reason(errno));
     }
+    try {
+      write(content);
+      finish();
+    } catch (...) {
+      end();
+      throw;
+    }
   }
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
-  ~TemporaryFile() {
-    if (descriptor_ >= 0) ::close(descriptor_);
-    remove();
+  ~TemporaryFile() { end(); }
+
+  /// Unless it is in its place already. Safe within a handler of signals.
+  void remove() const {
+    if (!renamed_) ::unlink(path_.c_str());
   }
 
+  /// @param keep  what is there, for take_back()
+  void rename_into_place(bool keep) {
+    if (keep) keep_earlier();
+    if (::rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, reason(errno));
+    renamed_ = true;
+  }
+
+  /// As it was before rename_into_place(), whether that came to its end or not.
+  void take_back() const noexcept {
+    if (earlier_.empty()) {
+      if (renamed_) ::unlink(target_.c_str());
+      return;
+    }
+    // Two names of one file stay as they are, so that one of them goes then.
+    if (::rename(earlier_.c_str(), target_.c_str()) == 0) ::unlink(earlier_.c_str());
+  }
+
+  /// There is no way back any more.
+  void settle() const {
+    if (!earlier_.empty()) ::unlink(earlier_.c_str());
+  }
+
+ private:
   void write(std::string_view content) const {
     while (!content.empty()) {
       const ssize_t written = ::write(descriptor_, content.data(), content.size());
@@ -175,19 +205,29 @@ class TemporaryFile {
     if (closed != 0) fail_to_write(target_, reason(errno));
   }
 
-  /// Unless it is in its place already. Safe within a handler of signals.
-  void remove() const {
-    if (!renamed_) ::unlink(path_.c_str());
+  void end() const {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    remove();
   }
 
-  void rename_into_place() {
-    if (::rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, reason(errno));
-    renamed_ = true;
+  /// Gives what is there a second name, or another one where the file system knows no second names.
+  void keep_earlier() {
+    struct stat status {};
+    if (::lstat(target_.c_str(), &status) != 0 || S_ISDIR(status.st_mode)) return;
+    fs::path name;
+    int failed = EEXIST;
+    for (int tries = 0; failed == EEXIST && tries < kMostLeftovers; ++tries) {
+      name = temporary_name(target_);
+      failed = ::link(target_.c_str(), name.c_str()) == 0 ? 0 : errno;
+    }
+    if (failed != 0 && ::rename(target_.c_str(), name.c_str()) != 0)
+      fail_to_write(target_, reason(errno));
+    earlier_ = name;
   }
 
- private:
   fs::path target_;
   fs::path path_;
+  fs::path earlier_;  ///< what stood there; none where there was nothing
   int descriptor_ = -1;
   bool renamed_ = false;
 };
@@ -253,14 +293,20 @@ void FilesInWriting::add(const fs::path& path, std::string_view content) {
   if (!path.has_filename() || fs::is_directory(path, error))
     fail_to_write(path, "not the name of a file");
   make_folders(path.parent_path());
-  written_.push_back(std::make_unique<TemporaryFile>(path));
-  written_.back()->write(content);
-  written_.back()->finish();
+  written_.push_back(std::make_unique<TemporaryFile>(path, content));
 }
 
+// Where one cannot be renamed, those before it are taken back: no set is half an earlier one.
 void FilesInWriting::rename_into_place() {
   const Uninterrupted whole;
-  for (const auto& file : written_) file->rename_into_place();
+  auto next = written_.begin();
+  try {
+    for (; next != written_.end(); ++next) (*next)->rename_into_place(written_.size() > 1);
+  } catch (...) {
+    for (auto renamed = next + 1; renamed != written_.begin();) (*--renamed)->take_back();
+    throw;
+  }
+  for (const auto& file : written_) file->settle();
 }
 
 std::string read_file(const fs::path& path, std::size_t most_bytes, const std::string& expected) {

@@ -148,6 +148,28 @@ TEST_CASE("FilesInWriting: the end of a process takes back what every one of the
   CHECK(text_of(folder / "b") == "x");
 }
 
+TEST_CASE("FilesInWriting: a rename that fails takes back those before it", "[common]") {
+  const TemporaryFolder folder;
+  write_file_atomically(folder / "first", "old");
+  write_file_atomically(folder / "target", "old");
+  fs::create_symlink("target", folder / "link");
+  {
+    FilesInWriting writing;
+    writing.add(folder / "first", "new");
+    writing.add(folder / "new", "new");
+    writing.add(folder / "link", "new");
+    writing.add(folder / "first", "newer");
+    writing.add(folder / "last", "new");
+    fs::create_directory(folder / "last");
+    CHECK_THROWS_WITH(writing.rename_into_place(), Contains("last: cannot be written"));
+  }
+  CHECK(text_of(folder / "first") == "old");
+  CHECK(text_of(folder / "target") == "old");
+  CHECK(fs::read_symlink(folder / "link") == "target");
+  CHECK_FALSE(fs::exists(folder / "new"));
+  CHECK(entries(folder) == 4);
+}
+
 TEST_CASE("read_file: all bytes of a regular file, up to a limit", "[common]") {
   const TemporaryFolder folder;
   const std::string binary("a\0b\n\xFF", 5);

@@ -4,7 +4,7 @@
 // RIGCAL_FAIL=KIND:N  the N-th call of a kind fails; 0: none does
 //   memory            operator new
 //   malloc            malloc() and its kin, called by the program itself (Eigen) or a library in C
-//   files             opens to write, writes, syncs, closes, renames or makes a folder
+//   files             opens to write, writes, syncs, closes, renames, links or makes a folder
 // RIGCAL_COUNT=FILE   where they are counted at the end, in this order
 //
 // Counting begins with main(), whose first call is mallopt(): what fails before it is not the
@@ -166,6 +166,11 @@ int mkdir(const char* path, unsigned mode) {
 int rename(const char* from, const char* to) {
   static const auto real = next<int(const char*, const char*)>("rename");
   return file_call_fails(EIO) ? -1 : real(from, to);
+}
+
+int link(const char* from, const char* to) {
+  static const auto real = next<int(const char*, const char*)>("link");
+  return file_call_fails(ENOSPC) ? -1 : real(from, to);
 }
 
 // Opened to be written; mode is there where a file may be made.
