@@ -20,10 +20,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const RecordColumn& column : list_xlsx_columns(file)) {
       for (const bool is_time : {false, true}) {
         try {
-          const auto table =
-              read_xlsx_columns(file, {{column.name}, is_time ? column.name : std::string()});
-          fuzz::require(table.size() == 1 && !table.front().empty(), "one column of numbers");
-          for (const double value : table.front())
+          const auto columns =
+              read_xlsx_columns(file, {{column.name}, is_time ? column.name : std::string()})
+                  .columns;
+          fuzz::require(columns.size() == 1 && !columns.front().empty(), "one column of numbers");
+          for (const double value : columns.front())
             fuzz::require(std::isfinite(value), "finite numbers");
         } catch (const InputError&) {
         }

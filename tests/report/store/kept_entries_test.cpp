@@ -35,8 +35,8 @@ struct Run {
   std::vector<TaskResult> results;
 };
 
-Run run(const std::filesystem::path& file, const FarmJob& job, bool resume = true,
-        const std::string& prefix = "result ", std::size_t cut_short = 99) {
+Run run_kept(const std::filesystem::path& file, const FarmJob& job, bool resume = true,
+             const std::string& prefix = "result ", std::size_t cut_short = 99) {
   ThreadFarm farm;
   KeptTasks tasks(farm, file, seeded(7), resume);
   Run run;
@@ -69,13 +69,13 @@ std::vector<std::size_t> begins(const std::string& text) {
 TEST_CASE("kept tasks: each result is told, known or not, and kept once", "[report]") {
   const TemporaryFolder folder;
   const auto file = folder / "checkpoint.tasks";
-  const Run first = run(file, kJob);
+  const Run first = run_kept(file, kJob);
   CHECK(first.found == 0);
   CHECK(first.made == kAll);
   CHECK(first.told.at(2) == "result 2");
   const std::string text = text_of(file);
   CHECK(begins(text).size() == 3);
-  const Run again = run(file, kJob, true, "another ");
+  const Run again = run_kept(file, kJob, true, "another ");
   CHECK(again.found == 3);
   CHECK(again.made.empty());
   CHECK(again.told == first.told);
@@ -87,9 +87,9 @@ TEST_CASE("kept tasks: each result is told, known or not, and kept once", "[repo
 TEST_CASE("kept tasks: what was cut short is not kept", "[report]") {
   const TemporaryFolder folder;
   const auto file = folder / "checkpoint.tasks";
-  CHECK(run(file, kJob, true, "short ", 1).results.at(1).bytes == "short 1");
+  CHECK(run_kept(file, kJob, true, "short ", 1).results.at(1).bytes == "short 1");
   CHECK(begins(text_of(file)).size() == 2);
-  const Run again = run(file, kJob);
+  const Run again = run_kept(file, kJob);
   CHECK(again.found == 2);
   CHECK(again.made == std::set<std::size_t>{1});
   CHECK(again.results.at(0).bytes == "short 0");
@@ -100,12 +100,12 @@ TEST_CASE("kept tasks: a result belongs to its job by name, state, number of tas
           "[report]") {
   const TemporaryFolder folder;
   const auto file = folder / "checkpoint.tasks";
-  run(file, kJob);
-  CHECK(run(file, {"folds", "state", 3, 1, {}}).made == kAll);
-  CHECK(run(file, {"profiles", "other", 3, 1, {}}).made == kAll);
-  CHECK(run(file, {"profiles", "state", 4, 1, {}}).made.size() == 4);
-  CHECK(run(file, {"profiles", "state", 3, 2, {}}).made.empty());  // lanes change nothing
-  CHECK(run(file, kJob).made.empty());
+  run_kept(file, kJob);
+  CHECK(run_kept(file, {"folds", "state", 3, 1, {}}).made == kAll);
+  CHECK(run_kept(file, {"profiles", "other", 3, 1, {}}).made == kAll);
+  CHECK(run_kept(file, {"profiles", "state", 4, 1, {}}).made.size() == 4);
+  CHECK(run_kept(file, {"profiles", "state", 3, 2, {}}).made.empty());  // lanes change nothing
+  CHECK(run_kept(file, kJob).made.empty());
   ThreadFarm farm;
   KeptTasks other(farm, file, seeded(8), true);
   CHECK(other.found() == 13);
@@ -118,18 +118,18 @@ TEST_CASE("kept tasks: a damaged entry and all behind it are made again, those b
           "[report]") {
   const TemporaryFolder folder;
   const auto file = folder / "checkpoint.tasks";
-  run(file, kJob);
+  run_kept(file, kJob);
   const std::string text = text_of(file);
   const auto at = begins(text);
   REQUIRE(at.size() == 3);
   const auto found_in = [&](const std::string& damaged) {
     std::ofstream(file, std::ios::binary) << damaged;
-    const Run result = run(file, kJob, true, "again ");
+    const Run result = run_kept(file, kJob, true, "again ");
     CHECK(result.made.size() == 3 - result.found);
     for (std::size_t i = 0; i < 3; ++i)
       CHECK(result.results.at(i).bytes ==
             (i < result.found ? "result " : "again ") + std::to_string(i));
-    CHECK(run(file, kJob).made.empty());  // the file is whole again
+    CHECK(run_kept(file, kJob).made.empty());  // the file is whole again
     CHECK(begins(text_of(file)).size() == 3);
     return result.found;
   };
@@ -163,21 +163,21 @@ TEST_CASE("kept tasks: bytes are bytes", "[report]") {
   const TemporaryFolder folder;
   const auto file = folder / "checkpoint.tasks";
   const std::string bytes("\0\n\r\xff\0", 5);
-  run(file, {"profiles", "state", 1, 1, {}}, true, bytes);
-  CHECK(run(file, {"profiles", "state", 1, 1, {}}).results.at(0).bytes == bytes + "0");
+  run_kept(file, {"profiles", "state", 1, 1, {}}, true, bytes);
+  CHECK(run_kept(file, {"profiles", "state", 1, 1, {}}).results.at(0).bytes == bytes + "0");
 }
 
 TEST_CASE("kept tasks: a new beginning removes what there is, and so does the end", "[report]") {
   const TemporaryFolder folder;
   const auto file = folder / "checkpoint.tasks";
-  run(file, kJob);
+  run_kept(file, kJob);
   ThreadFarm farm;
   {
     const KeptTasks anew(farm, file, seeded(7), false);
     CHECK(anew.found() == 0);
     CHECK_FALSE(std::filesystem::exists(file));
   }
-  CHECK(run(file, kJob, false).made == kAll);
+  CHECK(run_kept(file, kJob, false).made == kAll);
   KeptTasks tasks(farm, file, seeded(7), true);
   CHECK(tasks.found() == 3);
   CHECK(tasks.rank() == 0);
