@@ -1,0 +1,113 @@
+#include <catch2/catch.hpp>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/apps/cli_fixture.hpp"
+
+using namespace rigcal::test;
+using Catch::Contains;
+using nlohmann::json;
+
+namespace {
+
+json batch_in(const CommandFolder& folder, const std::string& out) {
+  return json::parse(folder.read(out + "/batch.json"));
+}
+
+}  // namespace
+
+TEST_CASE("batch: every folder with a campaign is a rig, but for those among the results",
+          "[apps]") {
+  const CommandFolder folder;
+  const std::string none = "schema = \"rigcal.campaign/1\"\n";  // which is refused at once
+  for (const char* where : {"lab/z", "lab/a/deep", "lab", "lab/out/earlier"})
+    folder.write(std::string(where) + "/campaign.toml", none);
+  folder.write("lab/a/campaign.toml.bak", none);
+  // What an earlier run left is not the result of one that was refused.
+  folder.write("lab/out/z/fit.json", "{}");
+  const Outcome outcome = folder.run({"batch", "lab", "--out", "lab/out", "--quiet"});
+  CHECK(outcome.exit_code == 2);
+  CHECK(outcome.out.empty());
+  const json batch = batch_in(folder, "lab/out");
+  CHECK(batch["exit_code"] == 2);
+  std::vector<std::string> rigs;
+  for (const json& row : batch["rigs"]) {
+    rigs.push_back(row["rig"]);
+    CHECK(row["exit_code"] == 2);
+    CHECK(row["status"].is_null());
+    CHECK(row["unchanged"] == false);
+    CHECK_THAT(row["message"].get<std::string>(), Contains("campaign.toml"));
+  }
+  CHECK(rigs == std::vector<std::string>{"a/deep", "lab", "z"});
+}
+
+TEST_CASE("batch: the options of a fit reach every rig, and its exit code comes back", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder, {{"rho2 = 0.9", "rho2 = 0.999999999"}}).exit_code == 0);
+  const Outcome outcome = folder.run({"batch", "twin", "--out", "out", "--starts", "2", "--seed",
+                                      "9", "--diagnose", "--max-evaluations", "100000", "--quiet"});
+  CAPTURE(outcome.err);
+  CHECK(outcome.exit_code == 1);
+  const json batch = batch_in(folder, "out");
+  REQUIRE(batch["rigs"].size() == 1);
+  const json& row = batch["rigs"][0];
+  CHECK(row["rig"] == "twin");
+  CHECK(row["verdict"] == "FAIL");
+  CHECK(row["exit_code"] == 1);
+  const json fit = json::parse(folder.read("out/twin/fit.json"));
+  CHECK(fit["starts"].size() == 2);
+  CHECK(fit["provenance"]["seed"] == 9);
+}
+
+TEST_CASE("batch: with --diagnose what a diagnosis refuses is told as such", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder, {{"leak_level = \"none\"\nuse = \"fit\"", "use = \"fit\""},
+                              {"leak_level = \"none\"\nuse = \"validate\"", "use = \"validate\""}})
+              .exit_code == 0);
+  const Outcome outcome = folder.run({"batch", "twin", "--out", "out", "--diagnose", "--quiet"});
+  const json row = batch_in(folder, "out")["rigs"][0];
+  CHECK(row["status"] == "converged");
+  const Outcome alone = folder.run({"diagnose", "twin/campaign.toml", "--fit", "out/twin/fit.json",
+                                    "--out", "alone", "--quiet"});
+  CHECK(outcome.exit_code == alone.exit_code);
+  if (alone.exit_code != 0) {
+    CHECK_THAT(row["message"].get<std::string>(), Contains("diagnose: "));
+  }
+}
+
+TEST_CASE("fit: WARN is exit 1 with --strict alone, in a batch too", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder, {{"use = \"validate\"", "use = \"ignore\""}}).exit_code == 0);
+  const Outcome plain = folder.run({"fit", "twin/campaign.toml", "--out", "plain", "--quiet"});
+  REQUIRE(json::parse(folder.read("plain/fit.json"))["verdict"] == "WARN");  // nothing validates it
+  CHECK(plain.exit_code == 0);
+  CHECK(folder.run({"fit", "twin/campaign.toml", "--out", "strict", "--strict", "--quiet"})
+            .exit_code == 1);
+  CHECK(folder.run({"batch", "twin", "--out", "batch", "--quiet"}).exit_code == 0);
+  CHECK(folder.run({"batch", "twin", "--out", "again", "--strict", "--quiet"}).exit_code == 1);
+}
+
+TEST_CASE("fit: options that make no sense are refused before any work", "[apps]") {
+  const CommandFolder folder;
+  write_campaign(folder);
+  const auto exit_code = [&](const std::string& option, const std::string& value) {
+    return folder.run({"fit", "campaign.toml", "--out", "out", option, value, "--quiet"}).exit_code;
+  };
+  for (const char* seconds : {"0", "-1", "nan", "inf", "-inf", "1e999", "x", ""})
+    CHECK(exit_code("--max-time", seconds) == 2);
+  for (const char* seed : {"-1", "5x", "1.5", "", "18446744073709551616", " 5"})
+    CHECK(exit_code("--seed", seed) == 2);
+  for (const char* count : {"0", "-1", "5x", "1e3"})
+    CHECK(exit_code("--max-evaluations", count) == 2);
+  for (const char* count : {"0", "-1", "x"}) {
+    CHECK(exit_code("--starts", count) == 2);
+    CHECK(exit_code("--threads", count) == 2);
+  }
+  CHECK_FALSE(folder.has("out"));
+  // The least of each is taken: one evaluation ends in what is stopped, not in a refusal.
+  CHECK(folder
+            .run({"fit", "campaign.toml", "--out", "out", "--seed", "0", "--max-evaluations", "1",
+                  "--threads", "1", "--starts", "1", "--max-time", "60", "--quiet"})
+            .exit_code != 2);
+}
