@@ -45,8 +45,8 @@ double jackknife_variance(const std::vector<Agreement>& without, double Agreemen
   return squares * (repeats - 1.0) / repeats;
 }
 
-/// The scores of a mean that is changed one way and the other: by its sensor's gain, or offset.
-using Changed = std::vector<std::pair<Agreement, Agreement>>;
+/// The scores of a mean that is changed as its sensor may be off, a list for each of its causes.
+using Changed = std::vector<std::vector<Agreement>>;
 
 Changed changed_by_sensor(const MeasuredMean& measured, std::span<const double> simulated) {
   const auto score = [&](double gain, double offset) {
@@ -56,9 +56,16 @@ Changed changed_by_sensor(const MeasuredMean& measured, std::span<const double> 
   };
   Changed result;
   if (const double sd = measured.gain_sd; sd > 0.0)
-    result.emplace_back(score(1.0 + sd, 0.0), score(1.0 - sd, 0.0));
-  if (const double sd = measured.offset_sd; sd > 0.0)
-    result.emplace_back(score(1.0, sd), score(1.0, -sd));
+    result.push_back({score(1.0 + sd, 0.0), score(1.0 - sd, 0.0)});
+  if (const double sd = measured.offset_sd; sd > 0.0) {
+    result.push_back({score(1.0, sd), score(1.0, -sd)});
+    // Or it changes from one end of the range to the other: rho2 and R are blind to a constant.
+    const auto [low, high] = std::minmax_element(measured.mean.begin(), measured.mean.end());
+    const double middle = 0.5 * (*low + *high);
+    const double share = sd / (0.5 * (*high - *low));
+    result.back().push_back(score(1.0 + share, -share * middle));
+    if (share < 1.0) result.back().push_back(score(1.0 - share, share * middle));
+  }
   return result;
 }
 
@@ -84,9 +91,10 @@ std::optional<Agreement> agreement_uncertainty(const MeasuredMean& measured,
     const auto score = metric.value;
     const double by_repeats = jackknife_variance(without, score);
     double variance = by_repeats;
-    for (const auto& [up, down] : changed) {
-      const double change = std::max(std::abs(up.*score - found.*score),  //
-                                     std::abs(down.*score - found.*score));
+    for (const std::vector<Agreement>& cause : changed) {
+      double change = 0.0;
+      for (const Agreement& each : cause)
+        change = std::max(change, std::abs(each.*score - found.*score));
       variance += change * change;
     }
     const double share = variance > 0.0 ? by_repeats / variance : 1.0;

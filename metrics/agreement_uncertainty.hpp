@@ -23,7 +23,9 @@ struct MeasuredMean {
 /// The repeats' part is the jackknife, u^2 = (R - 1) / R sum (S_r - mean S_r)^2 with S_r the score
 /// without repeat r, which needs no assumption on how deviations within a repeat go together. That
 /// of gain or offset is the largest change of the score when the mean is changed by one standard
-/// uncertainty either way, so that it counts where the score is at its best and has no slope. They
+/// uncertainty either way, so that it counts where the score is at its best and has no slope. An
+/// offset may be off by as much at every sample, or change from one end of the range to the other,
+/// whichever changes the score more: no certificate tells, and rho2 is blind to a constant. They
 /// add as squares; the factor is that of Student's t with the degrees of freedom by
 /// Welch-Satterthwaite, R - 1 for the repeats and unlimited for the sensor (JCGM 100:2008, G.4).
 ///
