@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <stdexcept>
+#include <system_error>
 
 #include "common/parallel.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
@@ -39,9 +40,11 @@ AverageOptions options_of(const Campaign& campaign, const Condition& condition) 
   throw InputError(condition.where, fmt::format("condition \"{}\": {}", condition.id, message));
 }
 
-/// A campaign may name any file. What stands in one that is no recording is shown of files only
-/// that whoever runs it points at.
+/// A campaign may name any file. What stands in one that is no recording is shown only of files
+/// that whoever runs it points at, or that are named like one, wherever links lead.
 bool may_be_shown(const Campaign& campaign, const std::filesystem::path& path) {
+  std::error_code error;
+  if (has_record_name(std::filesystem::weakly_canonical(path, error)) && !error) return true;
   return lies_within(campaign.data_dir, path) || lies_within(campaign.file.parent_path(), path) ||
          (!campaign.root.empty() && lies_within(campaign.root, path));
 }
@@ -63,8 +66,8 @@ RecordTable read_columns(const Campaign& campaign, const std::filesystem::path& 
     throw InputError(
         error.where(),
         "is no recording that this campaign fits. What stands in the file is not shown, "
-        "since it lies neither in the campaign's folder nor in that of --data; expected "
-        "a recording (`rigcal init` and its name tell more)");
+        "since it lies neither in the campaign's folder nor in that of --data and is not "
+        "named like a recording; expected one (`rigcal init` and its name tell more)");
   }
 }
 
