@@ -1,5 +1,6 @@
 #include "calib/score/judge_limits.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <map>
 #include <string>

@@ -4,6 +4,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "common/error.hpp"
 #include "report/store/kept_tasks.hpp"
