@@ -34,7 +34,7 @@ TEST_CASE("table: says where it is broken", "[report]") {
 
 TEST_CASE("table: instants are there and increase", "[report]") {
   CHECK_NOTHROW(parse_table("time_s,a\n-1,\n0,2\n1e-3,\n", "t.csv"));
-  for (const char* time : {"", "0", "-1", "nan", "1e-300"}) {
+  for (const char* time : {"", "0", "1", "-1", "nan", "1e-300"}) {
     CAPTURE(time);
     const std::string text = std::string("a,time_s\n1,0\n2,1\n3,") + time + "\n4,3\n";
     CHECK_THROWS_WITH(parse_table(text, "t.csv"),
