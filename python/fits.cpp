@@ -15,6 +15,7 @@
 #include "datasets/prepare/load_record.hpp"
 #include "python/arrays.hpp"
 #include "python/fit_result.hpp"
+#include "python/holding.hpp"
 #include "python/interruptible.hpp"
 #include "python/progress.hpp"
 #include "report/run/fit_choices.hpp"
@@ -214,15 +215,16 @@ py::dict scored_conditions(const FitResultPtr& self) {
 }
 
 std::vector<fs::path> write(const FitResult& self, const fs::path& out,
-                            const std::optional<Integer>& threads) {
+                            const std::optional<Integer>& threads, bool force) {
   require_path("out", out);
   const int thread_number = thread_count(threads);
   const py::gil_scoped_release released;
-  const report::HeldFolder held(out);
   const report::Result result = self.result();
+  report::HeldFolder held(
+      out, holding(result.kind == report::ResultKind::fit ? "fit" : "validate", force));
   report::StoredFit stored = report::stored(result);
   std::vector<fs::path> paths;
-  for (const fs::path& file : report::write_result(out, thread_number, result, stored))
+  for (const fs::path& file : report::write_result(held, thread_number, result, stored))
     paths.push_back(out / file);
   return paths;
 }
@@ -343,6 +345,7 @@ Raises:
 
 `provenance.files` is not among them: no files are written yet. Numbers are the same bits.)")
       .def("write", &write, py::arg("out"), py::kw_only(), py::arg("threads") = py::none(),
+           py::arg("force") = false,
            R"(Writes the files of `rigcal fit`, or `rigcal validate`, report.html among them.
 
 They are the same bytes as the command's, but for `wall_seconds` and `provenance.command`.
@@ -350,13 +353,15 @@ They are the same bytes as the command's, but for `wall_seconds` and `provenance
 Args:
     out: folder, made where it is missing
     threads: that draw the page; None: as many as the machine has
+    force: replace files that rigcal did not write, or that were changed since
 
 Returns:
     what was written, fit.json (validation.json) last
 
 Raises:
     WriteError: a file cannot be written
-    UsageError: a file would replace one that the result was made from, or another run writes there)")
+    UsageError: a file would replace one that the result was made from, or one that rigcal did not
+        write; or another run writes there)")
       .def(
           "__str__",
           [](const Self& self) { return report::result_text(self.result(), {}, report::Style{}); },

@@ -12,6 +12,7 @@
 #include "datasets/checks/short_records.hpp"
 #include "python/arrays.hpp"
 #include "python/campaign.hpp"
+#include "python/holding.hpp"
 #include "report/run/averaging.hpp"
 #include "report/run/check.hpp"
 #include "report/store/folder.hpp"
@@ -48,7 +49,7 @@ py::dict channels_of(const RecordPtr& record) {
   return channels;
 }
 
-py::dict average(const Campaign& self, const std::optional<fs::path>& out) {
+py::dict average(const Campaign& self, const std::optional<fs::path>& out, bool force) {
   require_path("out", out);
   std::vector<Record> records;
   const std::string call =
@@ -57,10 +58,13 @@ py::dict average(const Campaign& self, const std::optional<fs::path>& out) {
   {
     const py::gil_scoped_release released;
     std::optional<report::HeldFolder> held;
-    if (out) held.emplace(*out);
+    if (out) {
+      held.emplace(*out, holding("average", force));
+      held->plan(report::planned_average(self.campaign));
+    }
     records = report::averaged_records(self.campaign);
     if (out) {
-      report::write_average(*out, threads, self.campaign, records,
+      report::write_average(*held, threads, self.campaign, records,
                             {call, 1, report::recorded(self.choice), {}});
     }
   }
@@ -208,16 +212,19 @@ str() of what is returned is what the command prints.
 Raises:
     InputError: a recording is wrong)");
   campaign.def("average", &average, py::kw_only(), py::arg("out") = py::none(),
+               py::arg("force") = false,
                R"(Averages the repeats of every condition, as `rigcal average`.
 
 Args:
     out: folder for averaged/<condition>.csv and repeatability.csv; None writes nothing
+    force: replace files that rigcal did not write, or that were changed since
 
 Returns:
     the records by the ids of their conditions, in the order of the campaign
 
 Raises:
     InputError: a recording is wrong, or there is none
+    UsageError: a file that rigcal did not write would be replaced
     WriteError: a file cannot be written)");
 }
 

@@ -13,6 +13,7 @@
 #include "common/suggest.hpp"
 #include "python/arrays.hpp"
 #include "python/campaign.hpp"
+#include "python/holding.hpp"
 #include "python/interruptible.hpp"
 #include "report/run/simulation.hpp"
 #include "report/store/folder.hpp"
@@ -65,7 +66,7 @@ std::vector<const datasets::Condition*> wanted(const datasets::Campaign& campaig
 }
 
 std::vector<SimulatedPtr> simulated(const Campaign& self, const std::optional<std::string>& id,
-                                    int threads, const std::optional<fs::path>& out,
+                                    int threads, const std::optional<fs::path>& out, bool force,
                                     const std::atomic<bool>& cancel) {
   std::vector<report::SimulationTask> tasks;
   std::vector<datasets::Record> records;
@@ -74,7 +75,12 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const std::optional<st
     if (tasks.back().record) records.push_back(*tasks.back().record);
   }
   std::optional<report::HeldFolder> held;
-  if (out) held.emplace(*out);
+  if (out) {
+    held.emplace(*out, holding("simulate", force));
+    report::PlannedFiles planned;
+    for (const auto& task : tasks) planned.files.emplace_back(task.condition->id + ".csv");
+    held->plan(std::move(planned));
+  }
   model::SimulationOptions options = report::simulation_options(self.campaign);
   options.cancel = &cancel;
   auto simulations = report::simulate(tasks, options, threads);
@@ -90,18 +96,19 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const std::optional<st
                                                             std::move(simulations[i])}));
   }
   if (out && !cancel)
-    report::write_results(*out, files, report::hash_inputs(self.campaign, records));
+    report::write_results(*held, files, report::hash_inputs(self.campaign, records));
   return results;
 }
 
 py::object simulate(const Campaign& self, const std::optional<std::string>& condition,
-                    const std::optional<Integer>& threads, const std::optional<fs::path>& out) {
+                    const std::optional<Integer>& threads, const std::optional<fs::path>& out,
+                    bool force) {
   require_path("out", out);
   const int count = thread_count(threads);
   std::vector<SimulatedPtr> results;
   std::atomic<bool> cancel{false};
-  const auto raised =
-      run_interruptibly(cancel, [&] { results = simulated(self, condition, count, out, cancel); });
+  const auto raised = run_interruptibly(
+      cancel, [&] { results = simulated(self, condition, count, out, force, cancel); });
   if (raised) std::rethrow_exception(raised);
   if (condition) return py::cast(results.front());
   py::dict by_condition;
@@ -163,6 +170,7 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
   }
   campaign.def("simulate", &simulate, py::arg("condition") = py::none(), py::kw_only(),
                py::arg("threads") = py::none(), py::arg("out") = py::none(),
+               py::arg("force") = false,
                R"(Simulates with the campaign's values, as `rigcal simulate`.
 
 A condition that cannot be simulated says so in its status; nothing is raised.
@@ -171,13 +179,14 @@ Args:
     condition: id of the only one to simulate; None: all that are not ignored
     threads: None: as many as the machine has; results do not depend on it
     out: folder for <condition>.csv; None writes nothing
+    force: replace files that rigcal did not write, or that were changed since
 
 Returns:
     a Simulation, or a dict of them by the ids of all conditions
 
 Raises:
     InputError: a recording that drives the model is wrong
-    UsageError: there is no such condition)");
+    UsageError: there is no such condition, or a file that rigcal did not write would be replaced)");
 }
 
 }  // namespace rigcal::python

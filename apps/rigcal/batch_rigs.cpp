@@ -32,6 +32,7 @@ std::vector<std::string> arguments_for(const char* verb, const BatchRig& rig, co
       verb,        rig.campaign.string(),           "--out",  (task.out / rig.folder).string(),
       "--threads", fmt::format("{}", task.threads), "--quiet"};
   if (!task.root.empty()) arguments.insert(arguments.end(), {"--root", task.root.string()});
+  if (task.force) arguments.emplace_back("--force");
   return arguments;
 }
 

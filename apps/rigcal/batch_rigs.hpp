@@ -32,6 +32,7 @@ struct RigTask {
   int threads = 1;
   bool resume = false;
   bool diagnose = false;
+  bool force = false;
 };
 
 /// How a rig ended.

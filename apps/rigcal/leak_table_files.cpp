@@ -10,6 +10,9 @@ namespace {
 
 constexpr std::string_view kResidualScale = "residual_scale=";
 
+const std::filesystem::path kLevels = "levels";
+const std::filesystem::path kHealthySeries = kLevels / "healthy.csv";
+
 }  // namespace
 
 LeakTableInput load_leak_table(const CampaignOptions& options) {
@@ -40,17 +43,25 @@ calib::LeakTableOptions leak_table_options(const CampaignOptions& options,
   return result;
 }
 
+report::PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings) {
+  report::PlannedFiles planned{
+      {"leak_table.json", "leak_table.csv", "features.csv", "report.html", kHealthySeries},
+      {kLevels}};
+  for (const datasets::PrintedFeatures& features : settings.features)
+    planned.files.push_back(kLevels / report::level_file(features.level));
+  return planned;
+}
+
 std::vector<report::ResultFile> leak_table_files(const report::LeakTableResult& result) {
   const calib::LeakTable& table = result.table;
   std::vector<report::ResultFile> files;
   files.push_back({"leak_table.csv", report::leak_table_csv(result)});
   if (table.healthy) {
     const datasets::LeakSignal& signal = *result.settings.feature_signal;
-    const std::filesystem::path levels = "levels";
     files.push_back({"features.csv", report::features_csv(result)});
-    files.push_back({levels / "healthy.csv", report::level_csv(signal, *table.healthy, nullptr)});
+    files.push_back({kHealthySeries, report::level_csv(signal, *table.healthy, nullptr)});
     for (const calib::FeatureRow& row : table.features) {
-      files.push_back({levels / report::level_file(row.printed.level),
+      files.push_back({kLevels / report::level_file(row.printed.level),
                        report::level_csv(signal, row.series, &*table.healthy)});
     }
   }

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include "apps/rigcal/processes.hpp"
 #include "common/error.hpp"
@@ -55,6 +56,21 @@ void add_print_options(CLI::App& verb, PrintOptions& options) {
   verb.add_flag("--json", options.json, "Print JSON instead of text");
 }
 
+void add_force_option(CLI::App& verb, bool& force) {
+  verb.add_flag("--force", force,
+                "Replace files that rigcal did not write, or that were changed since");
+}
+
+report::Holding holding(std::string verb, bool force, const PrintOptions& print) {
+  report::Holding holding{std::move(verb), force};
+  if (!print.quiet) {
+    holding.warn = [](const std::string& text) {
+      std::fputs(fmt::format("warning: {}\n", text).c_str(), stderr);
+    };
+  }
+  return holding;
+}
+
 void add_campaign_options(CLI::App& verb, CampaignOptions& options) {
   options.threads = hardware_threads();
   verb.add_option("CAMPAIGN", options.campaign, "Campaign file")->required()->check(not_empty());
@@ -67,6 +83,7 @@ void add_campaign_options(CLI::App& verb, CampaignOptions& options) {
   verb.add_option("--out", options.out, "Folder of the results")
       ->check(not_empty())
       ->capture_default_str();
+  add_force_option(verb, options.force);
   // One value per --set, or it would swallow the campaign file.
   verb.add_option("--set", options.set, "Change a value: name=\"value unit\"; repeatable")
       ->allow_extra_args(false);

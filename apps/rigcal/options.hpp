@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "report/run/campaign_choice.hpp"
+#include "report/store/folder.hpp"
 #include "report/store/json.hpp"
 #include "report/text/terminal.hpp"
 
@@ -21,6 +22,7 @@ struct PrintOptions {
 /// What every verb that reads a campaign understands.
 struct CampaignOptions : report::CampaignChoice {
   std::filesystem::path out = "rigcal-out";
+  bool force = false;
   int threads = 1;
   PrintOptions print;
 };
@@ -35,7 +37,12 @@ CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 int hardware_threads();
 
 void add_print_options(CLI::App& verb, PrintOptions& options);
+/// --force
+void add_force_option(CLI::App& verb, bool& force);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);
+
+/// How a verb holds its folder of results.
+report::Holding holding(std::string verb, bool force, const PrintOptions& print);
 
 /// Columns of the terminal that a stream goes to; 0 where it goes elsewhere.
 std::size_t terminal_columns(int stream);

@@ -39,10 +39,10 @@ void add_strict_option(CLI::App& verb, bool& strict) {
   verb.add_flag("--strict", strict, "Exit with 1 on WARN too, not only on FAIL");
 }
 
-ExitCode write_and_print(const CampaignOptions& options, const report::Result& result,
-                         bool strict) {
+ExitCode write_and_print(report::HeldFolder& held, const CampaignOptions& options,
+                         const report::Result& result, bool strict) {
   report::StoredFit stored = report::stored(result);
-  const auto files = report::write_result(options.out, options.threads, result, stored);
+  const auto files = report::write_result(held, options.threads, result, stored);
   print(options.print, text_of(options, result, files), report::json_of(stored));
   return exit_code_of(stored.status, stored.verdict, strict);
 }

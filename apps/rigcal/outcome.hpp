@@ -13,10 +13,12 @@ namespace rigcal::app {
 /// @param strict  WARN counts as FAIL
 ExitCode exit_code_of(calib::FitStatus status, std::optional<calib::Verdict> verdict, bool strict);
 
-/// Writes the files of a fit or validation into --out and prints scorecard, parameters and verdict.
+/// Writes the files of a fit or validation into --out, which is held, and prints scorecard,
+/// parameters and verdict.
 ///
 /// @throws WriteError
-ExitCode write_and_print(const CampaignOptions& options, const report::Result& result, bool strict);
+ExitCode write_and_print(report::HeldFolder& held, const CampaignOptions& options,
+                         const report::Result& result, bool strict);
 
 /// --strict
 void add_strict_option(CLI::App& verb, bool& strict);

@@ -27,8 +27,18 @@ std::optional<Record> driving_record(const Campaign& campaign, const Condition& 
 
 }  // namespace
 
+std::vector<std::filesystem::path> synthetic_file_names(const Campaign& campaign) {
+  std::vector<std::filesystem::path> names{"campaign.toml", "truth.json"};
+  if (!campaign.synthetic_settings) return names;
+  for (const Condition& condition : campaign.conditions) {
+    for (int repeat = 1; repeat <= campaign.synthetic_settings->repeats; ++repeat)
+      names.emplace_back(synthetic_record_path(condition.id, repeat));
+  }
+  return names;
+}
+
 SynthesisReport synthesize(const Campaign& campaign, std::uint64_t seed,
-                           const std::filesystem::path& out, int threads) {
+                           const std::filesystem::path& out, int threads, const WriteText& write) {
   if (!campaign.synthetic_settings)
     throw InputError({campaign.file.string()},
                      "no table [synthetic]: expected one that says how records are disturbed");
@@ -44,17 +54,16 @@ SynthesisReport synthesize(const Campaign& campaign, std::uint64_t seed,
     const auto record = driving_record(campaign, condition);
     for (const SyntheticRepeat& repeat :
          synthetic_repeats(truth, condition, record ? &*record : nullptr, seed)) {
-      write_file_atomically(out / repeat.record.source,
-                            synthetic_csv(campaign, repeat.record, seed));
+      write(out / repeat.record.source, synthetic_csv(campaign, repeat.record, seed));
       fates[c].push_back(repeat.fate);
       samples += static_cast<long>(repeat.record.time_s.size());
     }
   });
   // The campaign file comes last: without it an interrupted run is no campaign.
-  write_file_atomically(out / "truth.json", truth_json(truth, seed, fates));
+  write(out / "truth.json", truth_json(truth, seed, fates));
   SynthesisReport report;
   report.campaign_file = out / "campaign.toml";
-  write_file_atomically(report.campaign_file, synthetic_campaign_text(campaign, seed));
+  write(report.campaign_file, synthetic_campaign_text(campaign, seed));
   for (const auto& repeats : fates) report.files += static_cast<int>(repeats.size());
   report.samples = samples;
   return report;

@@ -2,10 +2,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <string_view>
+#include <vector>
 
+#include "common/file.hpp"
 #include "datasets/campaign/campaign.hpp"
 
 namespace rigcal::datasets {
+
+using WriteText = std::function<void(const std::filesystem::path&, std::string_view)>;
 
 /// What `synthesize` wrote.
 struct SynthesisReport {
@@ -19,9 +25,15 @@ struct SynthesisReport {
 /// `truth.json` into `out`, each labelled as synthetic. The same seed gives the same bytes on any
 /// machine and for any number of threads; every repeat and channel has a random stream of its own.
 ///
+/// @param write  takes each file, beneath `out`, and its text; from several threads at a time, the
+///               campaign file last
 /// @throws InputError     no [synthetic] section, or a condition without duration and sample rate
 /// @throws NoResultError  a condition could not be simulated
 SynthesisReport synthesize(const Campaign& campaign, std::uint64_t seed,
-                           const std::filesystem::path& out, int threads);
+                           const std::filesystem::path& out, int threads,
+                           const WriteText& write = write_file_atomically);
+
+/// The files that synthesize() makes of a campaign, relative to its folder.
+std::vector<std::filesystem::path> synthetic_file_names(const Campaign& campaign);
 
 }  // namespace rigcal::datasets

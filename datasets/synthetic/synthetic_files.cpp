@@ -20,10 +20,6 @@ std::string label(std::uint64_t seed) {
   return fmt::format("# synthetic: made by rigcal synthesize, seed {}\n", seed);
 }
 
-std::string record_path(const std::string& condition, int repeat) {
-  return fmt::format("records/{}_r{}.csv", condition, repeat);
-}
-
 double in_file_unit(double value_si, const UnitConversion& to_si) {
   return (value_si - to_si.offset) / to_si.scale;
 }
@@ -125,10 +121,11 @@ Json fates_json(const Campaign& truth, const std::vector<std::vector<RepeatFate>
       Json varied = Json::object();
       for (const auto& [index, value] : fate.varied)
         varied[std::string(table[static_cast<std::size_t>(index)].name)] = value;
-      repeats.push_back({{"file", record_path(condition.id, static_cast<int>(repeats.size()) + 1)},
-                         {"late_s", fate.late_s},
-                         {"supply_ripple_phase_rad", fate.ripple_phase_rad},
-                         {"varied", varied}});
+      repeats.push_back(
+          {{"file", synthetic_record_path(condition.id, static_cast<int>(repeats.size()) + 1)},
+           {"late_s", fate.late_s},
+           {"supply_ripple_phase_rad", fate.ripple_phase_rad},
+           {"varied", varied}});
     }
     list.push_back({{"id", condition.id},
                     {"leak_level", condition.leak_level ? Json(*condition.leak_level) : Json()},
@@ -138,6 +135,10 @@ Json fates_json(const Campaign& truth, const std::vector<std::vector<RepeatFate>
 }
 
 }  // namespace
+
+std::string synthetic_record_path(const std::string& condition, int repeat) {
+  return fmt::format("records/{}_r{}.csv", condition, repeat);
+}
 
 std::string synthetic_column(const Campaign& campaign, Channel channel) {
   const std::string& column = campaign.channels.at(channel).column;
@@ -183,7 +184,7 @@ std::string synthetic_campaign_text(const Campaign& campaign, std::uint64_t seed
       condition.erase(key);
     toml::array repeats;
     for (int repeat = 1; repeat <= campaign.synthetic_settings->repeats; ++repeat)
-      repeats.push_back(record_path(condition["id"].value_or(std::string()), repeat));
+      repeats.push_back(synthetic_record_path(condition["id"].value_or(std::string()), repeat));
     condition.insert("repeats", std::move(repeats));
   }
   toml::table& channels = *root["recording"]["channels"].as_table();

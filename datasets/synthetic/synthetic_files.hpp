@@ -9,6 +9,11 @@
 
 namespace rigcal::datasets {
 
+/// File of a repeat, relative to the campaign file.
+///
+/// @param repeat  from 1
+std::string synthetic_record_path(const std::string& condition, int repeat);
+
 /// Column of a channel in a synthetic record: the campaign's, or the channel's key where the
 /// campaign names columns per repeat only.
 std::string synthetic_column(const Campaign& campaign, Channel channel);

@@ -80,6 +80,10 @@ std::string repeat_name(const ParityRecord& record) {
   return record.repeat ? fmt::format("{}", *record.repeat) : std::string("mean");
 }
 
+std::filesystem::path series_file(const std::string& condition) {
+  return std::filesystem::path("parity") / (condition + ".csv");
+}
+
 std::string series_csv(const ParityCondition& condition) {
   std::vector<std::string> titles{"time_s", "healthy_model_m"};
   for (const ParityRecord& record : condition.records) {
@@ -209,12 +213,18 @@ std::string parity_csv(const ParityResult& result) {
   return text;
 }
 
+PlannedFiles planned_parity(const datasets::Campaign& campaign) {
+  PlannedFiles planned{{"parity.json", "parity.csv", "report.html"}, {"parity"}};
+  for (const datasets::Condition& condition : campaign.conditions)
+    planned.files.push_back(series_file(condition.id));
+  return planned;
+}
+
 std::vector<ResultFile> parity_series(const ParityResult& result) {
   std::vector<ResultFile> files;
   for (const ParityCondition& condition : result.parity.conditions) {
     if (condition.model_m.empty()) continue;
-    files.push_back(
-        {std::filesystem::path("parity") / (condition.condition + ".csv"), series_csv(condition)});
+    files.push_back({series_file(condition.condition), series_csv(condition)});
   }
   return files;
 }

@@ -33,6 +33,9 @@ std::string parity_csv(const ParityResult& result);
 /// fields where a sample does not count.
 std::vector<ResultFile> parity_series(const ParityResult& result);
 
+/// parity.json, parity.csv and the series, and the page.
+PlannedFiles planned_parity(const datasets::Campaign& campaign);
+
 /// Alarms per condition, thresholds per signal, warnings.
 std::string parity_text(const ParityResult& result, const Style& style);
 

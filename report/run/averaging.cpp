@@ -1,5 +1,7 @@
 #include "report/run/averaging.hpp"
 
+#include <filesystem>
+
 #include "common/error.hpp"
 #include "datasets/checks/short_records.hpp"
 #include "datasets/prepare/load_record.hpp"
@@ -10,10 +12,29 @@
 
 namespace rigcal::report {
 
+namespace {
+
+bool is_averaged(const datasets::Condition& condition) {
+  return condition.has_record() && condition.use != datasets::Use::ignore;
+}
+
+std::filesystem::path averaged_file(const std::string& condition) {
+  return std::filesystem::path("averaged") / (condition + ".csv");
+}
+
+}  // namespace
+
+PlannedFiles planned_average(const datasets::Campaign& campaign) {
+  PlannedFiles planned{{"average.json", "repeatability.csv", "report.html"}, {"averaged"}};
+  for (const datasets::Condition& condition : campaign.conditions)
+    if (is_averaged(condition)) planned.files.push_back(averaged_file(condition.id));
+  return planned;
+}
+
 std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaign) {
   std::vector<datasets::Record> records;
   for (const datasets::Condition& condition : campaign.conditions) {
-    if (!condition.has_record() || condition.use == datasets::Use::ignore) continue;
+    if (!is_averaged(condition)) continue;
     records.push_back(datasets::load_record(campaign, condition));
   }
   if (records.empty()) {
@@ -26,8 +47,7 @@ std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaig
   return records;
 }
 
-StoredAverage write_average(const std::filesystem::path& out, int threads,
-                            const datasets::Campaign& campaign,
+StoredAverage write_average(HeldFolder& held, int threads, const datasets::Campaign& campaign,
                             const std::vector<datasets::Record>& records, Provenance provenance) {
   provenance.inputs = hash_inputs(campaign, records);
   StoredAverage average;
@@ -35,16 +55,16 @@ StoredAverage write_average(const std::filesystem::path& out, int threads,
   average.synthetic = campaign.synthetic;
   std::vector<ResultFile> files;
   for (const datasets::Record& record : records) {
-    files.push_back(
-        {std::filesystem::path("averaged") / (record.condition + ".csv"), averaged_csv(record)});
+    files.push_back({averaged_file(record.condition), averaged_csv(record)});
     average.records.push_back(stored(*campaign.find(record.condition), record));
   }
   files.push_back({"repeatability.csv", repeatability_csv(records)});
   average.provenance = stored(provenance);
   name_files(files, average.provenance);
   files.push_back({"average.json", json_text(json_of(average))});
-  add_page(out, threads, files);
-  write_results(out, files, provenance.inputs);
+  held.plan(planned_average(campaign));
+  add_page(held.path(), threads, files);
+  write_results(held, files, provenance.inputs);
   return average;
 }
 

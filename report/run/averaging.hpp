@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <vector>
 
 #include "datasets/campaign/campaign.hpp"
@@ -16,14 +15,16 @@ namespace rigcal::report {
 /// @throws InputError  a record is wrong, or there is none
 std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaign);
 
+/// The files of write_average(), for HeldFolder::plan() before the work.
+PlannedFiles planned_average(const datasets::Campaign& campaign);
+
 /// Writes averaged/<condition>.csv of each, repeatability.csv, average.json and the page.
 ///
 /// @param threads     that draw the page
 /// @param provenance  but for the inputs
 /// @return            average.json
 /// @throws WriteError, UsageError  as write_results()
-StoredAverage write_average(const std::filesystem::path& out, int threads,
-                            const datasets::Campaign& campaign,
+StoredAverage write_average(HeldFolder& held, int threads, const datasets::Campaign& campaign,
                             const std::vector<datasets::Record>& records, Provenance provenance);
 
 }  // namespace rigcal::report

@@ -44,18 +44,8 @@ std::vector<calib::ConditionScore> unscored(const Result& result) {
   return scores;
 }
 
-fs::path main_file(const Result& result) {
-  return result.kind == ResultKind::fit ? "fit.json" : "validation.json";
-}
-
-/// Before anything is made.
-/// @throws UsageError  one of the files would replace an input
-void require_inputs_kept(const fs::path& out, const Result& result) {
-  std::vector<fs::path> files{"scorecard.csv", "parameters.csv", "residual_tests.json",
-                              "fitted.toml",   "report.html",    main_file(result)};
-  for (const datasets::Condition& condition : result.campaign.conditions)
-    files.push_back(residual_file(condition.id));
-  require_inputs_kept(out, files, result.provenance.inputs);
+fs::path main_file(ResultKind kind) {
+  return kind == ResultKind::fit ? "fit.json" : "validation.json";
 }
 
 /// Residual files, each written as soon as its text is there: those of all conditions at once would
@@ -72,7 +62,7 @@ std::vector<InputFile> add_residuals(const Result& result,
     const std::string text = residuals_csv(result, scores[i]);
     files[i] = {file.generic_string(), sha256_of_text(text)};
     const std::lock_guard lock(one_at_a_time);
-    writing.add(file, text);
+    writing.add({file, text, files[i].sha256});
   });
   return files;
 }
@@ -92,7 +82,7 @@ std::vector<ResultFile> files_of(const fs::path& out, int threads, const Result&
     files.push_back({"fitted.toml", fitted_toml(out, result)});
   name_files(residuals, files, stored.provenance);
   // Last, so that whoever finds it finds the others too.
-  files.push_back({main_file(result), json_text(json_of(stored))});
+  files.push_back({main_file(result.kind), json_text(json_of(stored))});
   add_page(out, threads, files, [&result](const fs::path& path) {
     for (const calib::ConditionScore& score : result.fit.conditions)
       if (residual_file(score.id) == path)
@@ -104,22 +94,35 @@ std::vector<ResultFile> files_of(const fs::path& out, int threads, const Result&
 
 }  // namespace
 
-std::vector<fs::path> write_result(const fs::path& out, int threads, const Result& result,
+PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign) {
+  PlannedFiles planned{
+      {"scorecard.csv", "parameters.csv", "residual_tests.json", "report.html", main_file(kind)},
+      {"residuals"}};
+  if (kind == ResultKind::fit) planned.files.emplace_back("fitted.toml");
+  for (const datasets::Condition& condition : campaign.conditions) {
+    if (condition.use == datasets::Use::fit || condition.use == datasets::Use::validate)
+      planned.files.push_back(residual_file(condition.id));
+  }
+  return planned;
+}
+
+std::vector<fs::path> write_result(HeldFolder& held, int threads, const Result& result,
                                    StoredFit& stored) {
   const std::vector<calib::ConditionScore> early = unscored(result);
-  require_inputs_kept(out, result);
-  ResultsInWriting writing(out, result.provenance.inputs);
+  const fs::path& out = held.path();
+  const PlannedFiles planned = planned_result(result.kind, result.campaign);
+  require_inputs_kept(out, planned.files, result.provenance.inputs);
+  held.plan(planned);
+  ResultsInWriting writing(held, result.provenance.inputs);
   const std::vector<InputFile> residuals = add_residuals(
       result, result.fit.conditions.empty() ? early : result.fit.conditions, threads, writing);
   std::vector<fs::path> paths;
   for (const InputFile& file : residuals) paths.emplace_back(file.path);
   for (const ResultFile& file : files_of(out, threads, result, residuals, stored)) {
-    writing.add(file.path, file.content);
+    writing.add(file);
     paths.push_back(file.path);
   }
   writing.move_into_place();
-  if (result.kind == ResultKind::fit && stored.status == FitStatus::failed)
-    remove_stale(out / "fitted.toml");
   return paths;
 }
 

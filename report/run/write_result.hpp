@@ -8,14 +8,17 @@
 
 namespace rigcal::report {
 
-/// Writes the files of a fit or validation. A failed fit takes the fitted.toml of an earlier one
-/// away.
+/// The files of write_result() for a campaign, for HeldFolder::plan() before the work.
+PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign);
+
+/// Writes the files of a fit or validation. What an earlier one has left of them goes: the
+/// fitted.toml of one that did not fail, residuals of conditions that are no more.
 ///
 /// @param threads  that make the texts and draw the page
 /// @param stored   stored() of the result, to which the names of its files are added
 /// @return         what was written, relative to `out`; the page and the result come last
 /// @throws WriteError, UsageError  as write_results()
-std::vector<std::filesystem::path> write_result(const std::filesystem::path& out, int threads,
-                                                const Result& result, StoredFit& stored);
+std::vector<std::filesystem::path> write_result(HeldFolder& held, int threads, const Result& result,
+                                                StoredFit& stored);
 
 }  // namespace rigcal::report

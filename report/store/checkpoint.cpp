@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <stdexcept>
 
@@ -151,6 +152,12 @@ std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenanc
   json["ledger"] = counters_json(checkpoint.counters);
   json["sha256"] = sha256_of_text(json_text(json));
   return json_text(json);
+}
+
+bool is_checkpoint(const std::filesystem::path& file) {
+  std::string head(1000, '\0');
+  std::ifstream(file, std::ios::binary).read(head.data(), static_cast<long>(head.size()));
+  return head.find(fmt::format("\"schema\": \"{}\"", kSchema)) != std::string::npos;
 }
 
 calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Provenance& provenance) {

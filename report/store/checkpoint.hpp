@@ -17,6 +17,9 @@ std::string fit_identity(const Provenance& provenance);
 /// A checkpoint with what its fit was made from; numbers read back to the same bits.
 std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenance& provenance);
 
+/// Whether a file is one, whole or not, of whatever fit.
+bool is_checkpoint(const std::filesystem::path& file);
+
 /// @param provenance  of the fit that is to go on
 /// @throws InputError  the file cannot be read, is no checkpoint, or is that of another fit: other
 ///                     inputs, options, seed or version

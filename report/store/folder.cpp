@@ -2,18 +2,24 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
-#include <string_view>
+#include <optional>
 #include <system_error>
 #include <utility>
 
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "common/temporary_name.hpp"
 #include "common/uninterrupted.hpp"
+#include "report/store/checkpoint.hpp"
+#include "report/store/kept_tasks.hpp"
+#include "report/store/stored.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -33,6 +39,59 @@ std::vector<fs::path> missing_folders(const fs::path& path) {
 // A signal handler can reach nothing but a global.
 std::atomic<const std::vector<fs::path>*> made_now{nullptr};
 
+constexpr const char* kProbeFile = ".rigcal-probe";
+
+/// Of results in a message.
+constexpr std::size_t kMostNamed = 8;
+
+std::string listed(const std::vector<std::string>& names) {
+  const std::size_t shown = std::min(names.size(), kMostNamed);
+  std::string text = fmt::format("{}", fmt::join(names.begin(), names.begin() + shown, ", "));
+  if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
+  return text;
+}
+
+/// The first folder on the way from `out` to a file that is a link; nothing where none is.
+std::optional<fs::path> link_within(const fs::path& out, const fs::path& file) {
+  fs::path inner;
+  for (const fs::path& part : file.parent_path()) {
+    inner /= part;
+    std::error_code unknown;
+    if (fs::is_symlink(out / inner, unknown)) return inner;
+  }
+  return std::nullopt;
+}
+
+/// Whether a file can be read, is no link, and has this hash.
+bool has_hash(const fs::path& file, const std::string& hash) {
+  std::error_code unknown;
+  try {
+    return fs::is_regular_file(fs::symlink_status(file, unknown)) && sha256_of_file(file) == hash;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Puts a manifest back as it was, where that is possible: the longer one is as true.
+void restore(const fs::path& manifest, const std::optional<std::string>& text) noexcept {
+  try {
+    if (text) {
+      write_file_atomically(manifest, *text);
+    } else {
+      fs::remove(manifest);
+    }
+  } catch (const WriteError&) {
+  } catch (const fs::filesystem_error&) {
+  }
+}
+
+/// What a fit keeps so that it can go on: it changes while a fit lasts, so that no manifest lists
+/// it.
+bool is_kept_state(const std::string& path, const fs::path& file) {
+  if (path == kCheckpointFile) return is_checkpoint(file);
+  return path == kKeptTasksFile && is_kept_tasks(file);
+}
+
 }  // namespace
 
 void HeldFolder::remove_if_empty() {
@@ -48,26 +107,130 @@ HeldFolder::Made::~Made() {
   for (const fs::path& folder : folders) fs::remove(folder, ignored);
 }
 
-HeldFolder::HeldFolder(const fs::path& out) {
+HeldFolder::HeldFolder(const fs::path& out, Holding holding)
+    : out_(out), holding_(std::move(holding)) {
   const fs::path folder = fs::absolute(out).lexically_normal();
   std::error_code unknown;  // the probe tells
   if (fs::exists(folder, unknown) && !fs::is_directory(folder, unknown))
     throw WriteError(fmt::format("--out {}: is a file; expected a folder", out.string()));
-  const Uninterrupted whole;
-  made_.folders = missing_folders(folder);
-  made_now = &made_.folders;
-  const fs::path probe = folder / ".rigcal-probe";
-  write_file_atomically(probe, "");
-  std::error_code ignored;  // what cannot be removed again does no harm
-  fs::remove(probe, ignored);
-  descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
-    ::close(descriptor_);
-    throw UsageError(
-        fmt::format("--out {}: another run of rigcal writes into it; wait for its end, "
-                    "or choose another folder",
-                    out.string()));
+  {
+    const Uninterrupted whole;
+    made_.folders = missing_folders(folder);
+    made_now = &made_.folders;
+    const fs::path probe = folder / kProbeFile;
+    write_file_atomically(probe, "");
+    std::error_code ignored;  // what cannot be removed again does no harm
+    fs::remove(probe, ignored);
   }
+  descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  try {
+    lock();
+    try {
+      listed_ = manifest_files(out_);
+    } catch (const InputError& error) {
+      if (!holding_.force)
+        throw UsageError(fmt::format("{}; {} makes a new one", error.what(), holding_.forced_by));
+    }
+  } catch (...) {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    throw;
+  }
+  for (const char* name : {kProbeFile, kManifestFile, kCheckpointFile}) sweep(name);
+  for (const ManifestFile& file : listed_) sweep(file.path);
+}
+
+void HeldFolder::lock() {
+  locked_ = descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+  if (locked_) return;
+  const int reason = errno;
+  if (descriptor_ >= 0 && reason == EWOULDBLOCK) {
+    throw UsageError(
+        fmt::format("{}: another run of rigcal writes into it; wait for its end, "
+                    "or choose another folder",
+                    out_.string()));
+  }
+  if (holding_.warn)
+    holding_.warn(
+        fmt::format("{}: cannot be locked ({}): see to it that no other run writes "
+                    "into it at the same time",
+                    out_.string(), std::generic_category().message(reason)));
+}
+
+void HeldFolder::plan(PlannedFiles planned) {
+  planned_ = std::move(planned);
+  std::vector<ResultFile> files;
+  for (const fs::path& file : planned_.files) files.push_back({file, ""});
+  for (const fs::path& folder : planned_.folders) {
+    if (link_within(out_, folder / "x")) files.push_back({folder / "x", ""});
+  }
+  require_replaceable(files);
+}
+
+bool HeldFolder::is_as_written(const std::string& path, const std::string& coming) {
+  const fs::path file = out_ / path;
+  std::error_code unknown;
+  const fs::file_status status = fs::symlink_status(file, unknown);
+  // A folder in its place is an error of writing.
+  if (!fs::exists(status) || fs::is_directory(status)) return true;
+  if (!fs::is_regular_file(status)) return false;
+  const FileState state = state_of_file(file);
+  const auto checked = checked_.find(path);
+  if (checked != checked_.end() && checked->second == state) return true;
+  const std::string hash = sha256_of_file(file);
+  const bool own = hash == coming || is_kept_state(path, file) ||
+                   std::any_of(listed_.begin(), listed_.end(), [&](const ManifestFile& each) {
+                     return each.path == path && each.sha256 == hash;
+                   });
+  if (own) checked_[path] = state;
+  return own;
+}
+
+void HeldFolder::sweep(const fs::path& path) {
+  // Without the lock another run may be at it, on another machine even.
+  if (!locked_ || !swept_.insert(path.generic_string()).second || link_within(out_, path)) return;
+  remove_left_behind(out_ / path.parent_path(), {path.filename().string()});
+}
+
+void HeldFolder::require_replaceable(const std::vector<ResultFile>& files) {
+  std::vector<std::string> unlisted;
+  std::vector<std::string> changed;
+  for (const ResultFile& file : files) {
+    if (const auto link = link_within(out_, file.path))
+      throw UsageError(
+          fmt::format("{}: is a link, and links inside a folder of results are not followed; "
+                      "remove it, or choose another folder",
+                      (out_ / *link).string()));
+    sweep(file.path);
+    const std::string path = file.path.generic_string();
+    if (holding_.force || is_as_written(path, file.sha256)) continue;
+    const bool known = std::any_of(listed_.begin(), listed_.end(),
+                                   [&](const ManifestFile& each) { return each.path == path; });
+    (known ? changed : unlisted).push_back(path);
+  }
+  if (unlisted.empty() && changed.empty()) return;
+  std::string found;
+  if (!unlisted.empty()) found = fmt::format("{}: not written by rigcal", listed(unlisted));
+  if (!changed.empty()) {
+    found += fmt::format("{}{}: changed since rigcal wrote {}", found.empty() ? "" : "; ",
+                         listed(changed), changed.size() == 1 ? "it" : "them");
+  }
+  throw UsageError(
+      fmt::format("{}: found what {} would replace: {}; expected another folder, or {}",
+                  out_.string(), holding_.verb, found, holding_.forced_by));
+}
+
+std::vector<fs::path> HeldFolder::left_over(const std::set<std::string>& written) const {
+  std::vector<fs::path> paths;
+  for (const ManifestFile& each : listed_) {
+    const fs::path path = each.path;
+    const auto has = [](const std::vector<fs::path>& all, const fs::path& one) {
+      return std::find(all.begin(), all.end(), one) != all.end();
+    };
+    if (written.contains(each.path) || link_within(out_, path)) continue;
+    if (!has(planned_.files, path) && !has(planned_.folders, path.parent_path())) continue;
+    if (has_hash(out_ / path, each.sha256)) paths.push_back(path);
+  }
+  return paths;
 }
 
 HeldFolder::~HeldFolder() {
@@ -89,18 +252,54 @@ void require_inputs_kept(const fs::path& out, const std::vector<fs::path>& resul
   }
 }
 
-void ResultsInWriting::add(const fs::path& path, std::string_view content) {
-  require_inputs_kept(out_, {path}, inputs_);
-  writing_.add(out_ / path, content);
+void ResultsInWriting::add(const ResultFile& file) {
+  require_inputs_kept(held_.out_, {file.path}, inputs_);
+  const std::string hash = file.sha256.empty() ? sha256_of_text(file.content) : file.sha256;
+  held_.require_replaceable({{file.path, "", hash}});
+  writing_.add(held_.out_ / file.path, file.content);
+  added_.push_back({file.path.generic_string(), hash, held_.holding_.verb});
 }
 
-void write_results(const fs::path& out, const std::vector<ResultFile>& files,
+void ResultsInWriting::move_into_place() {
+  std::set<std::string> written;
+  for (const ManifestFile& file : added_) written.insert(file.path);
+  const std::vector<fs::path> going = held_.left_over(written);
+  std::vector<ManifestFile> staying = added_;
+  std::vector<ManifestFile> left = added_;
+  std::vector<ManifestFile> all = added_;
+  for (const ManifestFile& file : held_.listed_) {
+    all.push_back(file);
+    if (written.contains(file.path)) continue;
+    left.push_back(file);
+    if (std::find(going.begin(), going.end(), file.path) == going.end()) staying.push_back(file);
+  }
+  // Whatever ends the process between two renames, the manifest lists what stands then.
+  const fs::path manifest = held_.out_ / kManifestFile;
+  const auto earlier = files_in(held_.out_)(kManifestFile);
+  const Uninterrupted whole;
+  writing_.add(manifest, manifest_text(left));
+  write_file_atomically(manifest, manifest_text(all));
+  try {
+    writing_.rename_into_place();
+  } catch (const WriteError&) {
+    restore(manifest, earlier);
+    throw;
+  }
+  if (!going.empty()) {
+    for (const fs::path& path : going) remove_stale(held_.out_ / path);
+    write_file_atomically(manifest, manifest_text(staying));
+  }
+  held_.listed_ = staying;
+}
+
+void write_results(HeldFolder& held, const std::vector<ResultFile>& files,
                    const std::vector<InputFile>& inputs) {
   std::vector<fs::path> paths;
   for (const ResultFile& file : files) paths.push_back(file.path);
-  require_inputs_kept(out, paths, inputs);
-  ResultsInWriting writing(out, inputs);
-  for (const ResultFile& file : files) writing.add(file.path, file.content);
+  require_inputs_kept(held.path(), paths, inputs);
+  held.require_replaceable(files);
+  ResultsInWriting writing(held, inputs);
+  for (const ResultFile& file : files) writing.add(file);
   writing.move_into_place();
 }
 

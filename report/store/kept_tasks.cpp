@@ -27,10 +27,12 @@ std::string entry_of(const std::string& job, std::size_t index, const std::strin
   return fmt::format("{:016x}{}", content.size(), sha256_of_text(content)) + content;
 }
 
+// Digits at the beginning of an entry.
+constexpr std::size_t kLength = 16;
+constexpr std::size_t kHash = 64;
+
 /// Takes the next whole entry off the front; empty where there is none.
 std::string_view take_entry(std::string_view& rest) {
-  constexpr std::size_t kLength = 16;
-  constexpr std::size_t kHash = 64;
   if (rest.size() < kLength + kHash) return {};
   std::size_t length = 0;
   for (const char c : rest.substr(0, kLength)) {
@@ -46,6 +48,14 @@ std::string_view take_entry(std::string_view& rest) {
 }
 
 }  // namespace
+
+bool is_kept_tasks(const std::filesystem::path& file) {
+  std::string head(kLength + kHash, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  return head.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
 
 KeptTasks::KeptTasks(TaskFarm& farm, std::filesystem::path file, const Provenance& provenance,
                      bool resume)

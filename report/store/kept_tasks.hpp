@@ -14,6 +14,9 @@ namespace rigcal::report {
 /// processes.
 inline constexpr const char* kKeptTasksFile = "checkpoint.tasks";
 
+/// Whether a file is one of these, whole or cut short.
+bool is_kept_tasks(const std::filesystem::path& file);
+
 /// A farm that keeps every result in a file as soon as it is there, so that a run which is killed
 /// loses no more than the tasks it was at. Each entry carries its hash: one that is half written,
 /// and whatever follows it, counts as not there. A result is known by the hash of what it was made

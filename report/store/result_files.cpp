@@ -9,24 +9,17 @@
 #include "common/file.hpp"
 
 namespace rigcal::report {
-namespace {
 
-std::vector<InputFile> hashed(const std::vector<ResultFile>& files) {
-  std::vector<InputFile> named;
-  for (const ResultFile& file : files)
-    named.push_back({file.path.generic_string(), sha256_of_text(file.content)});
-  return named;
-}
-
-}  // namespace
-
-void name_files(std::vector<InputFile> named, const std::vector<ResultFile>& files,
+void name_files(std::vector<InputFile> named, std::vector<ResultFile>& files,
                 StoredProvenance& provenance) {
-  for (InputFile& file : hashed(files)) named.push_back(std::move(file));
+  for (ResultFile& file : files) {
+    file.sha256 = sha256_of_text(file.content);
+    named.push_back({file.path.generic_string(), file.sha256});
+  }
   provenance.files = std::move(named);
 }
 
-void name_files(const std::vector<ResultFile>& files, StoredProvenance& provenance) {
+void name_files(std::vector<ResultFile>& files, StoredProvenance& provenance) {
   name_files({}, files, provenance);
 }
 

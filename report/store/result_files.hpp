@@ -11,10 +11,11 @@
 
 namespace rigcal::report {
 
-/// `provenance.files`: path and SHA-256 of each of `files`, in their order.
-void name_files(const std::vector<ResultFile>& files, StoredProvenance& provenance);
+/// `provenance.files`: path and SHA-256 of each of `files`, in their order. The files keep their
+/// hashes, too.
+void name_files(std::vector<ResultFile>& files, StoredProvenance& provenance);
 /// @param named  of files that are written already, which come first
-void name_files(std::vector<InputFile> named, const std::vector<ResultFile>& files,
+void name_files(std::vector<InputFile> named, std::vector<ResultFile>& files,
                 StoredProvenance& provenance);
 
 /// Reads the files of a result's own run.

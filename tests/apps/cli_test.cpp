@@ -269,10 +269,15 @@ const std::vector<BadFit> kBadFits{
      {"parameters[0].value", "60", "a number"}},
 };
 
-const std::set<std::string> kFitFiles{"out/fit.json",           "out/fitted.toml",
-                                      "out/report.html",        "out/residual_tests.json",
-                                      "out/scorecard.csv",      "out/parameters.csv",
-                                      "out/residuals/sine.csv", "out/residuals/square.csv"};
+const std::set<std::string> kFitFiles{"out/fit.json",
+                                      "out/fitted.toml",
+                                      "out/report.html",
+                                      "out/residual_tests.json",
+                                      "out/scorecard.csv",
+                                      "out/parameters.csv",
+                                      "out/residuals/sine.csv",
+                                      "out/residuals/square.csv",
+                                      "out/rigcal-manifest.json"};
 
 std::set<std::string> files_in(const CommandFolder& folder, const std::string& prefix) {
   std::set<std::string> found;
@@ -454,9 +459,9 @@ TEST_CASE("average: mean, sd and count, and the repeatability", "[apps]") {
   const Outcome outcome = folder.run({"average", "campaign.toml", "--out", "out"});
   CHECK(outcome.exit_code == 0);
   CHECK(files_in(folder, "out/") ==
-        std::set<std::string>{"out/average.json", "out/averaged/sine.csv",
-                              "out/averaged/square.csv", "out/repeatability.csv",
-                              "out/report.html"});
+        std::set<std::string>{"out/rigcal-manifest.json", "out/average.json",
+                              "out/averaged/sine.csv", "out/averaged/square.csv",
+                              "out/repeatability.csv", "out/report.html"});
   CHECK_THAT(folder.read("out/averaged/sine.csv"),
              StartsWith("time_s,") && Contains("position_m_mean,position_m_sd,position_m_count"));
   CHECK_THAT(folder.read("out/repeatability.csv"),
@@ -482,7 +487,8 @@ TEST_CASE("simulate: runs without records", "[apps]") {
   const Outcome outcome = folder.run({"simulate", "campaign.toml", "--out", "out"});
   CAPTURE(outcome.err);
   CHECK(outcome.exit_code == 0);
-  CHECK(files_in(folder, "out/") == std::set<std::string>{"out/sine.csv"});
+  CHECK(files_in(folder, "out/") ==
+        std::set<std::string>{"out/rigcal-manifest.json", "out/sine.csv"});
   const std::string csv = folder.read("out/sine.csv");
   CHECK_THAT(csv, StartsWith("time_s,reference_m,position_m,velocity_m_per_s,"));
   CHECK(std::count(csv.begin(), csv.end(), '\n') == 102);  // header, and both ends of 1 s
@@ -665,7 +671,8 @@ TEST_CASE("fit: what cannot be simulated gives no parameters", "[apps]") {
   REQUIRE(write_twin(folder).exit_code == 0);
   folder.write("twin/hopeless.toml",
                folder.read("twin/campaign.toml") + "\n[simulation]\nmax_seconds = 1e-9\n");
-  folder.write("out/fitted.toml", "of an earlier run");
+  REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "out", "--quiet"}).exit_code == 0);
+  REQUIRE(folder.has("out/fitted.toml"));
   const Outcome outcome = folder.run({"fit", "twin/hopeless.toml", "--out", "out"});
   CAPTURE(outcome.err, outcome.out);
   CHECK(outcome.exit_code == 3);

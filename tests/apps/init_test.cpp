@@ -166,7 +166,12 @@ TEST_CASE("init: what it refuses", "[apps]") {
   CHECK_FALSE(folder.has("rigcal-out/campaign.toml"));
 
   REQUIRE(folder.run({"init", "records/sine_1.csv", "--out", "new", "--quiet"}).exit_code == 0);
+  const std::string draft = folder.read("new/campaign.toml");
+  CHECK(folder.run({"init", "records/sine_1.csv", "--out", "new", "--quiet"}).exit_code == 0);
+  CHECK(folder.read("new/campaign.toml") == draft);
+  folder.write("new/campaign.toml", draft + "# filled in\n");
   const Outcome again = folder.run({"init", "records/sine_1.csv", "--out", "new"});
   CHECK(again.exit_code == 2);
-  CHECK_THAT(again.err, Contains("is there already"));
+  CHECK(folder.read("new/campaign.toml") == draft + "# filled in\n");
+  CHECK_THAT(again.err, Contains("campaign.toml: changed since rigcal wrote it"));
 }

@@ -4,6 +4,7 @@
 // RIGCAL_FAIL=KIND:N  the N-th call of a kind fails; 0: none does
 //   memory            operator new
 //   malloc            malloc() and its kin, called by the program itself (Eigen) or a library in C
+//   locks             every flock(), without a number: as on NFS without its daemon
 //   files             opens to write, writes, syncs, closes, renames, links or makes a folder
 // RIGCAL_COUNT=FILE   where they are counted at the end, in this order
 //
@@ -166,6 +167,14 @@ int mkdir(const char* path, unsigned mode) {
 int rename(const char* from, const char* to) {
   static const auto real = next<int(const char*, const char*)>("rename");
   return file_call_fails(EIO) ? -1 : real(from, to);
+}
+
+int flock(int descriptor, int operation) {
+  static const auto real = next<int(int, int)>("flock");
+  const char* const which = std::getenv("RIGCAL_FAIL");
+  if (which == nullptr || std::strcmp(which, "locks") != 0) return real(descriptor, operation);
+  errno = ENOLCK;
+  return -1;
 }
 
 int link(const char* from, const char* to) {

@@ -32,9 +32,8 @@ def killed_fits(rigcal, folder, kills):
     if comparable(parts / "fit.json") != comparable(folder / "whole" / "fit.json"):
         row.is_wrong("another fit.json than that of the fit that was not killed")
     for each in left_behind(folder):
-        # A killed process cannot remove its own; the next one of the same folder is not held up by it.
-        if not each.endswith(".tmp"):
-            row.is_wrong(f"left {each}")
+        # What a killed process could not remove, the next one of the same folder has.
+        row.is_wrong(f"left {each}")
     return row
 
 

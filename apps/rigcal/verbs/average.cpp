@@ -13,11 +13,11 @@ namespace {
 
 ExitCode run_average(const CampaignOptions& options, const Invocation& invocation) {
   const datasets::Campaign campaign = load(options);
-  const report::HeldFolder held(options.out);
+  report::HeldFolder held(options.out, holding("average", options.force, options.print));
+  held.plan(report::planned_average(campaign));
   const std::vector<datasets::Record> records = report::averaged_records(campaign);
-  const report::StoredAverage average =
-      report::write_average(options.out, options.threads, campaign, records,
-                            {invocation.command, 1, recorded(options), {}});
+  const report::StoredAverage average = report::write_average(
+      held, options.threads, campaign, records, {invocation.command, 1, recorded(options), {}});
   std::string text = report::repeatability_text(campaign, records, terminal_style());
   text +=
       fmt::format("files: {} {} {} {}\n", (options.out / "average.json").string(),

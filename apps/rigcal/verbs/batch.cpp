@@ -36,6 +36,7 @@ struct BatchRequest {
   int threads = 1;
   bool resume = false;
   bool diagnose = false;
+  bool force = false;
   PrintOptions print;
 };
 
@@ -142,6 +143,7 @@ RigTask task_of(const BatchRequest& options) {
   task.threads = std::max(1, options.threads / options.jobs);
   task.resume = options.resume;
   task.diagnose = options.diagnose;
+  task.force = options.force;
   return task;
 }
 
@@ -160,7 +162,8 @@ ExitCode run_batch(const BatchRequest& options, const Invocation& invocation) {
     farm.run(job, make, {});
     return ExitCode::done;
   }
-  const report::HeldFolder held(options.out);
+  report::HeldFolder held(options.out, holding("batch", options.force, options.print));
+  held.plan({{"batch.json", "batch.csv", "report.html"}, {}});
   EndedRigs ended(options.print.quiet, rigs.size());
   const auto ends = farm.run(job, make, [&](std::size_t i, const TaskResult& result) {
     ended(rigs[i], rig_end_of(result.bytes));
@@ -182,7 +185,7 @@ ExitCode run_batch(const BatchRequest& options, const Invocation& invocation) {
   std::vector<report::ResultFile> files{{"batch.csv", report::batch_csv(batch)},
                                         {"batch.json", report::json_text(json)}};
   add_page(options.out, options.threads, files);
-  report::write_results(options.out, files, provenance.inputs);
+  report::write_results(held, files, provenance.inputs);
   print(
       options.print,
       report::batch_text(batch, terminal_style()) +
@@ -206,6 +209,7 @@ Run add_batch(CLI::App& verb) {
   verb.add_option("--root", options->root,
                   "Read no campaign and no recording outside this folder, wherever links lead")
       ->check(not_empty());
+  add_force_option(verb, options->force);
   verb.add_option("--earlier", options->earlier,
                   "--out of an earlier batch, for the trends; repeatable")
       ->allow_extra_args(false)

@@ -20,6 +20,7 @@ namespace {
 struct CompareOptions {
   std::vector<std::filesystem::path> folders;
   std::filesystem::path out = "rigcal-out";
+  bool force = false;
   PrintOptions print;
 };
 
@@ -34,7 +35,8 @@ ExitCode run_compare(const CompareOptions& options, const Invocation& invocation
       throw UsageError(fmt::format("compare: {} is given twice", folder->string()));
   }
   const std::vector<report::Compared> results = report::load_compared(options.folders);
-  const report::HeldFolder held(options.out);
+  report::HeldFolder held(options.out, holding("compare", options.force, options.print));
+  held.plan({{"comparison.json", "report.html"}, {"overlay"}});
   report::Provenance provenance;
   provenance.command = invocation.command;
   for (const report::Compared& each : results)
@@ -46,7 +48,7 @@ ExitCode run_compare(const CompareOptions& options, const Invocation& invocation
   const report::Json json = report::json_of(comparison);
   files.push_back({"comparison.json", report::json_text(json)});
   add_page(options.out, hardware_threads(), files);
-  report::write_results(options.out, files, provenance.inputs);
+  report::write_results(held, files, provenance.inputs);
   print(options.print,
         text + fmt::format("files: {} {}\n", (options.out / "comparison.json").string(),
                            (options.out / "report.html").string()),
@@ -65,6 +67,7 @@ Run add_compare(CLI::App& verb) {
   verb.add_option("--out", options->out, "Folder of the results")
       ->check(not_empty())
       ->capture_default_str();
+  add_force_option(verb, options->force);
   add_print_options(verb, options->print);
   return [options](const Invocation& invocation) { return run_compare(*options, invocation); };
 }

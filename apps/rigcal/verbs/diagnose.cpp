@@ -122,12 +122,13 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
   return report::read_truth(file, campaign.rig.plant);
 }
 
-ExitCode write_diagnosis(const DiagnoseRequest& options, const report::DiagnosisResult& result) {
+ExitCode write_diagnosis(report::HeldFolder& held, const DiagnoseRequest& options,
+                         const report::DiagnosisResult& result) {
   const report::Json json = report::json_of(report::stored(result));
   std::vector<report::ResultFile> files{{"diagnosis.csv", report::diagnosis_csv(result)},
                                         {"diagnosis.json", report::json_text(json)}};
   add_page(options.common.out, options.common.threads, files);
-  report::write_results(options.common.out, files, result.provenance.inputs);
+  report::write_results(held, files, result.provenance.inputs);
   const std::string text =
       report::diagnosis_text(result, terminal_style()) +
       fmt::format("files: {} {} {}\n", (options.common.out / "diagnosis.json").string(),
@@ -149,14 +150,17 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
   report::Provenance provenance{invocation.command, 0, recorded(options.common), {}};
   for (const std::string& level : options.healthy)
     provenance.options.emplace_back("healthy", level);
+  if (!has_fit && diagnosis::obstacles(campaign, true).empty()) {
+    throw UsageError(
+        "diagnose: --fit is missing: expected the fit.json of a fit to healthy records");
+  }
+  report::HeldFolder held(options.common.out,
+                          holding("diagnose", options.common.force, options.common.print));
+  held.plan({{"diagnosis.json", "diagnosis.csv", "report.html"}, {}});
   diagnosis::Diagnosis found;
   if (!reasons.empty()) {
-    if (!has_fit && diagnosis::obstacles(campaign, true).empty()) {
-      throw UsageError(
-          "diagnose: --fit is missing: expected the fit.json of a fit to healthy records");
-    }
     provenance.inputs = report::hash_inputs(campaign, {}, more_inputs);
-    return write_diagnosis(options, {campaign, found, reasons, provenance});
+    return write_diagnosis(held, options, {campaign, found, reasons, provenance});
   }
   const report::EarlierFit earlier = report::read_fit(options.fit, campaign.rig.plant);
   std::vector<report::TableLimit> limits;
@@ -164,7 +168,6 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
   diagnosis::DiagnosisOptions settings;
   settings.threads = options.common.threads;
   settings.truth = truth_beside(campaign);
-  const report::HeldFolder held(options.common.out);
   const LeakRecords records = load_leak_records(campaign, settings.threads);
   provenance.inputs = report::hash_inputs(campaign, records.averages(), more_inputs);
   {
@@ -178,7 +181,7 @@ ExitCode run_diagnose(const DiagnoseRequest& options, const Invocation& invocati
   warn_of_recordings(records.averages(), found);
   if (!limits.empty()) warn_of_absent(limits, campaign, found);
   warn_of_fit(earlier, found);
-  return write_diagnosis(options, {campaign, found, reasons, provenance, limits});
+  return write_diagnosis(held, options, {campaign, found, reasons, provenance, limits});
 }
 
 }  // namespace

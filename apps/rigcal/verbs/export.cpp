@@ -16,9 +16,10 @@ ExitCode run_export(const ExportRequest& options) {
     throw UsageError("export: " + unknown_name_message("format", options.format, {"fmu"}));
   const ExportChoice choice = choose_export(options);
   const std::filesystem::path& out = options.common.out;
-  const report::HeldFolder held(out);
+  report::HeldFolder held(out, holding("export", options.common.force, options.common.print));
   const std::string name = choice.fmu.identifier + ".fmu";
-  report::write_results(out, {{name, report::zipped(report::fmu_files(choice.fmu))}},
+  held.plan({{name}, {}});
+  report::write_results(held, {{name, report::zipped(report::fmu_files(choice.fmu))}},
                         choice.inputs);
   std::string text;
   for (const auto& [label, words] : choice.fmu.origin) {

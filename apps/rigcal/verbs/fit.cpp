@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "apps/rigcal/checkpoint_file.hpp"
 #include "apps/rigcal/fit_choices.hpp"
@@ -15,6 +16,8 @@
 #include "common/memory.hpp"
 #include "common/printable.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "report/run/write_result.hpp"
+#include "report/store/checkpoint.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/kept_tasks.hpp"
 #include "report/store/whole_fit.hpp"
@@ -73,10 +76,16 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
     help(campaign, records, options, searched, *invocation.processes, settings);
     return ExitCode::done;
   }
-  const report::HeldFolder held(options.common.out);
+  report::HeldFolder held(options.common.out,
+                          holding("fit", options.common.force, options.common.print));
   if (options.if_changed) {
     if (const auto code = made_before(options, provenance)) return *code;
   }
+  report::PlannedFiles planned = report::planned_result(report::ResultKind::fit, campaign);
+  planned.files.emplace_back(report::kKeptTasksFile);
+  // A fit that goes on reads it, and says more of it.
+  if (!options.resume) planned.files.emplace_back(report::kCheckpointFile);
+  held.plan(std::move(planned));
 
   // What is made beside the starts does not change them.
   CheckpointFile checkpoint(options.common.out, searched);
@@ -107,9 +116,9 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   datasets::drop_deviations(records);
   give_freed_memory_back();
   give_large_blocks_back();
-  const ExitCode code =
-      write_and_print(options.common, {report::ResultKind::fit, campaign, records, fit, provenance},
-                      options.choices.strict);
+  const ExitCode code = write_and_print(
+      held, options.common, {report::ResultKind::fit, campaign, records, fit, provenance},
+      options.choices.strict);
   checkpoint.finish(fit.status);
   if (fit.status != calib::FitStatus::stopped) tasks.remove();
   return code;

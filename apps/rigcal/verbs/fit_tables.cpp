@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/leak_table_files.hpp"
@@ -22,7 +23,12 @@ using calib::FitStatus;
 ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invocation) {
   const LeakTableInput input = load_leak_table(options);
   const Kept kept;
-  const report::HeldFolder held(options.out);
+  report::HeldFolder held(options.out, holding("fit-tables", options.force, options.print));
+  // Where the fit does not converge, the tables of an earlier run would contradict this one.
+  report::PlannedFiles planned = planned_leak_table(input.settings);
+  for (const char* file : {"fit.json", "parameters.csv", "fitted.toml"})
+    planned.files.emplace_back(file);
+  held.plan(std::move(planned));
   const calib::LeakTableOptions settings = leak_table_options(options, input.campaign, invocation);
   const calib::TablesFit fit = calib::fit_tables(input.campaign, input.settings, settings);
 
@@ -47,12 +53,7 @@ ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invoca
       {"parameters.csv", report::parameters_csv(stored.status, stored.message, stored.parameters)});
   files.push_back({"fit.json", report::json_text(json)});
   add_page(options.out, options.threads, files);
-  report::write_results(options.out, files, provenance.inputs);
-  if (fit.status != FitStatus::converged) {
-    // Of an earlier run: they would contradict this one.
-    report::remove_stale(options.out / "fitted.toml");
-    report::remove_stale(options.out / "leak_table.json");
-  }
+  report::write_results(held, files, provenance.inputs);
   print(options.print, text + fmt::format("files: {}\n", (options.out / "fit.json").string()),
         json);
   if (fit.status == FitStatus::failed) return ExitCode::no_result;

@@ -21,6 +21,7 @@ namespace {
 struct InitRequest {
   std::vector<std::filesystem::path> files;
   std::filesystem::path out = "rigcal-out";
+  bool force = false;
   PrintOptions print;
 };
 
@@ -63,13 +64,11 @@ std::vector<std::filesystem::path> with_folders_opened(
 
 ExitCode run_init(const InitRequest& options) {
   const auto path = options.out / "campaign.toml";
-  if (std::filesystem::exists(path)) {
-    throw UsageError(fmt::format("--out {}: {} is there already; choose another folder",
-                                 options.out.string(), path.string()));
-  }
+  report::HeldFolder held(options.out, holding("init", options.force, options.print));
+  held.plan({{"campaign.toml"}, {}});
   const datasets::Draft draft =
       datasets::draft_campaign(with_folders_opened(options.files), options.out);
-  report::write_results(options.out, {{"campaign.toml", draft.text}}, {});
+  report::write_results(held, {{"campaign.toml", draft.text}}, {});
   // The first blank is in the head, which explains them.
   const std::size_t blanks = count_of(draft.text, datasets::kBlank) - 1;
   report::Json json;
@@ -96,6 +95,7 @@ Run add_init(CLI::App& verb) {
   verb.add_option("--out", options->out, "Folder of the draft")
       ->check(not_empty())
       ->capture_default_str();
+  add_force_option(verb, options->force);
   add_print_options(verb, options->print);
   return [options](const Invocation&) { return run_init(*options); };
 }

@@ -55,7 +55,9 @@ ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invoc
   }
   choose_targets(options, input.settings);
   choose_signals(options, input.campaign, input.settings);
-  const report::HeldFolder held(options.common.out);
+  report::HeldFolder held(options.common.out,
+                          holding("leak-table", options.common.force, options.common.print));
+  held.plan(planned_leak_table(input.settings));
   calib::LeakTableOptions settings = leak_table_options(options.common, input.campaign, invocation);
   settings.rig = rig.uncertainty;
   const calib::LeakTable table = calib::leak_table(input.campaign, input.settings, settings);
@@ -70,7 +72,7 @@ ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invoc
                                        provenance,     rig.notes,      rig.warnings};
   auto files = leak_table_files(result);
   add_page(options.common.out, options.common.threads, files);
-  report::write_results(options.common.out, files, provenance.inputs);
+  report::write_results(held, files, provenance.inputs);
   print(options.common.print,
         report::leak_table_text(result, terminal_style()) +
             fmt::format("files: {} {} {}\n", (options.common.out / "leak_table.csv").string(),

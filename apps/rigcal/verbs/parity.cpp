@@ -26,7 +26,8 @@ struct ParityRequest {
   std::vector<std::string> healthy;
 };
 
-ExitCode write_parity(const ParityRequest& options, const report::ParityResult& result) {
+ExitCode write_parity(report::HeldFolder& held, const ParityRequest& options,
+                      const report::ParityResult& result) {
   report::StoredParity parity = report::stored(result);
   std::vector<report::ResultFile> files = report::parity_series(result);
   files.push_back({"parity.csv", report::parity_csv(result)});
@@ -34,7 +35,7 @@ ExitCode write_parity(const ParityRequest& options, const report::ParityResult& 
   const report::Json json = report::json_of(parity);
   files.push_back({"parity.json", report::json_text(json)});
   add_page(options.common.out, options.common.threads, files);
-  report::write_results(options.common.out, files, result.provenance.inputs);
+  report::write_results(held, files, result.provenance.inputs);
   const std::string text =
       report::parity_text(result, terminal_style()) +
       fmt::format("files: {} {} {} {}\n", (options.common.out / "parity.json").string(),
@@ -62,13 +63,15 @@ ExitCode run_parity(const ParityRequest& options, const Invocation& invocation) 
                                 fmt::format("{:g}", options.false_alarm_percent));
   for (const std::string& level : options.healthy) recorded_options.emplace_back("healthy", level);
   report::Provenance provenance{invocation.command, 0, recorded_options, {}};
+  report::HeldFolder held(options.common.out,
+                          holding("parity", options.common.force, options.common.print));
+  held.plan(report::planned_parity(campaign));
   diagnosis::Parity found;
   if (!reasons.empty()) {
     provenance.inputs = report::hash_inputs(campaign, {}, {options.fit});
-    return write_parity(options, {campaign, found, reasons, false_alarm, provenance});
+    return write_parity(held, options, {campaign, found, reasons, false_alarm, provenance});
   }
   const report::EarlierFit earlier = report::read_fit(options.fit, campaign.rig.plant);
-  const report::HeldFolder held(options.common.out);
   const LeakRecords records = load_leak_records(campaign, options.common.threads);
   provenance.inputs = report::hash_inputs(campaign, records.averages(), {options.fit});
   {
@@ -85,7 +88,7 @@ ExitCode run_parity(const ParityRequest& options, const Invocation& invocation) 
     found.warnings.push_back(warning.with_conditions());
   if (earlier.status == calib::FitStatus::stopped)
     found.warnings.push_back("the fit was stopped before it converged: " + earlier.message);
-  return write_parity(options, {campaign, found, reasons, false_alarm, provenance});
+  return write_parity(held, options, {campaign, found, reasons, false_alarm, provenance});
 }
 
 }  // namespace

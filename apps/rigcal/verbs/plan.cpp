@@ -38,7 +38,9 @@ ExitCode run_plan(const PlanRequest& options, const Invocation& invocation) {
     records.push_back(datasets::load_record(campaign, condition));
     datasets::require_no_holes(campaign, records.back());
   }
-  const report::HeldFolder held(options.common.out);
+  report::HeldFolder held(options.common.out,
+                          holding("plan", options.common.force, options.common.print));
+  held.plan({{"plan.json", "report.html"}, {}});
   const report::Provenance provenance{invocation.command, 1, recorded(options.common),
                                       report::hash_inputs(campaign, records, more_inputs)};
   const calib::Plan plan =
@@ -46,7 +48,7 @@ ExitCode run_plan(const PlanRequest& options, const Invocation& invocation) {
   const report::Json json = report::json_of(report::stored(campaign, plan, provenance));
   std::vector<report::ResultFile> files{{"plan.json", report::json_text(json)}};
   add_page(options.common.out, options.common.threads, files);
-  report::write_results(options.common.out, files, provenance.inputs);
+  report::write_results(held, files, provenance.inputs);
   print(options.common.print,
         report::plan_text(campaign, plan, terminal_style().columns) +
             fmt::format("files: {} {}\n", (options.common.out / "plan.json").string(),

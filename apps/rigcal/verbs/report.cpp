@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
@@ -13,11 +14,16 @@ namespace {
 struct Options {
   std::filesystem::path folder;
   bool figures = false;
+  bool force = false;
   int threads = 1;
   PrintOptions print;
 };
 
 ExitCode run_report(const Options& options) {
+  report::HeldFolder held(options.folder, holding("report", options.force, options.print));
+  report::PlannedFiles planned{{"report.html"}, {}};
+  if (options.figures) planned.folders.emplace_back("figures");
+  held.plan(std::move(planned));
   const report::ReadFile read = report::files_in(options.folder);
   const std::string where = options.folder.string();
   std::vector<report::ResultFile> files;
@@ -26,7 +32,7 @@ ExitCode run_report(const Options& options) {
     for (auto& [path, text] : report::result_figures(read, where))
       files.push_back({path, std::move(text)});
   }
-  report::write_results(options.folder, files, {});
+  report::write_results(held, files, {});
   report::Json json;
   json["files"] = report::Json::array();
   for (const report::ResultFile& file : files)
@@ -47,6 +53,7 @@ Run add_report(CLI::App& verb) {
       ->check(CLI::ExistingDirectory);
   verb.add_flag("--figures", options->figures,
                 "Also write every picture as SVG and PDF into figures/");
+  add_force_option(verb, options->force);
   add_print_options(verb, options->print);
   return [options](const Invocation&) { return run_report(*options); };
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "apps/rigcal/chosen_condition.hpp"
 #include "apps/rigcal/options.hpp"
@@ -70,7 +71,11 @@ ExitCode run_simulate(const SimulateRequest& options) {
     tasks.push_back(report::simulation_task(campaign, *condition));
     if (tasks.back().record) records.push_back(*tasks.back().record);
   }
-  const report::HeldFolder held(options.common.out);
+  report::HeldFolder held(options.common.out,
+                          holding("simulate", options.common.force, options.common.print));
+  report::PlannedFiles planned;
+  for (const SimulationTask& task : tasks) planned.files.emplace_back(task.condition->id + ".csv");
+  held.plan(std::move(planned));
 
   const auto simulations =
       report::simulate(tasks, report::simulation_options(campaign), options.common.threads);
@@ -86,7 +91,7 @@ ExitCode run_simulate(const SimulateRequest& options) {
     if (!simulations[i].ok()) problems += line_of(tasks[i], simulations[i]);
     json.push_back(json_of(tasks[i], simulations[i]));
   }
-  report::write_results(options.common.out, files, report::hash_inputs(campaign, records));
+  report::write_results(held, files, report::hash_inputs(campaign, records));
   text += fmt::format("files: {}\n", (options.common.out / "").string());
   print(options.common.print, text, json);
   if (problems.empty()) return ExitCode::done;

@@ -1,5 +1,3 @@
-#include "datasets/synthetic/synthesize.hpp"
-
 #include <fmt/format.h>
 
 #include <cstdint>
@@ -8,6 +6,7 @@
 
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
+#include "report/run/synthesis.hpp"
 #include "report/store/folder.hpp"
 
 namespace rigcal::app {
@@ -21,10 +20,9 @@ struct SynthesizeRequest {
 ExitCode run_synthesize(const SynthesizeRequest& options) {
   const CampaignOptions& common = options.common;
   const datasets::Campaign campaign = load(common);
-  report::require_inputs_kept(common.out, {"campaign.toml"}, report::hash_inputs(campaign, {}));
-  const report::HeldFolder held(common.out);
+  report::HeldFolder held(common.out, holding("synthesize", common.force, common.print));
   const datasets::SynthesisReport made =
-      datasets::synthesize(campaign, options.seed, common.out, common.threads);
+      report::write_synthesis(held, campaign, options.seed, common.threads);
   report::Json json;
   json["campaign_file"] = made.campaign_file.string();
   json["files"] = made.files;

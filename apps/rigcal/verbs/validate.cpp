@@ -10,6 +10,7 @@
 #include "datasets/prepare/load_record.hpp"
 #include "report/run/fit_choices.hpp"
 #include "report/run/validation.hpp"
+#include "report/run/write_result.hpp"
 #include "report/store/folder.hpp"
 
 namespace rigcal::app {
@@ -39,7 +40,9 @@ ExitCode run_validate(const ValidateRequest& options, const Invocation& invocati
   const report::Provenance provenance{invocation.command, settings.seed, recorded(options.common),
                                       report::hash_inputs(campaign, records, more_inputs)};
   const Kept kept;
-  const report::HeldFolder held(options.common.out);
+  report::HeldFolder held(options.common.out,
+                          holding("validate", options.common.force, options.common.print));
+  held.plan(report::planned_result(report::ResultKind::validation, campaign));
 
   calib::Fit fit;
   {
@@ -47,7 +50,7 @@ ExitCode run_validate(const ValidateRequest& options, const Invocation& invocati
     settings.progress = std::ref(progress);
     fit = report::validate(campaign, records, earlier ? &*earlier : nullptr, provenance, settings);
   }
-  return write_and_print(options.common,
+  return write_and_print(held, options.common,
                          {report::ResultKind::validation, campaign, records, fit, provenance},
                          options.strict);
 }

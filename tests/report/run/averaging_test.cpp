@@ -16,8 +16,9 @@ TEST_CASE("averaging: records of all conditions that are not ignored", "[report]
   REQUIRE(records.size() == 2);
   CHECK(records[1].condition == campaign.conditions[2].id);
   const auto out = rig.folder / "out";
+  HeldFolder held(out, {"average"});
   const StoredAverage average =
-      write_average(out, 1, campaign, records, {"rigcal average", 1, {}, {}});
+      write_average(held, 1, campaign, records, {"rigcal average", 1, {}, {}});
   CHECK(average.records.size() == 2);
   CHECK(average.provenance.files->front().path == "averaged/" + campaign.conditions[0].id + ".csv");
   for (const char* file : {"repeatability.csv", "average.json", "report.html"})

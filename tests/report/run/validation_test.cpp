@@ -20,7 +20,10 @@ TEST_CASE("validation: a fit in memory is the fit of its file", "[report][run]")
   test::MadeFit fitted;
   StoredFit fit = stored(fitted.result());
   const EarlierFit of_memory = earlier_fit(json_of(fit), "fit", fitted.campaign.rig.plant);
-  write_result(fitted.folder / "out", 1, fitted.result(), fit);
+  {
+    HeldFolder held(fitted.folder / "out", {"fit"});
+    write_result(held, 1, fitted.result(), fit);
+  }
   const EarlierFit of_file =
       read_fit(fitted.folder / "out" / "fit.json", fitted.campaign.rig.plant);
   REQUIRE(of_file.values.size() == 3);

@@ -13,7 +13,8 @@ namespace {
 TEST_CASE("written result: the JSON comes last, and names the others", "[report][run]") {
   test::MadeFit fitted;
   StoredFit fit = stored(fitted.result());
-  const auto files = write_result(fitted.folder / "out", 1, fitted.result(), fit);
+  HeldFolder held(fitted.folder / "out", {"fit"});
+  const auto files = write_result(held, 1, fitted.result(), fit);
   REQUIRE(files.size() == 9);
   CHECK(files.back() == "fit.json");
   CHECK(files[7] == "report.html");
@@ -27,12 +28,13 @@ TEST_CASE("written result: a failed fit leaves no fitted campaign of an earlier 
   test::MadeFit fitted;
   StoredFit fit = stored(fitted.result());
   const auto out = fitted.folder / "out";
-  write_result(out, 1, fitted.result(), fit);
+  HeldFolder held(out, {"fit"});
+  write_result(held, 1, fitted.result(), fit);
   REQUIRE(std::filesystem::exists(out / "fitted.toml"));
   fitted.fit = {};
   fitted.fit.message = "no start could be simulated";
   fit = stored(fitted.result());
-  write_result(out, 1, fitted.result(), fit);
+  write_result(held, 1, fitted.result(), fit);
   CHECK_FALSE(std::filesystem::exists(out / "fitted.toml"));
   CHECK(test::text_of(out / "fit.json").find("no start could be simulated") != std::string::npos);
   CHECK(std::filesystem::exists(out / "residuals" / "sine_1Hz.csv"));

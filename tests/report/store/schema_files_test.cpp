@@ -5,6 +5,7 @@
 
 #include "report/batch/batch.hpp"
 #include "report/store/json.hpp"
+#include "report/store/manifest.hpp"
 #include "report/store/stored.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -74,6 +75,7 @@ TEST_CASE("schema: files in docs/schema are those of the types", "[report]") {
   check_schema<StoredComparison>("comparison");
   check_schema<StoredDiagnosis>("diagnosis");
   check_schema<StoredLeakTable>("leak_table");
+  check_schema<StoredManifest>("rigcal-manifest");
   check_schema<StoredParity>("parity");
   check_schema<StoredPlan>("plan");
 }

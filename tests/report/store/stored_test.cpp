@@ -52,7 +52,8 @@ TEST_CASE("stored: the files of another run are refused", "[report]") {
   Json& fit = files.json["fit.json"] = rigcal::test::stored_result();
   Json& curves = files.json["residual_tests.json"] = Json::parse(rigcal::test::kNoCurves);
   StoredProvenance provenance;
-  name_files({{"residual_tests.json", curves.dump()}}, provenance);
+  std::vector<ResultFile> written{{"residual_tests.json", curves.dump()}};
+  name_files(written, provenance);
   fit["provenance"]["files"] = json_of(provenance)["files"];
   CHECK(fit["provenance"]["files"][0]["path"] == "residual_tests.json");
   CHECK_NOTHROW(load_calibration(files.reader(), "folder", 1));

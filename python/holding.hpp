@@ -1,0 +1,21 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <utility>
+
+#include "report/store/folder.hpp"
+
+namespace rigcal::python {
+
+/// How a call holds the folder that it writes into. What it has to say is a UserWarning.
+inline report::Holding holding(std::string verb, bool force) {
+  return {std::move(verb), force, "force=True", [](const std::string& text) {
+            const pybind11::gil_scoped_acquire acquired;
+            if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0)
+              throw pybind11::error_already_set();
+          }};
+}
+
+}  // namespace rigcal::python

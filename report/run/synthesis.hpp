@@ -1,0 +1,18 @@
+#pragma once
+
+#include <cstdint>
+
+#include "datasets/campaign/campaign.hpp"
+#include "datasets/synthetic/synthesize.hpp"
+#include "report/store/folder.hpp"
+
+namespace rigcal::report {
+
+/// Makes the records of a known rig, all of them or none, where no other files are in their way.
+///
+/// @throws InputError, NoResultError  as datasets::synthesize()
+/// @throws WriteError, UsageError     as write_results()
+datasets::SynthesisReport write_synthesis(HeldFolder& held, const datasets::Campaign& campaign,
+                                          std::uint64_t seed, int threads);
+
+}  // namespace rigcal::report
