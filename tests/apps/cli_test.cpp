@@ -498,7 +498,7 @@ TEST_CASE("simulate: what fails says so at its top, the others are written", "[a
   const CommandFolder folder;
   // A controller of this gain needs steps that the time limit does not allow.
   folder.write("campaign.toml",
-               edited(kCampaign, kNoRecords) + "[simulation]\nmax_seconds = 1e-9\n");
+               edited(kCampaign, kNoRecords) + "[simulation]\nmax_seconds = 1e-6\n");
   const Outcome outcome = folder.run({"simulate", "campaign.toml", "--out", "out"});
   CHECK(outcome.exit_code == 3);
   CHECK_THAT(outcome.err, StartsWith("rigcal: sine: "));
@@ -670,7 +670,7 @@ TEST_CASE("fit: what cannot be simulated gives no parameters", "[apps]") {
   const CommandFolder folder;
   REQUIRE(write_twin(folder).exit_code == 0);
   folder.write("twin/hopeless.toml",
-               folder.read("twin/campaign.toml") + "\n[simulation]\nmax_seconds = 1e-9\n");
+               folder.read("twin/campaign.toml") + "\n[simulation]\nmax_seconds = 1e-6\n");
   REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "out", "--quiet"}).exit_code == 0);
   REQUIRE(folder.has("out/fitted.toml"));
   const Outcome outcome = folder.run({"fit", "twin/hopeless.toml", "--out", "out"});

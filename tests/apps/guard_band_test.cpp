@@ -90,7 +90,8 @@ TEST_CASE("fit: what a certificate states of a sensor counts, or is told", "[app
     return folder.run({"fit", "twin/judged.toml", "--out", "judged", "--strict"});
   };
   const auto uncertainty = [&](const char* condition) {
-    for (const Json& each : result_of(folder, "judged/fit.json")["conditions"]) {
+    const Json result = result_of(folder, "judged/fit.json");
+    for (const Json& each : result["conditions"]) {
       if (each["id"] == condition)
         return each["expanded_uncertainty"]["position"]["rho2"].get<double>();
     }
@@ -151,7 +152,8 @@ TEST_CASE("fit: a channel that is compared and not judged is a reservation", "[a
   // A comparison gives no tick to what nobody judged.
   REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "two", "--quiet"}).exit_code == 0);
   REQUIRE(folder.run({"compare", "out", "two", "--out", "both", "--quiet"}).exit_code == 0);
-  for (const Json& each : result_of(folder, "both/comparison.json")["conditions"]) {
+  const Json compared = result_of(folder, "both/comparison.json");
+  for (const Json& each : compared["conditions"]) {
     CAPTURE(each["id"], each["channel"]);
     const Json& verdict = each["scores"][0]["verdict"];
     if (each["channel"] == "position") CHECK(verdict == "PASS");

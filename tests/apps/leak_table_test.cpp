@@ -306,7 +306,7 @@ TEST_CASE("fit-tables: finds the values behind tables that leak-table made", "[a
   CHECK(violations(compared, "comparison") == "");
   CHECK(compared["parameters"][0]["differences"][1]["significant"].is_null());
   CHECK_THAT(folder.read("both/report.html"),
-             Contains("share published numbers") && !Contains("id=\"scores\""));
+             Contains("the same published numbers") && !Contains("id=\"scores\""));
 }
 
 TEST_CASE("fit-tables: bad input is refused", "[apps]") {

@@ -51,7 +51,7 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
   scored["cost"] = 0.0;
   CHECK_FALSE(violations(scored, "result").empty());
   folder.write("twin/hopeless.toml",
-               folder.read("twin/campaign.toml") + "\n[simulation]\nmax_seconds = 1e-9\n");
+               folder.read("twin/campaign.toml") + "\n[simulation]\nmax_seconds = 1e-6\n");
   folder.run({"fit", "twin/hopeless.toml", "--out", "failed", "--quiet"});
   CHECK(violations(json::parse(folder.read("failed/fit.json")), "result").empty());
 
