@@ -74,6 +74,8 @@ TEST_CASE("HeldFolder: names what is in the way", "[report]") {
   CHECK(folder.read("file") == "content");
 }
 
+namespace {
+
 /// What a run of a verb leaves.
 void write(const std::filesystem::path& out, const Holding& holding, const PlannedFiles& planned,
            const std::vector<ResultFile>& files) {
@@ -81,6 +83,8 @@ void write(const std::filesystem::path& out, const Holding& holding, const Plann
   held.plan(planned);
   write_results(held, files, {});
 }
+
+}  // namespace
 
 TEST_CASE("write_results: all or none", "[report]") {
   const test::CommandFolder folder;
@@ -243,6 +247,3 @@ TEST_CASE("HeldFolder: what a kill left goes, of a process that is no more", "[r
   expected.insert({"residuals/a.csv", "fit.json", kManifestFile});
   CHECK(folder.files() == expected);
 }
-
-}  // namespace
-}  // namespace rigcal::report
