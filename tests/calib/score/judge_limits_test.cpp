@@ -19,7 +19,7 @@ struct Checked {
   bool has_value = true;
 };
 
-ConditionScore scored(const std::string& id, const std::vector<Checked>& checks) {
+ConditionScore checked_score(const std::string& id, const std::vector<Checked>& checks) {
   ConditionScore score;
   score.id = id;
   for (const Checked& each : checks) {
@@ -61,10 +61,10 @@ double number(const Reason& reason, const std::string& name) {
 }  // namespace
 
 TEST_CASE("judge_limits: of those that keep their limits the closest is named", "[calib]") {
-  const auto reasons =
-      judged({scored("low", {{Verdict::pass, 0.2}}),
-              scored("high", {{Verdict::pass, 0.1}, {Verdict::pass, 0.6}, {Verdict::pass, 0.3}}),
-              scored("mid", {{Verdict::pass, 0.4}})});
+  const auto reasons = judged(
+      {checked_score("low", {{Verdict::pass, 0.2}}),
+       checked_score("high", {{Verdict::pass, 0.1}, {Verdict::pass, 0.6}, {Verdict::pass, 0.3}}),
+       checked_score("mid", {{Verdict::pass, 0.4}})});
   REQUIRE(codes(reasons) == std::vector<std::string>{"limits_kept of high"});
   CHECK(reasons[0].state == AspectState::pass);
   CHECK(number(reasons[0], "conditions") == 3.0);
@@ -83,7 +83,7 @@ TEST_CASE("judge_limits: the tolerance used in percent, and where it is no use t
       {10.1, " over 1000 % of the tolerance"}};
   for (const auto& [used, text] : texts) {
     CAPTURE(used);
-    const auto reasons = judged({scored("one", {{Verdict::pass, used}})});
+    const auto reasons = judged({checked_score("one", {{Verdict::pass, used}})});
     REQUIRE(codes(reasons) == std::vector<std::string>{"limits_kept of one"});
     CHECK_THAT(reasons[0].words, Contains("one keeps its limits:" + text));
     CHECK(number(reasons[0], "tolerance_used") == used);
@@ -93,15 +93,16 @@ TEST_CASE("judge_limits: the tolerance used in percent, and where it is no use t
 
 TEST_CASE("judge_limits: those that break limits come first, the furthest beyond before others",
           "[calib]") {
-  ConditionScore broken = scored("not simulated", {});
+  ConditionScore broken = checked_score("not simulated", {});
   broken.failure = "too many steps";
   broken.verdict = Verdict::fail;
   broken.reasons = {"could not be simulated: too many steps"};
   const auto reasons =
-      judged({scored("kept", {{Verdict::pass, 0.5}}), scored("warned", {{Verdict::warn, 0.9}}),
-              scored("beyond", {{Verdict::fail, 1.2}}), broken,
-              scored("also kept", {{Verdict::pass, 0.7}}),
-              scored("far beyond", {{Verdict::pass, 0.1}, {Verdict::fail, 3.0}})});
+      judged({checked_score("kept", {{Verdict::pass, 0.5}}),
+              checked_score("warned", {{Verdict::warn, 0.9}}),
+              checked_score("beyond", {{Verdict::fail, 1.2}}), broken,
+              checked_score("also kept", {{Verdict::pass, 0.7}}),
+              checked_score("far beyond", {{Verdict::pass, 0.1}, {Verdict::fail, 3.0}})});
   CHECK(codes(reasons) == std::vector<std::string>{"not_simulated of not simulated",
                                                    "limit_broken of far beyond",
                                                    "limit_broken of beyond", "limit_near of warned",
@@ -121,7 +122,7 @@ TEST_CASE("judge_limits: those that break limits come first, the furthest beyond
 
 TEST_CASE("judge_limits: the guard band is named where nothing else warns", "[calib]") {
   const auto code = [](const std::vector<Checked>& checks) {
-    const auto reasons = judged({scored("one", checks)});
+    const auto reasons = judged({checked_score("one", checks)});
     REQUIRE(reasons.size() == 1);
     CHECK(reasons[0].state == AspectState::reservation);
     return reasons[0].code;
@@ -139,7 +140,7 @@ TEST_CASE("judge_limits: the guard band is named where nothing else warns", "[ca
 
 TEST_CASE("judge_limits: a limit that cannot be evaluated is not called broken", "[calib]") {
   const auto code = [](const std::vector<Checked>& checks) {
-    const auto reasons = judged({scored("one", checks)});
+    const auto reasons = judged({checked_score("one", checks)});
     REQUIRE(reasons.size() == 1);
     CHECK(reasons[0].state == AspectState::fail);
     return reasons[0].code;
@@ -150,14 +151,14 @@ TEST_CASE("judge_limits: a limit that cannot be evaluated is not called broken",
 }
 
 TEST_CASE("judge_limits: what was not scored, or has no limit, keeps none", "[calib]") {
-  ConditionScore stopped = scored("stopped", {});
+  ConditionScore stopped = checked_score("stopped", {});
   stopped.not_scored = "stopped on request";
-  const auto reasons = judged({stopped, scored("no limit", {})});
+  const auto reasons = judged({stopped, checked_score("no limit", {})});
   REQUIRE(codes(reasons) == std::vector<std::string>{"not_scored of stopped"});
   CHECK(reasons[0].state == AspectState::reservation);
   CHECK_THAT(reasons[0].words, Contains("not scored (stopped on request)"));
   CHECK(judged({}).empty());
-  CHECK(judged({scored("no limit", {})}).empty());
+  CHECK(judged({checked_score("no limit", {})}).empty());
 }
 
 TEST_CASE("judge_limits: conditions are counted in words", "[calib]") {
@@ -171,9 +172,9 @@ TEST_CASE("judge_limits: limits are those of the campaign or of a condition of i
   datasets::Campaign campaign;
   Fit fit;
   CHECK_FALSE(has_limits(campaign, fit));
-  fit.conditions.push_back(scored("none", {}));
+  fit.conditions.push_back(checked_score("none", {}));
   CHECK_FALSE(has_limits(campaign, fit));
-  fit.conditions.push_back(scored("own", {{Verdict::pass, 0.1}}));
+  fit.conditions.push_back(checked_score("own", {{Verdict::pass, 0.1}}));
   CHECK(has_limits(campaign, fit));
   fit.conditions.clear();
   campaign.acceptance.push_back({datasets::Channel::position, "rho2", 0.9, std::nullopt});
