@@ -47,8 +47,9 @@ std::optional<double> reference_range_m(const Campaign& campaign, const Conditio
 std::string travel_warning(const Campaign& campaign, const Condition& condition,
                            const Record& record) {
   const auto position = record.channels.find(Channel::position);
-  if (position == record.channels.end() || campaign.channels.at(Channel::position).in_counts)
-    return {};
+  const auto setting = campaign.channels.find(Channel::position);
+  const bool in_counts = setting != campaign.channels.end() && setting->second.in_counts;
+  if (position == record.channels.end() || in_counts) return {};
   const double travel = range(position->second.mean);
   constexpr const char* kUnit = "is the unit of its column right?";
   if (const auto stroke = stroke_m(campaign, condition)) {

@@ -17,11 +17,12 @@ std::string replaced_all(std::string text, const std::string& from, const std::s
   return text;
 }
 
-/// What a fit found, without where and when.
+/// What a fit found, without where and when, and of which bytes.
 json found(const CommandFolder& folder, const std::string& out) {
   json result = json::parse(folder.read(out + "/fit.json"));
   result.erase("wall_seconds");
   result.erase("provenance");
+  for (json& condition : result["conditions"]) condition.erase("record_sha256");
   return result;
 }
 
