@@ -46,9 +46,9 @@ Rounded rounded(double value, int digits) {
 }
 
 bool holds(const Range& allowed, double value) {
-  constexpr double kSlack = 1e-12;  // that a change of the unit leaves
-  return value >= allowed.low - kSlack * std::abs(allowed.low) &&
-         value <= allowed.high + kSlack * std::abs(allowed.high);
+  constexpr double kRounded = 1e-12;  // relative, by a change of the unit
+  return value >= allowed.low - kRounded * std::abs(allowed.low) &&
+         value <= allowed.high + kRounded * std::abs(allowed.high);
 }
 
 int digits_of(double value, double uncertainty) {

@@ -169,7 +169,9 @@ int rename(const char* from, const char* to) {
   return file_call_fails(EIO) ? -1 : real(from, to);
 }
 
-int flock(int descriptor, int operation) {
+// By another name, since <fcntl.h> has a struct of that name.
+int lock_file(int descriptor, int operation) asm("flock");
+int lock_file(int descriptor, int operation) {
   static const auto real = next<int(int, int)>("flock");
   const char* const which = std::getenv("RIGCAL_FAIL");
   if (which == nullptr || std::strcmp(which, "locks") != 0) return real(descriptor, operation);
