@@ -35,7 +35,7 @@ kp = { value = "1000 V/m", source = "a guess", fit = true, start = "700 V/m", lo
 waveform = "sine"
 frequency = "2 Hz"
 amplitude = "5 mm"
-printed = ["0.2"]
+printed = ["C10"]
 )";
 
 const std::vector<Verb> kVerbs{
@@ -49,7 +49,7 @@ const std::vector<Verb> kVerbs{
     {{"diagnose", "twin/campaign.toml", "--fit", "one/fit.json"}, "diagnosis.csv"},
     {{"parity", "twin/campaign.toml", "--fit", "one/fit.json"}, "parity.csv"},
     {{"plan", "twin/campaign.toml"}, "plan.json"},
-    {{"export", "fmu", "twin/campaign.toml"}, "small_rig__synthetic_.fmu"},
+    {{"export", "fmu", "twin/campaign.toml"}, "small_rig_synthetic.fmu"},
     {{"synthesize", "truth.toml", "--seed", "3"}, "records/sine_r1.csv"},
     {{"init", "twin/records/sine_r1.csv"}, "campaign.toml"},
     {{"batch", "lab"}, "batch.csv"},
@@ -59,7 +59,13 @@ const std::vector<Verb> kVerbs{
 /// A rig with its records, two fits, and a folder of rigs.
 void prepare(const CommandFolder& folder) {
   REQUIRE(write_twin(folder).exit_code == 0);
-  folder.write("tables.toml", kCampaign + kTables);
+  REQUIRE(folder
+              .run({"leak-table", "truth.toml", "--targets", "10", "--signals", "sine@2Hz@5mm",
+                    "--out", "tables", "--quiet"})
+              .exit_code == 0);
+  const json table = json::parse(folder.read("tables/leak_table.json"));
+  const double coefficient = table["entries"][0]["coefficients"][0];
+  folder.write("tables.toml", kCampaign + edited(kTables, {{"C10", std::to_string(coefficient)}}));
   REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "one", "--quiet"}).exit_code == 0);
   REQUIRE(folder.run({"validate", "twin/campaign.toml", "--out", "two", "--quiet"}).exit_code < 2);
   std::filesystem::create_directories(folder.work() / "lab");
@@ -190,9 +196,9 @@ TEST_CASE("user files: what a campaign has no more goes, what was edited stays",
   REQUIRE(folder.has("out/residuals/square.csv"));
   const std::string campaign = folder.read("twin/campaign.toml");
   std::string without = campaign;
-  const std::size_t at = without.find("use = 'validate'");
+  const std::size_t at = without.find("use = \"validate\"");
   REQUIRE(at != std::string::npos);
-  folder.write("twin/campaign.toml", without.replace(at, 16, "use = 'ignore'"));
+  folder.write("twin/campaign.toml", without.replace(at, 16, "use = \"ignore\""));
   REQUIRE(folder.run(fit).exit_code == 0);
   CHECK_FALSE(folder.has("out/residuals/square.csv"));
   folder.write("twin/campaign.toml", campaign);
