@@ -27,7 +27,7 @@ struct Verb {
   std::string file;
 };
 
-const std::string kTables = R"([leak_table]
+const std::string kPublishedTables = R"([leak_table]
 targets = [10]
 [leak_table.assumptions]
 kp = { value = "1000 V/m", source = "a guess", fit = true, start = "700 V/m", lower = "100 V/m", upper = "5000 V/m" }
@@ -65,7 +65,8 @@ void prepare(const CommandFolder& folder) {
               .exit_code == 0);
   const json table = json::parse(folder.read("tables/leak_table.json"));
   const double coefficient = table["entries"][0]["coefficients"][0];
-  folder.write("tables.toml", kCampaign + edited(kTables, {{"C10", std::to_string(coefficient)}}));
+  folder.write("tables.toml",
+               kCampaign + edited(kPublishedTables, {{"C10", std::to_string(coefficient)}}));
   REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "one", "--quiet"}).exit_code == 0);
   REQUIRE(folder.run({"validate", "twin/campaign.toml", "--out", "two", "--quiet"}).exit_code < 2);
   std::filesystem::create_directories(folder.work() / "lab");
