@@ -32,7 +32,7 @@ TEST_CASE("terminal: names of files, arguments and campaigns are shown, not obey
     CHECK(is_harmless(outcome.out));
     CHECK_THAT(outcome.out + outcome.err, Contains(sign));
   };
-  folder.write(evil + ".csv", "t_s,x_mm\n0,1\n");
+  folder.write(evil + ".csv", "no,channels\n0,1\n");
   check({"init", evil + ".csv"}, "evil\\u001B]0;pwned\\u0007");
   check({"check", evil + ".toml"}, "\\u009B2J\\u202E");
   check({"check", "campaign.toml", "--set", "mass=\"" + evil + "\""}, "\\u001B]0;");
@@ -44,9 +44,10 @@ TEST_CASE("terminal: names of files, arguments and campaigns are shown, not obey
                                   {"leak_level = \"none\"\nuse = \"fit\"",
                                    "leak_level = \"none\\u009B2J\"\nuse = \"fit\""}}));
   for (const char* verb : {"check", "average", "fit"}) {
-    check({verb, "named.toml", "--out", "out"}, "evil");
+    check({verb, "named.toml", "--out", "out"}, "sine");
     check({verb, "named.toml", "--out", "out", "--json"}, "{");
   }
+  check({"fit", "named.toml", "--out", "out"}, "none\\u009B2J");
   folder.write("column.toml", edited(kCampaign, {{"x_mm", R"(x\u001B]0;pwned\r)"}}));
   check({"check", "column.toml"}, "\\u001B]0;");
 }

@@ -261,7 +261,7 @@ def check_good(binary, work):
 def check_bad(binary, work):
     """A failed and a poor result say so at their top."""
     campaign = (work / "twin" / "campaign.toml").read_text()
-    (work / "twin" / "hopeless.toml").write_text(campaign + "\n[simulation]\nmax_seconds = 1e-9\n")
+    (work / "twin" / "hopeless.toml").write_text(campaign + "\n[simulation]\nmax_seconds = 1e-6\n")
     check(rigcal(binary, work, "fit", "twin/hopeless.toml", "--out", "failed") == 3, "the fit fails")
     wrong = ["--set", "valve_gain=1e-6 m/V", "--set", "damping=90000 N s/m"]
     check(rigcal(binary, work, "validate", "twin/campaign.toml", "--out", "poor", *wrong) == 1, "the model is wrong")

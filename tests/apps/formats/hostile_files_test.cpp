@@ -9,6 +9,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/apps/cli_fixture.hpp"
@@ -130,9 +131,11 @@ TEST_CASE("hostile files: a result of unheard-of numbers is no bug", "[apps]") {
   const CommandFolder folder;
   write_fitted_twin(folder);
   const std::string whole = folder.read("fit/fit.json");
-  for (const char* rank : {"1e308", "-3", "0.5"}) {
+  // A number beyond all is refused where it stands, before its key is known.
+  for (const auto& [rank, named] : {std::pair("1e308", "number 1e308"), std::pair("-3", "'rank'"),
+                                    std::pair("0.5", "'rank'")}) {
     folder.write("bad/fit.json", replaced(whole, "\"rank\": 2", std::string("\"rank\": ") + rank));
-    check_no_input(folder, {"compare", "fit", "bad", "--out", "c"}, "bad/fit.json", "'rank'");
+    check_no_input(folder, {"compare", "fit", "bad", "--out", "c"}, "bad/fit.json", named);
   }
   folder.write("bad/fit.json", replaced(whole, "\"conditions\": [", "\"conditions\": [7,"));
   check_no_input(folder, {"compare", "fit", "bad", "--out", "c"}, "bad/fit.json",
