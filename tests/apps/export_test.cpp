@@ -73,6 +73,7 @@ Fmu exported(const CommandFolder& folder, CommandFolder::Arguments more = {}) {
   CAPTURE(outcome.err);
   REQUIRE(outcome.exit_code == 0);
   for (const auto& entry : std::filesystem::directory_iterator(folder.work() / "fmu")) {
+    if (entry.path().extension() != ".fmu") continue;
     const auto to = folder.work() / "unpacked" / entry.path().stem();
     unzip(entry.path(), to);
     return Fmu(to);
