@@ -79,9 +79,11 @@ TEST_CASE("hostile files: a pipe, device or folder is no input", "[apps]") {
       check_no_input(folder, reader, "bad/fit.json", damage.word);
     put_in_place(folder, "no.toml", damage);
     check_no_input(folder, {"check", "no.toml"}, "no.toml", damage.word);
+    fs::remove_all(folder.work() / "bad");
+    fs::copy(folder.work() / "fit", folder.work() / "bad");
     put_in_place(folder, "bad/checkpoint.json", damage);
     check_no_input(folder, {"fit", "twin/campaign.toml", "--resume", "--out", "bad", "--quiet"},
-                   "bad/checkpoint.json", damage.word);
+                   "bad", "checkpoint.json");
     for (const std::string kind : {"csv", "mat", "h5", "xlsx"}) {
       if (damage.name != "a folder") {  // of which `init` reads what is in it
         put_in_place(folder, "no." + kind, damage);
@@ -214,8 +216,8 @@ TEST_CASE("rigcal: two runs into one folder", "[apps]") {
   REQUIRE(::flock(other, LOCK_EX | LOCK_NB) == 0);
   const std::string before = folder.read("fit/fit.json");
   for (const char* verb : {"fit", "validate", "average", "simulate", "plan"})
-    check_no_input(folder, {verb, "twin/campaign.toml", "--out", "fit"}, "--out fit",
-                   "another run of rigcal");
+    check_no_input(folder, {verb, "twin/campaign.toml", "--out", "fit"},
+                   "fit: ", "another run of rigcal");
   CHECK(folder.read("fit/fit.json") == before);
   CHECK(folder.run({"plan", "twin/campaign.toml", "--out", "other", "--quiet"}).exit_code == 0);
   ::close(other);
