@@ -13,9 +13,6 @@ constexpr double kFullStepOffset = 30.0;
 constexpr int kFullSteps = 4;
 /// Where they end: a third of what counts as stationary, since each is all but exact.
 constexpr double kFullStepEnd = 0.003;
-/// Growth of the cost beyond which a Gauss-Newton step led astray: where residuals are large it may
-/// overshoot, and errors of the coarse simulations are far smaller.
-constexpr double kWorseStep = 1.5;
 /// Growth of the mean square residual beyond which the shorter horizon's estimate is discarded.
 constexpr double kForeseen = 4.0;
 
@@ -100,8 +97,7 @@ bool Search::enter(const Stage& stage) {
   evaluator_.set_fidelity(stage.fidelity);
   if (check.relative_offset > kFullStepOffset) return true;
   const std::vector<double> next = gauss_newton(coarse, check);
-  const Evaluation& there = evaluator_.evaluate(next);
-  if (there.ok && there.cost <= kWorseStep * coarse.cost) z_ = next;
+  if (evaluator_.evaluate(next).ok) z_ = next;
   return true;
 }
 
