@@ -42,10 +42,10 @@ std::atomic<const std::vector<fs::path>*> made_now{nullptr};
 constexpr const char* kProbeFile = ".rigcal-probe";
 
 /// Of results in a message.
-constexpr std::size_t kMostNamed = 8;
+constexpr std::size_t kMostFilesNamed = 8;
 
 std::string listed(const std::vector<std::string>& names) {
-  const std::size_t shown = std::min(names.size(), kMostNamed);
+  const std::size_t shown = std::min(names.size(), kMostFilesNamed);
   std::string text = fmt::format("{}", fmt::join(names.begin(), names.begin() + shown, ", "));
   if (names.size() > shown) text += fmt::format(" and {} more", names.size() - shown);
   return text;
