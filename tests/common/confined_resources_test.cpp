@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstdlib>
+#include <exception>
 #include <new>
 #include <string>
 
@@ -37,10 +38,18 @@ class LowerLimit {
 }  // namespace
 
 TEST_CASE("confined: a process that cannot be made is no fault of the work", "[common]") {
-  const LowerLimit files(RLIMIT_NOFILE, 0);
+  std::exception_ptr thrown;
+  {  // no longer: the sanitizers need files to look at an object
+    const LowerLimit files(RLIMIT_NOFILE, 0);
+    try {
+      run_confined([] { return std::string("never"); }, {});
+    } catch (...) {
+      thrown = std::current_exception();
+    }
+  }
+  REQUIRE(thrown != nullptr);
   try {
-    run_confined([] { return std::string("never"); }, {});
-    FAIL("it ran");
+    std::rethrow_exception(thrown);
   } catch (const NoResources& error) {
     CHECK(error.code() == rigcal::ExitCode::internal);
     CHECK_THAT(error.what(), Contains("no process can be made") && Contains("try again"));
