@@ -83,7 +83,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   }
   report::PlannedFiles planned = report::planned_result(report::ResultKind::fit, campaign);
   planned.files.emplace_back(report::kKeptTasksFile);
-  // A fit that goes on reads it, and says more of it.
+  // With --resume the checkpoint is read, which refuses a foreign one with its reason.
   if (!options.resume) planned.files.emplace_back(report::kCheckpointFile);
   held.plan(std::move(planned));
 
