@@ -15,7 +15,12 @@ double normal_quantile(double probability) {
 double normal_cdf(double x) { return boost::math::cdf(boost::math::normal(), x); }
 
 double student_t_quantile(double probability, double freedom) {
-  return boost::math::quantile(boost::math::students_t(freedom), probability);
+  // Near no degree of freedom a quantile exceeds every double: infinity, which is what it means, is
+  // no error.
+  using Infinite = boost::math::policies::policy<
+      boost::math::policies::overflow_error<boost::math::policies::ignore_error>>;
+  return boost::math::quantile(boost::math::students_t_distribution<double, Infinite>(freedom),
+                               probability);
 }
 
 double student_t_cdf(double t, double freedom) {

@@ -19,10 +19,10 @@ double normal_quantile(double probability);
 /// Probability that a standard normal variable lies below x; any x.
 double normal_cdf(double x);
 
-/// The same of Student's t with `freedom` degrees of freedom > 0, which need not be whole.
+/// The same of Student's t with `freedom` degrees of freedom > 0, which need not be whole. A quantile above the largest
+/// double is infinity.
 ///
 /// @throws std::domain_error  no such probability or freedom
-/// @throws std::overflow_error  a probability of 0 or 1
 double student_t_quantile(double probability, double freedom);
 double student_t_cdf(double t, double freedom);
 
