@@ -54,7 +54,10 @@ TEST_CASE("summary_text: a tolerance that is far exceeded, without an exponent",
   Scene scene;
   calib::ConditionScore score;
   score.id = "sine";
-  score.checks.push_back({.metric = "rho2", .value = 0.9, .used = 2.179});
+  auto& check = score.checks.emplace_back();
+  check.metric = "rho2";
+  check.value = 0.9;
+  check.used = 2.179;
   scene.fit.conditions = {score};
   CHECK_THAT(summary_text(scene.result(ResultKind::fit), {}, {}),
              Contains("sine: rho2 0.9000 of position, 220 % of the tolerance used"));
@@ -78,10 +81,11 @@ TEST_CASE("scorecard_text: each condition shows its worst channel, by name", "[r
   const auto text = [&] { return scorecard_text(scene.result(ResultKind::fit), {}); };
   CHECK_THAT(text(), Contains("pressure_a") && Contains(" 0.9840 ") && !Contains("0.9996"));
   // What fails comes before what nobody judges.
-  scene.fit.conditions[0].checks = {{.channel = datasets::Channel::pressure_b,
-                                     .metric = "rho2",
-                                     .value = 0.99,
-                                     .verdict = calib::Verdict::fail}};
+  auto& check = scene.fit.conditions[0].checks.emplace_back();
+  check.channel = datasets::Channel::pressure_b;
+  check.metric = "rho2";
+  check.value = 0.99;
+  check.verdict = calib::Verdict::fail;
   scene.fit.conditions[0].verdict = calib::Verdict::fail;
   CHECK_THAT(text(), Contains("pressure_b") && Contains(" 0.9900 ") && !Contains("0.9840"));
 }
