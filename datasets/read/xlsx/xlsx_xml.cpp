@@ -139,12 +139,14 @@ void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t
                                  current_line(parser.get()), part,
                                  XML_ErrorString(XML_GetErrorCode(parser.get()))));
   };
-  std::int64_t given = 0;
+  std::int64_t given = 0, begin = 0;
   archive.read(part, most_bytes, [&](std::string_view block) {
     parse(block, false);
     given += static_cast<std::int64_t>(block.size());
-    const std::int64_t begin = current_byte(parser.get());  // -1 of none
-    if (begin >= 0 && given - begin > kMostTagBytes)
+    // -1 while there is none, and where Expat (2.6 and later) waits for more of what it began to
+    // read.
+    if (const std::int64_t now = current_byte(parser.get()); now >= 0) begin = now;
+    if (given - begin > kMostTagBytes)
       throw InputError({archive.name()},
                        fmt::format("its part '{}' has a tag or comment of more than {} MB; save it "
                                    "again as .xlsx",

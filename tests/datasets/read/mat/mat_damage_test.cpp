@@ -1,3 +1,4 @@
+#include <H5public.h>
 #include <sys/resource.h>
 
 #include <array>
@@ -79,13 +80,18 @@ TEST_CASE("damaged MAT: version 7.3, byte by byte", "[datasets]") {
                                [](const fs::path& file) { return mat_ending(file, false); });
   CHECK(count.refused > 0);
   CHECK(count.values > 0);
-  // What HDF5 1.10 takes for an address, in the heap that holds the names of fields.
+  // What HDF5 1.10 takes for an address, and later versions do not read, in the heap that holds the
+  // names of fields.
   std::string damaged = whole;
   const std::size_t heap = whole.find("GCOL");
   REQUIRE(heap != std::string::npos);
   damaged[heap + 26] = static_cast<char>(damaged[heap + 26] ^ 0x80);
-  CHECK_THROWS_WITH(mat_columns(folder.write("heap.mat", damaged)),
-                    Catch::Contains("heap.mat: cannot be read by HDF5"));
+  const fs::path file = folder.write("heap.mat", damaged);
+#if H5_VERSION_GE(1, 12, 0)
+  CHECK(mat_ending(file, false) == Ending::values);
+#else
+  CHECK_THROWS_WITH(mat_columns(file), Catch::Contains("heap.mat: cannot be read by HDF5"));
+#endif
   CHECK(megabytes_of(RUSAGE_CHILDREN) < (kSanitized ? 4096 : 1024));
 }
 
