@@ -1,4 +1,3 @@
-#include <H5public.h>
 #include <sys/resource.h>
 
 #include <array>
@@ -80,18 +79,12 @@ TEST_CASE("damaged MAT: version 7.3, byte by byte", "[datasets]") {
                                [](const fs::path& file) { return mat_ending(file, false); });
   CHECK(count.refused > 0);
   CHECK(count.values > 0);
-  // What HDF5 1.10 takes for an address, and later versions do not read, in the heap that holds the
-  // names of fields.
+  // What HDF5 takes for an address, in the heap that holds the names of fields.
   std::string damaged = whole;
   const std::size_t heap = whole.find("GCOL");
   REQUIRE(heap != std::string::npos);
   damaged[heap + 26] = static_cast<char>(damaged[heap + 26] ^ 0x80);
-  const fs::path file = folder.write("heap.mat", damaged);
-#if H5_VERSION_GE(1, 12, 0)
-  CHECK(mat_ending(file, false) == Ending::values);
-#else
-  CHECK_THROWS_WITH(mat_columns(file), Catch::Contains("heap.mat: cannot be read by HDF5"));
-#endif
+  CHECK(mat_ending(folder.write("heap.mat", damaged), false) == Ending::refused);
   CHECK(megabytes_of(RUSAGE_CHILDREN) < (kSanitized ? 4096 : 1024));
 }
 
