@@ -106,6 +106,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
   evaluator.keep_rows();
   FitOptions once = options;
   once.starts = 1;
+  once.further_starts = 0;
   once.resume = nullptr;
   once.checkpoint = nullptr;
   std::vector<double> z = problem.start();

@@ -15,7 +15,7 @@ namespace {
 
 /// Step budget of a later point, relative to what the start takes at a coarse tolerance: it may
 /// have to be simulated to its end where the start soon becomes periodic.
-constexpr long kStepsOverStart = 1000;
+constexpr long kStepsOverStart = 100;
 /// For starts of fewer than twenty steps, at which nothing moves: elsewhere it may.
 constexpr long kLeastSteps = 20'000;
 
@@ -48,6 +48,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
                               options.starts, fit.message);
   }
   fit.best_start = found.best;
+  fit.further_starts = found.further_starts;
   fit.evaluations = evaluator.counters().evaluations;
   fit.failures = evaluator.counters().failures;
   fit.failure_count = evaluator.counters().failure_count;
@@ -74,9 +75,8 @@ Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOption
   const Problem fresh = problem;
   const std::vector<std::string> warnings = fit.warnings;
   Solved first = solve_problem(problem, evaluator, options, fit);
-  const bool lost =
-      fit.status == FitStatus::failed && first.optimum.ok && !evaluator.budget().spent();
-  if (!lost) return first;
+  if (fit.status == FitStatus::converged || !first.optimum.ok || evaluator.budget().spent())
+    return first;
   const Checkpoint checkpoint{fit.starts, fit.best_start, first.optimum.z, evaluator.counters()};
   FitOptions more = options;
   more.starts += options.further_starts;

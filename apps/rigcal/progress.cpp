@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "apps/rigcal/options.hpp"
+#include "calib/descent/descent.hpp"
 #include "common/printable.hpp"
 
 namespace rigcal::app {

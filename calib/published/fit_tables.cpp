@@ -7,10 +7,10 @@
 #include <chrono>
 #include <cmath>
 
+#include "calib/descent/descend.hpp"
 #include "calib/problem/parameter_map.hpp"
 #include "calib/problem/scaled_svd.hpp"
 #include "calib/published/table_residuals.hpp"
-#include "calib/search/descend.hpp"
 #include "calib/search/optimum.hpp"
 #include "calib/trust/identifiability.hpp"
 #include "common/error.hpp"
@@ -54,19 +54,20 @@ Descent minimise(TableResiduals& residuals, const std::vector<UnitInterval>& int
                ? std::optional(Linearisation{std::move(found.jacobian), std::move(found.residuals)})
                : std::nullopt;
   };
-  options.residuals = static_cast<Eigen::Index>(residuals.size());
   options.trust_radius = kTablesTrustRadius;
   options.function_tolerance = kTablesTolerance;
   options.parameter_tolerance = kTablesTolerance;
+  const auto count = static_cast<Eigen::Index>(residuals.size());
+  std::vector<bool> active_bound;
   Descent total;
   for (int call = 0; call < kMostCalls; ++call) {
     const auto start = options.linearise(z, true);
     if (!start) return {false, total.iterations, failure};
     const std::vector<bool> active = active_bounds(*start, z);
-    if (total.converged && active == options.active_bound) return total;
-    options.active_bound = active;
+    if (total.converged && active == active_bound) return total;
+    active_bound = active;
     options.most_iterations = kMostIterations - total.iterations;
-    const Descent descent = descend(options, z);
+    const Descent descent = descend(options, count, active_bound, z);
     total.converged = descent.converged;
     total.iterations += descent.iterations;
     if (!descent.failure.empty()) total.failure = failure.empty() ? descent.failure : failure;

@@ -34,6 +34,13 @@ struct StartReport {
   std::string message;
 };
 
+/// Further starts that a fit of one start looked at with coarse simulations alone.
+struct FurtherStarts {
+  int looked_at = 0;
+  int followed = 0;  ///< that led lower than the campaign's start, and were searched to their end
+  int as_low = 0;    ///< that ended as low as the result, as far as such simulations tell
+};
+
 /// Converged starts that ended at one point.
 struct Basin {
   double cost = 0.0;           ///< least of its starts

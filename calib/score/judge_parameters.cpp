@@ -87,6 +87,32 @@ void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Rea
              {}, {{"values", static_cast<double>(names.size())}}));
 }
 
+/// Whether no other of several starts ended at the result.
+bool found_once(const Fit& fit) {
+  const bool several = fit.starts.size() > 1 && !fit.basins.empty();
+  return several && fit.basins.front().starts.size() < 2 &&
+         !(fit.further_starts && fit.further_starts->as_low > 0);
+}
+
+/// What a fit of one start looked at beside it.
+void note_further_starts(const Fit& fit, std::vector<Reason>& reasons) {
+  if (!fit.further_starts || fit.further_starts->looked_at == 0) return;
+  const FurtherStarts& looks = *fit.further_starts;
+  std::string words =
+      fmt::format("{} further start{} looked at with coarse simulations: ", looks.looked_at,
+                  looks.looked_at == 1 ? " was" : "s were");
+  if (fit.best_start > 1) {
+    words += "one led lower than that of the campaign, and is the result";
+  } else {
+    words += "none led lower";
+  }
+  if (looks.as_low > 0) words += fmt::format(", {} as low", looks.as_low);
+  reasons.push_back(reason(AspectState::note, "further_starts", words, {},
+                           {{"looked_at", static_cast<double>(looks.looked_at)},
+                            {"followed", static_cast<double>(looks.followed)},
+                            {"as_low", static_cast<double>(looks.as_low)}}));
+}
+
 }  // namespace
 
 Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
@@ -115,7 +141,7 @@ Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
       reasons.push_back(reason(AspectState::reservation, code, name + ": " + each.reason, name));
     }
   }
-  if (fit.starts.size() > 1 && !fit.basins.empty() && fit.basins.front().starts.size() < 2) {
+  if (found_once(fit)) {
     reasons.push_back(reason(AspectState::reservation, "found_once",
                              "only one of several starts ended at this point: " + fit.agreement, {},
                              {{"starts", static_cast<double>(fit.starts.size())}}));
@@ -131,6 +157,7 @@ Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
                              {{"identified", static_cast<double>(identified)},
                               {"estimated", static_cast<double>(estimated)}}));
   }
+  note_further_starts(fit, reasons);
   note_exact_values(campaign, fit, reasons);
   return aspect_of(std::move(reasons));
 }

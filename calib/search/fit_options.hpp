@@ -13,16 +13,15 @@ namespace rigcal::calib {
 
 struct Checkpoint;  // checkpoint.hpp
 
-/// Relative change of the cost below which Ceres calls a search at the working tolerance converged.
-inline constexpr double kFunctionTolerance = 1e-10;
-
 /// What a fit needs beside the campaign and its records.
 struct FitOptions {
-  int starts = 1;            ///< 1: the campaign's start values; more: latin hypercube around them
-  int further_starts = 0;    ///< Latin-hypercube starts, if the single start fails
-  std::uint64_t seed = 1;    ///< of the latin hypercube
-  int threads = 1;           ///< results are the same bits for any number
-  int max_iterations = 200;  ///< per start
+  int starts = 1;  ///< 1: the campaign's start values; more: latin hypercube around them
+  /// Latin-hypercube starts beside a single one: looked at coarsely where that one converges, made
+  /// like it where it does not.
+  int further_starts = 0;
+  std::uint64_t seed = 1;               ///< of the latin hypercube
+  int threads = 1;                      ///< results are the same bits for any number
+  int max_iterations = 200;             ///< per start
   std::optional<long> max_evaluations;  ///< of all residuals, of the whole job; then: `stopped`
   std::optional<double> max_seconds;    ///< of the whole job; then: status `stopped`
   int bootstrap = 0;                    ///< replicates, each fitted from the optimum; 0: none

@@ -5,14 +5,12 @@
 
 #include <algorithm>
 
-#include "calib/search/descend.hpp"
+#include "calib/descent/adaptive_descent.hpp"
+#include "calib/search/obstacle.hpp"
 
 namespace rigcal::calib {
 namespace {
 
-/// Calls of Ceres that do not change the set of active bounds: the first and three from the best
-/// point with a fresh trust region.
-constexpr int kMaxCalls = 4;
 /// Standard errors that may be left of a step with coarse simulations: their own errors leave more.
 constexpr double kCoarseOffset = 1.0;
 /// Share of the cost that may be left to gain in a horizon: the model then errs by a fraction of
@@ -23,17 +21,6 @@ constexpr double kHorizonLeaves = 0.05;
 constexpr double kHorizonOffset = 10.0;
 /// Relative change of the cost below which coarse simulations tell no more.
 constexpr double kCoarseChange = 1e-4;
-
-/// Iterations for which a parameter may touch a bound on its way; off it, it is let go at once.
-constexpr int kPatience = 3;
-
-/// Whether a parameter that was at an active bound is drawn inwards now.
-bool lets_go(const std::vector<bool>& active_bound, const std::vector<bool>& now) {
-  for (std::size_t j = 0; j < active_bound.size(); ++j) {
-    if (active_bound[j] && !now[j]) return true;
-  }
-  return false;
-}
 
 /// Whether a horizon carries no more information: the next one, a few times as long, has far more.
 bool horizon_exhausted(const Problem& problem, const Evaluator& evaluator,
@@ -96,65 +83,34 @@ SolveResult minimise(const Problem& problem, Evaluator& evaluator, std::vector<d
   if (!first.ok) return no_start(problem, evaluator, first);
   const int most = stage.most_iterations == 0 ? iterations.left()
                                               : std::min(stage.most_iterations, iterations.left());
-  const int end = iterations.used() + most;
-  double trust_radius = stage.trust_radius;
-  std::vector<bool> active_bound(z.size(), false);
-  SolveResult result;
-  int retries = 0;
-  while (retries < kMaxCalls) {
-    int other_bounds = 0;  // iterations since other parameters than those are at active bounds
-    DescentOptions options;
-    options.linearise = [&](std::span<const double> at, bool) -> std::optional<Linearisation> {
-      const Evaluation& there = evaluator.evaluate(at);
-      if (!there.ok) return std::nullopt;
-      return calib::linearise(problem, there);
-    };
-    options.enough = [&](const DescentStep& step) {
-      iterations.tell(step.number, step.cost / problem.share_at(evaluator.fidelity()),
-                      step.relative_change, step.seconds);
-      const OptimumCheck check = check_optimum(problem, evaluator.best());
-      other_bounds = check.active_bound == active_bound ? 0 : other_bounds + 1;
-      if (lets_go(active_bound, check.active_bound)) other_bounds = kPatience;
-      return near_enough(problem, evaluator, check) || other_bounds >= kPatience ||
-             evaluator.budget().spent();
-    };
-    options.residuals = static_cast<Eigen::Index>(z.size()) + 1;
-    options.active_bound = active_bound;
-    options.trust_radius = trust_radius;
-    options.most_iterations = end - iterations.used();
-    if (!evaluator.fidelity().exact) options.function_tolerance = kCoarseChange;
-    const Descent descent = descend(options, z);
-    iterations.add(descent.iterations);
-    result.iterations = iterations.total();
-    z = evaluator.best().z;
-    result.check = check_optimum(problem, evaluator.best());
-    const bool nearly = evaluator.fidelity().exact
-                            ? result.check.nearly_stationary()
-                            : !lets_go(active_bound, result.check.active_bound);
-    if (near_enough(problem, evaluator, result.check) || (descent.converged && nearly))
-      return converged(iterations, result.check);
-    if (evaluator.budget().spent() || iterations.used() >= end) {
-      result.status = FitStatus::stopped;
-      result.message = stop_reason(evaluator, iterations.most());
-      return result;
-    }
-    result.status = FitStatus::failed;
-    result.message =
-        !descent.failure.empty()
-            ? descent.failure
-            : fmt::format(
-                  "the optimiser says that it converged, but a step of {:.2g} standard "
-                  "errors is left: not a minimum",
-                  result.check.relative_offset);
-    if (other_bounds < kPatience || descent.iterations == 0) ++retries;
-    trust_radius = kFirstTrustRadius;
-    active_bound = result.check.active_bound;
-    for (std::size_t j = 0; j < z.size(); ++j) {
-      if (active_bound[j]) z[j] = result.check.side[j] == BoundSide::lower ? 0.0 : 1.0;
-    }
-    if (!evaluator.evaluate(z).ok) break;  // not even the bound itself
-  }
-  return result;
+  DescentOptions options;
+  options.linearise = [&](std::span<const double> at, bool) -> std::optional<Linearisation> {
+    const Evaluation& there = evaluator.evaluate(at);
+    if (!there.ok) return std::nullopt;
+    return calib::linearise(problem, there);
+  };
+  options.enough = [&](const DescentStep& step) {
+    iterations.tell(step.number, step.cost / problem.share_at(evaluator.fidelity()),
+                    step.relative_change, step.seconds);
+    return evaluator.budget().spent() ||
+           near_enough(problem, evaluator, check_optimum(problem, evaluator.best()));
+  };
+  options.trust_radius = stage.trust_radius;
+  options.most_iterations = most;
+  if (!evaluator.fidelity().exact) options.function_tolerance = kCoarseChange;
+  const Descent descent = descend_adaptively(options, z);
+  iterations.add(descent.iterations);
+  const OptimumCheck check = check_optimum(problem, evaluator.best());
+  const bool at_end = !evaluator.fidelity().exact || check.is_minimum();
+  if (near_enough(problem, evaluator, check) || (descent.converged && at_end))
+    return converged(iterations, check);
+  const std::string left = far_from_minimum(problem, evaluator.best(), check);
+  if (evaluator.budget().spent() || descent.iterations >= most)
+    return {FitStatus::stopped, stop_reason(evaluator, iterations.most()) + left,
+            iterations.total(), check};
+  return {FitStatus::failed,
+          (descent.failure.empty() ? "no step lowers the cost any more" : descent.failure) + left,
+          iterations.total(), check};
 }
 
 }  // namespace rigcal::calib

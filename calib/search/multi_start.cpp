@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/random/mersenne_twister.hpp>
+#include <limits>
 #include <numeric>
 
 #include "calib/search/basins.hpp"
@@ -31,20 +32,29 @@ void serialize(Archive& archive, EvaluationCounters& counters) {
 
 namespace {
 
+/// Iterations of a start that is only looked at.
+constexpr int kLookIterations = 30;
+/// What of the cost coarse simulations may err by, and a search that goes no further than they do
+/// may leave; and what is no difference between minima, in variances of a residual.
+constexpr double kCoarseCost = 1e-3;
+constexpr double kFurtherCost = 2.0;
+
 /// Uniform in [0, 1) with 53 bits; std::uniform_real_distribution differs between libraries.
 double uniform(boost::random::mt19937_64& random) {
   return static_cast<double>(random() >> 11U) * 0x1p-53;
 }
 
-std::vector<std::vector<double>> start_points(const Problem& problem, const FitOptions& options) {
+/// The campaign's start values, and others beside them.
+std::vector<std::vector<double>> start_points(const Problem& problem, int count,
+                                              std::uint64_t seed) {
   const auto& unknowns = problem.map.unknowns();
   std::vector<std::size_t> spread;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     if (!unknowns[j].nuisance) spread.push_back(j);
   }
   std::vector<std::vector<double>> points{problem.start()};
-  const auto others = static_cast<std::size_t>(options.starts - 1);
-  for (const auto& sample : latin_hypercube(others, spread.size(), options.seed)) {
+  const auto others = static_cast<std::size_t>(count - 1);
+  for (const auto& sample : latin_hypercube(others, spread.size(), seed)) {
     points.push_back(points.front());
     for (std::size_t k = 0; k < spread.size(); ++k) points.back()[spread[k]] = sample[k];
   }
@@ -58,6 +68,17 @@ double residual_variance(const Problem& problem, double cost) {
   return problem.has_estimated_sd() ? variance : std::max(1.0, variance);
 }
 
+/// Takes over where a search ended.
+void report_end(const Problem& problem, const SolveResult& solved, const Evaluation& end,
+                StartReport& report) {
+  report.status = solved.status;
+  report.message = solved.message;
+  report.iterations = solved.iterations;
+  if (!end.ok) return;
+  report.end_values = problem.to_physical(end.z);
+  report.final_cost = end.cost;
+}
+
 /// Makes one start; where it ends is the evaluator's best point.
 StartReport make_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                        int number, const std::vector<double>& from, SolveResult& solved) {
@@ -69,14 +90,7 @@ StartReport make_start(const Problem& problem, Evaluator& evaluator, const FitOp
   const Evaluation& first = evaluator.evaluate(from);
   report.initial_cost = first.ok ? first.cost : 0.0;
   solved = Search(problem, evaluator, options, number).run(from);
-  report.status = solved.status;
-  report.message = solved.message;
-  report.iterations = solved.iterations;
-  const Evaluation& end = evaluator.best();
-  if (end.ok) {
-    report.end_values = problem.to_physical(end.z);
-    report.final_cost = end.cost;
-  }
+  report_end(problem, solved, evaluator.best(), report);
   return report;
 }
 
@@ -179,6 +193,78 @@ void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions
   describe_best(problem, best_z, options.threads, found);
 }
 
+/// Where coarse simulations led a start.
+struct Approach {
+  std::size_t start = 0;
+  std::vector<double> end;
+  double cost = 0.0;  ///< that it leads to, by coarse simulations of whole records
+};
+
+/// Looks at further starts beside the one that was made, and searches to their end those that lead
+/// lower.
+void look_around(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
+                 MultiStart& found) {
+  FitOptions coarsely = options;
+  coarsely.progress = nullptr;
+  coarsely.max_iterations = std::min(options.max_iterations, kLookIterations);
+  const auto points = start_points(problem, 1 + options.further_starts, options.seed);
+  // Of whole records, and what a Gauss-Newton step from there would leave: an approach may end some
+  // standard errors before its minimum.
+  const auto coarse_cost = [&](const std::vector<double>& z) {
+    evaluator.set_fidelity(Fidelity::coarse);
+    const Evaluation& there = evaluator.evaluate(z);
+    return there.ok ? there.cost * (1.0 - check_optimum(problem, there).reducible)
+                    : std::numeric_limits<double>::infinity();
+  };
+  double least = coarse_cost(found.optimum.z);
+  FurtherStarts& looks = found.further_starts.emplace();
+  std::vector<Approach> approaches;
+  for (std::size_t i = 1; i < points.size() && !evaluator.budget().spent(); ++i) {
+    evaluator.begin_start(static_cast<int>(i) + 1);
+    ++looks.looked_at;
+    if (!Search(problem, evaluator, coarsely, static_cast<int>(i) + 1).approach(points[i]))
+      continue;
+    const std::vector<double> end = evaluator.best().z;
+    approaches.push_back({i, end, coarse_cost(end)});
+  }
+  std::stable_sort(approaches.begin(), approaches.end(),
+                   [](const Approach& a, const Approach& b) { return a.cost < b.cost; });
+  const auto margin = [&](double cost) {
+    return kCoarseCost * cost + kFurtherCost * residual_variance(problem, cost);
+  };
+  for (const Approach& each : approaches) {
+    if (evaluator.budget().spent()) break;
+    if (found.best > 1 || each.cost >= least - margin(least)) {
+      if (each.cost <= least + margin(least)) ++looks.as_low;
+      continue;
+    }
+    const int number = static_cast<int>(found.starts.size()) + 1;
+    ++looks.followed;
+    StartReport report;
+    report.number = number;
+    report.start_values = problem.to_physical(points[each.start]);
+    evaluator.set_fidelity(problem.of_starts());
+    const Evaluation& first = evaluator.evaluate(points[each.start]);
+    report.initial_cost = first.ok ? first.cost : 0.0;
+    evaluator.begin_start(number);
+    evaluator.set_fidelity(Fidelity::full);
+    SolveResult solved = Search(problem, evaluator, options, number).polish(each.end);
+    const Evaluation end = evaluator.best();
+    report_end(problem, solved, end, report);
+    found.starts.push_back(std::move(report));
+    if (!end.ok) continue;
+    const double before = found.optimum.cost;
+    if (end.cost < before - margin(before)) {
+      found.best = number;
+      found.optimum = end;
+      found.result = std::move(solved);
+      least = coarse_cost(end.z);
+    } else if (end.cost <= before + margin(before)) {
+      ++looks.as_low;
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::vector<double>> latin_hypercube(std::size_t points, std::size_t dimensions,
@@ -203,7 +289,7 @@ std::vector<std::vector<double>> latin_hypercube(std::size_t points, std::size_t
 MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options) {
   MultiStart result;
   if (options.resume != nullptr) result = resumed(problem, evaluator, options);
-  const auto points = start_points(problem, options);
+  const auto points = start_points(problem, options.starts, options.seed);
   // A limit of evaluations is counted over one start after the other.
   const bool spread = options.farm != nullptr && options.farm->processes() > 1 &&
                       points.size() > 1 && !options.max_evaluations;
@@ -211,6 +297,10 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
     make_in_farm(problem, evaluator, options, points, *options.farm, result);
   } else {
     make_in_turn(problem, evaluator, options, points, result);
+  }
+  if (options.starts == 1 && options.further_starts > 0 && options.resume == nullptr &&
+      result.result.status == FitStatus::converged) {
+    look_around(problem, evaluator, options, result);
   }
   evaluator.set_fidelity(Fidelity::full);  // a last start that failed, or none that was left
   return result;
@@ -235,12 +325,8 @@ void go_on_with_best(const Problem& problem, Evaluator& evaluator, const FitOpti
 }
 
 void report_best(const Problem& problem, MultiStart& found) {
-  StartReport& report = found.starts[static_cast<std::size_t>(found.best) - 1];
-  report.status = found.result.status;
-  report.message = found.result.message;
-  report.iterations = found.result.iterations;
-  report.final_cost = found.optimum.cost;
-  report.end_values = problem.to_physical(found.optimum.z);
+  report_end(problem, found.result, found.optimum,
+             found.starts[static_cast<std::size_t>(found.best) - 1]);
 }
 
 }  // namespace rigcal::calib

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "calib/search/search.hpp"
@@ -18,14 +19,18 @@ std::vector<std::vector<double>> latin_hypercube(std::size_t points, std::size_t
 struct MultiStart {
   std::vector<StartReport> starts;
   int best = 0;  ///< number of the best start, from 1; 0 if none has a point that can be simulated
-  SolveResult result;  ///< of the best start
-  Evaluation optimum;  ///< its end point; not ok if there is none
+  SolveResult result;                           ///< of the best start
+  Evaluation optimum;                           ///< its end point; not ok if there is none
+  std::optional<FurtherStarts> further_starts;  ///< that were looked at
 };
 
 /// Solves from the campaign's start values (start 1) and from a latin hypercube over the unit box;
 /// nuisance parameters always start at their own start values. A start that fails leaves the others
 /// alone. The best is that of lowest cost, whatever ended it; of those of one cost (same_cost()) a
 /// converged one; ties by number.
+///
+/// Where a single start converges, `further_starts` of the options are looked at: led by coarse
+/// simulations, and searched to the end only where these lead lower.
 MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options);
 
 /// Polishes the optimum again, where weights or tolerance have changed since.

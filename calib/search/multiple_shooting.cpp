@@ -12,9 +12,9 @@
 #include <limits>
 #include <memory>
 
+#include "calib/descent/ceres_watch.hpp"
 #include "calib/problem/initial_state.hpp"
 #include "calib/problem/r_factor.hpp"
-#include "calib/search/ceres_watch.hpp"
 #include "calib/search/prior_cost.hpp"
 #include "common/parallel.hpp"
 

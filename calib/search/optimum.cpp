@@ -10,7 +10,6 @@ namespace {
 
 /// Standard errors; see OptimumCheck.
 constexpr double kStationary = 0.01;
-constexpr double kNearlyStationary = 0.05;
 
 }  // namespace
 
@@ -23,8 +22,8 @@ double rank_threshold(double simulation_tolerance) {
   return std::clamp(50.0 * simulation_tolerance, 1e-8, 1e-4);
 }
 
-bool OptimumCheck::stationary() const { return relative_offset <= kStationary; }
-bool OptimumCheck::nearly_stationary() const { return relative_offset <= kNearlyStationary; }
+bool OptimumCheck::stationary() const { return relative_offset <= kStationary && is_minimum(); }
+bool OptimumCheck::is_minimum() const { return fall_left <= kMinimumLeaves; }
 
 std::vector<bool> active_bounds(const Linearisation& system, std::span<const double> z) {
   const Eigen::VectorXd gradient = system.jacobian.transpose() * system.residual;
@@ -56,6 +55,7 @@ OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation)
   const double unexplained = std::sqrt(std::max(0.0, all - explained));
   const double noise = std::max(problem.least_noise(), unexplained / std::sqrt(freedom));
   check.relative_offset = std::sqrt(explained / std::max(rank, 1.0)) / noise;
+  check.fall_left = 0.5 * explained / (noise * noise);
   if (all > 0.0) check.reducible = explained / all;
   return check;
 }

@@ -18,6 +18,10 @@ BoundSide bound_side(double z);
 /// which the data do not determine: the derivatives themselves are no better (ErrorNorm).
 double rank_threshold(double simulation_tolerance);
 
+/// Fall of the cost, in variances of a residual, below which a point is a minimum: a single
+/// parameter is then 0.14 standard errors off at most.
+inline constexpr double kMinimumLeaves = 0.01;
+
 /// Unknowns at a bound where the cost falls only towards the outside.
 std::vector<bool> active_bounds(const Linearisation& system, std::span<const double> z);
 
@@ -30,11 +34,13 @@ struct OptimumCheck {
   /// (relative offset of Bates and Watts, Technometrics 23, 1981). 0.01: the step that is left is a
   /// hundredth of what the noise leaves uncertain.
   double relative_offset = 0.0;
-  double reducible = 0.0;   ///< share of the cost that this step is predicted to take away
-  bool stationary() const;  ///< at most 0.01
-  /// At most 0.05: what rounding of the simulations may leave where the optimiser's own tolerances
-  /// say that nothing is to be gained.
-  bool nearly_stationary() const;
+  double reducible = 0.0;  ///< fraction of the cost that this step is predicted to take away
+  /// The same in variances of a residual, where 2 would be one parameter's 95 % interval.
+  double fall_left = 0.0;
+  /// Where a search need go no further: a relative offset of 0.01, and a minimum.
+  bool stationary() const;
+  /// Where it has converged: no more than kMinimumLeaves of the fall are left.
+  bool is_minimum() const;
 };
 
 OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation);

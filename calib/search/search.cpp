@@ -13,6 +13,10 @@ constexpr double kFullStepOffset = 30.0;
 constexpr int kFullSteps = 4;
 /// Where they end: a third of what counts as stationary, since each is all but exact.
 constexpr double kFullStepEnd = 0.003;
+/// Growth of the cost beyond which a step from coarse to exact simulations led astray: where
+/// residuals are large a Gauss-Newton step may overshoot, and errors of the coarse simulations are
+/// far smaller.
+constexpr double kWorseStep = 1.5;
 /// Growth of the mean square residual beyond which the shorter horizon's estimate is discarded.
 constexpr double kForeseen = 4.0;
 
@@ -29,7 +33,14 @@ double mean_square(const Evaluation& evaluation) { return evaluation.cost / eval
 
 }  // namespace
 
-SolveResult Search::run(std::vector<double> z) {
+SolveResult Search::run(std::vector<double> z) { return run_stages(std::move(z), true); }
+
+bool Search::approach(std::vector<double> z) {
+  run_stages(std::move(z), false);
+  return evaluator_.best().ok && !evaluator_.budget().spent();
+}
+
+SolveResult Search::run_stages(std::vector<double> z, bool polished) {
   evaluator_.set_fidelity(problem_.of_starts());
   ends_ = {z};
   if (const auto interval_s = problem_.campaign->fit.shooting_interval_s) {
@@ -44,6 +55,7 @@ SolveResult Search::run(std::vector<double> z) {
   horizons_until_ = iterations_.used() + iterations_.left() / 2;  // the rest is for whole records
   SolveResult result;
   for (const Stage& stage : plan_schedule(problem_)) {
+    if (stage.fidelity.exact && !polished) break;
     if (!enter(stage)) continue;
     if (stage.fidelity.exact) {
       result = polish(z_);
@@ -97,7 +109,8 @@ bool Search::enter(const Stage& stage) {
   evaluator_.set_fidelity(stage.fidelity);
   if (check.relative_offset > kFullStepOffset) return true;
   const std::vector<double> next = gauss_newton(coarse, check);
-  if (evaluator_.evaluate(next).ok) z_ = next;
+  const Evaluation& there = evaluator_.evaluate(next);
+  if (there.ok && there.cost <= kWorseStep * coarse.cost) z_ = next;
   return true;
 }
 
@@ -115,7 +128,7 @@ std::vector<double> Search::shoot(std::vector<double> z, double interval_s) {
 SolveResult Search::polish(std::vector<double> z) {
   if (evaluator_.evaluate(z).ok && iterations_.left() > 0) {
     const OptimumCheck check = full_steps();
-    if (check.nearly_stationary()) return converged(iterations_, check);
+    if (check.is_minimum()) return converged(iterations_, check);
     z = evaluator_.best().z;
   }
   return minimise(problem_, evaluator_, std::move(z), kPolishStage, iterations_);

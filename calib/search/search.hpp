@@ -23,11 +23,18 @@ class Search {
   /// is stopped, the best point is that of the stages' ends with the least cost over whole records.
   SolveResult run(std::vector<double> z);
 
+  /// All stages but the last: the best point is that of the least cost over whole records, coarsely
+  /// simulated.
+  ///
+  /// @return  false where there is none, or the budget ended it
+  bool approach(std::vector<double> z);
+
   /// The last stage alone, from a point near the optimum.
   SolveResult polish(std::vector<double> z);
 
  private:
   std::vector<double> shoot(std::vector<double> z, double interval_s);
+  SolveResult run_stages(std::vector<double> z, bool polished);
   bool enter(const Stage& stage);
   OptimumCheck full_steps();
   SolveResult stopped();

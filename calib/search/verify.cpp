@@ -13,7 +13,7 @@ std::vector<ConditionRows> verify_optimum(const Problem& problem, Evaluator& eva
     evaluator.record(found.optimum);
   };
   simulate();
-  if (found.optimum.ok && claimed && !check_optimum(problem, found.optimum).nearly_stationary()) {
+  if (found.optimum.ok && claimed && !check_optimum(problem, found.optimum).is_minimum()) {
     if (search_on(problem, evaluator, options, found)) report_best(problem, found);
     simulate();
   }

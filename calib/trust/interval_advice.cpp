@@ -69,7 +69,7 @@ std::string other_interval(const FittedParameter& parameter, std::string_view un
 
 std::string interval_advice(const Problem& problem, const OptimumCheck& check,
                             const Uncertainty& found, const std::vector<LackOfFit>& tests) {
-  if (!check.nearly_stationary()) {
+  if (!check.is_minimum()) {
     return fmt::format(
         "no interval is reliable: the fit did not end at a minimum; by the derivatives at its end "
         "the nearest is {} standard errors away, and the intervals lie about that end",

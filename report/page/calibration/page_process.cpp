@@ -6,6 +6,19 @@
 #include "report/page/page_parts.hpp"
 
 namespace rigcal::report {
+namespace {
+
+/// What a fit of one start says of further ones.
+std::string further_starts_of(const StoredFit& fit) {
+  if (fit.assessment) {
+    for (const StoredReason& reason : fit.assessment->parameters.reasons) {
+      if (reason.code == "further_starts") return reason.words + ".";
+    }
+  }
+  return "One start alone: whether another minimum lies lower was not looked for.";
+}
+
+}  // namespace
 
 Json starts_view(const StoredFit& fit) {
   Json view;
@@ -31,7 +44,7 @@ Json starts_view(const StoredFit& fit) {
   if (costs.empty()) {
     view["reading"] = "No start ended with a cost: there is no answer.";
   } else if (fit.starts.size() == 1) {
-    view["reading"] = "One start alone: whether another minimum lies lower was not looked for.";
+    view["reading"] = further_starts_of(fit);
   } else {
     view["reading"] = fit.agreement + ".";
   }

@@ -70,7 +70,7 @@ TEST_CASE("verify: an end that a checkpoint brings back is judged, too", "[calib
   REQUIRE(check_optimum(problem, found.optimum).relative_offset > 0.1);
   verify_optimum(problem, evaluator, {}, found);
   CHECK(found.result.status == FitStatus::converged);
-  CHECK(found.result.check.nearly_stationary());
+  CHECK(found.result.check.is_minimum());
 }
 
 TEST_CASE("verify: where there is no time left to make it good, it is not called converged",
@@ -126,7 +126,7 @@ TEST_CASE("fit: its cost is that of simulations at the values it gives", "[calib
   }
   const Evaluation there = evaluate_at(problem, z, 1);
   CHECK_THAT(there.cost, WithinRel(found.cost, 1e-9));
-  CHECK(check_optimum(problem, there).nearly_stationary());
+  CHECK(check_optimum(problem, there).is_minimum());
 }
 
 }  // namespace rigcal::calib

@@ -1,10 +1,10 @@
-#include "calib/search/descend.hpp"
+#include "calib/descent/descend.hpp"
 
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-#include "calib/search/ceres_watch.hpp"
+#include "calib/descent/ceres_watch.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -12,9 +12,10 @@ namespace {
 /// All residuals, one parameter block of size 1 per unknown. Borrows everything.
 class BoxCost final : public ceres::CostFunction {
  public:
-  BoxCost(const DescentOptions& options, std::size_t unknowns, std::exception_ptr& error)
+  BoxCost(const DescentOptions& options, Eigen::Index residuals, std::size_t unknowns,
+          std::exception_ptr& error)
       : options_(options), error_(error) {
-    set_num_residuals(static_cast<int>(options.residuals));
+    set_num_residuals(static_cast<int>(residuals));
     mutable_parameter_block_sizes()->assign(unknowns, 1);
   }
 
@@ -26,10 +27,10 @@ class BoxCost final : public ceres::CostFunction {
       for (std::size_t j = 0; j < z.size(); ++j) z[j] = *blocks[j];
       const auto found = options_.linearise(z, jacobians != nullptr);
       if (!found) return false;
-      Eigen::Map<Eigen::VectorXd>(residuals, options_.residuals) = found->residual;
+      Eigen::Map<Eigen::VectorXd>(residuals, num_residuals()) = found->residual;
       for (std::size_t j = 0; jacobians != nullptr && j < z.size(); ++j) {
         if (jacobians[j] != nullptr)
-          Eigen::Map<Eigen::VectorXd>(jacobians[j], options_.residuals) =
+          Eigen::Map<Eigen::VectorXd>(jacobians[j], num_residuals()) =
               found->jacobian.col(static_cast<Eigen::Index>(j));
       }
       return true;
@@ -46,16 +47,17 @@ class BoxCost final : public ceres::CostFunction {
 
 }  // namespace
 
-Descent descend(const DescentOptions& options, std::vector<double>& z) {
+Descent descend(const DescentOptions& options, Eigen::Index residuals,
+                const std::vector<bool>& active_bound, std::vector<double>& z) {
   ceres::Problem system;
   std::exception_ptr error;
   std::vector<double*> blocks;
   for (double& each : z) blocks.push_back(&each);
-  system.AddResidualBlock(new BoxCost(options, z.size(), error), nullptr, blocks);
+  system.AddResidualBlock(new BoxCost(options, residuals, z.size(), error), nullptr, blocks);
   for (std::size_t j = 0; j < z.size(); ++j) {
     system.SetParameterLowerBound(&z[j], 0, 0.0);
     system.SetParameterUpperBound(&z[j], 0, 1.0);
-    if (options.active_bound[j]) system.SetParameterBlockConstant(&z[j]);
+    if (active_bound[j]) system.SetParameterBlockConstant(&z[j]);
   }
   CeresWatch watch(options.enough, error);
   ceres::Solver::Options settings = quiet_settings();

@@ -5,7 +5,7 @@
 
 #include <exception>
 
-#include "calib/search/descend.hpp"
+#include "calib/descent/descent.hpp"
 
 namespace rigcal::calib {
 

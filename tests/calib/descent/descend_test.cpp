@@ -1,4 +1,4 @@
-#include "calib/search/descend.hpp"
+#include "calib/descent/descend.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -18,11 +18,13 @@ DescentOptions valley() {
     at.jacobian << -80.0 * x, 40.0, -4.0, 0.0;
     return at;
   };
-  options.residuals = 2;
-  options.active_bound = {false, false};
   options.trust_radius = 10.0;
   options.most_iterations = 100;
   return options;
+}
+
+Descent descend(const DescentOptions& options, std::vector<double>& z) {
+  return rigcal::calib::descend(options, 2, {false, false}, z);
 }
 
 }  // namespace
@@ -42,9 +44,7 @@ TEST_CASE("descend: to the minimum of a curved valley", "[calib]") {
 
 TEST_CASE("descend: an unknown at an active bound stays there", "[calib]") {
   std::vector<double> z{0.2, 0.5};  // y = 0: the least of 100 x^4 + (1 - x)^2 is at x = 0.16126...
-  DescentOptions options = valley();
-  options.active_bound = {false, true};
-  CHECK(descend(options, z).converged);
+  CHECK(rigcal::calib::descend(valley(), 2, {false, true}, z).converged);
   CHECK(z[1] == 0.5);
   const double x = 4.0 * z[0] - 2.0;
   CHECK(200.0 * x * x * x == Approx(1.0 - x).epsilon(1e-3));

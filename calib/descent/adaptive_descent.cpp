@@ -1,0 +1,168 @@
+#include "calib/descent/adaptive_descent.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "calib/descent/box_step.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// Least fall of the cost, of what was foreseen, for which a step is taken; Ceres' value.
+constexpr double kTaken = 1e-3;
+/// Below the first the trust region shrinks to some part of the step, above the second it grows.
+constexpr double kPoorGain = 0.25;
+constexpr double kGoodGain = 0.75;
+constexpr double kRadiusGrowth = 2.0;
+constexpr double kLeastShrink = 0.1;
+constexpr double kMostShrink = 0.5;
+/// How much nearer to what the cost did the other model has to be to be followed; NL2SOL's value.
+constexpr double kNearer = 1.5;
+/// By how much the scale of an unknown may fall from one point to the next; NL2SOL's value.
+constexpr double kScaleMemory = 0.6;
+/// Least scale, of the largest, and least cosine of step and change of the gradient.
+constexpr double kLeastScale = 1e-6;
+constexpr double kLeastCosine = 1e-6;
+/// A step that is refused and was to change the cost by no more, relative to it, ends the descent:
+/// simulations are no more exact.
+constexpr double kNoise = 1e-8;
+/// Points in a row that cannot be evaluated, before it gives up: the last is a millionth as far.
+constexpr int kMostInvalid = 10;
+
+struct Point {
+  Eigen::VectorXd z;
+  double cost = 0.0;
+  Eigen::VectorXd gradient;
+  Eigen::MatrixXd square;  ///< J'J
+};
+
+std::optional<Point> point_at(const DescentOptions& options, const Eigen::VectorXd& z) {
+  const auto found =
+      options.linearise({z.data(), static_cast<std::size_t>(z.size())}, /*jacobian=*/true);
+  if (!found) return std::nullopt;
+  return Point{z, 0.5 * found->residual.squaredNorm(),
+               found->jacobian.transpose() * found->residual,
+               found->jacobian.transpose() * found->jacobian};
+}
+
+/// S after a step, by the update of Dennis, Gay and Welsch: S maps the step onto the change of the
+/// gradient that J'J does not explain, and is else as near to what it was as that allows.
+void learn(const Point& from, const Point& to, const Eigen::VectorXd& scale, Eigen::MatrixXd& s) {
+  const Eigen::VectorXd step = to.z - from.z;
+  const Eigen::VectorXd change = to.gradient - from.gradient;
+  const Eigen::VectorXd unexplained = change - 0.5 * (to.square + from.square) * step;
+  // What was learnt where residuals were larger is too large by now.
+  const double before = std::abs(step.dot(s * step));
+  if (before > 0.0) s *= std::min(1.0, std::abs(step.dot(unexplained)) / before);
+  const double along = change.dot(step);
+  const double least =
+      kLeastCosine * scale.cwiseProduct(step).norm() * change.cwiseQuotient(scale).norm();
+  if (along == 0.0 || !(least > 0.0)) return;
+  const Eigen::VectorXd weight = change * (std::min(1.0, std::abs(along) / least) / along);
+  const Eigen::VectorXd error = unexplained - s * step;
+  const Eigen::MatrixXd half = error * weight.transpose();
+  s += half + half.transpose() - error.dot(step) * weight * weight.transpose();
+}
+
+/// Lengths of the columns of the Jacobian, which fall slowly from one point to the next.
+void rescale(const Point& at, Eigen::VectorXd& scale) {
+  scale = at.square.diagonal().cwiseSqrt().cwiseMax(kScaleMemory * scale);
+  scale = scale.cwiseMax(std::max(kLeastScale * scale.maxCoeff(), 1e-150));
+}
+
+/// How far Levenberg and Marquardt's step leads, in units of the scale.
+double damped_length(const Point& at, const Eigen::VectorXd& scale, double damping) {
+  const Eigen::VectorXd inverse = scale.cwiseInverse();
+  Eigen::MatrixXd damped = inverse.asDiagonal() * at.square * inverse.asDiagonal();
+  damped.diagonal().array() += damping;
+  return damped.llt().solve(inverse.cwiseProduct(at.gradient)).norm();
+}
+
+/// Where the cost is least along a step, in parts of it, by its slope and what it came to.
+double least_along(double slope, double actual_fall) {
+  const double curvature = -actual_fall - slope;
+  return curvature > 0.0 ? std::clamp(-0.5 * slope / curvature, kLeastShrink, kMostShrink)
+                         : kMostShrink;
+}
+
+}  // namespace
+
+Descent descend_adaptively(const DescentOptions& options, std::vector<double>& z) {
+  const auto began = std::chrono::steady_clock::now();
+  Descent result;
+  const auto enough = [&](double cost, double relative_change) {
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - began;
+    return options.enough &&
+           options.enough({result.iterations, cost, relative_change, taken.count()});
+  };
+  const auto n = static_cast<Eigen::Index>(z.size());
+  auto here = point_at(options, Eigen::Map<const Eigen::VectorXd>(z.data(), n));
+  if (!here) {
+    result.failure = "the optimiser gave up: the start cannot be evaluated";
+    return result;
+  }
+  Eigen::VectorXd scale = Eigen::VectorXd::Zero(n);
+  rescale(*here, scale);
+  double radius = damped_length(*here, scale, 1.0 / options.trust_radius);
+  Eigen::MatrixXd second = Eigen::MatrixXd::Zero(n, n);  // S
+  bool augmented = false;
+  bool switched = false;  // at this point, after a step that was refused
+  int invalid = 0;
+  bool ended = enough(here->cost, 0.0);
+  while (!ended && !result.converged && result.iterations < options.most_iterations) {
+    const QuadraticModel plain{here->square, here->gradient};
+    const QuadraticModel full{here->square + second, here->gradient};
+    const BoxStep tried = box_step(augmented ? full : plain,
+                                   {-here->z, Eigen::VectorXd::Ones(n) - here->z, scale, radius});
+    const double length = scale.cwiseProduct(tried.step).norm();
+    const double shortest =
+        options.parameter_tolerance * (here->z.norm() + options.parameter_tolerance);
+    result.converged = tried.fall <= 0.0 || tried.step.norm() <= shortest;
+    if (result.converged) break;
+    ++result.iterations;
+    auto there = point_at(options, (here->z + tried.step).cwiseMax(0.0).cwiseMin(1.0));
+    if (!there) {
+      ended = enough(here->cost, 0.0);
+      radius = kMostShrink * kMostShrink * length;
+      if (++invalid < kMostInvalid) continue;
+      result.failure = "the optimiser gave up: no point around can be evaluated";
+      break;
+    }
+    invalid = 0;
+    const double fall = here->cost - there->cost;
+    const double gain = fall / tried.fall;
+    const double other = (augmented ? plain : full).fall(tried.step);
+    const bool other_nearer = kNearer * std::abs(fall - other) < std::abs(fall - tried.fall);
+    learn(*here, *there, scale, second);  // from a step that is refused, too
+    if (gain <= kTaken) {
+      ended = enough(here->cost, 0.0);
+      result.converged = std::max(std::abs(fall), tried.fall) <= kNoise * here->cost;
+      if (other_nearer && !switched) {
+        augmented = !augmented;
+        switched = true;
+      } else {
+        radius = length * least_along(here->gradient.dot(tried.step), fall);
+      }
+      continue;
+    }
+    if (gain < kPoorGain) {
+      radius = length * least_along(here->gradient.dot(tried.step), fall);
+    } else if (gain > kGoodGain) {
+      radius = std::max(radius, kRadiusGrowth * length);
+    }
+    if (other_nearer) augmented = !augmented;
+    switched = false;
+    const double relative = fall / here->cost;
+    here = std::move(there);
+    rescale(*here, scale);
+    ended = enough(here->cost, relative);
+    result.converged = !tried.at_radius && relative <= options.function_tolerance &&
+                       tried.fall <= options.function_tolerance * here->cost;
+  }
+  Eigen::Map<Eigen::VectorXd>(z.data(), n) = here->z;
+  return result;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,85 @@
+#include "calib/search/obstacle.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+#include "calib/problem/scaled_svd.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// A direction is a valley where a step along it changes the residuals by less than this fraction
+/// of what a step of one parameter does.
+constexpr double kValley = 0.1;
+/// Least part of a valley, as a square of its direction, that names a parameter.
+constexpr double kPart = 0.1;
+
+/// Unknowns along which the valley leads that holds most of the way which is left; empty where no
+/// valley does.
+std::vector<std::size_t> valley(const Problem& problem, Linearisation system,
+                                const OptimumCheck& check) {
+  for (std::size_t j = 0; j < check.active_bound.size(); ++j) {
+    if (check.active_bound[j]) system.jacobian.col(static_cast<Eigen::Index>(j)).setZero();
+  }
+  const ScaledSvd svd(system.jacobian, rank_threshold(problem.tolerance));
+  if (svd.rank() == 0) return {};
+  const Eigen::VectorXd way =
+      svd.explained(system.residual).cwiseQuotient(svd.singular_values().head(svd.rank()));
+  Eigen::Index longest = 0;
+  way.cwiseAbs().maxCoeff(&longest);
+  if (svd.singular_values()(longest) > kValley) return {};
+  const Eigen::VectorXd parts = svd.V().col(longest).cwiseAbs2();
+  std::vector<std::size_t> unknowns(problem.map.unknowns().size());
+  std::iota(unknowns.begin(), unknowns.end(), std::size_t{0});
+  const auto part = [&](std::size_t j) { return parts(static_cast<Eigen::Index>(j)); };
+  std::stable_sort(unknowns.begin(), unknowns.end(),
+                   [&](std::size_t a, std::size_t b) { return part(a) > part(b); });
+  const auto end = std::find_if(unknowns.begin(), unknowns.end(),
+                                [&](std::size_t j) { return part(j) < kPart; });
+  return {unknowns.begin(), end};
+}
+
+}  // namespace
+
+std::string far_from_minimum(const Problem& problem, const Evaluation& evaluation,
+                             const OptimumCheck& check) {
+  if (check.is_minimum() || !evaluation.ok) return {};
+  std::string words = fmt::format(
+      "; a step would lower the cost by {:.2g} times the variance of a residual (a minimum leaves "
+      "{})",
+      check.fall_left, kMinimumLeaves);
+  const auto names = [&](const std::vector<std::size_t>& unknowns) {
+    std::vector<std::string> result;
+    for (const std::size_t j : unknowns) result.push_back(problem.name(j));
+    return fmt::format("{}", fmt::join(result, ", "));
+  };
+  const auto along = valley(problem, linearise(problem, evaluation), check);
+  if (along.size() == 1) {
+    words += fmt::format(
+        "; what is left of the way is along {}, which hardly moves the records: a prior or a known "
+        "value would end it",
+        names(along));
+  } else if (along.size() > 1) {
+    words += fmt::format(
+        "; what is left of the way is a valley along {}, which the records hardly tell apart: a "
+        "prior or a known value of one of them would end it",
+        names(along));
+  }
+  std::vector<std::size_t> bounded;
+  for (std::size_t j = 0; j < check.active_bound.size(); ++j) {
+    if (check.active_bound[j]) bounded.push_back(j);
+  }
+  if (!bounded.empty()) {
+    words += fmt::format(
+        "; at a bound that the cost presses against: {}: a wider bound, a prior or a known value",
+        names(bounded));
+  }
+  return words;
+}
+
+}  // namespace rigcal::calib
