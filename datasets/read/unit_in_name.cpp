@@ -139,20 +139,31 @@ std::size_t begin_of_last(std::string_view path) {
   return begin;
 }
 
-/// Behind others: a last "pa" is no chamber.
+/// Of units in one name, those that may be words or names yield to others: "position in mm".
+int weight_of(std::string_view unit) {
+  if (unit == "pa" || is_among(kWords, unit)) return 0;
+  return unit.size() == 1 ? 1 : 2;
+}
+
+/// The last of those of most weight. Behind others: a last "pa" is no chamber.
 std::optional<UnitInName> behind_a_word(std::string_view name) {
   const std::size_t first = begin_of_last(name);
   std::vector<Part> parts = name_parts(name.substr(first));
   for (Part& part : parts) part = {part.begin + first, part.end + first};
+  std::optional<UnitInName> found;
+  int most = 0;
   for (std::size_t i = 1; i < parts.size(); ++i) {
     const std::string_view text = name.substr(parts[i].begin, parts[i].end - parts[i].begin);
     const std::string_view before =
         name.substr(parts[i - 1].begin, parts[i - 1].end - parts[i - 1].begin);
     const bool is_pascal = text == "pa" && i + 1 == parts.size();
     if (!is_pascal && (!is_among(kUnits, text) || is_chamber(text, before))) continue;
-    return UnitInName{is_pascal ? "Pa" : unit_of_text(text), parts[i].begin, parts[i].end, false};
+    const int weight = weight_of(text);
+    if (weight < most) continue;
+    most = weight;
+    found = UnitInName{is_pascal ? "Pa" : unit_of_text(text), parts[i].begin, parts[i].end, false};
   }
-  return std::nullopt;
+  return found;
 }
 
 }  // namespace

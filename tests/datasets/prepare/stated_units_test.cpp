@@ -54,6 +54,8 @@ TEST_CASE("require_stated_unit: the same unit written otherwise is the same", "[
     CAPTURE(unit, name);
     CHECK(is_taken(stated_unit(unit), name));
   }
+  CHECK(is_taken(stated_unit("mm"), "Position in mm"));
+  CHECK_FALSE(is_taken(stated_unit("mm"), "Position in cm"));
   // No unit, a number, or a word that only looks like a unit of another dimension.
   for (const char* name : {"x", "p (ist)", "p_in", "p_s", "p (A)", "u [%]", "p [-]", "p (in)"}) {
     CAPTURE(name);

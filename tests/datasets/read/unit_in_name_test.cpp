@@ -29,6 +29,13 @@ TEST_CASE("unit_in_name: in brackets, or behind a word", "[datasets]") {
                                 {"x_mm", "mm", false},
                                 {"/run1/x_mm", "mm", false},
                                 {"Log!pA_bar_03", "bar", false},
+                                {"Position in mm", "mm", false},
+                                {"t in s", "s", false},
+                                {"rod_m_1_mm", "mm", false},
+                                {"p_bar_A", "bar", false},
+                                {"p_bar_s_pa", "bar", false},
+                                {"x_in", "in", false},
+                                {"p_pa", "Pa", false},
                                 {"p (in)", "in", false},
                                 {"t (min)", "min", false}};
   for (const Case& each : cases) {
