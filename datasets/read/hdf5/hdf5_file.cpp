@@ -410,6 +410,12 @@ std::vector<double> Hdf5File::unpacked(hid_t dataset, std::vector<double> values
     if (const auto found = hdf5_numbers(dataset, attribute))
       packing.missing.insert(packing.missing.end(), found->begin(), found->end());
   if (const auto fill = own_fill_value(dataset)) packing.missing.push_back(*fill);
+  const Hdf5Id type(H5Dget_type(dataset), H5Tclose);
+  if (H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_size(type.get()) == sizeof(float)) {
+    // -999.9 as the attribute has it is another number than what such a dataset keeps of it.
+    for (double& each : packing.missing)
+      if (std::abs(each) <= std::numeric_limits<float>::max()) each = static_cast<float>(each);
+  }
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::find(packing.missing.begin(), packing.missing.end(), values[i]) !=
         packing.missing.end())

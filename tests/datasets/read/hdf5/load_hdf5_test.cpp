@@ -311,6 +311,8 @@ TEST_CASE("load_hdf5: numbers are unpacked, and missing ones refused", "[dataset
     file.number("/gone", "_FillValue", 3);
     file.number("/lost", "missing_value", 4);
     file.number("/lost", "scale_factor", 100);
+    file.array("/single", {1, -999.9}, {}, H5T_IEEE_F32LE);
+    file.number("/single", "missing_value", -999.9);
   }
   CHECK(read_columns(path, {"/x", "/lines"}) == Table{{-9.5, -9, -8.5, -8}, {1, 2, 3, 4}});
   CHECK_THAT(read_refusal(path, {"/text"}),
@@ -318,6 +320,7 @@ TEST_CASE("load_hdf5: numbers are unpacked, and missing ones refused", "[dataset
   CHECK_THAT(read_refusal(path, {"/gone"}),
              Contains("row 3 of '/gone' is 3, which stands for a missing value"));
   CHECK_THAT(read_refusal(path, {"/lost"}), Contains("row 4 of '/lost' is 4, which stands for"));
+  CHECK_THAT(read_refusal(path, {"/single"}), Contains("row 2 of '/single' is -999.9"));
 }
 
 TEST_CASE("load_hdf5: what was written in part only is refused", "[datasets]") {
