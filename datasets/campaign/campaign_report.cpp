@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "datasets/campaign/campaign_sections.hpp"
+#include "datasets/campaign/toml/quantity_range.hpp"
 
 namespace rigcal::datasets {
 namespace {
@@ -91,6 +92,9 @@ void apply_sensors(const TomlNode& root, Campaign& campaign) {
     const StatedUncertainty stated = stated_uncertainty(text->name(), info(*channel).unit);
     if (stated.gain_sd && *stated.gain_sd >= 1.0)
       text->fail_type("an uncertainty of the gain below 100 % (k = 1)");
+    if (stated.offset_sd && *stated.offset_sd > kDisturbances.upper)
+      text->fail_type(fmt::format("an uncertainty of at most {:g} {} (k = 1)", kDisturbances.upper,
+                                  info(*channel).unit));
     if (stated.gain_sd)
       statements.merge(*channel, "gain_sd", {*stated.gain_sd, *text}, setting->second.gain_sd);
     if (stated.offset_sd)

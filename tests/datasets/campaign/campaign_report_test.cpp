@@ -70,11 +70,20 @@ TEST_CASE("load_campaign: the uncertainty of a sensor is that of its channel", "
   CHECK(loaded("0.3 % (k = 3)").offset_sd == 0.0);
   for (const char* other :
        {"0.02 mm", "0.1 % of full scale (k = 2)", "0,02 mm (k = 2)", "0.02 bar (k = 2)",
-        "-0.02 mm (k = 2)", "0.02 mm (k = 0)", "0.02 (k = 2)", "see certificate (k = 2)"}) {
+        "-0.02 mm (k = 2)", "0.02 mm (k = 0)", "0.02 (k = 2)", "see certificate (k = 2)",
+        "inf mm (k = 2)", "nan % (k = 2)", "0.02 mm (k = inf)"}) {
     CAPTURE(other);
     CHECK(loaded(other).offset_sd == 0.0);
     CHECK(loaded(other).gain_sd == 0.0);
     CHECK_FALSE(datasets::stated_uncertainty(other, "m").problem.empty());
+  }
+}
+
+TEST_CASE("load_campaign: an uncertainty that no sensor has is refused", "[datasets]") {
+  for (const char* large : {"1e300 mm (k = 2)", "0.02 mm (k = 1e-300)", "250 % (k = 2)"}) {
+    CAPTURE(large);
+    CHECK_THROWS_WITH(load_text(kExample + kReport + "uncertainty = \"" + large + "\"\n"),
+                      Catch::Contains("uncertainty") && Catch::Contains("(k = 1)"));
   }
 }
 
