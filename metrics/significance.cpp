@@ -11,11 +11,14 @@
 namespace rigcal::metrics {
 
 double effective_freedom(std::span<const ErrorPart> parts) {
+  double largest = 0.0;
+  for (const ErrorPart& part : parts) largest = std::max(largest, part.variance);
   double sum = 0.0;
   double weighted = 0.0;
   for (const ErrorPart& part : parts) {
-    sum += part.variance;
-    weighted += part.variance * part.variance / part.freedom;
+    const double fraction = largest > 0.0 ? part.variance / largest : 0.0;  // its square is finite
+    sum += fraction;
+    weighted += fraction * fraction / part.freedom;
   }
   return weighted > 0.0 ? std::clamp(sum * sum / weighted, 1.0, kManyDegrees) : kManyDegrees;
 }

@@ -13,6 +13,8 @@ namespace {
 
 /// Scatter about the line that is less probable than this is more than the errors tell.
 constexpr double kUpperQuartile = 0.25;
+/// Errors of which the scatter is more than this many squares are none of these points.
+constexpr double kMostChiSquare = 1e100;
 
 void require_points(std::span<const double> x, std::span<const double> y,
                     std::span<const EstimateError> errors, const Eigen::MatrixXd& common) {
@@ -61,6 +63,10 @@ Trend weighted_trend(std::span<const double> x, std::span<const double> y,
   trend.intercept = line(0) - line(1) * middle;
   const Eigen::VectorXd off = values - design * line;
   trend.chi_square = off.dot(root.solve(off));
+  if (!of_line.allFinite() || !(trend.chi_square < kMostChiSquare))
+    throw std::domain_error(
+        "weighted_trend: the errors are too far from each other, or from the "
+        "scatter about the line");
   const auto scatter_freedom = static_cast<double>(n - 2);
   trend.reduced_chi_square = trend.chi_square / scatter_freedom;
   if (chi_squared_exceedance(trend.chi_square, scatter_freedom) < kUpperQuartile) {

@@ -38,7 +38,8 @@ struct Trend {
 /// @param common   covariance of y by what moves all points together, shape (n)^2; empty: none
 /// @throws std::invalid_argument  fewer points, unequal shapes, an error that is not positive, a
 ///                                value that is not finite
-/// @throws std::domain_error      all x are equal
+/// @throws std::domain_error      all x are equal, or errors so far from each other or from the
+///                                scatter that no line follows
 Trend weighted_trend(std::span<const double> x, std::span<const double> y,
                      std::span<const EstimateError> errors, const Eigen::MatrixXd& common = {});
 

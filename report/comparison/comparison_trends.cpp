@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <stdexcept>
 
 #include "common/calendar.hpp"
 #include "metrics/trend.hpp"
@@ -60,7 +61,13 @@ void find_trend(const std::vector<StoredTrendPoint>& points,
                         : "not tested: the results share records, so they are not independent";
     return;
   }
-  const metrics::Trend trend = metrics::weighted_trend(x, y, errors);
+  metrics::Trend trend;
+  try {
+    trend = metrics::weighted_trend(x, y, errors);
+  } catch (const std::domain_error&) {  // of files that somebody has changed
+    result.reason = "the errors of the estimates are too far apart for a line";
+    return;
+  }
   result.slope = trend.slope;
   result.intercept = trend.intercept;
   result.standard_error = trend.slope_standard_error;

@@ -53,6 +53,12 @@ TEST_CASE("significance: a difference by few degrees of freedom is one of Studen
   // A value that is known exactly adds none.
   CHECK_THAT(error_of_difference({3.0, 4.0}, {}).freedom, WithinRel(4.0, 1e-12));
   CHECK(error_of_difference({3.0}, {4.0}).freedom == kManyDegrees);
+  // Whatever the unit.
+  for (const double unit : {1e-150, 1e-90, 1e90, 1e150}) {
+    CAPTURE(unit);
+    CHECK_THAT(error_of_difference({3.0 * unit, 4.0}, {4.0 * unit, 9.0}).freedom,
+               WithinRel(both.freedom, 1e-9));
+  }
 }
 
 namespace {

@@ -127,6 +127,17 @@ TEST_CASE("trend: an error that all points share is none of the slope", "[metric
   CHECK_THAT(shared.slope, WithinRel(0.1, 1e-9));
 }
 
+TEST_CASE("trend: of errors that are too far apart there is none", "[metrics]") {
+  for (const double size : {1e-160, 1e-170}) {
+    CAPTURE(size);
+    CHECK_THROWS_AS(weighted_trend(Values{0, 1, 2}, Values{0, 1, 3}, Errors{{1.0}, {size}, {size}}),
+                    std::domain_error);
+  }
+  CHECK_THROWS_AS(weighted_trend(Values{0, 1, 2}, Values{0, 1, 0}, Errors(3, {1e-100})),
+                  std::domain_error);
+  CHECK(weighted_trend(Values{0, 1, 2}, Values{0, 1, 0}, Errors(3, {1e-20})).p_value > 0.9);
+}
+
 TEST_CASE("trend: needs three points at different places", "[metrics]") {
   CHECK_THROWS_AS(weighted_trend(Values{0, 1}, Values{0, 1}, Errors(2, {1.0})),
                   std::invalid_argument);
