@@ -72,6 +72,22 @@ bool has_hash(const fs::path& file, const std::string& hash) {
   }
 }
 
+/// Before any work: no file takes the place of a folder.
+void require_no_folder(const fs::path& file) {
+  std::error_code unknown;
+  if (fs::is_directory(fs::symlink_status(file, unknown)))
+    throw WriteError(fmt::format("{}: cannot be written: is a folder", file.string()));
+}
+
+/// The manifest as it stands; nothing where it cannot be read, which only --force takes.
+std::optional<std::string> manifest_there(const fs::path& out) {
+  try {
+    return files_in(out)(kManifestFile);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 /// Puts a manifest back as it was, where that is possible: the longer one is as true.
 void restore(const fs::path& manifest, const std::optional<std::string>& text) noexcept {
   try {
@@ -125,6 +141,7 @@ HeldFolder::HeldFolder(const fs::path& out, Holding holding)
   descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   try {
     lock();
+    require_no_folder(out_ / kManifestFile);
     try {
       listed_ = manifest_files(out_);
     } catch (const InputError& error) {
@@ -170,8 +187,7 @@ bool HeldFolder::is_as_written(const std::string& path, const std::string& comin
   const fs::path file = out_ / path;
   std::error_code unknown;
   const fs::file_status status = fs::symlink_status(file, unknown);
-  // A folder in its place is an error of writing.
-  if (!fs::exists(status) || fs::is_directory(status)) return true;
+  if (!fs::exists(status)) return true;
   if (!fs::is_regular_file(status)) return false;
   const FileState state = state_of_file(file);
   const auto checked = checked_.find(path);
@@ -200,6 +216,7 @@ void HeldFolder::require_replaceable(const std::vector<ResultFile>& files) {
           fmt::format("{}: is a link, and links inside a folder of results are not followed; "
                       "remove it, or choose another folder",
                       (out_ / *link).string()));
+    require_no_folder(out_ / file.path);
     sweep(file.path);
     const std::string path = file.path.generic_string();
     if (holding_.force || is_as_written(path, file.sha256)) continue;
@@ -275,7 +292,7 @@ void ResultsInWriting::move_into_place() {
   }
   // Whatever ends the process between two renames, the manifest lists what stands then.
   const fs::path manifest = held_.out_ / kManifestFile;
-  const auto earlier = files_in(held_.out_)(kManifestFile);
+  const auto earlier = manifest_there(held_.out_);
   const Uninterrupted whole;
   writing_.add(manifest, manifest_text(left));
   write_file_atomically(manifest, manifest_text(all));

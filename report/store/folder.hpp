@@ -59,13 +59,14 @@ class HeldFolder {
   /// these folders, goes with the run's results where it is not among them and is as rigcal wrote
   /// it.
   ///
-  /// @throws UsageError  as require_replaceable()
+  /// @throws UsageError, WriteError  as require_replaceable()
   void plan(PlannedFiles planned);
 
   /// Refuses to replace what is not rigcal's, or was changed since, unless that is forced. A file
   /// whose bytes are those that shall come is no loss.
   ///
   /// @throws UsageError  naming the files; or a folder on the way to one is a link
+  /// @throws WriteError  a folder has the name of one
   void require_replaceable(const std::vector<ResultFile>& files);
 
   /// Removes what the one that lives has made, if it is empty: for a handler of signals, which ends

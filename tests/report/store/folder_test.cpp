@@ -1,5 +1,6 @@
 #include "report/store/folder.hpp"
 
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -128,6 +129,24 @@ TEST_CASE("HeldFolder: all files in the way are named before the work, some of m
   CHECK_NOTHROW(held.plan({{"a", "none"}, {"residuals"}}));
 }
 
+TEST_CASE("HeldFolder: a folder in the place of a file is named before the work", "[report]") {
+  const test::CommandFolder folder;
+  const auto out = folder.work() / "out";
+  for (const bool force : {false, true}) {
+    CAPTURE(force);
+    {
+      HeldFolder held(out, {"fit", force});
+      std::filesystem::create_directories(out / "report.html");
+      CHECK_THROWS_WITH(held.plan({{"report.html"}, {}}),
+                        EndsWith("report.html: cannot be written: is a folder"));
+      std::filesystem::remove(out / "report.html");
+    }
+    std::filesystem::create_directories(out / kManifestFile);
+    CHECK_THROWS_AS(HeldFolder(out, {"fit", force}), WriteError);
+    std::filesystem::remove(out / kManifestFile);
+  }
+}
+
 TEST_CASE("HeldFolder: what is changed while a run lasts is kept", "[report]") {
   const test::CommandFolder folder;
   write(folder.work(), {"fit"}, {}, {{"a", "x"}});
@@ -196,6 +215,11 @@ TEST_CASE("HeldFolder: a manifest that is none takes force", "[report]") {
     write(folder.work(), {"fit", true}, {}, {{"a", "x"}});
     CHECK(manifest_files(folder.work()).size() == 1);
   }
+  std::filesystem::remove(folder.work() / kManifestFile);
+  REQUIRE(::mkfifo((folder.work() / kManifestFile).c_str(), 0600) == 0);
+  CHECK_THROWS_AS(HeldFolder(folder.work(), {"fit"}), UsageError);
+  write(folder.work(), {"fit", true}, {}, {{"a", "x"}});
+  CHECK(manifest_files(folder.work()).size() == 1);
 }
 
 TEST_CASE("HeldFolder: may be a link, but follows none inside", "[report]") {

@@ -1,4 +1,5 @@
 #include <catch2/catch.hpp>
+#include <utility>
 
 #include "common/error.hpp"
 #include "report/store/json.hpp"
@@ -9,14 +10,20 @@ using namespace rigcal::report;
 
 namespace {
 
-/// A fit of mass and damping with these correlations.
+/// A fit of mass and damping, and of the valve gain where the matrix has three rows.
 Json fit_of(const Json& matrix) {
   Json fit = rigcal::test::stored_result();
-  Json damping = fit["parameters"][0];
-  damping["name"] = "damping_n_s_per_m";
-  damping["key"] = "damping";
-  fit["parameters"].push_back(damping);
-  fit["correlation"] = {{"names", {"mass_kg", "damping_n_s_per_m"}}, {"matrix", matrix}};
+  Json names = Json::array({"mass_kg"});
+  for (const auto& [name, key] :
+       {std::pair{"damping_n_s_per_m", "damping"}, std::pair{"valve_gain_m_per_v", "valve_gain"}}) {
+    if (names.size() == 2 && matrix.size() < 3) break;
+    Json more = fit["parameters"][0];
+    more["name"] = name;
+    more["key"] = key;
+    fit["parameters"].push_back(more);
+    names.push_back(name);
+  }
+  fit["correlation"] = {{"names", names}, {"matrix", matrix}};
   return fit;
 }
 
@@ -35,6 +42,7 @@ TEST_CASE("read_fit: correlations are some that can be", "[report]") {
                                               {{1.0, 0.5}, {-0.5, 1.0}},
                                               {{2.0, 0.5}, {0.5, 1.0}},
                                               {{1.0, 0.5}},
+                                              {{1.0, -0.5, 0.9}, {-0.5, 1.0, 0.9}, {0.9, 0.9, 1.0}},
                                               {{1.0}, {0.5}}}) {
     CAPTURE(matrix.dump());
     CHECK_THROWS_WITH(read(matrix), Contains("fit.json") && Contains("correlation.matrix"));
