@@ -38,8 +38,8 @@ Prepared prepare(const LeakProblem& problem, const datasets::RepeatRecords& reco
     for (const datasets::Record& single : records.singles) all.push_back(&single);
     result.residuals = healthy_residuals(problem, *result.condition, records.average, all);
     if (options.truth)
-      result.true_share =
-          share_at(problem.campaign, *result.condition, records.average, *options.truth);
+      result.true_share = share_at(problem.campaign, *result.condition, records.average,
+                                   *options.truth, options.cancel);
   } catch (const NoResultError& error) {
     result.failure = error.what();
   }

@@ -339,7 +339,7 @@ LeakScan leak_scan_of(const LeakProblem& leak_problem, const Condition& conditio
   const calib::Problem problem =
       problem_of(leak_problem, own_condition(leak_problem, condition), records);
   const double beyond = 1.3 * leak_problem.campaign.diagnosis.limits.back();
-  return scan_leaks(problem, problem.conditions.front(), beyond);
+  return scan_leaks(problem, problem.conditions.front(), beyond, leak_problem.cancel);
 }
 
 LeakCurve leak_curve_of(const LeakProblem& leak_problem, const Condition& condition,
@@ -405,7 +405,7 @@ Residuals healthy_residuals(const LeakProblem& leak_problem, const Condition& co
 }
 
 double share_at(const Campaign& campaign, const Condition& condition, const Record& record,
-                const std::vector<datasets::FittedValue>& values) {
+                const std::vector<datasets::FittedValue>& values, const std::atomic<bool>* cancel) {
   const std::vector<Record> records{record};
   calib::Problem problem = calib::make_problem(campaign, records, {&condition}, true, nullptr);
   calib::ProblemCondition& prepared = problem.conditions.front();
@@ -416,7 +416,7 @@ double share_at(const Campaign& campaign, const Condition& condition, const Reco
                                           : condition.leak_level.value_or(""));
     if (here) prepared.values.set(value.index, value.value);
   }
-  return steady_leak(problem, prepared, prepared.values, {}).share;
+  return steady_leak(problem, prepared, prepared.values, {}, cancel).share;
 }
 
 }  // namespace rigcal::diagnosis

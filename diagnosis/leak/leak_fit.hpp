@@ -127,6 +127,7 @@ double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
 
 /// Share of the servo flow that leaks in a condition at given values: of a truth that is known.
 double share_at(const datasets::Campaign& campaign, const datasets::Condition& condition,
-                const datasets::Record& record, const std::vector<datasets::FittedValue>& values);
+                const datasets::Record& record, const std::vector<datasets::FittedValue>& values,
+                const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace rigcal::diagnosis

@@ -23,14 +23,15 @@ struct Candidate {
 };
 
 Candidate simulate_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
-                        double coefficient) {
+                        double coefficient, const std::atomic<bool>* cancel) {
   model::ParameterValues values = condition.values;
   values.set("leakage_coefficient", coefficient);
   std::vector<model::Output> outputs = condition.outputs;
   outputs.push_back(model::Output::servo_flow);
   outputs.push_back(model::Output::leakage_flow);
-  const auto run = model::simulate(condition.rig, values, {}, condition.inputs,
-                                   condition.record->time_s, outputs, problem.simulation_options());
+  const auto run =
+      model::simulate(condition.rig, values, {}, condition.inputs, condition.record->time_s,
+                      outputs, problem.simulation_options(cancel));
   if (!run.ok()) {
     throw NoResultError(fmt::format(
         "condition \"{}\" could not be simulated with a leakage coefficient of {:g}: {} at {:g} s",
@@ -55,7 +56,7 @@ Candidate simulate_leak(const calib::Problem& problem, const calib::ProblemCondi
 }  // namespace
 
 LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition& condition,
-                    double share_above) {
+                    double share_above, const std::atomic<bool>* cancel) {
   if (!(condition.values["leakage_area"] > 0.0)) {
     throw NoResultError(fmt::format(
         "condition \"{}\": leakage_area is 0 m2, and a leak is the coefficient times this area, so "
@@ -63,21 +64,23 @@ LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition
         "leakage_area=\"1 mm2\"",
         condition.condition->id));
   }
-  Candidate best = simulate_leak(problem, condition, 0.0);
+  const auto at = [&](double coefficient) {
+    return simulate_leak(problem, condition, coefficient, cancel);
+  };
+  Candidate best = at(0.0);
   // The coefficient says nothing without its area: the range begins where a thousandth leaks.
   double coefficient = kFirst;
-  Candidate point = simulate_leak(problem, condition, coefficient);
-  while (point.share > 1e-3 && coefficient > 1e-12)
-    point = simulate_leak(problem, condition, coefficient *= 0.1);
+  Candidate point = at(coefficient);
+  while (point.share > 1e-3 && coefficient > 1e-12) point = at(coefficient *= 0.1);
   while (point.share < 2e-4 && coefficient < kLargest)
-    point = simulate_leak(problem, condition, coefficient = std::min(kLargest, 5.0 * coefficient));
+    point = at(coefficient = std::min(kLargest, 5.0 * coefficient));
   while (true) {
     const bool is_better = point.cost < best.cost;
     if (is_better) best = point;
     if ((point.share >= share_above && !is_better) || coefficient >= kLargest) break;
     // Coarser steps where the share is small and all but proportional to the coefficient.
     coefficient = std::min(kLargest, coefficient * (point.share < 0.02 ? 2.0 : kRatio));
-    point = simulate_leak(problem, condition, coefficient);
+    point = at(coefficient);
   }
   return {best.coefficient, coefficient};
 }

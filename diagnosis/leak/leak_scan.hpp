@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+
 #include "calib/problem/problem.hpp"
 
 namespace rigcal::diagnosis {
@@ -14,8 +16,9 @@ struct LeakScan {
 /// passes `share_above` and a larger leak fits worse, or no more flow can leak.
 ///
 /// @param condition    whose unknowns keep their start values
-/// @throws NoResultError  a run fails, moves no oil, or has a single sample that counts
+/// @param cancel       ends what is simulated when it becomes true; may be null
+/// @throws NoResultError  a run fails or is ended, moves no oil, or has a single sample that counts
 LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition& condition,
-                    double share_above);
+                    double share_above, const std::atomic<bool>* cancel = nullptr);
 
 }  // namespace rigcal::diagnosis

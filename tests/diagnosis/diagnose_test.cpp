@@ -248,3 +248,16 @@ TEST_CASE("diagnose: a record of one sample is told to be too short", "[diagnosi
   for (const auto& record : two.records)
     CHECK_THAT(record.fit.failure, !Catch::Contains("one sample counts"));
 }
+
+TEST_CASE("diagnose: a flag ends it between records, and says so of each", "[diagnosis]") {
+  const Campaign campaign = small_campaign();
+  const auto records = records_of(campaign);
+  std::atomic<bool> flag{false};
+  diagnosis::DiagnosisOptions options;
+  options.cancel = &flag;
+  options.progress = [&](int done, int) { flag = flag || done >= 1; };
+  const Diagnosis found = diagnosis::diagnose(campaign, records, known_rig(campaign), options);
+  const auto ended = std::count_if(found.records.begin(), found.records.end(),
+                                   [](const auto& record) { return !record.fit.ok(); });
+  CHECK(ended == static_cast<long>(found.records.size()));
+}

@@ -1,9 +1,11 @@
 #include "diagnosis/leak/leak_fit.hpp"
 
+#include <atomic>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 
+#include "common/error.hpp"
 #include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
@@ -179,4 +181,29 @@ TEST_CASE("leak_scan_of: the best leak is found beyond the share of the last cla
   const auto scan = diagnosis::leak_scan_of(problem, condition, made.record);
   CHECK_THAT(scan.best_coefficient, WithinRel(1.5, 0.2));
   CHECK(scan.largest_coefficient > scan.best_coefficient);
+}
+
+TEST_CASE("leaks: whatever simulates them ends with the flag", "[diagnosis]") {
+  const HealthySine made = healthy_sine(0.2);
+  const diagnosis::RigFit rig = rig_of(made.campaign);
+  diagnosis::LeakProblem problem(made.campaign, rig);
+  const datasets::Condition& condition = problem.campaign.conditions.front();
+  std::atomic<bool> flag{false};
+  problem.cancel = &flag;
+  diagnosis::LeakFit leak;
+  leak.coefficient = 0.2;
+  leak.rig_moves = Eigen::VectorXd::Zero(1);
+  const auto make_all = [&](const auto& check) {
+    diagnosis::LeakMemo memo;
+    check([&] { diagnosis::leak_scan_of(problem, condition, made.record); });
+    check([&] { diagnosis::leak_curve_of(problem, condition, made.record, 0.2, 0.01, memo); });
+    check([&] { diagnosis::share_rig_error(problem, rig, condition, made.record, leak, 0.5); });
+    check([&] { diagnosis::healthy_residuals(problem, condition, made.record, {&made.record}); });
+    check([&] {
+      diagnosis::share_at(problem.campaign, condition, made.record, rig.values, problem.cancel);
+    });
+  };
+  make_all([](const auto& make) { CHECK_NOTHROW(make()); });
+  flag = true;
+  make_all([](const auto& make) { CHECK_THROWS_AS(make(), NoResultError); });
 }
