@@ -30,21 +30,25 @@ std::vector<Parameter> campaign_parameters(const Campaign& self) {
 CampaignPtr load_campaign(const std::filesystem::path& campaign,
                           const std::optional<std::filesystem::path>& data,
                           const std::optional<py::dict>& set,
-                          const std::optional<std::vector<std::string>>& free) {
+                          const std::optional<std::vector<std::string>>& free,
+                          const std::optional<std::filesystem::path>& root) {
   require_path("campaign", campaign);
   require_path("data", data);
+  require_path("root", root);
   if (free && free->empty())
     throw py::value_error("free: found an empty list, expected names of parameters, or None");
   auto loaded = std::make_shared<Campaign>();
   report::CampaignChoice& choice = loaded->choice;
   choice.campaign = campaign;
   choice.data = data.value_or("");
+  choice.root = root.value_or("");
   choice.set = assignments(set);
   choice.free = free.value_or(std::vector<std::string>());
   loaded->call = "rigcal.load(" + std::string(py::repr(decoded(campaign.string())));
   if (data) loaded->call += ", " + written("data", decoded(data->string()));
   if (set) loaded->call += ", " + written("set", *set);
   if (free) loaded->call += ", " + written("free", py::cast(*free));
+  if (root) loaded->call += ", " + written("root", decoded(root->string()));
   loaded->call += ")";
   const py::gil_scoped_release released;
   loaded->campaign = report::load(choice);
@@ -138,6 +142,7 @@ CampaignClass bind_campaign(py::module_& module) {
            [](const Campaign& self) { return "<rigcal.Campaign \"" + self.campaign.name + "\">"; });
   module.def("load", &load_campaign, py::arg("campaign"), py::arg("data") = py::none(),
              py::arg("set") = py::none(), py::arg("free") = py::none(),
+             py::arg("root") = py::none(),
              R"(Reads and checks a campaign file.
 
 Args:
@@ -145,6 +150,7 @@ Args:
     data: where relative paths of records start; the file's folder if None
     set: values in place of the file's, {"mass": "60 kg"}, as --set of the command
     free: exactly these parameters are fitted, ["mass", "bulk_modulus"], as --free of the command
+    root: no campaign and no recording outside this folder is read, wherever links lead; None: no limit
 
 Raises:
     InputError: the file is wrong; with file, line and column

@@ -64,9 +64,7 @@ void add_force_option(CLI::App& verb, bool& force) {
 report::Holding holding(std::string verb, bool force, const PrintOptions& print) {
   report::Holding holding{std::move(verb), force};
   if (!print.quiet) {
-    holding.warn = [](const std::string& text) {
-      std::fputs(fmt::format("warning: {}\n", text).c_str(), stderr);
-    };
+    holding.warn = [](const std::string& text) { say(fmt::format("warning: {}\n", text)); };
   }
   return holding;
 }

@@ -24,6 +24,7 @@ def load(
     data: Path_ | None = None,
     set: dict[str, str | float] | None = None,
     free: Sequence[str] | None = None,
+    root: Path_ | None = None,
 ) -> Campaign: ...
 
 class Parameter:

@@ -61,6 +61,22 @@ TEST_CASE("--root: links are followed before it is decided", "[apps]") {
   CHECK_THAT(data.err, Contains("leads out of 'lab'"));
 }
 
+TEST_CASE("--root: neither is what stands beside a campaign", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_twin(folder, {{"use = \"validate\"", "use = \"diagnose\""}}).exit_code == 0);
+  REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "one", "--quiet"}).exit_code == 0);
+  const auto diagnose = [&] {
+    return folder.run({"diagnose", "twin/campaign.toml", "--fit", "one/fit.json", "--root", "twin",
+                       "--out", "out", "--force", "--quiet"});
+  };
+  CHECK(diagnose().exit_code == 0);
+  fs::rename(folder.work() / "twin/truth.json", folder.work() / "truth.json");
+  fs::create_symlink("../truth.json", folder.work() / "twin/truth.json");
+  const Outcome outcome = diagnose();
+  CHECK(outcome.exit_code == 2);
+  CHECK_THAT(outcome.err, Contains("truth.json: leads out of 'twin'"));
+}
+
 TEST_CASE("--root: batch passes it on to every rig", "[apps]") {
   const CommandFolder folder;
   write_in_lab(folder, "../../secret.txt");

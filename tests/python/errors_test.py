@@ -67,6 +67,21 @@ def test_a_missing_recording(data: pathlib.Path, tmp_path: pathlib.Path) -> None
             call()
 
 
+def test_nothing_outside_of_root_is_read(data: pathlib.Path, tmp_path: pathlib.Path) -> None:
+    assert rigcal.load(data / "campaign.toml", root=data).average()
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    (inside / "campaign.toml").write_text((data / "campaign.toml").read_text())
+    (inside / "records").symlink_to(data / "records")
+    with pytest.raises(rigcal.InputError, match="leads out of"):
+        rigcal.load(inside / "campaign.toml", root=inside).average()
+    with pytest.raises(rigcal.InputError, match="leads out of"):
+        rigcal.load(data / "campaign.toml", root=inside)
+    assert rigcal.load(inside / "campaign.toml").average()
+    with pytest.raises(ValueError):
+        rigcal.load(data / "campaign.toml", root="")
+
+
 def test_a_damaged_recording(data: pathlib.Path, tmp_path: pathlib.Path) -> None:
     file = changed(data, tmp_path, "[rig]", "[rig]")
     (tmp_path / "records").mkdir()

@@ -11,6 +11,7 @@
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/verb.hpp"
+#include "datasets/campaign/reading_root.hpp"
 #include "datasets/checks/record_warnings.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/obstacles.hpp"
@@ -119,6 +120,7 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
   const auto file = campaign.file.parent_path() / "truth.json";
   std::error_code error;
   if (!campaign.synthetic || !std::filesystem::exists(file, error)) return std::nullopt;
+  datasets::require_within(campaign.root, file);
   return report::read_truth(file, campaign.rig.plant);
 }
 
