@@ -1,0 +1,92 @@
+# The model as a WebAssembly module, with which pages simulate (model/wasm, report/live): the sources of the library of the model
+# without FMI, with the solvers of every processor, none of them with sensitivities. clang compiles it for a machine without
+# a system; of what Debian has for that, all three packages are needed (scripts/setup). Where one is missing there is no module, and
+# `rigcal --version` says so.
+option(RIGCAL_WASM "Make the model for pages that simulate, where its compiler is there" ON)
+if(NOT RIGCAL_WASM OR NOT CMAKE_BUILD_TYPE STREQUAL "Release")
+  return()
+endif()
+find_program(RIGCAL_WASM_CLANG NAMES clang++ clang++-19 clang++-14)
+find_program(RIGCAL_GZIP gzip)
+set(wasm ${CMAKE_CURRENT_BINARY_DIR}/wasm)
+# The headers of packages by themselves: those of the machine's own C library beside them are not meant.
+foreach(package boost fmt)
+  find_path(RIGCAL_WASM_${package} ${package} REQUIRED)
+  file(MAKE_DIRECTORY ${wasm}/include)
+  file(CREATE_LINK ${RIGCAL_WASM_${package}}/${package} ${wasm}/include/${package} SYMBOLIC)
+endforeach()
+get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+# Nothing unwinds a stack there: what is thrown ends the module (model/wasm/module.cpp).
+set(compile ${RIGCAL_WASM_CLANG} --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -fno-math-errno
+  -I${PROJECT_SOURCE_DIR} -isystem ${eigen} -isystem ${wasm}/include -DFMT_HEADER_ONLY -DFMT_EXCEPTIONS=0 -DEIGEN_NO_EXCEPTIONS
+  -DEIGEN_DONT_VECTORIZE)
+set(link ${RIGCAL_WASM_CLANG} --target=wasm32-wasi -mexec-model=reactor -O2 -Wl,--strip-all -Wl,--gc-sections)
+
+# Whether all of it goes together, tried once: with the headers that the model includes, and what stands for exceptions.
+if(RIGCAL_WASM_CLANG AND RIGCAL_GZIP AND NOT RIGCAL_WASM_COMPILES)
+  file(WRITE ${wasm}/try.cpp "#include <fmt/format.h>
+#include <Eigen/LU>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <stdexcept>
+#include <typeinfo>
+extern \"C\" void* __cxa_allocate_exception(std::size_t size) noexcept { return ::operator new(size); }
+extern \"C\" [[noreturn]] void __cxa_throw(void*, std::type_info*, void (*)(void*)) { __builtin_trap(); }
+extern \"C\" __attribute__((export_name(\"tried\"))) int tried(double x) {
+  if (x < 0.0) throw std::invalid_argument(fmt::format(\"{:g}\", x));
+  return 1;
+}
+")
+  execute_process(COMMAND ${compile} -c ${wasm}/try.cpp -o ${wasm}/try.o RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+  if(NOT failed)
+    execute_process(COMMAND ${link} ${wasm}/try.o -o ${wasm}/try.wasm RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+  endif()
+  if(NOT failed)
+    set(RIGCAL_WASM_COMPILES ON CACHE INTERNAL "clang has all that it needs for WebAssembly")
+  endif()
+endif()
+if(NOT RIGCAL_WASM_COMPILES)
+  message(STATUS "No model for pages: clang, lld, wasi-libc, libc++ and compiler-rt for WebAssembly are not all here")
+  return()
+endif()
+
+set(objects)
+
+# rigcal_wasm_object(name source definition...)
+function(rigcal_wasm_object name source)
+  set(object ${wasm}/${name}.o)
+  list(TRANSFORM ARGN PREPEND -D)
+  add_custom_command(OUTPUT ${object}
+    COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${compile} ${ARGN} -MD -MF ${object}.d -MT ${object} -c ${source} -o ${object}
+    DEPENDS ${source} DEPFILE ${object}.d COMMENT "WebAssembly: ${name}" VERBATIM)
+  set(objects ${objects} ${object} PARENT_SCOPE)
+endfunction()
+
+get_target_property(sources rigcal_model SOURCES)
+list(FILTER sources INCLUDE REGEX "^[a-z_/]+\\.cpp$")
+list(FILTER sources EXCLUDE REGEX "^fmi/")
+rigcal_solver_list(base solvers)
+foreach(source IN LISTS sources ITEMS wasm/module.cpp)
+  get_filename_component(name ${source} NAME_WE)
+  set(definitions)
+  if(source STREQUAL "simulate.cpp")
+    set(definitions "RIGCAL_base_SOLVERS=${solvers}")
+  endif()
+  rigcal_wasm_object(${name} ${CMAKE_CURRENT_SOURCE_DIR}/${source} ${definitions})
+endforeach()
+get_property(plants GLOBAL PROPERTY RIGCAL_base_PLANTS)
+list(REMOVE_DUPLICATES plants)
+foreach(plant IN LISTS plants)
+  get_property(header GLOBAL PROPERTY RIGCAL_HEADER_OF_${plant})
+  get_property(sizes GLOBAL PROPERTY RIGCAL_base_SIZES_OF_${plant})
+  foreach(states IN LISTS sizes)
+    # No width of sensitivities: none is ever asked for.
+    rigcal_wasm_object(${plant}_${states} ${CMAKE_CURRENT_SOURCE_DIR}/solver/simulate_sized.cpp RIGCAL_PLANT=${plant}
+      "RIGCAL_PLANT_HEADER=\"${header}\"" RIGCAL_STATES=${states} RIGCAL_INSTRUCTION_SET=base RIGCAL_WIDTHS=0)
+  endforeach()
+endforeach()
+add_custom_command(OUTPUT ${wasm}/model.wasm.gz
+  COMMAND ${link} ${objects} -o ${wasm}/model.wasm
+  COMMAND ${RIGCAL_GZIP} -9 -n -k -f ${wasm}/model.wasm
+  DEPENDS ${objects} COMMENT "WebAssembly: the module" VERBATIM)
+add_custom_target(rigcal_wasm DEPENDS ${wasm}/model.wasm.gz)
+set_property(GLOBAL PROPERTY RIGCAL_LIVE_MODULE ${wasm}/model.wasm.gz)

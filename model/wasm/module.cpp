@@ -1,0 +1,126 @@
+// The model as a WebAssembly module, for pages that simulate (report/live). All that crosses its
+// border are numbers in arrays: WebAssembly has no other types. One simulation at a time.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <typeinfo>
+#include <vector>
+
+#include "model/simulate.hpp"
+
+// A member of a WebAssembly module that the page calls.
+#define RIGCAL_EXPORT(name) extern "C" __attribute__((export_name(#name)))
+
+/// Of the page: takes the message of what went wrong. The module is not to be used again.
+extern "C" __attribute__((import_module("rigcal"), import_name("failed"))) void rigcal_failed(
+    const char* message);
+
+// WebAssembly of these compilers unwinds no stack. What the model throws where a caller breaks its
+// contract goes to the page as a message, and ends the module.
+extern "C" void* __cxa_allocate_exception(std::size_t size) noexcept {
+  return ::operator new(size);
+}
+extern "C" [[noreturn]] void __cxa_throw(void* thrown, std::type_info* type, void (*)(void*)) {
+  const bool has_message = *type == typeid(std::invalid_argument) ||
+                           *type == typeid(std::logic_error) || *type == typeid(std::out_of_range);
+  rigcal_failed(has_message ? static_cast<std::exception*>(thrown)->what() : type->name());
+  __builtin_trap();
+}
+
+namespace {
+
+using namespace rigcal::model;
+
+/// Numbers of an input before its samples: kind, samples, amplitude, frequency and end frequency
+/// [Hz], sweep time [s], whether the sweep is logarithmic.
+constexpr std::size_t kInputNumbers = 7;
+enum class InputKind { constant, sine, square, chirp, held, linear };
+
+Signal signal_of(const double* numbers) {
+  const auto samples = static_cast<std::size_t>(numbers[1]);
+  const double amplitude = numbers[2];
+  const double frequency_hz = numbers[3];
+  const auto column = [&](std::size_t index) {
+    const double* begin = numbers + kInputNumbers + index * samples;
+    return std::vector<double>(begin, begin + samples);
+  };
+  switch (static_cast<InputKind>(numbers[0])) {
+    case InputKind::constant:
+      return Signal::constant(amplitude);
+    case InputKind::sine:
+      return Signal::sine(amplitude, frequency_hz);
+    case InputKind::square:
+      return Signal::square(amplitude, frequency_hz);
+    case InputKind::chirp:
+      return Signal::chirp(amplitude, frequency_hz, numbers[4], numbers[5], numbers[6] != 0.0);
+    case InputKind::held:
+      return Signal::held(column(0), column(1));
+    case InputKind::linear:
+      return Signal::linear(column(0), column(1));
+  }
+  throw std::invalid_argument("no such input");
+}
+
+std::optional<Signal> optional_signal_of(const double* numbers) {
+  return numbers == nullptr ? std::nullopt : std::optional(signal_of(numbers));
+}
+
+Simulation last_run;
+
+}  // namespace
+
+/// Room for so many doubles.
+RIGCAL_EXPORT(allocate) double* allocate(std::size_t count) { return new double[count]; }
+RIGCAL_EXPORT(release) void release(const double* numbers) { delete[] numbers; }
+
+RIGCAL_EXPORT(parameter_count) int parameter_count(int plant) {
+  return static_cast<int>(parameter_table(static_cast<PlantKind>(plant)).size());
+}
+RIGCAL_EXPORT(output_count) int output_count() { return static_cast<int>(kAllOutputs.size()); }
+
+/// Simulates without sensitivities.
+///
+/// @param rig      plant, controller, initial state and method by their enumerators; tolerance;
+/// most seconds
+/// @param values   shape (2, parameters): SI values, and 1 where they are given
+/// @param drive    as kInputNumbers says, then times and values of its samples; `force`, `supply`
+/// and `tank` likewise, or null
+/// @param outputs  shape (samples, outputs), column by column, SI; written where the result is ok
+/// @return         SimulationStatus, 0 where it is ok
+RIGCAL_EXPORT(simulate)
+int simulate_rig(const double* rig, const double* values, const double* drive, const double* force,
+                 const double* supply, const double* tank, const double* times_s, int samples,
+                 double* outputs) {
+  const Rig kind{static_cast<PlantKind>(rig[0]), static_cast<ControllerKind>(rig[1]),
+                 static_cast<InitialState>(rig[2])};
+  SimulationOptions options;
+  options.method = static_cast<Method>(rig[3]);
+  options.tolerance = rig[4];
+  options.max_seconds = rig[5];
+  ParameterValues parameters = ParameterValues::defaults(kind.plant);
+  const std::size_t count = parameters.value.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (values[count + i] != 0.0) parameters.set(static_cast<int>(i), values[i]);
+  }
+  const SimulationInputs inputs{signal_of(drive), optional_signal_of(force),
+                                optional_signal_of(supply), optional_signal_of(tank)};
+  last_run =
+      rigcal::model::simulate(kind, parameters, {}, inputs,
+                              {times_s, static_cast<std::size_t>(samples)}, kAllOutputs, options);
+  if (last_run.ok()) std::copy_n(last_run.outputs.data(), last_run.outputs.size(), outputs);
+  return static_cast<int>(last_run.status);
+}
+
+// Of the last simulation.
+RIGCAL_EXPORT(reason) const char* reason() { return last_run.reason.c_str(); }
+RIGCAL_EXPORT(failed_at_s) double failed_at_s() { return last_run.failed_at_s; }
+RIGCAL_EXPORT(steps) int steps() {
+  return static_cast<int>(last_run.steps + last_run.rejected_steps);
+}
