@@ -22,6 +22,7 @@
 #include "common/printable.hpp"
 #include "common/suggest.hpp"
 #include "common/uninterrupted.hpp"
+#include "report/live/live_module.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/provenance.hpp"
 
@@ -57,6 +58,8 @@ constexpr std::array kVerbs{
             rigcal::app::add_parity},
     VerbRow{"plan", "What each record, and each planned one, tells about each parameter",
             rigcal::app::add_plan},
+    VerbRow{"explore", "Write a page in which the rig runs: values move, curves follow",
+            rigcal::app::add_explore},
     VerbRow{"export", "Write the calibrated rig for other simulators: an FMU",
             rigcal::app::add_export},
     VerbRow{"synthesize", "Make records of a known rig", rigcal::app::add_synthesize},
@@ -145,8 +148,12 @@ ExitCode help(const VerbRow& row, const Run& action, const Invocation& invocatio
 
 ExitCode run(int argc, char** argv) {
   CLI::App app{"Calibrates models of servo-hydraulic rigs from recorded runs", "rigcal"};
-  app.set_version_flag("--version", fmt::format("rigcal {} ({})", rigcal::report::version(),
-                                                rigcal::report::revision()));
+  app.set_version_flag(
+      "--version",
+      fmt::format("rigcal {} ({}{})", rigcal::report::version(), rigcal::report::revision(),
+                  rigcal::report::live_module().empty()
+                      ? "; no live pages: built without a WebAssembly compiler"
+                      : ""));
   app.require_subcommand(1);
   app.fallthrough();
   std::vector<std::tuple<const VerbRow*, CLI::App*, Run>> verbs;

@@ -40,5 +40,6 @@ Run add_compare(CLI::App& verb);
 Run add_report(CLI::App& verb);
 Run add_params(CLI::App& verb);
 Run add_export(CLI::App& verb);
+Run add_explore(CLI::App& verb);
 
 }  // namespace rigcal::app

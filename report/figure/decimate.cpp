@@ -13,7 +13,9 @@ namespace {
 constexpr std::uint16_t kNothing = 65535;
 constexpr double kSteps = 65534.0;
 
-std::string base64(const std::vector<std::uint8_t>& bytes) {
+}  // namespace
+
+std::string base64(std::span<const std::uint8_t> bytes) {
   constexpr std::string_view kDigits =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
@@ -27,8 +29,6 @@ std::string base64(const std::vector<std::uint8_t>& bytes) {
   }
   return text;
 }
-
-}  // namespace
 
 std::size_t Buckets::points() const {
   return size == 1 ? samples : 2 * ((samples + size - 1) / size);
@@ -121,6 +121,17 @@ std::string floats_base64(std::span<const double> values) {
   for (const double value : values) {
     const auto bits = std::bit_cast<std::uint32_t>(static_cast<float>(value));
     for (const unsigned shift : {0U, 8U, 16U, 24U})
+      bytes.push_back(static_cast<std::uint8_t>(bits >> shift & 255U));
+  }
+  return base64(bytes);
+}
+
+std::string doubles_base64(std::span<const double> values) {
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(8 * values.size());
+  for (const double value : values) {
+    const auto bits = std::bit_cast<std::uint64_t>(value);
+    for (unsigned shift = 0; shift < 64; shift += 8)
       bytes.push_back(static_cast<std::uint8_t>(bits >> shift & 255U));
   }
   return base64(bytes);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,5 +47,9 @@ Quantised quantised(std::span<const double> values);
 
 /// Values as 32-bit floats: little endian, base64.
 std::string floats_base64(std::span<const double> values);
+/// Values as they are: little endian, base64.
+std::string doubles_base64(std::span<const double> values);
+
+std::string base64(std::span<const std::uint8_t> bytes);
 
 }  // namespace rigcal::report

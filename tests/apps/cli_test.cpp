@@ -414,7 +414,7 @@ TEST_CASE("rigcal: help and version", "[apps]") {
   const Outcome help = folder.run({"--help"});
   CHECK(help.exit_code == 0);
   for (const char* verb : {"check", "average", "simulate", "fit", "validate", "leak-table",
-                           "fit-tables", "export", "synthesize", "init", "params"}) {
+                           "fit-tables", "explore", "export", "synthesize", "init", "params"}) {
     CHECK_THAT(help.out, Contains(verb));
     const Outcome of_verb = folder.run({verb, "--help"});
     CHECK(of_verb.exit_code == 0);

@@ -1,0 +1,142 @@
+#include "report/live/explore_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/error.hpp"
+#include "report/figure/decimate.hpp"
+#include "report/figure/svg.hpp"
+#include "report/live/live_module.hpp"
+#include "report/page/assets.hpp"
+#include "report/text/escape.hpp"
+
+namespace rigcal::report {
+namespace {
+
+constexpr std::size_t kStillPoints = 1500;
+
+/// JSON that no HTML parser can take for markup.
+std::string for_script(const Json& json) {
+  std::string text;
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace))
+    text += c == '<' ? std::string("\\u003c") : std::string(1, c);
+  return text;
+}
+
+std::string module_base64() {
+  const std::string_view module = live_module();
+  return base64(std::vector<std::uint8_t>(module.begin(), module.end()));
+}
+
+struct StillLine {
+  const char* name;
+  const char* style;
+  model::Output output;
+};
+
+void add_line(Plot& plot, const char* name, const char* style, const std::vector<double>& time_s,
+              std::vector<double> values, double si) {
+  const Buckets thin = buckets(values.size(), kStillPoints);
+  Trace trace = empty_trace(Trace::Kind::line, style, name);
+  trace.x = thinned_times(time_s, values, thin);
+  trace.y = thinned(values, thin);
+  for (double& y : trace.y) y /= si;
+  plot.traces.push_back(std::move(trace));
+}
+
+Plot still_plot(const LiveCase& shown, const model::Simulation& run, const std::string& title,
+                const std::string& unit, double si, std::span<const StillLine> lines) {
+  Plot plot;
+  plot.title = fmt::format("{}: {}", title, shown.name);
+  plot.x_label = "time [s]";
+  plot.y_label = fmt::format("{} [{}]", title, unit);
+  for (const StillLine& line : lines) {
+    const Eigen::VectorXd column = run.outputs.col(static_cast<Eigen::Index>(line.output));
+    add_line(plot, line.name, line.style, shown.task.time_s, {column.begin(), column.end()}, si);
+  }
+  return plot;
+}
+
+std::string still_figure(const LiveCase& shown, const std::string& title, const Plot& plot) {
+  return fmt::format(
+      "<figure class=\"plot still\"><figcaption>{}: {}</figcaption><div "
+      "class=\"static-plot\">{}</div></figure>",
+      title, escaped(shown.name), svg(plot));
+}
+
+/// What the page shows where no script runs, and on paper.
+std::string still_pictures(const LiveCase& shown, const model::Simulation& run) {
+  constexpr std::array kPosition{StillLine{"position", "model", model::Output::position}};
+  constexpr std::array kFlows{StillLine{"servo", "servo", model::Output::servo_flow},
+                              StillLine{"work", "model", model::Output::work_flow},
+                              StillLine{"leak", "leak", model::Output::leakage_flow}};
+  Plot position = still_plot(shown, run, "Position", "mm", 1e-3, kPosition);
+  if (auto reference_m = reference_of(shown.task); !reference_m.empty())
+    add_line(position, "reference", "reference", shown.task.time_s, std::move(reference_m), 1e-3);
+  constexpr double kLitrePerMinute = 1e-3 / 60.0;
+  return still_figure(shown, "Position", position) +
+         still_figure(shown, "Flows",
+                      still_plot(shown, run, "Flow", "L/min", kLitrePerMinute, kFlows));
+}
+
+/// A template with {{name}} replaced by the HTML of that name.
+std::string filled(std::string_view text, const std::map<std::string_view, std::string>& html) {
+  std::string result;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t open = std::min(text.find("{{", at), text.size());
+    result += text.substr(at, open - at);
+    if (open == text.size()) break;
+    const std::size_t close = text.find("}}", open);
+    result += html.at(text.substr(open + 2, close - open - 2));
+    at = close + 2;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::string explore_page(const datasets::Campaign& campaign, const std::vector<LiveCase>& cases,
+                         const std::string& command, const std::vector<InputFile>& inputs) {
+  if (live_module().empty())
+    throw UsageError(
+        "this rigcal was built without the model for pages: expected one that was built where "
+        "clang, lld, wasi-libc and libc++ for WebAssembly are installed (scripts/setup)");
+  const LiveCase& shown = cases.front();
+  const SimulationTask& task = shown.task;
+  const model::Simulation run = model::simulate(task.rig, task.values, {}, task.inputs, task.time_s,
+                                                model::kAllOutputs, simulation_options(campaign));
+  if (!run.ok())
+    throw InputError(shown.condition.where,
+                     fmt::format("{}: cannot be simulated: {} at {:.6g} s: {}", shown.name,
+                                 to_string(run.status), run.failed_at_s, run.reason));
+  std::string inputs_html;
+  for (const InputFile& input : inputs)
+    inputs_html += fmt::format(" {}: SHA-256 {}.", escaped(input.path), input.sha256);
+  const std::string live = filled(asset("live.html"), {{"still_case", escaped(shown.name)},
+                                                       {"still", still_pictures(shown, run)}});
+  return filled(
+      asset("explore.html"),
+      {{"campaign", escaped(campaign.name)},
+       {"command", escaped(command)},
+       {"version", escaped(version())},
+       {"revision", escaped(revision().substr(0, 12))},
+       {"inputs", inputs_html},
+       {"live", live},
+       {"style", fmt::format("{}{}{}", asset("report.css"), asset("uPlot.css"), asset("live.css"))},
+       // Its licence asks for its notice in every copy, which each page is.
+       {"plot_library",
+        fmt::format("/*! uPlot\n\n{}*/\n{}", asset("uPlot.LICENSE"), asset("uPlot.js"))},
+       {"worker", std::string(asset("live_worker.js"))},
+       {"rig", for_script(live_rig(campaign, cases))},
+       {"module", module_base64()},
+       {"script", std::string(asset("live.js"))}});
+}
+
+}  // namespace rigcal::report

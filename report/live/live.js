@@ -1,0 +1,466 @@
+// The live model of a page: controls, the worker that simulates, and curves that follow.
+"use strict";
+(() => {
+  const rig = JSON.parse(document.getElementById("live-rig").textContent);
+  const $ = (id) => document.getElementById("live-" + id);
+  const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const make = (tag, attributes = {}, ...children) => {
+    const node = document.createElement(tag);
+    for (const [name, value] of Object.entries(attributes)) {
+      if (value === false || value == null) continue;
+      if (name === "text") node.textContent = value; else node.setAttribute(name, value === true ? "" : value);
+    }
+    node.append(...children);
+    return node;
+  };
+  const bytes = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
+  const digits = (value, count = 4) => value == null || !Number.isFinite(value) ? "–" : String(+value.toPrecision(count));
+  const problem = (text) => {
+    $("problem").textContent = text;
+    $("problem").hidden = !text;
+  };
+
+  // What the page is about: a case, the drive and the values of the parameters, all in SI.
+  const rows = new Map(rig.parameters.map((row) => [row.index, row]));
+  const byKey = new Map(rig.parameters.map((row) => [row.key, row]));
+  const driven = rig.controller === 1 ? {name: "reference", unit: "mm", si: 1e-3, si_unit: "m"} : {name: "command", unit: "V", si: 1, si_unit: "V"};
+  const fieldsOfDrive = [
+    {key: "frequency", label: "Frequency", unit: "Hz", si: 1, lower: 0.01, upper: 100, highest: 1000, scale: "log", made: true},
+    {key: "end_frequency", label: "End frequency", unit: "Hz", si: 1, lower: 0.01, upper: 100, highest: 1000, scale: "log", chirp: true, made: true},
+    {key: "amplitude", label: "Amplitude", unit: driven.unit, si: driven.si, lower: 0, upper: null, highest: 1e3, scale: "cubic", made: true},
+    {key: "duration", label: "Duration", unit: "s", si: 1, lower: 0.05, upper: 60, highest: 600, scale: "log", made: true},
+  ];
+  let state;
+  let tolerance = rig.tolerance;
+  const caseOf = (name) => rig.cases.find((each) => each.name === name) ?? rig.cases[0];
+
+  const begin = (chosen) => {
+    state = {
+      case: chosen.name, waveform: chosen.waveform, frequency: chosen.frequency, amplitude: chosen.amplitude,
+      duration: chosen.duration ?? 4 / chosen.frequency, end_frequency: chosen.end_frequency ?? 10 * chosen.frequency,
+      values: new Map(chosen.values),
+    };
+  };
+
+  // The state in the address: what differs from the case.
+  const driveKeys = ["waveform", "frequency", "amplitude", "duration", "end_frequency"];
+  const address = () => {
+    const chosen = caseOf(state.case);
+    const was = state;
+    begin(chosen);
+    const begun = state;
+    state = was;
+    const query = new URLSearchParams();
+    if (chosen !== rig.cases[0]) query.set("case", chosen.name);
+    for (const key of driveKeys) if (state[key] !== begun[key]) query.set(key, state[key]);
+    for (const [index, value] of state.values)
+      if (value !== begun.values.get(index)) query.set(rows.get(index).key, value);
+    if (tolerance !== rig.tolerance) query.set("tolerance", tolerance);
+    return query.toString();
+  };
+  const readAddress = () => {
+    const query = new URLSearchParams(location.hash.slice(1));
+    begin(caseOf(query.get("case")));
+    for (const [key, text] of query) {
+      const value = Number(text);
+      if (key === "waveform" && (rig.waveforms.includes(text) || (text === "recorded" && caseOf(state.case).recorded))) state.waveform = text;
+      if (text === "" || !Number.isFinite(value)) continue;
+      const field = fieldsOfDrive.find((each) => each.key === key);
+      if (field && value >= (field.key === "amplitude" ? 0 : 1e-3) && value <= field.highest) state[key] = value;
+      if (key === "tolerance" && value >= 1e-12 && value <= 1e-2) tolerance = value;
+      const row = byKey.get(key);
+      if (row && inLimits(row, value)) state.values.set(row.index, value);
+    }
+  };
+  const inLimits = (row, value) => value >= (row.lowest ?? -Infinity) && value <= (row.highest ?? Infinity);
+  let writing = 0;
+  const writeAddress = () => {
+    clearTimeout(writing);
+    writing = setTimeout(() => {
+      const text = address();
+      try { history.replaceState(null, "", text ? "#" + text : location.pathname + location.search); } catch { /* an embedded page may have no address */ }
+    }, 250);
+  };
+
+  // A control: a number in the unit of people, with a slider where it has a range.
+  const toSlider = ({lower, upper, scale}, value) => {
+    const v = Math.min(Math.max(value, lower), upper);
+    if (scale === "log") return Math.log(v / lower) / Math.log(upper / lower);
+    const part = (v - lower) / (upper - lower);
+    return scale === "cubic" ? Math.cbrt(part) : part;
+  };
+  const fromSlider = ({lower, upper, scale}, s) => {
+    const value = scale === "log" ? lower * (upper / lower) ** s : lower + (upper - lower) * (scale === "cubic" ? s ** 3 : s);
+    return +value.toPrecision(4);
+  };
+  /** Where the middle of the thumb is, which is 16 pixels wide. */
+  const place = (part) => `calc(8px + (100% - 16px) * ${part})`;
+  const controls = new Map();
+  /** @param about  {key, label, symbol, unit, si, slider, lowest, highest, get, set, begun} */
+  const control = (about) => {
+    const id = "live-of-" + about.key;
+    const number = make("input", {id, type: "number", step: "any", inputmode: "decimal", min: about.lowest == null ? null : about.lowest / about.si,
+                                  max: about.highest == null ? null : about.highest / about.si});
+    const label = make("label", {for: id, text: about.label});
+    if (about.symbol) label.append(make("span", {class: "symbol", text: about.symbol}));
+    const node = make("div", {class: "control"}, label,
+                      make("span", {class: "field"}, number, make("span", {class: "unit", text: about.unit})));
+    const range = about.slider && make("input", {type: "range", min: 0, max: 1, step: 0.001, "aria-label": `${about.label}, slider`});
+    const mark = range && make("span", {class: "mark"});
+    if (range) {
+      const slide = make("span", {class: "slide"});
+      if (about.interval) {
+        const [low, high] = about.interval.map((end) => toSlider(about.slider, end));
+        slide.append(make("span", {class: "interval", style: `left: ${place(low)}; width: max(3px, calc((100% - 16px) * ${high - low}))`, title: "95 % interval of the estimate"}));
+      }
+      slide.append(mark, range);
+      node.append(slide);
+    }
+    const show = (except) => {
+      const value = about.get();
+      if (except !== number) number.value = digits(value / about.si, 6);
+      if (range) {
+        if (except !== range) range.value = toSlider(about.slider, value);
+        range.setAttribute("aria-valuetext", `${digits(value / about.si)} ${about.unit}`);
+        mark.style.left = place(toSlider(about.slider, about.begun()));
+      }
+      node.classList.toggle("changed", value !== about.begun());
+      number.title = value === about.begun() ? "" : `was ${digits(about.begun() / about.si)} ${about.unit}`;
+    };
+    const take = (value, from) => {
+      about.set(value);
+      show(from);
+      changed();
+    };
+    number.addEventListener("input", () => { if (number.value !== "" && number.checkValidity()) take(+number.value * about.si, number); });
+    number.addEventListener("change", () => show());
+    range?.addEventListener("input", () => take(fromSlider(about.slider, +range.value), range));
+    controls.set(about.key, {show, node});
+    return node;
+  };
+  const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
+  const begunValue = (index) => new Map(caseOf(state.case).values).get(index);
+  const ofParameter = (row) => control({
+    key: row.key, label: capital(row.key.replaceAll("_", " ")), symbol: row.symbol, unit: row.unit, si: row.si, slider: row.slider, interval: row.interval,
+    lowest: row.lowest, highest: row.highest, get: () => state.values.get(row.index) ?? 0,
+    set: (value) => state.values.set(row.index, value), begun: () => begunValue(row.index) ?? 0,
+  });
+
+  const drawControls = () => {
+    controls.clear();
+    const leak = rows.get(rig.leak);
+    $("leak").replaceChildren(leak ? ofParameter(leak) : "");
+    const presets = [{name: "No leak", coefficient: 0}, ...rig.presets.filter((each) => each.coefficient > 0)];
+    $("presets").replaceChildren(...presets.map((each) => {
+      const button = make("button", {type: "button", text: each.name, "data-coefficient": each.coefficient, title: `leakage coefficient ${each.coefficient}`});
+      button.addEventListener("click", () => { state.values.set(rig.leak, each.coefficient); showAll(); changed(); });
+      return button;
+    }));
+    const choose = (id, label, options, get, set) => {
+      const select = make("select", {id}, ...options.map((name) => make("option", {value: name, text: name})));
+      select.value = get();
+      select.addEventListener("change", () => { set(select.value); });
+      return make("div", {class: "control"}, make("label", {for: id, text: label}), make("span", {class: "field"}, select));
+    };
+    const chosen = caseOf(state.case);
+    const parts = [];
+    if (rig.cases.length > 1) {
+      parts.push(choose("live-case", "Begin with", rig.cases.map((each) => each.name), () => state.case, (name) => {
+        begin(caseOf(name));
+        drawControls();
+        document.getElementById("live-case").focus();
+        changed();
+      }));
+    }
+    const waveforms = [...rig.waveforms, ...(chosen.recorded ? ["recorded"] : [])];
+    parts.push(choose("live-waveform", "Waveform", waveforms, () => state.waveform, (name) => {
+      state.waveform = name;
+      showAll();
+      changed();
+    }));
+    for (const field of fieldsOfDrive) {
+      const upper = field.upper ?? Math.max(5 * chosen.amplitude, 10 * field.si);
+      parts.push(control({...field, slider: {lower: field.lower, upper, scale: field.scale}, lowest: field.key === "amplitude" ? 0 : 1e-3, highest: field.highest,
+                          get: () => state[field.key], set: (value) => { state[field.key] = value; },
+                          begun: () => caseOf(state.case)[field.key] ?? state[field.key]}));
+    }
+    $("drive").replaceChildren(...parts);
+    const groups = [["estimates", "Estimates", true], ["controller", "Controller", true], ["rig", "Known values", false], ["sensors", "Sensors", false], ["initial", "Initial state", false]];
+    const values = document.querySelector(".live-values");
+    values.replaceChildren();
+    for (const [group, title, open] of groups) {
+      const of = rig.parameters.filter((row) => row.group === group && row.index !== rig.leak);
+      if (of.length) values.append(make("details", {class: "group", open}, make("summary", {text: title}), ...of.map(ofParameter)));
+    }
+    showAll();
+  };
+  const showAll = () => {
+    for (const each of controls.values()) each.show();
+    const made = state.waveform !== "recorded";
+    for (const field of fieldsOfDrive) controls.get(field.key).node.hidden = !made || (field.chirp && state.waveform !== "chirp");
+    document.getElementById("live-waveform").value = state.waveform;
+  };
+
+  // The request to the worker.
+  const kMostSamples = 20000;
+  const sampleRate = () => {
+    const chosen = caseOf(state.case);
+    const wanted = Math.max(chosen.rate ?? 0, 40 * state.frequency, state.waveform === "chirp" ? 40 * state.end_frequency : 0);
+    const most = Math.min(wanted || 1000, Math.max(5000, 40 * state.frequency * state.duration) / state.duration, kMostSamples / state.duration);
+    // A rate of few digits, so that the same can be asked of the command.
+    const step = 10 ** Math.floor(Math.log10(most));
+    return [8, 5, 4, 2.5, 2, 1].map((times) => times * step).find((rate) => rate <= most * (1 + 1e-12));
+  };
+  const numbersOf = (base64, Type) => new Type(bytes(base64).buffer);
+  const recordedOf = (chosen) => {
+    if (chosen.inputs) return chosen.inputs;
+    const times = numbersOf(chosen.recorded.times, Float64Array);
+    const inputs = {times};
+    for (const name of ["drive", "force", "supply", "tank"]) {
+      const signal = chosen.recorded[name];
+      if (signal) inputs[name] = {kind: signal.linear ? "linear" : "held", times, values: Float64Array.from(numbersOf(signal.values, Float32Array))};
+    }
+    return chosen.inputs = inputs;
+  };
+  const requestOf = () => {
+    const chosen = caseOf(state.case);
+    const request = {plant: rig.plant, controller: rig.controller, initial: chosen.initial, method: rig.method, tolerance, seconds: 10,
+                     values: [...state.values]};
+    if (state.waveform === "recorded") return {...request, ...recordedOf(chosen)};
+    const rate = sampleRate();
+    const count = Math.floor(state.duration * rate * (1 + 1e-9)) + 1;
+    request.times = Float64Array.from({length: count}, (_, i) => i / rate);
+    request.drive = {kind: state.waveform, amplitude: state.amplitude, frequency: state.frequency, end: state.end_frequency,
+                     sweep: state.duration, logarithmic: chosen.logarithmic ?? false};
+    return request;
+  };
+
+  let worker = null;
+  let running = null;
+  let waiting = null;
+  let next = 1;
+  const send = (message) => {
+    if (running) { waiting = message; return; }
+    running = message;
+    worker.postMessage({...message.data, id: message.id, leak: rig.leak, order: rig.outputs});
+  };
+  const simulate = () => {
+    const request = requestOf();
+    const asked = {id: next++, data: {request}, done: (answer) => show(request, answer)};
+    send(asked);
+  };
+  let planned = false;
+  const changed = () => {
+    writeAddress();
+    writeCommands();
+    if (planned) return;
+    planned = true;
+    requestAnimationFrame(() => { planned = false; simulate(); });
+  };
+
+  // Curves.
+  const output = (name) => rig.outputs.indexOf(name);
+  const pressures = rig.has_load_pressure
+    ? [{name: "load pressure", output: "load_pressure_pa", style: "model"}]
+    : [{name: "chamber A", output: "pressure_a_pa", style: "model"}, {name: "chamber B", output: "pressure_b_pa", style: "residual"}];
+  const plots = [
+    {title: "Position", unit: "mm", si: 1e-3, height: 220, lines: [
+      ...(rig.controller === 1 ? [{name: "reference", style: "reference", reference: true}] : []),
+      {name: "without a leak", style: "soft", healthy: true},
+      {name: "live", style: "model", output: "position_m", width: 1.8}]},
+    {title: "Flows", unit: "L/min", si: 1e-3 / 60, height: 180, lines: [
+      {name: "servo", style: "servo", output: "servo_flow_m3_per_s"},
+      {name: "work", style: "model", output: "work_flow_m3_per_s"},
+      {name: "leak", style: "leak", output: "leakage_flow_m3_per_s", width: 1.8}]},
+    {title: rig.has_load_pressure ? "Load pressure" : "Pressures", unit: "MPa", si: 1e6, height: 160, lines: pressures},
+    {title: "Parity residual: position without a leak minus live", unit: "mm", si: 1e-3, height: 140, lines: [
+      {name: "residual", style: "residual", residual: true}]},
+  ];
+  const driveValues = (request) => {
+    const {drive, times} = request;
+    if (drive.values) return drive.values;
+    const {amplitude: a, frequency: f} = drive;
+    const at = {
+      sine: (t) => a * Math.sin(2 * Math.PI * f * t),
+      square: (t) => Math.floor(2 * f * t + 1e-9) % 2 === 0 ? a : -a,
+      chirp: (t) => {
+        const {end, sweep} = drive;
+        const k = drive.logarithmic && end !== f ? Math.log(end / f) / sweep : 0;
+        return a * Math.sin(2 * Math.PI * (k ? f * Math.expm1(k * t) / k : f * t + (end - f) * t * t / (2 * sweep)));
+      },
+    }[drive.kind];
+    return Float64Array.from(times, at);
+  };
+  const scaled = (values, si) => values ? Float64Array.from(values, (v) => v / si) : null;
+  const dataOf = (plot, request, answer) => [request.times, ...plot.lines.map((line) => {
+    if (line.reference) return scaled(driveValues(request), plot.si);
+    if (line.healthy) return scaled(answer.healthy, plot.si) ?? request.times.map(() => NaN);
+    if (line.residual) {
+      const live = answer.outputs[output("position_m")];
+      return Float64Array.from(live, (x, i) => ((answer.healthy?.[i] ?? NaN) - x) / plot.si);
+    }
+    return scaled(answer.outputs[output(line.output)], plot.si);
+  })];
+  let charts = null;
+  const sync = "live";
+  const drawPlots = (request, answer) => {
+    const place = $("plots");
+    if (!charts) {
+      charts = plots.map((plot) => {
+        const figure = make("figure", {class: "plot made", role: "img"}, make("figcaption", {text: `${plot.title} [${plot.unit}]`}));
+        place.append(figure);
+        const axis = {stroke: css("--soft"), grid: {stroke: css("--rule"), width: 1}, ticks: {stroke: css("--rule")}, font: "11px system-ui, sans-serif"};
+        const chart = new uPlot({
+          width: figure.clientWidth || 600, height: plot.height,
+          series: [{label: "time", value: (_, v) => v == null ? "–" : digits(v) + " s"},
+                   ...plot.lines.map((line) => ({label: line.name, stroke: css("--" + line.style), width: line.width ?? 1.2, dash: line.reference ? [5, 3] : line.healthy ? [2, 2] : undefined,
+                                                 points: {show: false}, value: (_, v) => v == null ? "–" : `${digits(v)} ${plot.unit}`}))],
+          scales: {x: {time: false}},
+          axes: [{...axis, size: 28, values: (_, ticks) => ticks.map((t) => digits(t) + " s")}, {...axis, size: 56, values: (_, ticks) => ticks.map((t) => digits(t))}],
+          cursor: {sync: {key: sync, setSeries: false, scales: ["x", null]}, drag: {x: true, y: false}},
+        }, dataOf(plot, request, answer), figure);
+        chart.root.setAttribute("aria-hidden", "true");
+        return {plot, figure, chart};
+      });
+    } else {
+      for (const {plot, chart} of charts) chart.setData(dataOf(plot, request, answer));
+    }
+    for (const {plot, figure} of charts) {
+      const peaks = plot.lines.filter((line) => line.output).map((line) =>
+        `${line.name} up to ${digits(answer.outputs[output(line.output)].reduce((most, v) => Math.max(most, Math.abs(v)), 0) / plot.si)} ${plot.unit}`);
+      figure.setAttribute("aria-label", [plot.title, ...peaks].join(", "));
+    }
+  };
+
+  const classOf = (fraction) => rig.classes.find(({below}) => below == null || fraction < below)?.name ?? "";
+  let saying = 0;
+  const showNumbers = (request, answer) => {
+    const {flows} = answer;
+    const position = answer.outputs[output("position_m")];
+    const peak = (values) => values.reduce((most, v) => Math.max(most, Math.abs(v)), 0);
+    const rms = (values) => Math.sqrt(values.reduce((sum, v) => sum + v * v, 0) / values.length);
+    const perMinute = (flow) => `${digits(flow * 60e3, 3)} L/min`;
+    const fraction = flows.fraction == null ? null : 100 * flows.fraction;
+    const leakClass = flows.fraction == null ? "" : classOf(flows.fraction);
+    const items = [
+      ["Servo flow", perMinute(flows.servo), "mean of its size"], ["Leak", perMinute(flows.leak), "mean of its size"],
+      ["Of the servo flow leak", fraction == null ? "–" : `${digits(fraction, 3)} %`, leakClass],
+      ["Peak position", `${digits(peak(position) * 1e3, 4)} mm`, ""],
+    ];
+    if (rig.controller === 1) {
+      const reference = driveValues(request);
+      items.push(["Error of position", `${digits(rms(position.map((x, i) => reference[i] - x)) * 1e3, 3)} mm`, "rms against the reference"]);
+    }
+    if (answer.healthy) items.push(["Parity residual", `${digits(rms(position.map((x, i) => answer.healthy[i] - x)) * 1e3, 3)} mm`, "rms"]);
+    $("numbers").replaceChildren(...items.map(([name, text, of]) => make("div", {}, make("dt", {text: name}), make("dd", {text: text + " "}, make("small", {text: of})))));
+    if (document.activeElement !== $("fraction")) $("fraction").value = fraction == null ? "" : digits(fraction, 4);
+    $("class").textContent = leakClass;
+    $("class").className = "tag " + (["normal"].includes(leakClass) ? "good" : leakClass === "slight" ? "warn" : leakClass ? "bad" : "");
+    for (const button of $("presets").children) button.setAttribute("aria-pressed", +button.dataset.coefficient === state.values.get(rig.leak));
+    $("state").textContent = `${request.times.length} samples, ${answer.steps} steps, ${Math.round(answer.milliseconds)} ms`;
+    clearTimeout(saying);
+    saying = setTimeout(() => { $("said").textContent = items.map(([name, text, of]) => `${name} ${text} ${of}`).join("; "); }, 700);
+  };
+  const show = (request, answer) => {
+    const curves = document.querySelector(".live-curves");
+    curves.classList.toggle("stale", answer.status !== "ok");
+    if (answer.status !== "ok") {
+      problem(`These values cannot be simulated: ${answer.status}${Number.isFinite(answer.failed_at_s) ? ` at ${digits(answer.failed_at_s)} s` : ""}: ${answer.reason}`);
+      return;
+    }
+    problem("");
+    document.body.classList.add("running");
+    drawPlots(request, answer);
+    showNumbers(request, answer);
+    window.rigcalLive = {request, answer, rig, drawn: (window.rigcalLive?.drawn ?? 0) + 1};
+  };
+
+  // What makes `rigcal simulate` do the same.
+  const quoted = (text) => /^[A-Za-z0-9_./-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`;
+  const commands = () => {
+    const was = new Map(rig.campaign);
+    const made = state.waveform !== "recorded";
+    const chosen = caseOf(state.case);
+    const from = made ? was : new Map(chosen.values);
+    const sets = [...state.values].filter(([index, value]) => value !== from.get(index)).map(([index, value]) => {
+      const {key, si_unit: unit} = rows.get(index);
+      return `--set ${key}=${quoted(unit ? `${value} ${unit}` : String(value))}`;
+    });
+    const id = made ? "live" : chosen.id;
+    const line = ["rigcal simulate", quoted(rig.file), "--condition", id, ...sets].join(" ");
+    if (!made) return line + "\n";
+    const text = [
+      "[[condition]]", `id = "live"`, `waveform = "${state.waveform}"`, `frequency = "${state.frequency} Hz"`,
+      ...(state.waveform === "chirp" ? [`end_frequency = "${state.end_frequency} Hz"`, ...(chosen.logarithmic ? [`sweep = "logarithmic"`] : [])] : []),
+      `amplitude = "${state.amplitude} ${driven.si_unit}"`, `use = "ignore"`, `duration = "${state.duration} s"`, `sample_rate = "${sampleRate()} Hz"`,
+    ];
+    return `# At the end of ${rig.file}:\n${text.join("\n")}\n\n# Then:\n${line}\n`;
+  };
+  const writeCommands = () => { $("text").textContent = commands(); };
+  $("copy").addEventListener("click", async () => {
+    const text = commands();
+    const say = (words) => { $("said").textContent = $("state").textContent = words; };
+    try {
+      await navigator.clipboard.writeText(text);
+      say("Copied.");
+    } catch {
+      $("commands").open = true;
+      getSelection().selectAllChildren($("text"));
+      say("Selected below: copy it with your keys.");
+    }
+  });
+  $("reset").addEventListener("click", () => {
+    tolerance = rig.tolerance;
+    begin(caseOf(state.case));
+    drawControls();
+    for (const each of charts ?? []) each.chart.setScale("x", {min: null, max: null});
+    changed();
+  });
+  $("fraction").addEventListener("change", () => {
+    const wanted = +$("fraction").value / 100;
+    if ($("fraction").value === "" || !(wanted >= 0)) return;
+    send({id: next++, data: {request: requestOf(), fraction: wanted}, done: ({coefficient}) => {
+      if (coefficient == null) {
+        problem(`No leakage coefficient between 0.001 and 100 makes ${digits(100 * wanted)} % of the servo flow leak under this drive.`);
+        return;
+      }
+      state.values.set(rig.leak, +coefficient.toPrecision(6));
+      showAll();
+      changed();
+    }});
+  });
+  for (const form of document.querySelectorAll("#live form")) form.addEventListener("submit", (event) => event.preventDefault());
+
+  const start = async () => {
+    const packed = new Blob([bytes($("module").textContent)]).stream().pipeThrough(new DecompressionStream("gzip"));
+    const module = await new Response(packed).arrayBuffer();
+    worker = new Worker(URL.createObjectURL(new Blob([$("worker").textContent], {type: "text/javascript"})));
+    worker.onerror = (event) => problem(`The live model does not run here: ${event.message ?? "no worker"}`);
+    worker.onmessage = ({data}) => {
+      const asked = running;
+      running = null;
+      if (asked?.id === data.id) asked.done(data); else problem(data.reason ?? "The live model does not run here.");
+      if (waiting) { const message = waiting; waiting = null; send(message); }
+    };
+    worker.postMessage({module}, [module]);
+    readAddress();
+    drawControls();
+    for (const node of document.querySelectorAll("#live .screen")) node.hidden = false;
+    changed();
+  };
+  start().catch((error) => {
+    problem(`The live model does not run in this browser, so a still picture is shown: ${error.message}`);
+  });
+
+  addEventListener("hashchange", () => { if (location.hash.slice(1) !== address()) { readAddress(); drawControls(); changed(); } });
+  let resizing = 0;
+  addEventListener("resize", () => {
+    clearTimeout(resizing);
+    resizing = setTimeout(() => charts?.forEach(({figure, chart, plot}) => chart.setSize({width: figure.clientWidth, height: plot.height})), 100);
+  });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    charts?.forEach(({figure, chart}) => { chart.destroy(); figure.remove(); });
+    charts = null;
+    changed();
+  });
+})();

@@ -1,0 +1,333 @@
+#include "report/live/live_rig.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "common/error.hpp"
+#include "datasets/campaign/leak_table_settings.hpp"
+#include "report/figure/decimate.hpp"
+#include "report/text/readable.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+using datasets::Waveform;
+
+constexpr double kPeriodsShown = 4.0;
+constexpr double kSecondsOfNoPeriod = 10.0;
+/// More samples would neither be seen nor be drawn in time.
+constexpr double kMostMadeSamples = 5'000.0;
+constexpr double kSamplesOfAPeriod = 500.0;
+/// A known value without bounds can be moved by this factor.
+constexpr double kReach = 5.0;
+/// Beyond the leaks of the source paper, whose largest coefficient is 2.5.
+constexpr double kMostLeakage = 5.0;
+
+const char* const kLeak = "leakage_coefficient";
+
+/// Duration and sample rate where the campaign leaves them to the recording or to nobody.
+void complete(Condition& condition) {
+  if (condition.waveform == Waveform::recorded) return;
+  const double frequency_hz = condition.frequency_hz.value_or(0.0);
+  if (!condition.duration_s) {
+    const bool periodic = is_periodic(condition.waveform) && frequency_hz > 0.0;
+    condition.duration_s =
+        periodic ? kPeriodsShown / frequency_hz : condition.sweep_s.value_or(kSecondsOfNoPeriod);
+  }
+  if (!condition.sample_rate_hz) {
+    condition.sample_rate_hz =
+        std::min(kMostMadeSamples / *condition.duration_s,
+                 std::max(kSamplesOfAPeriod * frequency_hz, 100.0 / *condition.duration_s));
+  }
+}
+
+LiveCase made_case(const Campaign& campaign, std::string name, Condition condition,
+                   model::ParameterValues values) {
+  complete(condition);
+  SimulationTask task = simulation_task(campaign, condition, std::move(values));
+  task.condition = nullptr;  // the one that it was made of moves
+  return {std::move(name), std::move(condition), std::move(task)};
+}
+
+/// The signals of the leak table, of which that of its features comes first.
+void add_leak_table(const Campaign& campaign, const datasets::LeakTableSettings& settings,
+                    std::vector<LiveCase>& cases) {
+  std::vector<datasets::LeakSignal> signals = settings.signals;
+  if (settings.feature_signal) {
+    const auto first =
+        std::find_if(signals.begin(), signals.end(), [&](const datasets::LeakSignal& signal) {
+          return signal.name() == settings.feature_signal->name();
+        });
+    if (first != signals.end()) std::rotate(signals.begin(), first, first + 1);
+  }
+  model::ParameterValues values = leak_table_values(campaign, settings);
+  values.set(kLeak, settings.features.empty() ? 0.0 : settings.features.back().coefficient);
+  for (const datasets::PrintedFeatures& features : settings.features) {
+    if (!features.leaking) continue;
+    values.set(kLeak, features.coefficient);
+    break;
+  }
+  for (const datasets::LeakSignal& signal : signals) {
+    Condition condition;
+    condition.id = signal.name();
+    condition.waveform = signal.waveform;
+    condition.frequency_hz = signal.frequency_hz;
+    condition.amplitude = signal.amplitude;
+    condition.where = {campaign.file.string()};
+    cases.push_back(made_case(campaign, fmt::format("leak table: {}", signal.name()),
+                              std::move(condition), values));
+  }
+}
+
+/// What a campaign assumes of its leak table, where it has one.
+std::optional<datasets::LeakTableSettings> leak_table_of(const Campaign& campaign) {
+  const bool periodic =
+      std::any_of(campaign.conditions.begin(), campaign.conditions.end(),
+                  [](const Condition& condition) { return is_periodic(condition.waveform); });
+  if (!periodic) return std::nullopt;
+  datasets::LeakTableSettings settings = leak_table_settings(campaign);
+  if (settings.assumptions.empty()) return std::nullopt;
+  return settings;
+}
+
+/// Where a slider goes, and how: "log", "linear", or "cubic", which reaches zero.
+struct SliderRange {
+  double lower = 0.0;
+  double upper = 0.0;
+  const char* scale = "linear";
+};
+
+SliderRange scaled_range(double lower, double upper) {
+  if (lower > 0.0 && upper / lower >= 10.0) return {lower, upper, "log"};
+  if (lower == 0.0) return {lower, upper, "cubic"};
+  return {lower, upper, "linear"};
+}
+
+/// None where neither the campaign nor the value says how far it may go.
+std::optional<SliderRange> slider_range(const datasets::ParameterSetting* setting,
+                                        const model::ParameterSpec& spec, double value) {
+  if (setting != nullptr && std::isfinite(setting->lower) && std::isfinite(setting->upper) &&
+      setting->lower < setting->upper)
+    return scaled_range(setting->lower, setting->upper);
+  if (spec.key == kLeak) return scaled_range(0.0, std::max(kMostLeakage, kReach * value));
+  if (value == 0.0) return std::nullopt;
+  if (spec.lower < 0.0) return SliderRange{-2.0 * std::abs(value), 2.0 * std::abs(value)};
+  return scaled_range(std::max(spec.lower, value / kReach), std::min(spec.upper, value * kReach));
+}
+
+const char* group_of(const datasets::ParameterSetting* setting, model::ParameterKind kind) {
+  if (setting != nullptr && setting->fit) return "estimates";
+  switch (kind) {
+    case model::ParameterKind::plant:
+    case model::ParameterKind::term:
+      return "rig";
+    case model::ParameterKind::controller:
+      return "controller";
+    case model::ParameterKind::sensor:
+      return "sensors";
+    case model::ParameterKind::initial:
+      return "initial";
+  }
+  return "";
+}
+
+/// Null for what JSON has no number for.
+Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+Json live_parameter(const Campaign& campaign, int index, double value) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  const model::ParameterSpec& spec = table[static_cast<std::size_t>(index)];
+  const datasets::ParameterSetting* setting = campaign.setting(index);
+  const auto range = slider_range(setting, spec, value);
+  const ReadableUnit unit = readable_unit(value != 0.0 || !range ? value : range->upper, spec.unit);
+  const bool bounded = setting != nullptr && setting->fit;
+  Json row{{"index", index},
+           {"key", spec.key},
+           {"symbol", spec.symbol},
+           {"meaning", spec.meaning},
+           {"group", group_of(setting, spec.kind)},
+           {"unit", unit.name},
+           {"si", unit.si},
+           {"si_unit", spec.unit == "1" ? "" : spec.unit},
+           {"lowest", number_or_null(bounded ? setting->lower : spec.lower)},
+           {"highest", number_or_null(bounded ? setting->upper : spec.upper)},
+           {"slider", nullptr}};
+  if (range) {
+    row["slider"] = {{"lower", range->lower}, {"upper", range->upper}, {"scale", range->scale}};
+  }
+  return row;
+}
+
+/// [index, SI value] of what is given.
+Json given_values(const model::ParameterValues& values) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < values.value.size(); ++i) {
+    if (values.given[i] && std::isfinite(values.value[i]))
+      list.push_back({static_cast<int>(i), values.value[i]});
+  }
+  return list;
+}
+
+/// Times of a recording, and what acted on the rig then: exact to 6e-8 of each value.
+Json recorded_inputs(const Campaign& campaign, const SimulationTask& task) {
+  const datasets::Channel channel = campaign.rig.controller == model::ControllerKind::pid
+                                        ? datasets::Channel::reference
+                                        : datasets::Channel::command;
+  const auto at_samples = [&task](const model::Signal& signal) {
+    std::vector<double> values;
+    values.reserve(task.time_s.size());
+    for (const double t : task.time_s) values.push_back(signal.value(t));
+    return floats_base64(values);
+  };
+  const auto linear = [&campaign](datasets::Channel of) {
+    return campaign.channels.at(of).interpolation == datasets::Interpolation::linear;
+  };
+  Json json{{"times", doubles_base64(task.time_s)}};
+  json["drive"] = {{"linear", linear(channel)}, {"values", at_samples(task.inputs.drive)}};
+  const auto add = [&](const char* name, const std::optional<model::Signal>& signal,
+                       datasets::Channel of) {
+    if (signal) json[name] = {{"linear", linear(of)}, {"values", at_samples(*signal)}};
+  };
+  add("force", task.inputs.external_force_n, datasets::Channel::force);
+  add("supply", task.inputs.supply_pressure_pa, datasets::Channel::supply_pressure);
+  add("tank", task.inputs.tank_pressure_pa, datasets::Channel::tank_pressure);
+  return json;
+}
+
+Json case_row(const Campaign& campaign, const LiveCase& each) {
+  const Condition& condition = each.condition;
+  Json row{{"name", each.name},
+           {"id", condition.id},
+           {"waveform", to_string(condition.waveform)},
+           {"initial", static_cast<int>(each.task.rig.initial)},
+           {"values", given_values(each.task.values)}};
+  row["frequency"] = condition.frequency_hz.value_or(1.0);
+  row["amplitude"] = condition.amplitude.value_or(0.0);
+  if (condition.waveform == Waveform::recorded) {
+    row["recorded"] = recorded_inputs(campaign, each.task);
+    return row;
+  }
+  row["duration"] = *condition.duration_s;
+  row["rate"] = *condition.sample_rate_hz;
+  if (condition.waveform == Waveform::chirp) {
+    row["end_frequency"] = condition.end_frequency_hz.value_or(1.0);
+    row["sweep"] = condition.sweep_s.value_or(*condition.duration_s);
+    row["logarithmic"] = condition.logarithmic_sweep;
+  }
+  return row;
+}
+
+Json preset(std::string_view name, double coefficient) {
+  return {{"name", name}, {"coefficient", coefficient}};
+}
+
+/// Leak levels as buttons: of a published table, else of the campaign, else of its synthetic truth.
+Json presets_of(const Campaign& campaign,
+                const std::optional<datasets::LeakTableSettings>& leak_table) {
+  Json list = Json::array();
+  if (leak_table) {
+    for (const datasets::PrintedFeatures& row : leak_table->features)
+      if (row.leaking) list.push_back(preset(row.level, row.coefficient));
+  }
+  const int index = model::parameter_index(campaign.rig.plant, kLeak);
+  const auto add = [&](const std::map<std::string, datasets::Overrides>& levels) {
+    if (!list.empty()) return;
+    for (const auto& [name, overrides] : levels) {
+      for (const auto& [of, value] : overrides)
+        if (of == index) list.push_back(preset(name, value));
+    }
+  };
+  add(campaign.leak_levels);
+  if (campaign.synthetic_settings) add(campaign.synthetic_settings->level_parameters);
+  std::stable_sort(list.begin(), list.end(), [](const Json& a, const Json& b) {
+    return a.at("coefficient").get<double>() < b.at("coefficient").get<double>();
+  });
+  return list;
+}
+
+Json classes_of(const datasets::DiagnosisSettings& settings) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < datasets::kLeakClasses.size(); ++i) {
+    list.push_back({{"name", to_string(datasets::kLeakClasses[i])},
+                    {"below", i < settings.limits.size() ? Json(settings.limits[i]) : nullptr}});
+  }
+  return list;
+}
+
+/// Waveforms that an amplitude and a frequency describe, and that the module knows.
+Json waveforms_made() { return {"sine", "square", "chirp"}; }
+
+}  // namespace
+
+std::vector<LiveCase> live_cases(const Campaign& campaign) {
+  std::vector<LiveCase> cases;
+  if (const auto settings = leak_table_of(campaign)) add_leak_table(campaign, *settings, cases);
+  std::optional<InputError> problem;
+  for (const Condition& condition : campaign.conditions) {
+    if (condition.use == datasets::Use::ignore) continue;
+    model::ParameterValues values = values_in(campaign, condition);
+    if (const auto missing = values.missing(); !missing.empty()) {
+      if (!problem)
+        problem.emplace(condition.where,
+                        fmt::format("condition \"{}\": nothing tells {} of the rig: expected "
+                                    "values in [rig.parameters]",
+                                    condition.id, fmt::join(missing, ", ")));
+      continue;
+    }
+    if (condition.waveform == Waveform::recorded && !condition.has_record()) {
+      if (!problem)
+        problem.emplace(condition.where,
+                        fmt::format("condition \"{}\": the waveform is \"recorded\", but there "
+                                    "is no record; expected repeats or averaged",
+                                    condition.id));
+      continue;
+    }
+    cases.push_back(made_case(campaign, condition.id, condition, std::move(values)));
+  }
+  if (!cases.empty()) return cases;
+  if (problem) throw InputError(*problem);
+  throw InputError({campaign.file.string()},
+                   "no condition to simulate: expected a [[condition]] that is not ignored");
+}
+
+Json live_rig(const Campaign& campaign, const std::vector<LiveCase>& cases) {
+  const model::SimulationOptions options = simulation_options(campaign);
+  const auto leak_table = leak_table_of(campaign);
+  Json rig{{"name", campaign.name},
+           {"file", campaign.file.filename().string()},
+           {"plant", static_cast<int>(campaign.rig.plant)},
+           {"controller", static_cast<int>(campaign.rig.controller)},
+           {"method", static_cast<int>(options.method)},
+           {"tolerance", options.tolerance},
+           {"leak", model::parameter_index(campaign.rig.plant, kLeak)},
+           {"waveforms", waveforms_made()},
+           {"outputs", Json::array()},
+           {"parameters", Json::array()},
+           {"cases", Json::array()},
+           {"presets", presets_of(campaign, leak_table)},
+           {"classes", classes_of(campaign.diagnosis)},
+           // What --set begins from: the rig as it is where no level and no condition changes it.
+           {"campaign", given_values(values_in(campaign, Condition()))}};
+  rig["has_load_pressure"] = campaign.rig.plant == model::PlantKind::load_pressure;
+  for (const model::Output output : model::kAllOutputs)
+    rig["outputs"].push_back(model::output_name(output));
+  const model::ParameterValues& first = cases.front().task.values;
+  for (std::size_t i = 0; i < first.value.size(); ++i) {
+    const bool given = std::any_of(cases.begin(), cases.end(), [i](const LiveCase& each) {
+      return each.task.values.given[i] && std::isfinite(each.task.values.value[i]);
+    });
+    if (given)
+      rig["parameters"].push_back(live_parameter(campaign, static_cast<int>(i), first.value[i]));
+  }
+  for (const LiveCase& each : cases) rig["cases"].push_back(case_row(campaign, each));
+  return rig;
+}
+
+}  // namespace rigcal::report

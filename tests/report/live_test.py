@@ -1,0 +1,224 @@
+#!/usr/bin/env python3
+"""The model in a page against the command, in headless Chromium: live_test.py RIGCAL SOURCES. Exit code 77: no browser, or a
+program without the model for pages."""
+
+import base64
+import csv
+import gzip
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from browser import Browser, chromium
+
+# Everything that a shipped rig has, in one: two chambers, hoses, a second-order valve, friction, a delay, a lag, a sampled loop.
+TWO_CHAMBER = """schema = "rigcal.campaign/1"
+name = "</script><b>rig</b> & \\"more\\""
+[rig]
+model = "two_chamber"
+[rig.parameters]
+supply_pressure = "20 MPa"
+tank_pressure = "0.2 MPa"
+mass = { start = "60 kg", lower = "10 kg", upper = "500 kg", fit = true }
+damping = "900 N s/m"
+stiffness = "0 N/m"
+area_a = "1200 mm2"
+area_b = "800 mm2"
+stroke = "300 mm"
+dead_volume_a = "60 cm3"
+dead_volume_b = "60 cm3"
+density = "850 kg/m3"
+bulk_modulus = "900 MPa"
+discharge_coefficient = 0.6
+area_gradient = "20 mm"
+valve_gain = "3e-5 m/V"
+leakage_coefficient = 0.3
+leakage_area = "1 mm2"
+valve_frequency = "60 Hz"
+valve_damping_ratio = 0.8
+coulomb_friction = "60 N"
+transport_delay = "4 ms"
+position_lag = "3 ms"
+position_offset = "1 mm"
+[rig.controller]
+type = "pid"
+kp = "60 V/m"
+ki = "20 V/(m s)"
+sample_time = "2 ms"
+output_limit = "10 V"
+[simulation]
+tolerance = 1e-9
+[leak_level."half"]
+parameters = { leakage_coefficient = 0.5 }
+[recording.channels]
+time = { column = "t", unit = "s" }
+position = { column = "x", unit = "mm" }
+[[condition]]
+id = "chirp"
+waveform = "chirp"
+frequency = "0.5 Hz"
+end_frequency = "5 Hz"
+amplitude = "20 mm"
+duration = "3 s"
+sample_rate = "1 kHz"
+use = "diagnose"
+leak_level = "half"
+[[condition]]
+id = "square"
+waveform = "square"
+frequency = "1 Hz"
+amplitude = "20 mm"
+duration = "3 s"
+sample_rate = "1 kHz"
+use = "diagnose"
+leak_level = "half"
+"""
+
+
+def check(holds, what):
+    if not holds:
+        raise AssertionError(what)
+
+
+def run(rigcal, *arguments, cwd, code=0):
+    done = subprocess.run([rigcal, *arguments], cwd=cwd, capture_output=True, text=True, check=False)
+    check(done.returncode == code, f"rigcal {' '.join(map(str, arguments))}: exit {done.returncode}: {done.stderr}")
+    return done
+
+
+def simulated(browser):
+    browser.wait_for("window.rigcalLive !== undefined", "no simulation")
+    return browser.run("window.rigcalLive.drawn")
+
+
+def moved(browser, script):
+    """Runs a script that changes a value, and waits for the curves."""
+    was = simulated(browser)
+    browser.run(script)
+    browser.wait_for(f"window.rigcalLive.drawn > {was}", f"no curve follows {script}")
+
+
+def type_in(label, value):
+    return (f"(() => {{ const field = document.getElementById('live-of-{label}'); field.value = {value};"
+            " field.dispatchEvent(new Event('input')); })()")
+
+
+def compare(browser, rigcal, campaign, what):
+    """Does what the page says that makes `simulate` do the same; every output agrees to 1e-6 of its peak."""
+    text = browser.run("document.getElementById('live-text').textContent")
+    condition, _, command = text.partition("# Then:\n")
+    live = campaign.with_name("live.toml")
+    live.write_text(campaign.read_text() + "\n" + condition)
+    out = campaign.parent / "out"
+    line = command.strip().replace(f"rigcal simulate {campaign.name}", f"'{rigcal}' simulate live.toml") + f" --out {out} --force --quiet"
+    done = subprocess.run(["bash", "-c", line], cwd=campaign.parent, capture_output=True, text=True, check=False)
+    check(done.returncode == 0, f"{what}: {line}: {done.stderr}")
+    with open(out / "live.csv", encoding="utf-8") as file:
+        lines = [row for row in file if not row.startswith("#")]
+    native = {name: [float(row[name]) for row in csv.DictReader(lines)] for name in next(csv.reader(lines[:1])) if name}
+    page = browser.run("""(() => { const {request, answer, rig} = window.rigcalLive;
+        return JSON.stringify({times: [...request.times], outputs: Object.fromEntries(rig.outputs.map((name, i) => [name, [...answer.outputs[i]]]))}); })()""")
+    page = json.loads(page)
+    check(len(page["times"]) == len(native["time_s"]), f"{what}: {len(page['times'])} samples, {len(native['time_s'])} of the command")
+    worst = 0.0
+    for name, live_values in page["outputs"].items():
+        peak = max(map(abs, native[name])) or 1.0
+        error = max(abs(a - b) for a, b in zip(native[name], live_values)) / peak
+        worst = max(worst, error)
+        check(error < 1e-6, f"{what}: {name} differs by {error:.2e} of its peak")
+    print(f"{what}: within {worst:.1e} of the peaks, {browser.run('window.rigcalLive.answer.milliseconds'):.0f} ms")
+
+
+def the_papers_rig(rigcal, sources, folder):
+    campaign = folder / "campaign.toml"
+    campaign.write_text((sources / "datasets/rigs/uis_shake_table/campaign.toml").read_text())
+    run(rigcal, "explore", "campaign.toml", "--out", "page", "--quiet", cwd=folder)
+    page = folder / "page" / "explore.html"
+    text = page.read_text()
+    module = base64.b64decode(re.search(r'id="live-module">([^<]*)<', text)[1])
+    check(len(module) < 300_000 and gzip.decompress(module).startswith(b"\0asm"), f"the module: {len(module)} bytes")
+    with Browser(1440, 1000) as browser:
+        browser.open(page)
+        simulated(browser)
+        # The tolerance is in the address, as all else that differs.
+        browser.run("location.hash = '#tolerance=1e-9&duration=10&frequency=1'")
+        browser.wait_for("window.rigcalLive.request.tolerance === 1e-9", "the address changes nothing")
+        campaign.write_text(campaign.read_text() + "\n[simulation]\ntolerance = 1e-9\n")
+        compare(browser, rigcal, campaign, "a sine")
+        moved(browser, "document.querySelectorAll('#live-presets button')[3].click()")
+        check(browser.run("document.querySelector('#live-presets button[aria-pressed=true]').textContent") == "Critical", "the button of a level")
+        moved(browser, type_in("mass", 120))
+        moved(browser, type_in("kp", 60))
+        compare(browser, rigcal, campaign, "mass, gain and leak")
+        moved(browser, "(() => { const s = document.getElementById('live-waveform'); s.value = 'square'; s.dispatchEvent(new Event('change')); })()")
+        compare(browser, rigcal, campaign, "a square")
+        browser.wait_for("location.hash.includes('mass=120')", "the mass in the address")
+        # A fraction gives the coefficient, and the coefficient that fraction.
+        moved(browser, "(() => { const f = document.getElementById('live-fraction'); f.value = 20; f.dispatchEvent(new Event('change')); })()")
+        browser.wait_for("Math.abs(window.rigcalLive.answer.flows.fraction - 0.2) < 1e-4", "20 % of the servo flow")
+        # What cannot be simulated is said, and the next value heals it.
+        browser.run(type_in("mass", -1))
+        check(browser.run("document.getElementById('live-of-mass').checkValidity()") is False, "a negative mass is taken")
+        moved(browser, "document.getElementById('live-reset').click()")
+        check(browser.run("document.getElementById('live-problem').hidden"), "a problem is left")
+        # Every field has a name; the numbers are said.
+        unnamed = browser.run("[...document.querySelectorAll('#live input, #live select')].filter((n) => !n.labels.length && !n.getAttribute('aria-label')).length")
+        check(unnamed == 0, f"{unnamed} fields without a name")
+        browser.wait_for("document.getElementById('live-said').textContent.includes('servo flow')", "nothing is said")
+        check(browser.run("document.documentElement.scrollWidth <= innerWidth"), "wider than the window")
+        browser.size(400)
+        browser.wait_for("innerWidth === 400 && document.documentElement.scrollWidth <= 400", "as narrow as a telephone")
+        check(not browser.problems, browser.problems)
+        asked = [url for url in browser.requests if not url.startswith(("file:", "blob:", "data:"))]
+        check(not asked, f"asks for {asked}")
+    still = re.findall(r'<figure class="plot still">.*?<svg', text, re.DOTALL)
+    check(len(still) == 2, f"{len(still)} still pictures")
+
+
+def a_rig_with_everything(rigcal, folder):
+    campaign = folder / "two.toml"
+    campaign.write_text(TWO_CHAMBER)
+    run(rigcal, "explore", "two.toml", "--out", "two", "--quiet", cwd=folder)
+    with Browser(1280, 900) as browser:
+        browser.open(folder / "two" / "explore.html")
+        simulated(browser)
+        check(browser.run("document.querySelector('h1').textContent") == '</script><b>rig</b> & "more"', "the name")
+        compare(browser, rigcal, campaign, "two chambers, chirp")
+        moved(browser, "(() => { const s = document.getElementById('live-case'); s.value = 'square'; s.dispatchEvent(new Event('change')); })()")
+        compare(browser, rigcal, campaign, "two chambers, square")
+        check(not browser.problems, browser.problems)
+
+
+def wrong_input(rigcal, folder):
+    broken = folder / "broken.toml"
+    broken.write_text(TWO_CHAMBER.replace('mass = { start = "60 kg", lower = "10 kg", upper = "500 kg", fit = true }\n', ""))
+    done = run(rigcal, "explore", "broken.toml", "--out", "none", cwd=folder, code=2)
+    check("mass" in done.stderr and "broken.toml:" in done.stderr, done.stderr)
+    check(not (folder / "none").exists(), "a folder is left")
+    stuck = folder / "stuck.toml"
+    stuck.write_text(TWO_CHAMBER.replace("tolerance = 1e-9", 'tolerance = 1e-9\nmax_seconds = "1 us"'))
+    done = subprocess.run([rigcal, "explore", "stuck.toml", "--out", "none"], cwd=folder, capture_output=True, text=True, check=False)
+    check(done.returncode == 2 and "stuck.toml" in done.stderr, done.stderr)
+
+
+def main():
+    rigcal, sources = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
+    if "no live pages" in subprocess.run([rigcal, "--version"], capture_output=True, text=True, check=True).stdout:
+        print("skipped: this program was built without the model for pages")
+        return 77
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        wrong_input(rigcal, folder)
+        if chromium() is None:
+            print("skipped: no browser")
+            return 77
+        the_papers_rig(rigcal, sources, folder)
+        a_rig_with_everything(rigcal, folder)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
