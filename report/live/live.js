@@ -224,7 +224,7 @@
   };
   const requestOf = () => {
     const chosen = caseOf(state.case);
-    const request = {plant: rig.plant, controller: rig.controller, initial: chosen.initial, method: rig.method, tolerance, seconds: 10,
+    const request = {plant: rig.plant, controller: rig.controller, initial: chosen.initial, method: rig.method, tolerance, seconds: 30,
                      values: [...state.values]};
     if (state.waveform === "recorded") return {...request, ...recordedOf(chosen)};
     const rate = sampleRate();
