@@ -41,9 +41,10 @@ set(report_figure json store text)
 set(report_fmu json store text)
 set(report_leak json store text)
 set(report_batch json store text comparison)
-set(report_page json store text figure comparison batch)
-set(report_comparison json store text page figure)
-set(report_live json store text page figure run)
+set(report_document json text figure)
+set(report_page json store text figure document comparison batch)
+set(report_comparison json store text page figure document)
+set(report_live json store text page figure document run)
 set(report_run json store text page)
 
 # A header and its source are one.
