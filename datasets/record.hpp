@@ -14,16 +14,21 @@ namespace rigcal::datasets {
 
 /// What a column of a record holds.
 enum class Channel {
-  reference,        ///< position reference [m]
-  command,          ///< valve command [V]
-  position,         ///< [m]
-  load_pressure,    ///< [Pa]
-  pressure_a,       ///< [Pa]
-  pressure_b,       ///< [Pa]
-  supply_pressure,  ///< [Pa]
-  tank_pressure,    ///< [Pa]
-  force,            ///< [N]
-  temperature,      ///< [K]
+  reference,                ///< of a loop on position [m]
+  command,                  ///< valve command [V]
+  position,                 ///< [m]
+  load_pressure,            ///< [Pa]
+  pressure_a,               ///< [Pa]
+  pressure_b,               ///< [Pa]
+  supply_pressure,          ///< [Pa]
+  tank_pressure,            ///< [Pa]
+  force,                    ///< [N]
+  temperature,              ///< [K]
+  acceleration,             ///< of the piston and what is fixed to it [m/s2]
+  payload_acceleration,     ///< of the second mass [m/s2]
+  force_reference,          ///< of a loop on force [N]
+  load_pressure_reference,  ///< of a loop on load pressure [Pa]
+  acceleration_reference,   ///< of a loop on acceleration [m/s2]
 };
 
 struct ChannelInfo {
@@ -38,6 +43,9 @@ struct ChannelInfo {
 const std::vector<ChannelInfo>& channel_table();
 const ChannelInfo& info(Channel channel);
 std::optional<Channel> channel_from_key(std::string_view key);
+
+/// Whether a channel tells the rig what to do: a command, or the reference of a loop.
+bool is_drive(Channel channel);
 
 /// A step of time so long that samples are missing there.
 struct TimeHole {

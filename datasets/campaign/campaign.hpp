@@ -127,7 +127,7 @@ struct Condition {
   std::optional<double> end_frequency_hz;  ///< of a chirp (`end_frequency`)
   std::optional<double> sweep_s;           ///< of a chirp (`sweep_time`; the duration if left out)
   bool logarithmic_sweep = false;          ///< `sweep = "logarithmic"`
-  std::optional<double> amplitude;         ///< [m], or [V] where no controller is in the loop
+  std::optional<double> amplitude;         ///< of the drive, in the SI unit of its channel
   std::optional<std::string> leak_level;
   Use use = Use::fit;
   Overrides overrides;  ///< `parameters` and `controller` of this condition
@@ -228,6 +228,10 @@ struct Campaign {
   /// Whether `not_judged` says that a channel of a condition is to have no limit.
   bool may_lack_limits(const Condition& condition, Channel channel) const;
 };
+
+/// Channel of what drives the rig: the command, or the reference of what its loop controls.
+Channel drive_channel(const model::Rig& rig);
+inline Channel drive_channel(const Campaign& campaign) { return drive_channel(campaign.rig); }
 
 /// Reads and checks a campaign file.
 ///

@@ -7,12 +7,18 @@
 #include <utility>
 #include <vector>
 
+#include "common/quantity.hpp"
 #include "datasets/read/unit_in_name.hpp"
 
 namespace rigcal::datasets {
 namespace {
 
-constexpr std::array<std::string_view, 6> kLengths{"m", "cm", "mm", "um", "in", "inch"};
+/// SI units of what a loop may control.
+using Controlled = std::pair<std::string_view, Channel>;
+constexpr std::array kControlled{Controlled{"m", Channel::reference},
+                                 Controlled{"N", Channel::force_reference},
+                                 Controlled{"Pa", Channel::load_pressure_reference},
+                                 Controlled{"m/s2", Channel::acceleration_reference}};
 
 using Words = std::vector<std::string_view>;
 
@@ -33,6 +39,10 @@ const std::vector<std::pair<Channel, Words>> kChannelWords{
      {"pb", "p2", "pressureb", "pressure2", "chamberb", "chamber2", "prod", "pannulus"}},
     {Channel::supply_pressure, {"ps", "psupply", "supply", "supplypressure", "pp"}},
     {Channel::force, {"f", "force", "load", "loadcell", "fl"}},
+    {Channel::acceleration, {"acc", "accel", "acceleration", "accelerometer"}},
+    {Channel::force_reference,
+     {"refforce", "forceref", "forcereference", "forcesetpoint", "forcecmd", "forcecommand",
+      "forcedemand", "fref", "fset", "fsoll"}},
     {Channel::temperature, {"temp", "temperature", "toil", "oiltemperature"}}};
 
 /// Parts between underscores, blanks and brackets.
@@ -59,6 +69,16 @@ bool contains(const Words& words, const std::string& word) {
   return std::find(words.begin(), words.end(), word) != words.end();
 }
 
+bool converts(const std::string& unit, std::string_view to) {
+  if (unit.empty()) return false;
+  try {
+    unit_conversion(unit, to);
+    return true;
+  } catch (const QuantityError&) {
+    return false;
+  }
+}
+
 void assign(ColumnGuess& guess, const std::string& word) {
   if (guess.is_time || guess.channel) return;
   guess.is_time = contains(kTimeWords, word);
@@ -83,9 +103,11 @@ ColumnGuess guess_column(const std::string& name) {
   for (const std::string& part : parts_of(own)) words.push_back(lower(part));
   if (words.size() > 1) assign(guess, words[0] + words[1]);
   for (const std::string& word : words) assign(guess, word);
-  // A command in units of length is the reference of a position loop.
-  const bool is_length = std::find(kLengths.begin(), kLengths.end(), guess.unit) != kLengths.end();
-  if (guess.channel == Channel::command && is_length) guess.channel = Channel::reference;
+  // A command in a unit of what a loop controls is its reference.
+  if (guess.channel == Channel::command || guess.channel == Channel::reference) {
+    for (const auto& [of_loop, reference] : kControlled)
+      if (converts(guess.unit, of_loop)) guess.channel = reference;
+  }
   return guess;
 }
 

@@ -243,21 +243,26 @@ std::string rows_text(const fs::path& file, const FileColumns& columns) {
 }
 
 /// Optional terms that a cylinder with both chambers mostly has.
-constexpr std::array<std::string_view, 9> kTwoChamberTerms{
-    "retracted_position", "valve_dead_band", "valve_time_constant",
-    "valve_null_leakage", "laminar_leakage", "gravity",
-    "coulomb_friction",   "air_fraction",    "stop_stiffness"};
+constexpr std::array<std::string_view, 12> kTwoChamberTerms{
+    "retracted_position", "valve_dead_band",    "valve_time_constant", "transport_delay",
+    "gain_b_to_tank",     "valve_null_leakage", "laminar_leakage",     "gravity",
+    "external_force",     "load_gradient",      "coulomb_friction",    "air_fraction"};
 
 /// And those that a servo-valve and a symmetric cylinder have.
-constexpr std::array<std::string_view, 6> kLoadPressureTerms{
-    "valve_offset",       "valve_dead_band", "valve_time_constant",
+constexpr std::array<std::string_view, 7> kLoadPressureTerms{
+    "valve_offset",       "valve_dead_band", "valve_time_constant", "transport_delay",
     "valve_null_leakage", "laminar_leakage", "coulomb_friction"};
 
+/// And that one has that carries a payload, where an acceleration was recorded.
+constexpr std::array<std::string_view, 3> kPayloadTerms{"payload_mass", "payload_frequency",
+                                                        "payload_damping_ratio"};
+
 /// Terms that may join, as comments.
-std::string terms_text(model::PlantKind plant) {
+std::string terms_text(model::PlantKind plant, bool with_payload) {
   const bool two_chambers = plant == model::PlantKind::two_chamber;
-  const std::span<const std::string_view> terms =
-      two_chambers ? std::span<const std::string_view>(kTwoChamberTerms) : kLoadPressureTerms;
+  std::vector<std::string_view> terms(kLoadPressureTerms.begin(), kLoadPressureTerms.end());
+  if (two_chambers) terms.assign(kTwoChamberTerms.begin(), kTwoChamberTerms.end());
+  if (with_payload) terms.insert(terms.end(), kPayloadTerms.begin(), kPayloadTerms.end());
   std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
   for (const std::string_view key : terms) {
     const int row = model::parameter_index(plant, key);
@@ -269,7 +274,9 @@ std::string terms_text(model::PlantKind plant) {
   return text;
 }
 
-std::string rig_text(model::PlantKind plant, bool closed_loop) {
+/// @param loop  what is controlled; none: the command was recorded
+std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop,
+                     bool with_payload) {
   const bool two_chambers = plant == model::PlantKind::two_chamber;
   std::string text =
       two_chambers
@@ -290,14 +297,27 @@ std::string rig_text(model::PlantKind plant, bool closed_loop) {
                         comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
                                             spec.unit == "1" ? " (a plain number)" : "")));
   }
-  text += terms_text(plant);
-  return text +
-         (closed_loop
-              ? "[rig.controller]\ntype = \"pid\"\n" +
-                    fmt::format("kp = \"{} V/m\"{}\n", kBlank,
-                                comment("proportional gain; ki, kd, output_limit if there are any"))
-              : "[rig.controller]\ntype = \"none\"  # the recorded command drives the "
-                "valve\n");
+  text += terms_text(plant, with_payload);
+  if (!loop)
+    return text +
+           "[rig.controller]\ntype = \"none\"  # the recorded command drives the "
+           "valve\n";
+  const model::FeedbackRow& row = model::gain_keys(*loop);
+  const auto unit_of = [&](std::string_view key) {
+    return model::parameter_table(
+               plant)[static_cast<std::size_t>(model::parameter_index(plant, key))]
+        .unit;
+  };
+  text += "[rig.controller]\ntype = \"pid\"\n";
+  if (*loop != model::Feedback::position)
+    text += fmt::format("feedback = \"{}\"{}\n", row.name,
+                        comment("what the loop controls; position unless given"));
+  text += fmt::format("{} = \"{} {}\"{}\n", row.kp, kBlank, unit_of(row.kp),
+                      comment("proportional gain; output_limit, sample_time if there are any"));
+  return text + fmt::format("# {} = \"... {}\"{}\n", row.ki, unit_of(row.ki),
+                            comment(fmt::format("integral gain: without it a model lags where the "
+                                                "machine does not; {} likewise",
+                                                row.kd)));
 }
 
 std::string relative_text(const fs::path& file, const fs::path& folder) {
@@ -375,10 +395,20 @@ std::string limits_of_others(const FileColumns& columns) {
   return text;
 }
 
+/// What the loop controls whose reference is recorded; none: there is no reference.
+std::optional<model::Feedback> loop_of(const FileColumns& columns) {
+  for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
+    const model::Rig rig{{}, model::ControllerKind::pid, {}, static_cast<model::Feedback>(i)};
+    if (find(columns, drive_channel(rig)) != nullptr) return rig.feedback;
+  }
+  return std::nullopt;
+}
+
 /// What drives the rig, as far as it is recorded.
 const ChannelColumns* drive_of(const FileColumns& columns) {
-  const ChannelColumns* reference = find(columns, Channel::reference);
-  return reference != nullptr ? reference : find(columns, Channel::command);
+  const auto loop = loop_of(columns);
+  if (!loop) return find(columns, Channel::command);
+  return find(columns, drive_channel(model::Rig{{}, model::ControllerKind::pid, {}, *loop}));
 }
 
 /// Time and a channel of a file, the first of several columns.
@@ -445,7 +475,7 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
                                           : "");
   if (!guess.frequency_hz || !guess.amplitude) return text;
   text += fmt::format("frequency = \"{:.4g} Hz\"\n", *guess.frequency_hz);
-  const std::string_view wanted = drive->channel == Channel::reference ? "m" : "V";
+  const std::string_view wanted = info(drive->channel).unit;
   std::string unit = drive->unit.empty() ? kBlank : drive->unit;
   try {
     if (!drive->unit.empty()) unit_conversion(drive->unit, wanted);
@@ -544,7 +574,8 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
   const auto groups = readable_among(groups_of(recordings_among(files, left_out)), left_out);
   const FileColumns columns = columns_of(groups.at(0).files.at(0));
   // Rows without names: that of the reference may be among them, as where an experiment is run.
-  const bool closed_loop = find(columns, Channel::reference) != nullptr || !columns.rows.empty();
+  auto loop = loop_of(columns);
+  if (!loop && !columns.rows.empty()) loop = model::Feedback::position;
   const bool chambers = std::any_of(groups.begin(), groups.end(), [](const FileGroup& group) {
     const FileColumns own = columns_of(group.files.front());
     return find(own, Channel::pressure_a) != nullptr || find(own, Channel::pressure_b) != nullptr;
@@ -556,8 +587,8 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
       kBlank);
   for (const std::string& file : left_out) text += fmt::format("# left out: {}\n", file);
   if (!left_out.empty()) text += "\n";
-  text += rig_text(chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure,
-                   closed_loop);
+  text += rig_text(chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure, loop,
+                   find(columns, Channel::acceleration) != nullptr);
   text += "\n[recording]\n" + initial_text(groups);
   text += "# decimate_to = \"1 kHz\"  # if the records are denser than the model needs\n";
   text += channels_text(columns) + rows_text(groups.at(0).files.at(0), columns);

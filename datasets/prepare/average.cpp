@@ -27,8 +27,7 @@ struct Stack {
 
 /// A held signal must not ring at its edges; a measured one must keep its noise and amplitude.
 Interpolator interpolator_of(Channel channel) {
-  return channel == Channel::reference || channel == Channel::command ? Interpolator::linear
-                                                                      : Interpolator::band_limited;
+  return is_drive(channel) ? Interpolator::linear : Interpolator::band_limited;
 }
 
 std::map<Channel, Stack> stack_channels(const std::vector<Repeat>& repeats,
@@ -356,7 +355,8 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
     if (stack.rows.size() > 1) {
       auto deviations = deviations_from(stack, series, span);
       warn_of_noise(deviations, series, channel, options, repeats, record.warnings);
-      if (options.keep_deviations && (channel != Channel::reference || any_differs(deviations)))
+      if (options.keep_deviations &&
+          (!is_drive(channel) || channel == Channel::command || any_differs(deviations)))
         series.deviations = std::move(deviations);
     }
     if (repeats.size() == 1) series.repeats = options.repeats_averaged;

@@ -15,9 +15,7 @@ namespace rigcal::datasets {
 namespace {
 
 /// A commanded signal jumps on purpose.
-bool is_measured(Channel channel) {
-  return channel != Channel::reference && channel != Channel::command;
-}
+bool is_measured(Channel channel) { return !is_drive(channel); }
 
 bool is_held(const Campaign& campaign, Channel channel) {
   const auto setting = campaign.channels.find(channel);

@@ -33,7 +33,7 @@ Record single_record(const Record& average, const Repeat& repeat, double shift, 
   std::size_t first = 0;
   std::size_t last = record.time_s.size() - 1;
   for (const auto& [channel, values] : repeat.values) {
-    const bool held = channel == Channel::reference || channel == Channel::command;
+    const bool held = is_drive(channel);
     auto x =
         shifted(values, shift, samples, held ? Interpolator::linear : Interpolator::band_limited);
     Series series;

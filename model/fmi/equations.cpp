@@ -16,18 +16,6 @@ namespace {
 
 constexpr double kDoubleEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Size below which each state counts as zero in the error control, as in run.hpp.
-template <typename Plant, int N>
-Values<N> floors(const Layout& layout) {
-  Values<N> floor;
-  floor.fill(1e-3);  // volts, and the memory of hoses
-  std::copy(Plant::kFloor.begin(), Plant::kFloor.end(), floor.begin());
-  if (layout.supply >= 0) floor[static_cast<std::size_t>(layout.supply)] = 100.0;
-  if (layout.valve_order == 2) floor[static_cast<std::size_t>(layout.valve) + 1] = 1.0;  // V/s
-  if (layout.filter >= 0) floor[static_cast<std::size_t>(layout.filter)] = Plant::kFloor[0];
-  return floor;
-}
-
 InputTrack track(const Ramp& ramp, double length_s) {
   if (ramp.slope_per_s == 0.0) return {Signal::constant(ramp.value), 0.0, 0.0};
   const double end = ramp.value + ramp.slope_per_s * length_s;
@@ -81,8 +69,7 @@ class SizedEquations final : public Equations {
     std::vector<double> indicators;
     plant_indicators(p, layout_.terms, state, system_.derivative_of_values(state, 0.0), spool_v,
                      indicators);
-    loop_indicators(p, layout_, state, inputs_.drive.value - state[Plant::position], command_v,
-                    indicators);
+    loop_indicators(p, layout_, state, system_.control(state, 0.0).wanted, command_v, indicators);
     return indicators;
   }
 
@@ -94,7 +81,7 @@ class SizedEquations final : public Equations {
 
   void advance(std::vector<double>& x, StepMemory& memory, double from_s, double to_s,
                double tolerance) const override {
-    Values<N> peak = floors<Plant, N>(layout_);
+    Values<N> peak = state_floors<Plant, static_cast<std::size_t>(N)>(layout_);
     for (std::size_t i = 0; i < memory.peak.size(); ++i)
       peak[i] = std::max(peak[i], memory.peak[i]);
     ErrorNorm<N, 0> norm(layout_.states, peak, {}, tolerance, 1.0);
@@ -203,7 +190,7 @@ std::unique_ptr<Equations> sized(const ExportedRig& rig) {
 std::unique_ptr<Equations> make_equations(const ExportedRig& rig) {
   switch (rig.rig.plant) {
     case PlantKind::load_pressure:
-      return sized<LoadPressurePlant, 5, 8>(rig);
+      return sized<LoadPressurePlant, 5, 10>(rig);
     case PlantKind::two_chamber:
       return sized<TwoChamberPlant, 5, 12>(rig);
   }

@@ -66,6 +66,14 @@ void read_plant(Line& line, ExportedRig& rig) {
   rig.values = ParameterValues::defaults(*plant);
 }
 
+void read_feedback(Line& line, ExportedRig& rig) {
+  const std::string name = line.word("what the controller acts on");
+  const auto row = std::find_if(kFeedbacks.begin(), kFeedbacks.end(),
+                                [&](const FeedbackRow& each) { return each.name == name; });
+  if (row == kFeedbacks.end()) line.fail(name, "what the controller acts on");
+  rig.rig.feedback = static_cast<Feedback>(row - kFeedbacks.begin());
+}
+
 bool read_choice(Line& line, const char* yes, const char* no) {
   const std::string word = line.word(yes);
   if (word != yes && word != no) line.fail(word, std::string(yes) + " or " + no);
@@ -117,6 +125,7 @@ std::string exported_rig_text(const ExportedRig& rig) {
   std::string text(kFirstLine);
   text += "\nguid " + rig.guid + "\nplant " + std::string(to_string(rig.rig.plant));
   text += rig.rig.controller == ControllerKind::pid ? "\ncontroller pid" : "\ncontroller none";
+  text += "\nfeedback " + std::string(gain_keys(rig.rig.feedback).name);
   text += rig.rig.initial == InitialState::given ? "\ninitial given" : "\ninitial rest";
   text += "\ntolerance " + digits(rig.tolerance) + "\n";
   for (std::size_t i = 0; i < table.size(); ++i) {
@@ -144,6 +153,8 @@ ExportedRig read_exported_rig(const std::filesystem::path& file) {
     } else if (key == "controller") {
       rig.rig.controller =
           read_choice(line, "pid", "none") ? ControllerKind::pid : ControllerKind::none;
+    } else if (key == "feedback") {
+      read_feedback(line, rig);
     } else if (key == "initial") {
       rig.rig.initial =
           read_choice(line, "given", "rest") ? InitialState::given : InitialState::rest;
@@ -152,7 +163,7 @@ ExportedRig read_exported_rig(const std::filesystem::path& file) {
     } else if (key == "parameter") {
       read_parameter(line, rig.values);
     } else {
-      line.fail(key, "guid, plant, controller, initial, tolerance or parameter");
+      line.fail(key, "guid, plant, controller, feedback, initial, tolerance or parameter");
     }
   }
   return rig;

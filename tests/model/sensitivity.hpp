@@ -24,12 +24,14 @@ struct Scenario {
   ControllerKind controller = ControllerKind::pid;
   InitialState initial = InitialState::rest;
   bool recorded_loads = false;
+  Feedback feedback = Feedback::position;
 };
 
 inline Experiment experiment(const Scenario& s, const Experiment& rig = {}) {
   Experiment e = rig;
   e.rig.controller = s.controller;
   e.rig.initial = s.initial;
+  e.rig.feedback = s.feedback;
   e.inputs.drive = s.drive;
   e.set("kp", 900.0);
   for (const auto& [key, value] : s.values) e.set(key, value);

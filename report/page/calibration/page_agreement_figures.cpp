@@ -27,7 +27,11 @@ struct Drive {
   const char* name;
   const char* unit;
 };
-constexpr Drive kDrives[] = {{"reference_m", "reference", "m"}, {"command_v", "command", "V"}};
+constexpr Drive kDrives[] = {{"reference_m", "reference", "m"},
+                             {"command_v", "command", "V"},
+                             {"force_reference_n", "force reference", "N"},
+                             {"load_pressure_reference_pa", "load pressure reference", "Pa"},
+                             {"acceleration_reference_m_per_s2", "acceleration reference", "m/s2"}};
 
 std::vector<double> counted(const std::vector<double>& values, const std::vector<double>* window) {
   if (window == nullptr) return values;

@@ -53,6 +53,9 @@ Json facts_of(const StoredCondition& condition) {
   quantity(condition.frequency_hz, "Hz", "");
   quantity(condition.amplitude_m, "m", "amplitude ");
   quantity(condition.amplitude_v.value_or(std::nullopt), "V", "amplitude ");
+  quantity(condition.amplitude_n, "N", "amplitude ");
+  quantity(condition.amplitude_pa, "Pa", "amplitude ");
+  quantity(condition.amplitude_m_per_s2, "m/s2", "amplitude ");
   if (condition.leak_level) add("leak " + *condition.leak_level);
   if (condition.temperature_k) add(fmt::format("{:.4g} °C", *condition.temperature_k - 273.15));
   if (condition.date) add(*condition.date);

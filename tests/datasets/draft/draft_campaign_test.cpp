@@ -55,6 +55,31 @@ std::string filled(std::string text, model::PlantKind plant = model::PlantKind::
 
 }  // namespace
 
+TEST_CASE("draft_campaign: a reference in newtons makes a loop on force", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t_s,ref_kN,F_kN,x_mm,acc_x\n";
+  for (int i = 0; i < 400; ++i) {
+    const double angle = 12.566370614359172 * 0.005 * i;
+    text += fmt::format("{},{},{},{},{}\n", 0.005 * i, 2.0 * std::sin(angle),
+                        1.9 * std::sin(angle - 0.1), 4.0 * std::sin(angle - 0.2), std::cos(angle));
+  }
+  const fs::path file = folder.write("bend.csv", text);
+  std::string draft = draft_campaign({file}, folder.path()).text;
+  CHECK_THAT(draft, Contains("feedback = \"force\""));
+  CHECK_THAT(draft, Contains("force_reference = { column = \"ref_kN\", unit = \"kN\" }"));
+  CHECK_THAT(draft, Contains("# payload_mass = "));  // an acceleration was recorded
+  CHECK_THAT(draft, Contains("amplitude = \"2 kN\""));
+  draft = filled(draft);
+  const auto fill = [&](const std::string& from, const std::string& to) {
+    draft = replaced(draft, from, to);
+  };
+  fill("force_kp = \"FILL IN V/N\"", "force_kp = \"1 V/kN\"");
+  fill("unit = \"FILL IN\"", "unit = \"m/s2\"");
+  const Campaign campaign = load_campaign(folder.write("draft.toml", draft));
+  CHECK(campaign.rig.feedback == model::Feedback::force);
+  CHECK(campaign.conditions.front().amplitude == Approx(2000.0));
+}
+
 TEST_CASE("draft_campaign: repeats, waveform and columns, and loads once it is filled",
           "[datasets]") {
   const TemporaryFolder folder;

@@ -53,6 +53,6 @@ void check_same(Experiment e) {
 }  // namespace
 
 TEST_CASE("simulate_sized: old processors compute the same, with room for more states", "[model]") {
-  check_same<LoadPressurePlant, 8>({});
+  check_same<LoadPressurePlant, 10>({});
   check_same<TwoChamberPlant, 12>(two_chamber_rig());
 }
