@@ -156,6 +156,8 @@ std::string_view to_string(SimulationStatus status) {
       return "out of time";
     case SimulationStatus::cancelled:
       return "cancelled";
+    case SimulationStatus::no_equilibrium:
+      return "no equilibrium";
   }
   return "";
 }
@@ -257,9 +259,13 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
     // What the periods to come add is summed for each of them anew.
     constexpr std::size_t kMostPeriods = 20'000;
     if (period && at_s.size() / period->samples > kMostPeriods) period.reset();
+    // A rig that still waits for its drive does not change, but is in no periodic state.
+    if (period && rig.before != Before::hold &&
+        parameters["transport_delay"] > 0.5 * period->duration_s)
+      period.reset();
   }
-  dispatch({layout, rig.initial, state, parameters, free, inputs, at_s, outputs, options, period,
-            started},
+  dispatch({layout, rig.initial, rig.before, state, parameters, free, inputs, at_s, outputs,
+            options, period, started},
            result);
   if (result.ok()) read_sensors(at, outputs, parameters, free, result);
   const bool finite =

@@ -52,6 +52,7 @@ struct SimulationInputs {
   std::optional<Signal> external_force_n;    ///< added to the parameter `external_force`
   std::optional<Signal> supply_pressure_pa;  ///< in place of the parameter `supply_pressure`
   std::optional<Signal> tank_pressure_pa{};  ///< in place of the parameter `tank_pressure`
+  double drive_begins_s = 0.0;               ///< its first sample: what was before says Rig::before
 };
 
 enum class Method {
@@ -85,6 +86,7 @@ enum class SimulationStatus {
   too_many_steps,
   out_of_time,
   cancelled,
+  no_equilibrium,  ///< Before::steady, but the rig does not settle
 };
 std::string_view to_string(SimulationStatus status);
 
@@ -111,6 +113,7 @@ struct Rig {
   PlantKind plant = PlantKind::load_pressure;
   ControllerKind controller = ControllerKind::pid;
   InitialState initial = InitialState::rest;
+  Before before = Before::hold;
 };
 
 /// Solves the model from the first of `times_s` to the last.

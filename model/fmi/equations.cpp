@@ -8,6 +8,7 @@
 
 #include "model/fmi/indicators.hpp"
 #include "model/plant/system.hpp"
+#include "model/solver/equilibrium.hpp"
 #include "model/solver/error_norm.hpp"
 #include "model/solver/rosenbrock.hpp"
 
@@ -42,6 +43,7 @@ class SizedEquations final : public Equations {
 
   explicit SizedEquations(const ExportedRig& rig)
       : initial_(rig.rig.initial),
+        before_(rig.rig.before),
         layout_(exported_layout(rig)),
         system_(system(rig.values, {}, 1.0)) {}
 
@@ -59,7 +61,11 @@ class SizedEquations final : public Equations {
     values.set("external_force", inputs_.external_force_n.value);
     Sys system(layout_, values, {}, track(inputs_.drive, 1.0), std::nullopt,
                track(inputs_.supply_pressure_pa, 1.0), track(inputs_.tank_pressure_pa, 1.0));
-    return shortened(system.initial(initial_, 0.0));
+    Values<N> state = system.initial(initial_, before_, 0.0);
+    if (before_ == Before::steady && !settle(system, floors<Plant, N>(layout_), state))
+      throw std::runtime_error("the rig does not settle at the first value of its drive");
+    system.forget_hoses(state, 0.0);
+    return shortened(state);
   }
 
   std::vector<double> derivatives(std::span<const double> x) const override {
@@ -183,6 +189,7 @@ class SizedEquations final : public Equations {
   }
 
   InitialState initial_;
+  Before before_;
   Layout layout_;
   ParameterValues values_;
   RigInputs inputs_;

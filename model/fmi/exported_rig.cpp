@@ -8,11 +8,15 @@
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 namespace rigcal::model {
 namespace {
 
 constexpr std::string_view kFirstLine = "rigcal.rig/1";
+
+constexpr std::array<std::pair<std::string_view, Before>, 3> kBefore{
+    {{"hold", Before::hold}, {"rest", Before::rest}, {"steady", Before::steady}}};
 
 /// Shortest digits that read back to the same bits.
 std::string digits(double value) {
@@ -118,6 +122,8 @@ std::string exported_rig_text(const ExportedRig& rig) {
   text += "\nguid " + rig.guid + "\nplant " + std::string(to_string(rig.rig.plant));
   text += rig.rig.controller == ControllerKind::pid ? "\ncontroller pid" : "\ncontroller none";
   text += rig.rig.initial == InitialState::given ? "\ninitial given" : "\ninitial rest";
+  for (const auto& [name, before] : kBefore)
+    if (rig.rig.before == before) text += "\nbefore " + std::string(name);
   text += "\ntolerance " + digits(rig.tolerance) + "\n";
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!rig.values.given[i]) continue;
@@ -147,12 +153,18 @@ ExportedRig read_exported_rig(const std::filesystem::path& file) {
     } else if (key == "initial") {
       rig.rig.initial =
           read_choice(line, "given", "rest") ? InitialState::given : InitialState::rest;
+    } else if (key == "before") {
+      const std::string word = line.word("hold, rest or steady");
+      const auto found = std::find_if(kBefore.begin(), kBefore.end(),
+                                      [&word](const auto& row) { return row.first == word; });
+      if (found == kBefore.end()) line.fail(word, "hold, rest or steady");
+      rig.rig.before = found->second;
     } else if (key == "tolerance") {
       rig.tolerance = line.number();
     } else if (key == "parameter") {
       read_parameter(line, rig.values);
     } else {
-      line.fail(key, "guid, plant, controller, initial, tolerance or parameter");
+      line.fail(key, "guid, plant, controller, initial, before, tolerance or parameter");
     }
   }
   return rig;

@@ -101,6 +101,22 @@ class System {
     }
   }
 
+  /// f and its derivatives for who looks for where the rig settles: a sampled controller, which
+  /// changes at its ticks alone, as if they never ended.
+  Linearisation<N, P> linearise_settling(const Values<N>& x, double t) const {
+    Linearisation<N, P> lin = linearise(x, t);
+    if (!layout_.sampled()) return lin;
+    const auto rates = tick_rates(ByStates{}, lifted(x), t);
+    const auto by_parameters = tick_rates(ByParameters{}, held<ByParameters>(x), t);
+    for (const int state : {layout_.integral, layout_.filter, layout_.held}) {
+      if (state < 0) continue;
+      const auto i = static_cast<std::size_t>(state);
+      take_row(rates[i], i, lin);
+      if constexpr (P > 0) lin.f_p[i] = by_parameters[i].derivative;
+    }
+    return lin;
+  }
+
   /// The sampled controller's tick at t.
   void tick(X& x, double t) const {
     const C error = input_value(ByParameters{}, drive_, t, true) - x[Plant::position];
@@ -135,8 +151,8 @@ class System {
     }
   }
 
-  /// State at the first sample.
-  X initial(InitialState mode, double t) const {
+  /// State at the first sample, for Before::steady one to settle from; forget_hoses() is to follow.
+  X initial(InitialState mode, Before before, double t) {
     const Coefficients<C>& p = parameters_of(ByParameters{});
     X states;
     states.fill(C(0.0));
@@ -147,22 +163,20 @@ class System {
     const auto plant =
         given ? Plant::initial(in, p, layout_.terms) : Plant::rest(in, p, layout_.terms);
     for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
-    if constexpr (requires { p.hose_yield_pa; }) {
-      if (layout_.hoses >= 0) {
-        const auto first = static_cast<std::size_t>(layout_.hoses);
-        states[first] = Plant::hose_memory(plant[Plant::pressure_a], in);
-        states[first + 1] = Plant::hose_memory(plant[Plant::pressure_b], in);
-      }
-    }
-    if (given) {
+    while_it_waits_ = C(0.0);
+    if (before == Before::rest && layout_.pid) while_it_waits_ = plant[Plant::position];
+    if (before == Before::steady) while_it_waits_ = C(drive_.first_value());
+    if (before == Before::steady && layout_.pid) states[Plant::position] = while_it_waits_;
+    if (given || before == Before::steady) {
       // The loop was closed before the record began: no kick of the derivative, spool at rest.
-      const C drive = input_value(ByParameters{}, drive_, t, true);
+      const C drive =
+          before == Before::hold ? input_value(ByParameters{}, drive_, t, true) : while_it_waits_;
       if (layout_.filter >= 0) {
-        states[static_cast<std::size_t>(layout_.filter)] = drive - plant[Plant::position];
+        states[static_cast<std::size_t>(layout_.filter)] = drive - states[Plant::position];
       }
       if (layout_.sampled()) {
         states[static_cast<std::size_t>(layout_.held)] =
-            controller_output(C(drive - plant[Plant::position]), states, p, layout_).limited;
+            controller_output(C(drive - states[Plant::position]), states, p, layout_).limited;
       }
       if (layout_.valve_order > 0) {
         states[static_cast<std::size_t>(layout_.valve)] =
@@ -170,6 +184,18 @@ class System {
       }
     }
     return states;
+  }
+
+  /// Puts the memory of hoses where they are when they came to their pressure in one go.
+  void forget_hoses([[maybe_unused]] X& states, [[maybe_unused]] double t) const {
+    [[maybe_unused]] const Coefficients<C>& p = parameters_of(ByParameters{});
+    if constexpr (requires { p.hose_yield_pa; }) {
+      if (layout_.hoses < 0) return;
+      const PlantInput<C> in = plant_input(ByParameters{}, states, C(0.0), t);
+      const auto first = static_cast<std::size_t>(layout_.hoses);
+      states[first] = Plant::hose_memory(states[Plant::pressure_a], in);
+      states[first + 1] = Plant::hose_memory(states[Plant::pressure_b], in);
+    }
   }
 
   /// States that the outputs are made of.
@@ -250,6 +276,7 @@ class System {
   /// it is delayed and that is a parameter of the sensitivities.
   template <typename K>
   Number<K> input_value(K by, const InputTrack& track, double t, bool delayed) const {
+    if (delayed && track.waits()) return drive_that_waits(by);
     if constexpr (std::is_same_v<Number<K>, double>) {
       return track.value(t);
     } else if constexpr (!std::is_same_v<K, ByStates>) {
@@ -265,6 +292,32 @@ class System {
       value.derivative.set(kTime, s.slope);
       return value;
     }
+  }
+
+  /// The drive before its first sample.
+  template <typename K>
+  Number<K> drive_that_waits([[maybe_unused]] K by) const {
+    if constexpr (std::is_same_v<K, ByParameters>) {
+      return while_it_waits_;
+    } else {
+      Number<K> value(value_of(while_it_waits_));
+      if constexpr (P > 0 && std::is_same_v<K, ByBlock>) {
+        for (std::size_t i = 0; i < kBlock; ++i)
+          value.derivative.set(i, while_it_waits_.derivative[by.block * kBlock + i]);
+      }
+      return value;
+    }
+  }
+
+  /// What a tick changes, per time from one to the next.
+  template <typename K>
+  Numbers<K> tick_rates(K by, const Numbers<K>& x, double t) const {
+    const auto& p = parameters_of(by);
+    Numbers<K> rates = x;
+    controller_tick(Number<K>(input_value(by, drive_, t, true) - x[Plant::position]), rates, p,
+                    layout_);
+    for (std::size_t i = 0; i < N; ++i) rates[i] = (rates[i] - x[i]) / p.sample_time_s;
+    return rates;
   }
 
   /// Whether loop_rates() gives the derivative of a state.
@@ -449,6 +502,7 @@ class System {
   std::optional<InputTrack> supply_pressure_;
   std::optional<InputTrack> tank_pressure_;
   int delay_direction_ = -1;
+  C while_it_waits_{0.0};  ///< the drive before its first sample
 };
 
 }  // namespace rigcal::model
