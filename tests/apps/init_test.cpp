@@ -163,6 +163,11 @@ TEST_CASE("init: what it refuses", "[apps]") {
   CHECK_THAT(loop.err, Contains("loop.csv: cannot be opened"));
   folder.write("odd.csv", "a,b\n1,2\n");
   CHECK_THAT(folder.run({"init", "odd.csv"}).err, Contains("odd.csv: no column looks like a time"));
+  folder.write("tdms/run.tdms", std::string("TDSm\x0e\0\0\0", 8));
+  const Outcome tdms = folder.run({"init", "tdms"});
+  CHECK(tdms.exit_code == 2);
+  CHECK_THAT(tdms.err, Contains("run.tdms: is TDMS, of LabVIEW, which rigcal does not read") &&
+                           Contains("expected CSV"));
   CHECK_FALSE(folder.has("rigcal-out/campaign.toml"));
 
   REQUIRE(folder.run({"init", "records/sine_1.csv", "--out", "new", "--quiet"}).exit_code == 0);
