@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/file.hpp"
+#include "model/signal/signal.hpp"
 
 namespace rigcal::datasets {
 
@@ -53,6 +54,8 @@ struct Repeat {
   std::map<Channel, std::vector<double>> values;  ///< each of the shape of time_s
   std::vector<std::string> warnings{};            ///< in words: what its files look like
   std::vector<TimeHole> holes{};                  ///< in the times of its file, increasing
+  /// Which samples its file lacks, shape of time_s; empty: none. They count for nothing.
+  std::vector<bool> bridged{};
 };
 
 /// Mean over the repeats of one channel.
@@ -97,6 +100,8 @@ struct Record {
   std::vector<RepeatReport> repeat_reports;
   /// What counts, in order: the campaign's windows, or those found; empty: all of it.
   std::vector<TimeWindow> windows;
+  /// What its recorded drive is, where the model generates the same.
+  std::optional<model::Signal> generated_drive{};
   std::vector<std::string> notes;     ///< in words: what was done to it, such as decimation
   std::vector<std::string> warnings;  ///< in words: outliers, gaps, spikes, sensors
   /// In words: where samples are missing in what counts, so that nothing can be compared with it.

@@ -81,6 +81,7 @@ struct ChannelSetting {
   double offset_sd = 0.0;                 ///< that of its offset, SI
   ChannelRole role = ChannelRole::output;
   Interpolation interpolation = Interpolation::hold;
+  bool recognise = true;   ///< a recorded drive that the model generates is simulated as such
   bool in_counts = false;  ///< raw numbers of a converter: nothing says what they measure
 };
 
@@ -203,9 +204,11 @@ struct Campaign {
   std::map<std::string, Overrides> leak_levels;
   InitialMode initial = InitialMode::rest;
   double initial_window_s = 0.1;
+  bool before_stated = false;  ///< the campaign says what Rig::before is
   char separator = 0;
   std::optional<double> decimate_to_hz;
   SpikeTreatment spikes = SpikeTreatment::report;
+  std::optional<double> longest_bridge_s;  ///< of a hole that is bridged; none: all are refused
   std::string time_column;
   UnitConversion time_to_s;
   StatedUnit stated_time;

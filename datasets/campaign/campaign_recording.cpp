@@ -95,7 +95,7 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role,
 ChannelSetting read_channel(const TomlNode& node, Channel channel,
                             model::ControllerKind controller) {
   node.allow_only({"column", "minus", "unit", "ignore_unit", "gain", "offset", "sd", "gain_sd",
-                   "offset_sd", "role", "interpolation"});
+                   "offset_sd", "role", "interpolation", "recognise"});
   ChannelSetting setting;
   setting.channel = channel;
   if (const auto column = node.find("column")) setting.column = column->name("a column name");
@@ -129,6 +129,11 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel,
     setting.interpolation = interpolation->choice<Interpolation>(
         {{"hold", Interpolation::hold}, {"linear", Interpolation::linear}});
   }
+  if (const auto recognise = node.find("recognise")) {
+    setting.recognise = recognise->boolean();
+    if (channel != Channel::reference && channel != Channel::command)
+      recognise->fail("has a meaning only for a drive: expected it of reference or command");
+  }
   return setting;
 }
 
@@ -149,16 +154,43 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
   }
 }
 
+/// In a loop that has settled the reference says where the piston is.
+void read_before(const TomlNode& node, Campaign& campaign) {
+  campaign.before_stated = true;
+  campaign.rig.before = node.choice<model::Before>({{"hold", model::Before::hold},
+                                                    {"rest", model::Before::rest},
+                                                    {"steady", model::Before::steady}});
+  if (campaign.rig.before == model::Before::steady && campaign.initial != InitialMode::rest &&
+      campaign.rig.controller == model::ControllerKind::pid)
+    node.fail(
+        "\"steady\" has a loop begin where it settles at the first reference: expected it without "
+        "`initial`, or before = \"rest\" or \"hold\" with it");
+}
+
+void read_holes(const TomlNode& node, Campaign& campaign) {
+  const auto holes = node.find("holes");
+  const bool bridge = holes && holes->choice<bool>({{"refuse", false}, {"bridge", true}});
+  if (bridge) {
+    campaign.longest_bridge_s =
+        node.require("longest_hole", "holes = \"bridge\" goes no further, such as \"50 ms\"")
+            .quantity("s", kDurations_s);
+  } else if (const auto longest = node.find("longest_hole")) {
+    longest->fail("has a meaning only together with holes = \"bridge\"");
+  }
+}
+
 }  // namespace
 
 void read_recording(const TomlNode& node, Campaign& campaign) {
-  node.allow_only({"initial", "initial_window", "separator", "decimate_to", "spikes", "channels"});
+  node.allow_only({"initial", "initial_window", "before", "separator", "decimate_to", "spikes",
+                   "holes", "longest_hole", "channels"});
   if (const auto initial = node.find("initial")) {
     campaign.initial = initial->choice<InitialMode>(
         {{"rest", InitialMode::rest}, {"record", InitialMode::record}, {"fit", InitialMode::fit}});
   }
   campaign.rig.initial = campaign.initial == InitialMode::rest ? model::InitialState::rest
                                                                : model::InitialState::given;
+  if (const auto before = node.find("before")) read_before(*before, campaign);
   campaign.initial_window_s = kDefaultWindowS;
   if (const auto window = node.find("initial_window")) {
     campaign.initial_window_s = window->quantity("s", kDurations_s);
@@ -167,7 +199,8 @@ void read_recording(const TomlNode& node, Campaign& campaign) {
     }
   }
   if (const auto separator = node.find("separator")) {
-    campaign.separator = separator->choice<char>({{",", ','}, {";", ';'}, {"\t", '\t'}});
+    campaign.separator =
+        separator->choice<char>({{",", ','}, {";", ';'}, {"\t", '\t'}, {" ", ' '}});
   }
   if (const auto rate = node.find("decimate_to")) {
     campaign.decimate_to_hz = rate->quantity("Hz", kSampleRates_hz);
@@ -176,6 +209,7 @@ void read_recording(const TomlNode& node, Campaign& campaign) {
     campaign.spikes = spikes->choice<SpikeTreatment>(
         {{"report", SpikeTreatment::report}, {"exclude", SpikeTreatment::exclude}});
   }
+  read_holes(node, campaign);
   if (const auto channels = node.find("channels")) read_channels(*channels, campaign);
 }
 

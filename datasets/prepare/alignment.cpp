@@ -211,6 +211,12 @@ AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate) {
     result.shift.push_back(same ? 0.0 : (first.time_s.front() - repeat.time_s.front()) / dt);
   }
   if (!correlate || repeats.size() < 2) return result;
+  // An edge that fell into a hole stands where the hole ends, which would pass for an offset.
+  if (std::any_of(repeats.begin(), repeats.end(),
+                  [](const Repeat& repeat) { return !repeat.bridged.empty(); })) {
+    result.warnings.emplace_back("holes are bridged: repeats are not aligned");
+    return result;
+  }
   if (!is_uniform(first)) {
     result.warnings.emplace_back("the sample times are not equidistant: repeats are not aligned");
     return result;
