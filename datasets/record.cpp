@@ -16,12 +16,33 @@ const std::vector<ChannelInfo>& channel_table() {
       {Channel::tank_pressure, "tank_pressure", "tank_pressure_pa", "Pa", false},
       {Channel::force, "force", "force_n", "N", true},
       {Channel::temperature, "temperature", "temperature_k", "K", false},
+      {Channel::acceleration, "acceleration", "acceleration_m_per_s2", "m/s2", true},
+      {Channel::payload_acceleration, "payload_acceleration", "payload_acceleration_m_per_s2",
+       "m/s2", true},
+      {Channel::force_reference, "force_reference", "force_reference_n", "N", false},
+      {Channel::load_pressure_reference, "load_pressure_reference", "load_pressure_reference_pa",
+       "Pa", false},
+      {Channel::acceleration_reference, "acceleration_reference", "acceleration_reference_m_per_s2",
+       "m/s2", false},
   };
   return table;
 }
 
 const ChannelInfo& info(Channel channel) {
   return channel_table().at(static_cast<std::size_t>(channel));
+}
+
+bool is_drive(Channel channel) {
+  switch (channel) {
+    case Channel::reference:
+    case Channel::command:
+    case Channel::force_reference:
+    case Channel::load_pressure_reference:
+    case Channel::acceleration_reference:
+      return true;
+    default:
+      return false;
+  }
 }
 
 std::optional<Channel> channel_from_key(std::string_view key) {

@@ -9,21 +9,27 @@
 #include <vector>
 
 #include "common/file.hpp"
+#include "model/signal/signal.hpp"
 
 namespace rigcal::datasets {
 
 /// What a column of a record holds.
 enum class Channel {
-  reference,        ///< position reference [m]
-  command,          ///< valve command [V]
-  position,         ///< [m]
-  load_pressure,    ///< [Pa]
-  pressure_a,       ///< [Pa]
-  pressure_b,       ///< [Pa]
-  supply_pressure,  ///< [Pa]
-  tank_pressure,    ///< [Pa]
-  force,            ///< [N]
-  temperature,      ///< [K]
+  reference,                ///< of a loop on position [m]
+  command,                  ///< valve command [V]
+  position,                 ///< [m]
+  load_pressure,            ///< [Pa]
+  pressure_a,               ///< [Pa]
+  pressure_b,               ///< [Pa]
+  supply_pressure,          ///< [Pa]
+  tank_pressure,            ///< [Pa]
+  force,                    ///< [N]
+  temperature,              ///< [K]
+  acceleration,             ///< of the piston and what is fixed to it [m/s2]
+  payload_acceleration,     ///< of the second mass [m/s2]
+  force_reference,          ///< of a loop on force [N]
+  load_pressure_reference,  ///< of a loop on load pressure [Pa]
+  acceleration_reference,   ///< of a loop on acceleration [m/s2]
 };
 
 struct ChannelInfo {
@@ -39,6 +45,9 @@ const std::vector<ChannelInfo>& channel_table();
 const ChannelInfo& info(Channel channel);
 std::optional<Channel> channel_from_key(std::string_view key);
 
+/// Whether a channel tells the rig what to do: a command, or the reference of a loop.
+bool is_drive(Channel channel);
+
 /// A step of time so long that samples are missing there.
 struct TimeHole {
   std::size_t row = 0;  ///< the sample behind it, from 1
@@ -53,6 +62,8 @@ struct Repeat {
   std::map<Channel, std::vector<double>> values;  ///< each of the shape of time_s
   std::vector<std::string> warnings{};            ///< in words: what its files look like
   std::vector<TimeHole> holes{};                  ///< in the times of its file, increasing
+  /// Which samples its file lacks, shape of time_s; empty: none. They count for nothing.
+  std::vector<bool> bridged{};
 };
 
 /// Mean over the repeats of one channel.
@@ -97,6 +108,8 @@ struct Record {
   std::vector<RepeatReport> repeat_reports;
   /// What counts, in order: the campaign's windows, or those found; empty: all of it.
   std::vector<TimeWindow> windows;
+  /// What its recorded drive is, where the model generates the same.
+  std::optional<model::Signal> generated_drive{};
   std::vector<std::string> notes;     ///< in words: what was done to it, such as decimation
   std::vector<std::string> warnings;  ///< in words: outliers, gaps, spikes, sensors
   /// In words: where samples are missing in what counts, so that nothing can be compared with it.

@@ -11,7 +11,10 @@ std::string signal_name(const datasets::Campaign& campaign, const datasets::Cond
   if (!condition.amplitude) return text;
   if (campaign.rig.controller == model::ControllerKind::none)
     return text + fmt::format(", {:.6g} V", *condition.amplitude);
-  return text + fmt::format(", {:.6g} mm", 1e3 * *condition.amplitude);
+  if (campaign.rig.feedback == model::Feedback::position)
+    return text + fmt::format(", {:.6g} mm", 1e3 * *condition.amplitude);
+  return text + fmt::format(", {:.6g} {}", *condition.amplitude,
+                            model::gain_keys(campaign.rig.feedback).unit);
 }
 
 }  // namespace rigcal::diagnosis

@@ -6,7 +6,8 @@ import pathlib
 import subprocess
 import sys
 
-SIGNALS = {"position": "x", "pressure_a": "p_A", "pressure_b": "p_B", "load_pressure": "P_L", "force": "F"}
+SIGNALS = {"position": "x", "pressure_a": "p_A", "pressure_b": "p_B", "load_pressure": "P_L", "force": "F",
+           "acceleration": "a", "payload_acceleration": "a_2"}
 PREFIXES = {-12: "p", -9: "n", -6: "u", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 
 

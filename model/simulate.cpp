@@ -36,6 +36,8 @@ constexpr std::array kOutputNames{
     OutputName{Output::servo_flow, "servo_flow_m3_per_s"},
     OutputName{Output::leakage_flow, "leakage_flow_m3_per_s"},
     OutputName{Output::work_flow, "work_flow_m3_per_s"},
+    OutputName{Output::acceleration, "acceleration_m_per_s2"},
+    OutputName{Output::payload_acceleration, "payload_acceleration_m_per_s2"},
 };
 
 /// The first parameter in use that is not finite or outside its limits, in words; empty if none.
@@ -46,6 +48,7 @@ std::string bad_parameter(const ParameterValues& values, const Layout& layout) {
     const ParameterSpec& spec = table[i];
     const bool in_use = values.given[i] || spec.kind == ParameterKind::plant ||
                         (layout.valve_order == 2 && spec.key == "valve_damping_ratio") ||
+                        (layout.payload >= 0 && spec.key == "payload_frequency") ||
                         (layout.filter >= 0 && spec.key == "derivative_filter");
     if (!in_use) continue;
     const double v = values.value[i];
@@ -101,7 +104,10 @@ std::integer_sequence<int, States...> sizes_of(const Sized<Plant, States...>& so
 template <typename Plant, InstructionSet Set, int N, int... Larger>
 void run(std::integer_sequence<int, N, Larger...>, const SizedRequest& request,
          Simulation& result) {
-  if (request.layout.states <= N) return simulate_sized<Plant, N, Set>(request, result);
+  // The smallest solver knows no more than the states of its plant and a loop on position.
+  const bool takes_all = N > Plant::kStates || request.layout.position_alone();
+  if (request.layout.states <= N && takes_all)
+    return simulate_sized<Plant, N, Set>(request, result);
   if constexpr (sizeof...(Larger) > 0) {
     run<Plant, Set>(std::integer_sequence<int, Larger...>{}, request, result);
   } else {
@@ -156,6 +162,8 @@ std::string_view to_string(SimulationStatus status) {
       return "out of time";
     case SimulationStatus::cancelled:
       return "cancelled";
+    case SimulationStatus::no_equilibrium:
+      return "no equilibrium";
   }
   return "";
 }
@@ -257,9 +265,13 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
     // What the periods to come add is summed for each of them anew.
     constexpr std::size_t kMostPeriods = 20'000;
     if (period && at_s.size() / period->samples > kMostPeriods) period.reset();
+    // A rig that still waits for its drive does not change, but is in no periodic state.
+    if (period && rig.before != Before::hold &&
+        parameters["transport_delay"] > 0.5 * period->duration_s)
+      period.reset();
   }
-  dispatch({layout, rig.initial, state, parameters, free, inputs, at_s, outputs, options, period,
-            started},
+  dispatch({layout, rig.initial, rig.before, state, parameters, free, inputs, at_s, outputs,
+            options, period, started},
            result);
   if (result.ok()) read_sensors(at, outputs, parameters, free, result);
   const bool finite =

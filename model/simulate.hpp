@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <atomic>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <string>
@@ -16,30 +17,65 @@ namespace rigcal::model {
 
 /// What a simulation can tell at each sample. The recorded kinds include their sensor's offset.
 enum class Output {
-  position,       ///< reading of the position sensor [m]
-  velocity,       ///< [m/s]
-  load_pressure,  ///< P_L = p_A - p_B [Pa]
-  pressure_a,     ///< [Pa]
-  pressure_b,     ///< [Pa]
-  force,          ///< what a load cell in the rod reads [N] (docs/model.md)
-  command,        ///< controller output after the limit, or the recorded command [V]
-  spool,          ///< valve spool travel [m]
-  servo_flow,     ///< Q_L, flow of the servo valve to the load [m3/s]
-  leakage_flow,   ///< internal leakage across the piston [m3/s]
-  work_flow,      ///< A x', flow that moves the piston [m3/s]
+  position,              ///< reading of the position sensor [m]
+  velocity,              ///< [m/s]
+  load_pressure,         ///< P_L = p_A - p_B [Pa]
+  pressure_a,            ///< [Pa]
+  pressure_b,            ///< [Pa]
+  force,                 ///< what a load cell in the rod reads [N] (docs/model.md)
+  command,               ///< controller output after the limit, or the recorded command [V]
+  spool,                 ///< valve spool travel [m]
+  servo_flow,            ///< Q_L, flow of the servo valve to the load [m3/s]
+  leakage_flow,          ///< internal leakage across the piston [m3/s]
+  work_flow,             ///< A x', flow that moves the piston [m3/s]
+  acceleration,          ///< of the piston and what is fixed to it [m/s2]
+  payload_acceleration,  ///< of the second mass [m/s2]; zero where the rig has none
 };
 
 /// "position_m", "servo_flow_m3_per_s": name with its SI unit.
 std::string_view output_name(Output output);
-inline constexpr std::array kAllOutputs{
-    Output::position,   Output::velocity,     Output::load_pressure, Output::pressure_a,
-    Output::pressure_b, Output::force,        Output::command,       Output::spool,
-    Output::servo_flow, Output::leakage_flow, Output::work_flow};
+inline constexpr std::array kAllOutputs{Output::position,
+                                        Output::velocity,
+                                        Output::load_pressure,
+                                        Output::pressure_a,
+                                        Output::pressure_b,
+                                        Output::force,
+                                        Output::command,
+                                        Output::spool,
+                                        Output::servo_flow,
+                                        Output::leakage_flow,
+                                        Output::work_flow,
+                                        Output::acceleration,
+                                        Output::payload_acceleration};
 
 enum class ControllerKind {
   none,  ///< the drive is the valve command [V]
-  pid,   ///< the drive is the position reference [m]
+  pid,   ///< the drive is the reference of what the loop controls
 };
+
+/// What a loop controls: its reference is of that quantity.
+enum class Feedback { position, force, load_pressure, acceleration };
+
+/// Gains, in the parameter table, of a loop that controls a quantity.
+struct FeedbackRow {
+  std::string_view name;  ///< in campaign files
+  std::string_view unit;  ///< SI
+  std::string_view meaning;
+  std::string_view kp, ki, kd;
+};
+inline constexpr std::array kFeedbacks{
+    FeedbackRow{"position", "m", "where the piston is to be", "kp", "ki", "kd"},
+    FeedbackRow{"force", "N", "force that a load cell in the rod is to read", "force_kp",
+                "force_ki", "force_kd"},
+    FeedbackRow{"load_pressure", "Pa", "what the pressure of chamber A is to be less that of B",
+                "load_pressure_kp", "load_pressure_ki", "load_pressure_kd"},
+    FeedbackRow{"acceleration", "m/s2", "what the acceleration of the piston is to be",
+                "acceleration_kp", "acceleration_ki", "acceleration_kd"},
+};
+inline constexpr std::size_t kFeedbackCount = kFeedbacks.size();
+constexpr const FeedbackRow& gain_keys(Feedback feedback) {
+  return kFeedbacks[static_cast<std::size_t>(feedback)];
+}
 
 enum class InitialState {
   rest,   ///< all states zero, whatever the initial_* parameters say
@@ -48,10 +84,11 @@ enum class InitialState {
 
 /// What acts on the rig. The drive is delayed by `transport_delay`, the others are not.
 struct SimulationInputs {
-  Signal drive = Signal::constant(0.0);      ///< reference [m] or command [V]
+  Signal drive = Signal::constant(0.0);      ///< reference of the loop, or command [V]
   std::optional<Signal> external_force_n;    ///< added to the parameter `external_force`
   std::optional<Signal> supply_pressure_pa;  ///< in place of the parameter `supply_pressure`
   std::optional<Signal> tank_pressure_pa{};  ///< in place of the parameter `tank_pressure`
+  double drive_begins_s = 0.0;               ///< its first sample: what was before says Rig::before
 };
 
 enum class Method {
@@ -85,6 +122,7 @@ enum class SimulationStatus {
   too_many_steps,
   out_of_time,
   cancelled,
+  no_equilibrium,  ///< Before::steady, but the rig does not settle
 };
 std::string_view to_string(SimulationStatus status);
 
@@ -97,7 +135,8 @@ struct Simulation {
   Eigen::MatrixXd outputs;   ///< shape (samples, outputs), SI
   /// d outputs / d parameter: one matrix of shape (samples, free) per output, SI.
   std::vector<Eigen::MatrixXd> sensitivities;
-  /// State at the last sample: of plant, hoses, supply, valve and controller, as in Layout.
+  /// State at the last sample: of plant, hoses, supply, second mass, valve and controller, as in
+  /// Layout.
   Eigen::VectorXd end_state;
   Eigen::MatrixXd end_sensitivities;  ///< shape (states, columns of `sensitivities`)
   Eigen::VectorXd state_floor;        ///< below it a state counts as zero in the error control
@@ -111,6 +150,8 @@ struct Rig {
   PlantKind plant = PlantKind::load_pressure;
   ControllerKind controller = ControllerKind::pid;
   InitialState initial = InitialState::rest;
+  Feedback feedback = Feedback::position;  ///< of the controller, if there is one
+  Before before = Before::hold;
 };
 
 /// Solves the model from the first of `times_s` to the last.

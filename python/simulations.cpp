@@ -29,7 +29,8 @@ namespace fs = std::filesystem;
 struct Simulated {
   std::string condition;
   std::vector<double> time_s;
-  std::vector<double> reference_m;
+  std::vector<double> reference;
+  bool of_position = true;  ///< what its loop controls
   model::Simulation simulation;
 };
 using SimulatedPtr = std::shared_ptr<Simulated>;
@@ -91,9 +92,9 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const std::optional<st
       files.push_back(
           {tasks[i].condition->id + ".csv", report::simulation_file(tasks[i], simulations[i])});
     }
-    results.push_back(std::make_shared<Simulated>(Simulated{tasks[i].condition->id, tasks[i].time_s,
-                                                            report::reference_of(tasks[i]),
-                                                            std::move(simulations[i])}));
+    results.push_back(std::make_shared<Simulated>(
+        Simulated{tasks[i].condition->id, tasks[i].time_s, report::reference_of(tasks[i]),
+                  tasks[i].rig.feedback == model::Feedback::position, std::move(simulations[i])}));
   }
   if (out && !cancel)
     report::write_results(*held, files, report::hash_inputs(self.campaign, records));
@@ -141,8 +142,11 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
           "Shape (samples) [s].")
       .def_property_readonly(
           "reference_m",
-          [](const SimulatedPtr& self) { return view_or_none(self, self->reference_m); },
-          "Position reference, shape (samples) [m]; None in open loop.")
+          [](const SimulatedPtr& self) {
+            static const std::vector<double> none;
+            return view_or_none(self, self->of_position ? self->reference : none);
+          },
+          "Position reference, shape (samples) [m]; None where no loop is on position.")
       .def_property_readonly("signals", &signals_of,
                              "All signals and flows by their names with units,\n"
                              "\"position_m\", \"servo_flow_m3_per_s\"..., each of shape (samples).")
@@ -160,7 +164,9 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
                                "Travel of the valve spool [m].",
                                "Flow of the servo valve to the load [m3/s].",
                                "Internal leakage across the piston [m3/s].",
-                               "Flow that moves the piston [m3/s]."};
+                               "Flow that moves the piston [m3/s].",
+                               "Of the piston and what is fixed to it [m/s2].",
+                               "Of the second mass [m/s2]; zero where there is none."};
   static_assert(std::size(about) == model::kAllOutputs.size());
   for (std::size_t i = 0; i < model::kAllOutputs.size(); ++i) {
     const std::string name(output_name(model::kAllOutputs[i]));

@@ -56,6 +56,11 @@ void add_print_options(CLI::App& verb, PrintOptions& options) {
   verb.add_flag("--json", options.json, "Print JSON instead of text");
 }
 
+void add_verbose_option(CLI::App& verb, PrintOptions& options) {
+  verb.add_flag("-v,--verbose", options.verbose,
+                "Print every condition, parameter and warning on a terminal, too");
+}
+
 void add_force_option(CLI::App& verb, bool& force) {
   verb.add_flag("--force", force,
                 "Replace files that rigcal did not write, or that were changed since");

@@ -17,6 +17,7 @@ namespace rigcal::app {
 struct PrintOptions {
   bool quiet = false;
   bool json = false;
+  bool verbose = false;  ///< every row, however many lines that takes
 };
 
 /// What every verb that reads a campaign understands.
@@ -37,6 +38,8 @@ CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 int hardware_threads();
 
 void add_print_options(CLI::App& verb, PrintOptions& options);
+/// -v: of verbs whose text is cut to what fits on a terminal
+void add_verbose_option(CLI::App& verb, PrintOptions& options);
 /// --force
 void add_force_option(CLI::App& verb, bool& force);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);

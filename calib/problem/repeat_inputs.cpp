@@ -20,8 +20,8 @@ std::vector<Channel> differing_inputs(const Problem& problem, const ProblemCondi
     if (setting == problem.campaign->channels.end() ||
         setting->second.role != datasets::ChannelRole::input)
       continue;
-    const bool drives = channel == Channel::reference || channel == Channel::command;
-    if (drives && condition.condition->waveform != datasets::Waveform::recorded) continue;
+    if (is_drive(channel) && condition.condition->waveform != datasets::Waveform::recorded)
+      continue;
     const bool differs =
         std::any_of(series.deviations.begin(), series.deviations.end(), [](const auto& each) {
           return std::any_of(each.begin(), each.end(), [](double x) { return x != 0.0; });

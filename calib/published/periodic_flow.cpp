@@ -41,6 +41,7 @@ model::SimulationInputs inputs(const datasets::LeakSignal& signal) {
 
 model::Rig from_rest(model::Rig rig) {
   rig.initial = model::InitialState::rest;
+  rig.before = model::Before::hold;
   return rig;
 }
 

@@ -134,6 +134,7 @@ class Pieces final : public ceres::EvaluationCallback {
         values.set(index, value);
       model::Rig rig = condition.rig;
       rig.initial = model::InitialState::given;
+      rig.before = model::Before::hold;  // the drive has long begun
       const auto found = model::simulate(rig, values, {}, condition.inputs, {&at_s, 1}, {});
       if (!found.ok()) return false;
       Node& node = nodes_[static_cast<std::size_t>(piece.node)];

@@ -126,11 +126,9 @@ void try_signals(const Problem& problem, std::span<const double> z, const Eigen:
           tried_rows(problem, like, z, inputs, times, condition.outputs.front(), channel.sd);
       if (rows.size() == 0 || !tells(problem, z, above(jacobian, as_triangle(rows)), target))
         continue;
-      words.push_back(
-          fmt::format("a {} of {:g} Hz (amplitude {:.3g} {}, {:.3g} s)",
-                      square ? "square wave" : "sine", frequency_hz, amplitude,
-                      problem.campaign->rig.controller == model::ControllerKind::pid ? "m" : "V",
-                      times.back()));
+      words.push_back(fmt::format("a {} of {:g} Hz (amplitude {:.3g} {}, {:.3g} s)",
+                                  square ? "square wave" : "sine", frequency_hz, amplitude,
+                                  info(drive_channel(*problem.campaign)).unit, times.back()));
       return;
     }
   }

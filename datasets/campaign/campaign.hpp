@@ -81,6 +81,7 @@ struct ChannelSetting {
   double offset_sd = 0.0;                 ///< that of its offset, SI
   ChannelRole role = ChannelRole::output;
   Interpolation interpolation = Interpolation::hold;
+  bool recognise = true;   ///< a recorded drive that the model generates is simulated as such
   bool in_counts = false;  ///< raw numbers of a converter: nothing says what they measure
 };
 
@@ -127,7 +128,7 @@ struct Condition {
   std::optional<double> end_frequency_hz;  ///< of a chirp (`end_frequency`)
   std::optional<double> sweep_s;           ///< of a chirp (`sweep_time`; the duration if left out)
   bool logarithmic_sweep = false;          ///< `sweep = "logarithmic"`
-  std::optional<double> amplitude;         ///< [m], or [V] where no controller is in the loop
+  std::optional<double> amplitude;         ///< of the drive, in the SI unit of its channel
   std::optional<std::string> leak_level;
   Use use = Use::fit;
   Overrides overrides;  ///< `parameters` and `controller` of this condition
@@ -203,9 +204,11 @@ struct Campaign {
   std::map<std::string, Overrides> leak_levels;
   InitialMode initial = InitialMode::rest;
   double initial_window_s = 0.1;
+  bool before_stated = false;  ///< the campaign says what Rig::before is
   char separator = 0;
   std::optional<double> decimate_to_hz;
   SpikeTreatment spikes = SpikeTreatment::report;
+  std::optional<double> longest_bridge_s;  ///< of a hole that is bridged; none: all are refused
   std::string time_column;
   UnitConversion time_to_s;
   StatedUnit stated_time;
@@ -228,6 +231,10 @@ struct Campaign {
   /// Whether `not_judged` says that a channel of a condition is to have no limit.
   bool may_lack_limits(const Condition& condition, Channel channel) const;
 };
+
+/// Channel of what drives the rig: the command, or the reference of what its loop controls.
+Channel drive_channel(const model::Rig& rig);
+inline Channel drive_channel(const Campaign& campaign) { return drive_channel(campaign.rig); }
 
 /// Reads and checks a campaign file.
 ///

@@ -196,11 +196,15 @@ void read_waveform(const TomlNode& node, const Campaign& campaign, Condition& co
     condition.sweep_s = sweep->quantity("s", kDurations_s);
   if (const auto amplitude = node.find("amplitude")) {
     const bool pid = campaign.rig.controller == model::ControllerKind::pid;
-    condition.amplitude =
-        amplitude
-            ->noted(pid ? "with a pid controller the waveform is the position reference, in m"
-                        : "without a controller the waveform is the valve command, in V")
-            .quantity(pid ? "m" : "V", kAmplitudes);
+    const model::FeedbackRow& loop = model::gain_keys(campaign.rig.feedback);
+    const bool forces = pid && (campaign.rig.feedback == model::Feedback::force ||
+                                campaign.rig.feedback == model::Feedback::load_pressure);
+    const std::string note =
+        pid ? fmt::format("with a pid controller the waveform is the {} reference, in {}",
+                          loop.name, loop.unit)
+            : "without a controller the waveform is the valve command, in V";
+    condition.amplitude = amplitude->noted(note).quantity(pid ? loop.unit : "V",
+                                                          forces ? kLoadAmplitudes : kAmplitudes);
   }
 }
 

@@ -47,6 +47,7 @@ model::Signal drive(const Campaign& campaign, const Condition& condition, const 
                                  "rig where the waveform is \"recorded\"",
                                  condition.id, info(channel).key));
   }
+  if (record->generated_drive) return *record->generated_drive;
   return recorded_signal(campaign, *record, channel);
 }
 
@@ -67,6 +68,7 @@ model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& con
                                   const model::ParameterValues& /*values*/, const Record* record) {
   model::SimulationInputs inputs;
   inputs.drive = drive(campaign, condition, record);
+  if (record != nullptr) inputs.drive_begins_s = record->time_s.front();
   inputs.external_force_n = side_input(campaign, record, Channel::force);
   inputs.supply_pressure_pa = side_input(campaign, record, Channel::supply_pressure);
   inputs.tank_pressure_pa = side_input(campaign, record, Channel::tank_pressure);

@@ -28,16 +28,27 @@ model::PlantKind read_plant(const TomlNode& rig) {
   return rig.require("model", "the plant, such as \"load_pressure\"").choice(choices);
 }
 
+model::Feedback read_feedback(const TomlNode& node) {
+  std::vector<std::pair<std::string, model::Feedback>> choices;
+  for (std::size_t i = 0; i < model::kFeedbackCount; ++i)
+    choices.emplace_back(model::kFeedbacks[i].name, static_cast<model::Feedback>(i));
+  return node.choice(choices);
+}
+
 void read_controller(const TomlNode& node, Campaign& campaign) {
   using Kind = model::ControllerKind;
   campaign.rig.controller = node.require("type", "\"pid\" or \"none\"")
                                 .choice<Kind>({{"pid", Kind::pid}, {"none", Kind::none}});
+  if (const auto feedback = node.find("feedback")) campaign.rig.feedback = read_feedback(*feedback);
   const auto settings =
-      read_settings(node, campaign.rig.plant, ParameterGroup::controller, {"type"});
+      read_settings(node, campaign.rig.plant, ParameterGroup::controller, {"type", "feedback"});
   if (campaign.rig.controller == Kind::none && !settings.empty()) {
     const std::string key(spec_of(campaign.rig.plant, settings.front().index).key);
     node.require(key, "a gain").fail("is given, but type is \"none\": expected type = \"pid\"");
   }
+  if (const auto feedback = node.find("feedback");
+      feedback && campaign.rig.controller == Kind::none)
+    feedback->fail("is given, but type is \"none\": expected type = \"pid\"");
   campaign.parameters.insert(campaign.parameters.end(), settings.begin(), settings.end());
 }
 

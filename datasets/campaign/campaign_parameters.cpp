@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -219,6 +220,69 @@ std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValu
                   resistance ? "supply_capacity" : "supply_resistance")};
 }
 
+/// All of a second mass, or nothing of it.
+std::optional<ParameterConflict> find_payload_conflict(const model::ParameterValues& values) {
+  constexpr std::array kKeys{"payload_mass", "payload_frequency", "payload_damping_ratio"};
+  const auto given = [&](std::string_view key) {
+    return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
+  };
+  const char* present = nullptr;
+  const char* absent = nullptr;
+  for (const char* key : kKeys) (given(key) ? present : absent) = key;
+  if (present == nullptr) return std::nullopt;
+  if (absent != nullptr)
+    return ParameterConflict{present,
+                             fmt::format("a second mass needs payload_mass, payload_frequency and "
+                                         "payload_damping_ratio: expected {} as well",
+                                         absent)};
+  for (const char* hose : {"hose_yield", "hose_yield_ratio"}) {
+    if (!given(hose)) continue;
+    return ParameterConflict{hose, fmt::format("{} (hoses that yield) stands together with "
+                                               "payload_mass, and the solver has no room for the "
+                                               "states of both: expected one of them",
+                                               hose)};
+  }
+  return std::nullopt;
+}
+
+/// A loop has the gains of what it controls, and no others.
+std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
+                                                    const model::ParameterValues& values) {
+  const auto given = [&](std::string_view key) {
+    return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
+  };
+  const model::FeedbackRow& loop = model::gain_keys(rig.feedback);
+  for (const model::FeedbackRow& other : model::kFeedbacks) {
+    if (other.name == loop.name) continue;
+    for (const auto& [key, own] : {std::pair{other.kp, loop.kp}, std::pair{other.ki, loop.ki},
+                                   std::pair{other.kd, loop.kd}}) {
+      if (!given(key)) continue;
+      return ParameterConflict{
+          std::string(key),
+          fmt::format("{0} is a gain of a loop on {1}, and this one is on {2}: expected {3}, or "
+                      "feedback = \"{1}\"",
+                      key, other.name, loop.name, own)};
+    }
+  }
+  if (!given(loop.kp) && !(given(loop.ki) && rig.feedback != model::Feedback::position)) {
+    return ParameterConflict{
+        "", fmt::format("the pid controller has no {}: expected one in [rig.controller]", loop.kp)};
+  }
+  if (given(loop.kd) && !given("derivative_filter")) {
+    return ParameterConflict{
+        std::string(loop.kd),
+        fmt::format("{} without derivative_filter: expected the corner N of its filter, such as "
+                    "derivative_filter = \"500 rad/s\"",
+                    loop.kd)};
+  }
+  if (given("initial_integral") && !given(loop.ki))
+    return ParameterConflict{"initial_integral",
+                             fmt::format("initial_integral without integral action: expected {} in "
+                                         "[rig.controller]",
+                                         loop.ki)};
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
@@ -251,17 +315,9 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                              "valve_time_constant, or valve_frequency, as well"};
   }
   if (const auto conflict = find_supply_conflict(values)) return conflict;
+  if (const auto conflict = find_payload_conflict(values)) return conflict;
   if (rig.controller == model::ControllerKind::none) return std::nullopt;
-  if (!given("kp")) {
-    return ParameterConflict{"", "the pid controller has no kp: expected one in [rig.controller]"};
-  }
-  if (given("kd") && !given("derivative_filter")) {
-    return ParameterConflict{
-        "kd",
-        "kd without derivative_filter: expected the corner N of its filter, such as "
-        "derivative_filter = \"500 rad/s\""};
-  }
-  return std::nullopt;
+  return find_loop_conflict(rig, values);
 }
 
 }  // namespace rigcal::datasets

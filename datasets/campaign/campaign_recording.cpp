@@ -58,13 +58,9 @@ UnitConversion read_conversion(const TomlNode& node, std::string_view si_unit, S
   return {conversion.scale * gain, conversion.scale * offset + conversion.offset};
 }
 
-ChannelRole default_role(Channel channel, model::ControllerKind controller) {
-  const bool pid = controller == model::ControllerKind::pid;
+ChannelRole default_role(Channel channel, Channel drive) {
+  if (is_drive(channel)) return channel == drive ? ChannelRole::input : ChannelRole::ignore;
   switch (channel) {
-    case Channel::reference:
-      return pid ? ChannelRole::input : ChannelRole::ignore;
-    case Channel::command:
-      return pid ? ChannelRole::ignore : ChannelRole::input;
     case Channel::supply_pressure:
     case Channel::tank_pressure:
       return ChannelRole::input;
@@ -74,17 +70,17 @@ ChannelRole default_role(Channel channel, model::ControllerKind controller) {
 }
 
 /// The model has no use for some roles.
-void check_role(const TomlNode& node, Channel channel, ChannelRole role,
-                model::ControllerKind controller) {
-  const bool pid = controller == model::ControllerKind::pid;
-  const bool drives = channel == (pid ? Channel::reference : Channel::command);
+void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel drive) {
+  const bool drives = channel == drive;
   const bool can_be_input = drives || channel == Channel::supply_pressure ||
                             channel == Channel::tank_pressure || channel == Channel::force;
   const bool can_be_output = info(channel).is_output || (channel == Channel::command && !drives);
   if (role == ChannelRole::input && !can_be_input) {
+    const std::string loop = drive == Channel::command
+                                 ? "without a controller"
+                                 : fmt::format("of a rig that follows {}", info(drive).key);
     node.fail(fmt::format("{} cannot be an input {}: expected \"output\" or \"ignore\"",
-                          info(channel).key,
-                          pid ? "where a pid controller is in the loop" : "without a controller"));
+                          info(channel).key, loop));
   }
   if (role == ChannelRole::output && !can_be_output) {
     node.fail(fmt::format("the model does not compute {}: expected \"input\" or \"ignore\"",
@@ -92,10 +88,9 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role,
   }
 }
 
-ChannelSetting read_channel(const TomlNode& node, Channel channel,
-                            model::ControllerKind controller) {
+ChannelSetting read_channel(const TomlNode& node, Channel channel, Channel drive) {
   node.allow_only({"column", "minus", "unit", "ignore_unit", "gain", "offset", "sd", "gain_sd",
-                   "offset_sd", "role", "interpolation"});
+                   "offset_sd", "role", "interpolation", "recognise"});
   ChannelSetting setting;
   setting.channel = channel;
   if (const auto column = node.find("column")) setting.column = column->name("a column name");
@@ -118,16 +113,21 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel,
   }
   if (const auto sd = node.find("offset_sd"))
     setting.offset_sd = sd->difference(info(channel).unit, kDisturbances);
-  setting.role = default_role(channel, controller);
+  setting.role = default_role(channel, drive);
   if (const auto role = node.find("role")) {
     setting.role = role->choice<ChannelRole>({{"input", ChannelRole::input},
                                               {"output", ChannelRole::output},
                                               {"ignore", ChannelRole::ignore}});
-    check_role(*role, channel, setting.role, controller);
+    check_role(*role, channel, setting.role, drive);
   }
   if (const auto interpolation = node.find("interpolation")) {
     setting.interpolation = interpolation->choice<Interpolation>(
         {{"hold", Interpolation::hold}, {"linear", Interpolation::linear}});
+  }
+  if (const auto recognise = node.find("recognise")) {
+    setting.recognise = recognise->boolean();
+    if (channel != Channel::reference && channel != Channel::command)
+      recognise->fail("has a meaning only for a drive: expected it of reference or command");
   }
   return setting;
 }
@@ -145,20 +145,47 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
       continue;
     }
     const Channel channel = read_channel_key(table, key);
-    campaign.channels.emplace(channel, read_channel(node, channel, campaign.rig.controller));
+    campaign.channels.emplace(channel, read_channel(node, channel, drive_channel(campaign)));
+  }
+}
+
+/// In a loop that has settled the reference says where the piston is.
+void read_before(const TomlNode& node, Campaign& campaign) {
+  campaign.before_stated = true;
+  campaign.rig.before = node.choice<model::Before>({{"hold", model::Before::hold},
+                                                    {"rest", model::Before::rest},
+                                                    {"steady", model::Before::steady}});
+  if (campaign.rig.before == model::Before::steady && campaign.initial != InitialMode::rest &&
+      campaign.rig.controller == model::ControllerKind::pid)
+    node.fail(
+        "\"steady\" has a loop begin where it settles at the first reference: expected it without "
+        "`initial`, or before = \"rest\" or \"hold\" with it");
+}
+
+void read_holes(const TomlNode& node, Campaign& campaign) {
+  const auto holes = node.find("holes");
+  const bool bridge = holes && holes->choice<bool>({{"refuse", false}, {"bridge", true}});
+  if (bridge) {
+    campaign.longest_bridge_s =
+        node.require("longest_hole", "holes = \"bridge\" goes no further, such as \"50 ms\"")
+            .quantity("s", kDurations_s);
+  } else if (const auto longest = node.find("longest_hole")) {
+    longest->fail("has a meaning only together with holes = \"bridge\"");
   }
 }
 
 }  // namespace
 
 void read_recording(const TomlNode& node, Campaign& campaign) {
-  node.allow_only({"initial", "initial_window", "separator", "decimate_to", "spikes", "channels"});
+  node.allow_only({"initial", "initial_window", "before", "separator", "decimate_to", "spikes",
+                   "holes", "longest_hole", "channels"});
   if (const auto initial = node.find("initial")) {
     campaign.initial = initial->choice<InitialMode>(
         {{"rest", InitialMode::rest}, {"record", InitialMode::record}, {"fit", InitialMode::fit}});
   }
   campaign.rig.initial = campaign.initial == InitialMode::rest ? model::InitialState::rest
                                                                : model::InitialState::given;
+  if (const auto before = node.find("before")) read_before(*before, campaign);
   campaign.initial_window_s = kDefaultWindowS;
   if (const auto window = node.find("initial_window")) {
     campaign.initial_window_s = window->quantity("s", kDurations_s);
@@ -167,7 +194,8 @@ void read_recording(const TomlNode& node, Campaign& campaign) {
     }
   }
   if (const auto separator = node.find("separator")) {
-    campaign.separator = separator->choice<char>({{",", ','}, {";", ';'}, {"\t", '\t'}});
+    campaign.separator =
+        separator->choice<char>({{",", ','}, {";", ';'}, {"\t", '\t'}, {" ", ' '}});
   }
   if (const auto rate = node.find("decimate_to")) {
     campaign.decimate_to_hz = rate->quantity("Hz", kSampleRates_hz);
@@ -176,6 +204,7 @@ void read_recording(const TomlNode& node, Campaign& campaign) {
     campaign.spikes = spikes->choice<SpikeTreatment>(
         {{"report", SpikeTreatment::report}, {"exclude", SpikeTreatment::exclude}});
   }
+  read_holes(node, campaign);
   if (const auto channels = node.find("channels")) read_channels(*channels, campaign);
 }
 
@@ -195,9 +224,19 @@ std::vector<Channel> output_channels(const Campaign& campaign) {
   return outputs;
 }
 
-Channel drive_channel(const Campaign& campaign) {
-  return campaign.rig.controller == model::ControllerKind::pid ? Channel::reference
-                                                               : Channel::command;
+Channel drive_channel(const model::Rig& rig) {
+  if (rig.controller == model::ControllerKind::none) return Channel::command;
+  switch (rig.feedback) {
+    case model::Feedback::position:
+      return Channel::reference;
+    case model::Feedback::force:
+      return Channel::force_reference;
+    case model::Feedback::load_pressure:
+      return Channel::load_pressure_reference;
+    case model::Feedback::acceleration:
+      return Channel::acceleration_reference;
+  }
+  return Channel::reference;
 }
 
 }  // namespace rigcal::datasets

@@ -54,9 +54,6 @@ Channel read_channel_key(const TomlNode& table, const std::string& key);
 /// Output channels of the records, in the order of the channel table.
 std::vector<Channel> output_channels(const Campaign& campaign);
 
-/// Channel that drives the rig where the waveform is recorded.
-Channel drive_channel(const Campaign& campaign);
-
 /// What no single section can tell: parameters without a value, contradictions, runs without
 /// records.
 ///

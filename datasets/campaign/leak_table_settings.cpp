@@ -27,7 +27,7 @@ constexpr std::array kFeatures{FeatureName{Feature::servo_flow, "servo_flow"},
                                FeatureName{Feature::std, "std"}};
 
 std::string_view amplitude_unit(const Campaign& campaign) {
-  return campaign.rig.controller == model::ControllerKind::pid ? "m" : "V";
+  return info(drive_channel(campaign)).unit;
 }
 
 bool same_drive(const LeakSignal& a, const LeakSignal& b) {
@@ -261,6 +261,11 @@ const Assumption* LeakTableSettings::assumption(int index) const {
 
 LeakTableSettings read_leak_table(const TomlNode& node, const Campaign& campaign) {
   node.allow_only({"targets", "coefficients", "assumptions", "signal", "features"});
+  if (campaign.rig.feedback != model::Feedback::position)
+    node.fail(
+        fmt::format("has no meaning for a loop on {}: expected feedback = \"position\" in "
+                    "[rig.controller]",
+                    model::gain_keys(campaign.rig.feedback).name));
   LeakTableSettings settings;
   if (const auto targets = node.find("targets")) settings.targets_percent = read_targets(*targets);
   if (const auto range = node.find("coefficients")) read_range(*range, settings);
@@ -285,6 +290,11 @@ LeakTableSettings leak_table_settings(const Campaign& campaign) {
   const TomlNode root(parsed, campaign.file.string(), "");
   LeakTableSettings settings;
   if (const auto node = root.find("leak_table")) settings = read_leak_table(*node, campaign);
+  if (campaign.rig.feedback != model::Feedback::position)
+    throw InputError({campaign.file.string()},
+                     fmt::format("key 'rig.controller.feedback': a leak table is made of loops on "
+                                 "position, or of none: found \"{}\"",
+                                 model::gain_keys(campaign.rig.feedback).name));
   if (settings.signals.empty()) settings.signals = signals_of(campaign);
   if (settings.signals.empty()) {
     throw InputError({campaign.file.string()},

@@ -18,4 +18,9 @@ struct ColumnGuess {
 /// in brackets or between underscores.
 ColumnGuess guess_column(const std::string& name);
 
+/// What a column of this unit may hold whose name tells nothing.
+///
+/// @param has_position  whether another column is the position: a further length drives it
+std::optional<Channel> guess_by_unit(const std::string& unit, bool has_position);
+
 }  // namespace rigcal::datasets

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <span>
@@ -15,7 +17,7 @@
 #include "datasets/campaign/toml/toml_reader.hpp"
 #include "datasets/draft/column_guess.hpp"
 #include "datasets/draft/start_motion.hpp"
-#include "datasets/draft/waveform_guess.hpp"
+#include "datasets/prepare/waveform_guess.hpp"
 #include "datasets/read/record_reader.hpp"
 #include "model/plant/parameter.hpp"
 
@@ -56,6 +58,7 @@ struct FileColumns {
   std::string time_unit;
   std::vector<ChannelColumns> channels;
   std::vector<std::string> unknown;
+  std::map<std::string, std::string> units;  ///< of those, where one is told
   /// Lines of a matrix behind its time, which have no names: rows of an array of Simulink's "To
   /// File", or columns.
   std::vector<std::string> rows;
@@ -67,15 +70,20 @@ struct FileColumns {
 /// there is no such matrix.
 std::vector<std::string> timed_lines(const fs::path& file,
                                      const std::vector<RecordColumn>& columns) {
+  constexpr int kMostTried = 10;
+  int tried = 0;
   const auto matrix_of = [](const std::string& name) { return name.substr(0, name.rfind('(')); };
-  for (std::size_t i = 0; i < columns.size(); ++i) {
+  for (std::size_t i = 0; i < columns.size() && tried < kMostTried; ++i) {
     const std::string& first = columns[i].name;
     if (!columns[i].is_matrix_line || !(first.ends_with("(1,:)") || first.ends_with("(:,1)")))
       continue;
     std::vector<std::string> lines;
-    for (std::size_t k = i; k < columns.size() && columns[k].is_matrix_line; ++k)
-      if (matrix_of(columns[k].name) == matrix_of(first)) lines.push_back(columns[k].name);
+    for (std::size_t k = i; k < columns.size() && columns[k].is_matrix_line; ++k) {
+      if (matrix_of(columns[k].name) != matrix_of(first)) break;
+      lines.push_back(columns[k].name);
+    }
     if (lines.size() < 2) continue;
+    ++tried;
     try {
       read(file, lines[0], lines[1]);
       return lines;
@@ -87,9 +95,14 @@ std::vector<std::string> timed_lines(const fs::path& file,
 }
 
 std::string names_text(const std::vector<RecordColumn>& columns) {
+  constexpr std::size_t kMostNamed = 40;
   std::vector<std::string_view> names;
-  for (const RecordColumn& column : columns) names.push_back(column.name);
-  return fmt::format("{}", fmt::join(names, ", "));
+  for (const RecordColumn& column : columns)
+    if (names.size() < kMostNamed) names.push_back(column.name);
+  const std::string more = columns.size() > kMostNamed
+                               ? fmt::format(" and {} more", columns.size() - kMostNamed)
+                               : std::string();
+  return fmt::format("{}{}", fmt::join(names, ", "), more);
 }
 
 /// A file without names that tell a time: a matrix with a time, or why it is no recording.
@@ -147,6 +160,7 @@ FileColumns columns_of(const fs::path& file) {
                                   guess.unit});
     } else {
       found.unknown.push_back(name);
+      if (!guess.unit.empty()) found.units[name] = guess.unit;
     }
   }
   if (found.time.empty()) {
@@ -202,7 +216,81 @@ std::string channel_line(Channel channel, const std::string& column, const std::
                      remark);
 }
 
-std::string channels_text(const FileColumns& columns) {
+/// Columns of numbers, one per name; empty where one holds none.
+std::vector<std::vector<double>> columns_or_none(const fs::path& file,
+                                                 const std::vector<std::string>& names) {
+  try {
+    return record_reader(file).load(file, {names, {}}).columns;
+  } catch (const InputError&) {
+  }
+  std::vector<std::vector<double>> columns(names.size());
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    try {
+      columns[i] = std::move(record_reader(file).load(file, {{names[i]}, {}}).columns.at(0));
+    } catch (const InputError&) {
+    }
+  }
+  return columns;
+}
+
+/// How far a column goes, and what it may be, in brackets.
+std::string range_text(const std::vector<double>& values, const std::string& unit,
+                       bool has_position) {
+  if (values.empty()) return {};
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const bool increases =
+      values.size() > 2 &&
+      std::adjacent_find(values.begin(), values.end(), std::greater_equal<>()) == values.end();
+  const auto channel = guess_by_unit(unit, has_position);
+  std::string guess;
+  if (channel) guess = fmt::format(", perhaps {}", info(*channel).key);
+  if (!channel && increases) guess = ", perhaps time";
+  return fmt::format(" ({:.6g} to {:.6g}{}{}{})", *low, *high, unit.empty() ? "" : " ", unit,
+                     guess);
+}
+
+/// The columns that nothing recognises, with what they hold.
+std::string unknown_columns_text(const fs::path& file, const FileColumns& columns) {
+  constexpr std::size_t kMostShown = 40;
+  std::vector<std::string> names = columns.unknown;
+  if (names.empty()) return {};
+  if (names.size() > kMostShown) names.resize(kMostShown);
+  const bool has_position =
+      std::any_of(columns.channels.begin(), columns.channels.end(),
+                  [](const ChannelColumns& c) { return c.channel == Channel::position; });
+  const auto values = columns_or_none(file, names);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const auto unit = columns.units.find(names[i]);
+    names[i] += range_text(values[i], unit == columns.units.end() ? std::string() : unit->second,
+                           has_position);
+  }
+  const std::string more = columns.unknown.size() > names.size()
+                               ? fmt::format(" and {} more", columns.unknown.size() - names.size())
+                               : std::string();
+  return fmt::format("# not used: {}{}\n", fmt::join(names, ", "), more);
+}
+
+/// For a file in which nothing is recognised, or not even a time.
+std::string blank_channels_text(const fs::path& file, const FileColumns& columns) {
+  std::string text =
+      "[recording.channels]\n# Nothing told which column is which: see those below.\n";
+  text += columns.time.empty()
+              ? fmt::format("time = {{ column = \"{}\", unit = \"s\" }}{}\n", kBlank,
+                            comment("one of the columns below"))
+              : fmt::format("time = {{ column = {}, unit = {} }}\n", toml_quoted(columns.time),
+                            toml_quoted(columns.time_unit.empty() ? "s" : columns.time_unit));
+  for (const ChannelColumns& column : columns.channels)
+    text += channel_line(column.channel, column.numbers.empty() ? column.stem : "", column.unit);
+  if (columns.channels.empty()) {
+    text += fmt::format("position = {{ column = \"{0}\", unit = \"{0}\" }}\n", kBlank);
+    text += fmt::format("command = {{ column = \"{0}\", unit = \"{0}\" }}{1}\n", kBlank,
+                        comment("or reference, in a position loop"));
+  }
+  return text + unknown_columns_text(file, columns);
+}
+
+std::string channels_text(const fs::path& file, const FileColumns& columns) {
+  if (!columns.lacks.empty()) return blank_channels_text(file, columns);
   std::string text = "[recording.channels]\n";
   text += fmt::format("time = {{ column = {}, unit = {} }}{}\n", toml_quoted(columns.time),
                       toml_quoted(columns.time_unit.empty() ? "s" : columns.time_unit),
@@ -217,9 +305,7 @@ std::string channels_text(const FileColumns& columns) {
       text += fmt::format("# '{}' also looks like {}\n", column.stem, info(column.channel).key);
     }
   }
-  if (!columns.unknown.empty())
-    text += fmt::format("# not used: {}\n", fmt::join(columns.unknown, ", "));
-  return text;
+  return text + unknown_columns_text(file, columns);
 }
 
 /// Lines without names, with their ranges, by which the user knows them again.
@@ -243,21 +329,27 @@ std::string rows_text(const fs::path& file, const FileColumns& columns) {
 }
 
 /// Optional terms that a cylinder with both chambers mostly has.
-constexpr std::array<std::string_view, 9> kTwoChamberTerms{
-    "retracted_position", "valve_dead_band", "valve_time_constant",
-    "valve_null_leakage", "laminar_leakage", "gravity",
-    "coulomb_friction",   "air_fraction",    "stop_stiffness"};
+constexpr std::array<std::string_view, 13> kTwoChamberTerms{
+    "retracted_position", "valve_dead_band",    "valve_time_constant", "transport_delay",
+    "gain_b_to_tank",     "valve_null_leakage", "laminar_leakage",     "gravity",
+    "external_force",     "load_gradient",      "coulomb_friction",    "air_fraction",
+    "stop_stiffness"};
 
 /// And those that a servo-valve and a symmetric cylinder have.
-constexpr std::array<std::string_view, 6> kLoadPressureTerms{
-    "valve_offset",       "valve_dead_band", "valve_time_constant",
-    "valve_null_leakage", "laminar_leakage", "coulomb_friction"};
+constexpr std::array<std::string_view, 8> kLoadPressureTerms{
+    "valve_offset",       "valve_dead_band", "valve_time_constant", "transport_delay",
+    "valve_null_leakage", "laminar_leakage", "external_force",      "coulomb_friction"};
+
+/// And that one has that carries a payload, where an acceleration was recorded.
+constexpr std::array<std::string_view, 3> kPayloadTerms{"payload_mass", "payload_frequency",
+                                                        "payload_damping_ratio"};
 
 /// Terms that may join, as comments.
-std::string terms_text(model::PlantKind plant) {
+std::string terms_text(model::PlantKind plant, bool with_payload) {
   const bool two_chambers = plant == model::PlantKind::two_chamber;
-  const std::span<const std::string_view> terms =
-      two_chambers ? std::span<const std::string_view>(kTwoChamberTerms) : kLoadPressureTerms;
+  std::vector<std::string_view> terms(kLoadPressureTerms.begin(), kLoadPressureTerms.end());
+  if (two_chambers) terms.assign(kTwoChamberTerms.begin(), kTwoChamberTerms.end());
+  if (with_payload) terms.insert(terms.end(), kPayloadTerms.begin(), kPayloadTerms.end());
   std::string text = "# Terms that are absent unless given (rigcal params lists all):\n";
   for (const std::string_view key : terms) {
     const int row = model::parameter_index(plant, key);
@@ -269,7 +361,9 @@ std::string terms_text(model::PlantKind plant) {
   return text;
 }
 
-std::string rig_text(model::PlantKind plant, bool closed_loop) {
+/// @param loop  what is controlled; none: the command was recorded
+std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop,
+                     bool with_payload) {
   const bool two_chambers = plant == model::PlantKind::two_chamber;
   std::string text =
       two_chambers
@@ -290,14 +384,27 @@ std::string rig_text(model::PlantKind plant, bool closed_loop) {
                         comment(fmt::format("{}: {}{}", spec.symbol, spec.meaning,
                                             spec.unit == "1" ? " (a plain number)" : "")));
   }
-  text += terms_text(plant);
-  return text +
-         (closed_loop
-              ? "[rig.controller]\ntype = \"pid\"\n" +
-                    fmt::format("kp = \"{} V/m\"{}\n", kBlank,
-                                comment("proportional gain; ki, kd, output_limit if there are any"))
-              : "[rig.controller]\ntype = \"none\"  # the recorded command drives the "
-                "valve\n");
+  text += terms_text(plant, with_payload);
+  if (!loop)
+    return text +
+           "[rig.controller]\ntype = \"none\"  # the recorded command drives the "
+           "valve\n";
+  const model::FeedbackRow& row = model::gain_keys(*loop);
+  const auto unit_of = [&](std::string_view key) {
+    return model::parameter_table(
+               plant)[static_cast<std::size_t>(model::parameter_index(plant, key))]
+        .unit;
+  };
+  text += "[rig.controller]\ntype = \"pid\"\n";
+  if (*loop != model::Feedback::position)
+    text += fmt::format("feedback = \"{}\"{}\n", row.name,
+                        comment("what the loop controls; position unless given"));
+  text += fmt::format("{} = \"{} {}\"{}\n", row.kp, kBlank, unit_of(row.kp),
+                      comment("proportional gain; output_limit, sample_time if there are any"));
+  return text + fmt::format("# {} = \"... {}\"{}\n", row.ki, unit_of(row.ki),
+                            comment(fmt::format("integral gain: without it a model lags where the "
+                                                "machine does not; {} likewise",
+                                                row.kd)));
 }
 
 std::string relative_text(const fs::path& file, const fs::path& folder) {
@@ -319,10 +426,22 @@ std::string numbers_text(const std::vector<std::string>& numbers) {
   return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
 
-std::string repeats_text(const std::vector<fs::path>& files, const FileColumns& columns,
+/// A file, and what is in it.
+struct Recording {
+  fs::path file;
+  FileColumns columns;
+};
+
+/// Files of one condition: their names differ in the last number only.
+struct FileGroup {
+  std::string id;
+  std::vector<Recording> files;
+};
+
+std::string repeats_text(const std::vector<Recording>& files, const FileColumns& columns,
                          const fs::path& folder) {
   std::vector<std::string> entries;
-  for (const fs::path& file : files) {
+  for (const auto& [file, own] : files) {
     const auto sets = column_sets(columns);
     if (sets.empty()) entries.push_back(relative_text(file, folder));
     for (const auto& set : sets) {
@@ -337,12 +456,6 @@ std::string repeats_text(const std::vector<fs::path>& files, const FileColumns& 
   }
   return fmt::format("repeats = [ {} ]\n", fmt::join(entries, ",\n            "));
 }
-
-/// Files of one condition: their names differ in the last number only.
-struct FileGroup {
-  std::string id;
-  std::vector<fs::path> files;
-};
 
 // ---- Conditions ----------------------------------------------------------------------------
 
@@ -375,16 +488,27 @@ std::string limits_of_others(const FileColumns& columns) {
   return text;
 }
 
+/// What the loop controls whose reference is recorded; none: there is no reference.
+std::optional<model::Feedback> loop_of(const FileColumns& columns) {
+  for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
+    const model::Rig rig{{}, model::ControllerKind::pid, {}, static_cast<model::Feedback>(i)};
+    if (find(columns, drive_channel(rig)) != nullptr) return rig.feedback;
+  }
+  return std::nullopt;
+}
+
 /// What drives the rig, as far as it is recorded.
 const ChannelColumns* drive_of(const FileColumns& columns) {
-  const ChannelColumns* reference = find(columns, Channel::reference);
-  return reference != nullptr ? reference : find(columns, Channel::command);
+  const auto loop = loop_of(columns);
+  if (!loop) return find(columns, Channel::command);
+  return find(columns, drive_channel(model::Rig{{}, model::ControllerKind::pid, {}, *loop}));
 }
 
 /// Time and a channel of a file, the first of several columns.
 /// @return  empty if its time has no unit of time
 std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
     const fs::path& file, const FileColumns& columns, const ChannelColumns& channel) {
+  if (columns.time.empty()) return std::nullopt;
   const std::string column =
       channel.numbers.empty() ? channel.stem : channel.stem + channel.numbers.front();
   auto data = read(file, columns.time, column);
@@ -402,10 +526,10 @@ std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
 std::string initial_text(const std::vector<FileGroup>& groups) {
   const double window_s = Campaign().initial_window_s;
   for (const FileGroup& group : groups) {
-    const FileColumns columns = columns_of(group.files.front());
+    const FileColumns& columns = group.files.front().columns;
     const ChannelColumns* position = find(columns, Channel::position);
     if (position == nullptr) continue;
-    const auto signal = signal_of(group.files.front(), columns, *position);
+    const auto signal = signal_of(group.files.front().file, columns, *position);
     if (!signal || !motion_at_start(signal->first, signal->second, window_s)) continue;
     return fmt::format(
         "initial = \"fit\"  # estimated: {} moves within its first {:g} s; \"record\": their mean, "
@@ -428,7 +552,9 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
                 "command was recorded"));
   const auto signal = signal_of(file, columns, *drive);
   if (!signal)
-    return fmt::format("waveform = \"recorded\"{}\n", comment("its time has no unit of time"));
+    return fmt::format(
+        "waveform = \"recorded\"{}\n",
+        comment(columns.time.empty() ? "its time is not known" : "its time has no unit of time"));
   const auto& [time_s, values] = *signal;
   const double rate_hz =
       time_s.size() < 2 ? 0.0
@@ -445,7 +571,7 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
                                           : "");
   if (!guess.frequency_hz || !guess.amplitude) return text;
   text += fmt::format("frequency = \"{:.4g} Hz\"\n", *guess.frequency_hz);
-  const std::string_view wanted = drive->channel == Channel::reference ? "m" : "V";
+  const std::string_view wanted = info(drive->channel).unit;
   std::string unit = drive->unit.empty() ? kBlank : drive->unit;
   try {
     if (!drive->unit.empty()) unit_conversion(drive->unit, wanted);
@@ -458,39 +584,59 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
                      known ? "" : comment("half of peak to peak, after the gain, with unit"));
 }
 
-/// Files without a time or a channel, as a summary beside the recordings, are named in `left_out`.
-/// @throws InputError  no file is a recording
-std::vector<fs::path> recordings_among(const std::vector<fs::path>& files,
-                                       std::vector<std::string>& left_out) {
-  std::vector<fs::path> recordings;
-  std::string first;
-  for (const fs::path& file : files) {
-    const std::string lacks = columns_of(file).lacks;
-    if (lacks.empty()) {
-      recordings.push_back(file);
-      continue;
-    }
-    if (first.empty()) first = lacks;
-    left_out.push_back(fmt::format("{} ({})", file.filename().string(), lacks));
-  }
-  if (recordings.empty()) throw InputError({files.at(0).string()}, first);
-  return recordings;
+constexpr std::size_t kFewestOfARecording = 8;  // samples
+
+/// Whether a file holds columns of numbers, whatever their names.
+bool has_numbers(const fs::path& file) {
+  constexpr std::size_t kMostTried = 40;
+  std::vector<std::string> names;
+  for (const RecordColumn& column : record_reader(file).columns(file))
+    if (names.size() < kMostTried) names.push_back(column.name);
+  const auto columns = columns_or_none(file, names);
+  return std::count_if(columns.begin(), columns.end(), [](const auto& values) {
+           return values.size() >= kFewestOfARecording;
+         }) >= 2;
 }
 
-std::vector<FileGroup> groups_of(const std::vector<fs::path>& files) {
-  std::vector<std::pair<std::pair<fs::path, std::string>, FileGroup>> groups;
+/// Files without a time or a channel, as a summary beside the recordings, are named in `left_out`.
+/// Where no file has both, those with numbers are recordings all the same.
+/// @throws InputError  no file is a recording
+std::vector<Recording> recordings_among(const std::vector<fs::path>& files,
+                                        std::vector<std::string>& left_out) {
+  std::vector<Recording> all;
+  std::vector<Recording> others;
   for (const fs::path& file : files) {
+    Recording recording{file, columns_of(file)};
+    (recording.columns.lacks.empty() ? all : others).push_back(std::move(recording));
+  }
+  const bool any = !all.empty();
+  for (Recording& other : others) {
+    if (!any && has_numbers(other.file)) {
+      all.push_back(std::move(other));
+    } else {
+      left_out.push_back(
+          fmt::format("{} ({})", other.file.filename().string(), other.columns.lacks));
+    }
+  }
+  if (all.empty()) throw InputError({files.at(0).string()}, others.at(0).columns.lacks);
+  return all;
+}
+
+std::vector<FileGroup> groups_of(std::vector<Recording> recordings) {
+  std::vector<std::pair<std::pair<fs::path, std::string>, FileGroup>> groups;
+  for (Recording& recording : recordings) {
+    const fs::path& file = recording.file;
     const std::string stem = split_number(file.stem().string()).stem;
     const std::pair key{file.parent_path(), stem + file.extension().string()};
     auto found = std::find_if(groups.begin(), groups.end(),
                               [&](const auto& group) { return group.first == key; });
     if (found == groups.end()) found = groups.insert(groups.end(), {key, {id_of(stem), {}}});
-    found->second.files.push_back(file);
+    found->second.files.push_back(std::move(recording));
   }
   std::vector<FileGroup> result;
   std::vector<std::string> ids;
   for (auto& [key, group] : groups) {
-    if (group.files.size() == 1) group.id = id_of(group.files[0].stem().string());
+    if (group.files.size() == 1) group.id = id_of(group.files[0].file.stem().string());
     const auto same = std::count(ids.begin(), ids.end(), group.id);
     ids.push_back(group.id);
     if (same > 0) group.id += fmt::format("-{}", same + 1);
@@ -506,8 +652,9 @@ std::vector<FileGroup> groups_of(const std::vector<fs::path>& files) {
 std::vector<FileGroup> readable_among(std::vector<FileGroup> groups,
                                       std::vector<std::string>& left_out) {
   std::optional<InputError> first;
-  const auto reads = [&](const fs::path& file) {
-    const FileColumns columns = columns_of(file);
+  const auto reads = [&](const Recording& recording) {
+    const auto& [file, columns] = recording;
+    if (!columns.lacks.empty()) return true;  // has_numbers() has read it
     const ChannelColumns* drive = drive_of(columns);
     ChannelColumns any;
     if (drive != nullptr) {
@@ -542,11 +689,12 @@ std::vector<FileGroup> readable_among(std::vector<FileGroup> groups,
 Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder) {
   std::vector<std::string> left_out;
   const auto groups = readable_among(groups_of(recordings_among(files, left_out)), left_out);
-  const FileColumns columns = columns_of(groups.at(0).files.at(0));
+  const auto& [first, columns] = groups.at(0).files.at(0);
   // Rows without names: that of the reference may be among them, as where an experiment is run.
-  const bool closed_loop = find(columns, Channel::reference) != nullptr || !columns.rows.empty();
+  auto loop = loop_of(columns);
+  if (!loop && !columns.rows.empty()) loop = model::Feedback::position;
   const bool chambers = std::any_of(groups.begin(), groups.end(), [](const FileGroup& group) {
-    const FileColumns own = columns_of(group.files.front());
+    const FileColumns& own = group.files.front().columns;
     return find(own, Channel::pressure_a) != nullptr || find(own, Channel::pressure_b) != nullptr;
   });
   std::string text = fmt::format(
@@ -556,11 +704,15 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
       kBlank);
   for (const std::string& file : left_out) text += fmt::format("# left out: {}\n", file);
   if (!left_out.empty()) text += "\n";
-  text += rig_text(chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure,
-                   closed_loop);
+  text += rig_text(chambers ? model::PlantKind::two_chamber : model::PlantKind::load_pressure, loop,
+                   find(columns, Channel::acceleration) != nullptr);
   text += "\n[recording]\n" + initial_text(groups);
+  text +=
+      "# before = \"rest\"  # the drive was neutral until the first sample: a record that begins "
+      "at "
+      "its step\n";
   text += "# decimate_to = \"1 kHz\"  # if the records are denser than the model needs\n";
-  text += channels_text(columns) + rows_text(groups.at(0).files.at(0), columns);
+  text += channels_text(first, columns) + rows_text(first, columns);
   text +=
       "\n[averaging]\n"
       "align = \"correlate\"  # or \"none\" if all repeats share one trigger\n"
@@ -569,9 +721,9 @@ Draft draft_campaign(const std::vector<fs::path>& files, const fs::path& folder)
       "uncertain\n" +
       limits_of_others(columns);
   for (const FileGroup& group : groups) {
-    const FileColumns own = columns_of(group.files.front());
+    const FileColumns& own = group.files.front().columns;
     text += fmt::format("\n[[condition]]\nid = {}\n", toml_quoted(group.id));
-    text += waveform_text(group.files.front(), own);
+    text += waveform_text(group.files.front().file, own);
     text += "use = \"fit\"  # or \"validate\": keep some back that the fit does not see\n";
     text += "# leak_level = \"none\"  # names the state of the rig, if there are several\n";
     text += repeats_text(group.files, own, folder);

@@ -89,8 +89,9 @@ std::vector<Channel> alignment_channels(const std::vector<Repeat>& repeats) {
   std::vector<Channel> smooth;
   std::vector<Channel> jumping;
   for (const Channel channel :
-       {Channel::reference, Channel::command, Channel::position, Channel::load_pressure,
-        Channel::pressure_a, Channel::pressure_b, Channel::force}) {
+       {Channel::reference, Channel::force_reference, Channel::load_pressure_reference,
+        Channel::acceleration_reference, Channel::command, Channel::position,
+        Channel::load_pressure, Channel::pressure_a, Channel::pressure_b, Channel::force}) {
     const bool usable = std::all_of(repeats.begin(), repeats.end(), [&](const Repeat& repeat) {
       const auto found = repeat.values.find(channel);
       return found != repeat.values.end() && !is_constant(found->second);
@@ -211,6 +212,12 @@ AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate) {
     result.shift.push_back(same ? 0.0 : (first.time_s.front() - repeat.time_s.front()) / dt);
   }
   if (!correlate || repeats.size() < 2) return result;
+  // An edge that fell into a hole stands where the hole ends, which would pass for an offset.
+  if (std::any_of(repeats.begin(), repeats.end(),
+                  [](const Repeat& repeat) { return !repeat.bridged.empty(); })) {
+    result.warnings.emplace_back("holes are bridged: repeats are not aligned");
+    return result;
+  }
   if (!is_uniform(first)) {
     result.warnings.emplace_back("the sample times are not equidistant: repeats are not aligned");
     return result;

@@ -10,6 +10,7 @@
 #include "datasets/checks/identical_repeats.hpp"
 #include "datasets/checks/mains_hum.hpp"
 #include "datasets/prepare/alignment.hpp"
+#include "datasets/prepare/bridged_holes.hpp"
 #include "datasets/prepare/lag.hpp"
 #include "datasets/prepare/median.hpp"
 #include "datasets/prepare/resample.hpp"
@@ -27,8 +28,7 @@ struct Stack {
 
 /// A held signal must not ring at its edges; a measured one must keep its noise and amplitude.
 Interpolator interpolator_of(Channel channel) {
-  return channel == Channel::reference || channel == Channel::command ? Interpolator::linear
-                                                                      : Interpolator::band_limited;
+  return is_drive(channel) ? Interpolator::linear : Interpolator::band_limited;
 }
 
 std::map<Channel, Stack> stack_channels(const std::vector<Repeat>& repeats,
@@ -38,10 +38,34 @@ std::map<Channel, Stack> stack_channels(const std::vector<Repeat>& repeats,
   for (std::size_t r = 0; r < repeats.size(); ++r) {
     for (const auto& [channel, values] : repeats[r].values) {
       stacks[channel].carriers.push_back(r);
-      stacks[channel].rows.push_back(shifted(values, shift[r], samples, interpolator_of(channel)));
+      auto row = shifted(values, shift[r], samples, interpolator_of(channel));
+      forget_bridged(row, repeats[r].bridged, shift[r]);
+      stacks[channel].rows.push_back(std::move(row));
     }
   }
   return stacks;
+}
+
+/// Whether every channel has at least one repeat at a sample.
+bool is_covered(const std::map<Channel, Stack>& stacks, std::size_t i) {
+  return std::all_of(stacks.begin(), stacks.end(), [i](const auto& entry) {
+    return std::any_of(entry.second.rows.begin(), entry.second.rows.end(),
+                       [i](const auto& row) { return !std::isnan(row[i]); });
+  });
+}
+
+/// Drops the samples that some channel has of no repeat, where holes are bridged.
+void drop_uncovered(std::map<Channel, Stack>& stacks, std::vector<double>& time_s) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < time_s.size(); ++i)
+    if (is_covered(stacks, i)) kept.push_back(i);
+  const auto keep = [&kept](std::vector<double>& x) {
+    for (std::size_t k = 0; k < kept.size(); ++k) x[k] = x[kept[k]];
+    x.resize(kept.size());
+  };
+  keep(time_s);
+  for (auto& [channel, stack] : stacks)
+    for (auto& row : stack.rows) keep(row);
 }
 
 /// The longest run of samples at which every channel has at least one repeat.
@@ -51,16 +75,10 @@ struct Span {
 };
 
 Span covered_span(const std::map<Channel, Stack>& stacks, std::size_t samples) {
-  const auto covered = [&](std::size_t i) {
-    return std::all_of(stacks.begin(), stacks.end(), [&](const auto& entry) {
-      return std::any_of(entry.second.rows.begin(), entry.second.rows.end(),
-                         [&](const auto& row) { return !std::isnan(row[i]); });
-    });
-  };
   Span longest;
   Span run;
   for (std::size_t i = 0; i < samples; ++i) {
-    if (!covered(i))
+    if (!is_covered(stacks, i))
       run = {i + 1, i + 1};
     else
       run.end = i + 1;
@@ -331,9 +349,12 @@ void warn_of_gaps(const std::vector<Repeat>& repeats, const std::vector<double>&
 Record average(const std::string& condition, const std::vector<Repeat>& repeats,
                const AverageOptions& options) {
   const AlignedRepeats aligned = align(repeats, options.align);
-  const Repeat& first = repeats.front();
-  const auto stacks = stack_channels(repeats, aligned.shift);
-  const Span span = covered_span(stacks, first.time_s.size());
+  std::vector<double> time_s = repeats.front().time_s;
+  auto stacks = stack_channels(repeats, aligned.shift);
+  if (std::any_of(repeats.begin(), repeats.end(),
+                  [](const Repeat& repeat) { return !repeat.bridged.empty(); }))
+    drop_uncovered(stacks, time_s);
+  const Span span = covered_span(stacks, time_s.size());
   if (span.end == span.begin)
     throw std::invalid_argument(fmt::format(
         "the repeats of {} have no sample at which every channel is recorded", condition));
@@ -346,8 +367,8 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
   for (std::size_t r = 0; r < repeats.size(); ++r)
     record.repeat_reports.push_back(
         {repeats[r].source, aligned.offset_s[r], 0.0, false, aligned.shifted_s[r]});
-  record.time_s.assign(first.time_s.begin() + static_cast<std::ptrdiff_t>(span.begin),
-                       first.time_s.begin() + static_cast<std::ptrdiff_t>(span.end));
+  record.time_s.assign(time_s.begin() + static_cast<std::ptrdiff_t>(span.begin),
+                       time_s.begin() + static_cast<std::ptrdiff_t>(span.end));
   warn_of_gaps(repeats, aligned.shift, record.warnings);
   for (const auto& [channel, stack] : stacks) {
     Series series = moments(stack, span);
@@ -356,7 +377,8 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
     if (stack.rows.size() > 1) {
       auto deviations = deviations_from(stack, series, span);
       warn_of_noise(deviations, series, channel, options, repeats, record.warnings);
-      if (options.keep_deviations && (channel != Channel::reference || any_differs(deviations)))
+      if (options.keep_deviations &&
+          (!is_drive(channel) || channel == Channel::command || any_differs(deviations)))
         series.deviations = std::move(deviations);
     }
     if (repeats.size() == 1) series.repeats = options.repeats_averaged;

@@ -15,9 +15,7 @@ namespace rigcal::datasets {
 namespace {
 
 /// A commanded signal jumps on purpose.
-bool is_measured(Channel channel) {
-  return channel != Channel::reference && channel != Channel::command;
-}
+bool is_measured(Channel channel) { return !is_drive(channel); }
 
 bool is_held(const Campaign& campaign, Channel channel) {
   const auto setting = campaign.channels.find(channel);
@@ -77,6 +75,18 @@ void treat_spikes(const Campaign& campaign, std::vector<Repeat>& repeats, Condit
         "spikes excluded: {} samples replaced by lines between their neighbours", replaced));
 }
 
+/// A sample that stands for some of which one was marked is marked, too.
+std::vector<bool> decimated_marks(const std::vector<bool>& marks, std::size_t factor) {
+  std::vector<bool> result;
+  for (std::size_t i = 0; i < marks.size(); i += factor) {
+    const auto begin = marks.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, factor - 1));
+    const auto end =
+        marks.begin() + static_cast<std::ptrdiff_t>(std::min(i + factor, marks.size()));
+    result.push_back(std::find(begin, end, true) != end);
+  }
+  return result;
+}
+
 void decimate(const Campaign& campaign, std::vector<Repeat>& repeats, Conditioning& done) {
   const double wanted_hz = *campaign.decimate_to_hz;
   const std::size_t factor = decimation_factor(repeats.front(), wanted_hz);
@@ -103,6 +113,7 @@ void decimate(const Campaign& campaign, std::vector<Repeat>& repeats, Conditioni
     for (std::size_t i = 0; i < repeat.time_s.size(); i += factor)
       time_s.push_back(repeat.time_s[i]);
     repeat.time_s = std::move(time_s);
+    repeat.bridged = decimated_marks(repeat.bridged, factor);
   }
   done.noise_gain = filter.noise_gain();
   done.notes.push_back(

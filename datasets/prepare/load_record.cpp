@@ -9,15 +9,19 @@
 #include <system_error>
 
 #include "common/parallel.hpp"
+#include "datasets/campaign/campaign_parameters.hpp"
 #include "datasets/campaign/campaign_sections.hpp"
 #include "datasets/campaign/reading_root.hpp"
 #include "datasets/checks/drive_sampling.hpp"
+#include "datasets/checks/drive_start.hpp"
 #include "datasets/checks/sensor_warnings.hpp"
 #include "datasets/checks/short_records.hpp"
 #include "datasets/checks/travel.hpp"
 #include "datasets/prepare/average.hpp"
+#include "datasets/prepare/bridged_holes.hpp"
 #include "datasets/prepare/condition_repeats.hpp"
 #include "datasets/prepare/moving_windows.hpp"
+#include "datasets/prepare/recognised_drive.hpp"
 #include "datasets/prepare/stated_units.hpp"
 #include "datasets/prepare/time_holes.hpp"
 #include "datasets/read/record_reader.hpp"
@@ -93,6 +97,15 @@ std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& 
   std::transform(record.time_s.begin(), record.time_s.end(), result.begin(),
                  [&](double t) { return drive.value(t); });
   return result;
+}
+
+/// Whether the campaign has a term that takes what was before the first sample.
+bool delays_its_drive(const Campaign& campaign) {
+  return std::any_of(
+      campaign.parameters.begin(), campaign.parameters.end(), [&](const ParameterSetting& setting) {
+        const auto key = spec_of(campaign.rig.plant, setting.index).key;
+        return key == "transport_delay" || key == "valve_time_constant" || key == "valve_frequency";
+      });
 }
 
 /// Enters the windows of `windows = "moving"`.
@@ -184,6 +197,7 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
     }
     repeat.values[channel] = converted(column++, name, setting.to_si);
   }
+  bridge_holes(campaign, repeat);
   return repeat;
 }
 
@@ -207,16 +221,21 @@ Record average_of(const Campaign& campaign, const Condition& condition,
     options.keep_deviations = keep_deviations;
     for (auto& [channel, sd] : options.known_sd) sd *= done.noise_gain;
     Record record = average(condition.id, repeats, options);
-    record.notes = done.notes;
+    record.notes = bridged_notes(repeats);
+    record.notes.insert(record.notes.end(), done.notes.begin(), done.notes.end());
     seen.insert(seen.end(), done.warnings.begin(), done.warnings.end());
     record.warnings.insert(record.warnings.end(), seen.begin(), seen.end());
+    recognise_drive(campaign, condition, record);
     record.windows = condition.windows;
     if (condition.moving_windows) find_moving_windows(campaign, condition, record);
     record.holes = holes_in_what_counts(campaign, condition, repeats, record.windows);
     record.warnings.insert(record.warnings.end(), record.holes.begin(), record.holes.end());
     for (const std::string& warning :
-         {drive_sampling_warning(condition, record), travel_warning(campaign, condition, record)})
+         {drive_sampling_warning(condition, record), travel_warning(campaign, condition, record),
+          guessed_drive_warning(campaign, condition, record)})
       if (!warning.empty()) record.warnings.push_back(warning);
+    if (auto proposal = drive_start_proposal(campaign, condition, record); !proposal.empty())
+      (delays_its_drive(campaign) ? record.warnings : record.notes).push_back(std::move(proposal));
     const auto stuck = sensor_warnings(faults, record.windows);
     record.warnings.insert(record.warnings.end(), stuck.begin(), stuck.end());
     return record;

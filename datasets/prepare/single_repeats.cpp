@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "datasets/prepare/alignment.hpp"
+#include "datasets/prepare/bridged_holes.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/prepare/resample.hpp"
 #include "datasets/prepare/time_holes.hpp"
@@ -24,21 +25,27 @@ void fill_ends(std::vector<double>& x, std::size_t& first, std::size_t& last) {
   std::fill(end, x.end(), *(end - 1));
 }
 
-Record single_record(const Record& average, const Repeat& repeat, double shift, std::size_t begin,
-                     std::size_t samples, TimeWindow& covered) {
+/// @param base_s  the common time base
+/// @param kept    where the samples of the average are on it
+Record single_record(const Record& average, const Repeat& repeat, double shift,
+                     const std::vector<double>& base_s, std::vector<std::size_t> kept,
+                     TimeWindow& covered) {
   Record record;
   record.condition = average.condition;
-  record.time_s = average.time_s;
+  std::vector<double> bridged = base_s;
+  forget_bridged(bridged, repeat.bridged, shift);
+  std::erase_if(kept, [&bridged](std::size_t i) { return std::isnan(bridged[i]); });
+  for (const std::size_t i : kept) record.time_s.push_back(base_s[i]);
   record.windows = average.windows;
+  record.generated_drive = average.generated_drive;
   std::size_t first = 0;
   std::size_t last = record.time_s.size() - 1;
   for (const auto& [channel, values] : repeat.values) {
-    const bool held = channel == Channel::reference || channel == Channel::command;
-    auto x =
-        shifted(values, shift, samples, held ? Interpolator::linear : Interpolator::band_limited);
+    const bool held = is_drive(channel);
+    auto x = shifted(values, shift, base_s.size(),
+                     held ? Interpolator::linear : Interpolator::band_limited);
     Series series;
-    series.mean.assign(x.begin() + static_cast<std::ptrdiff_t>(begin),
-                       x.begin() + static_cast<std::ptrdiff_t>(begin + record.time_s.size()));
+    for (const std::size_t i : kept) series.mean.push_back(x[i]);
     fill_ends(series.mean, first, last);
     series.count.assign(series.mean.size(), 1);
     series.pooled_sd = average.channels.at(channel).pooled_sd;
@@ -58,11 +65,12 @@ RepeatRecords repeat_records(const Campaign& campaign, const Condition& conditio
   if (condition.averaged || repeats.size() < 2) return result;
   const AlignedRepeats aligned = align(repeats, campaign.alignment == Alignment::correlate);
   const std::vector<double>& base = repeats.front().time_s;
-  const auto begin = static_cast<std::size_t>(
-      std::find(base.begin(), base.end(), result.average.time_s.front()) - base.begin());
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < base.size() && kept.size() < result.average.time_s.size(); ++i)
+    if (base[i] == result.average.time_s[kept.size()]) kept.push_back(i);
   for (std::size_t r = 0; r < repeats.size(); ++r) {
-    result.singles.push_back(single_record(result.average, repeats[r], aligned.shift[r], begin,
-                                           base.size(), result.covered.emplace_back()));
+    result.singles.push_back(single_record(result.average, repeats[r], aligned.shift[r], base, kept,
+                                           result.covered.emplace_back()));
   }
   return result;
 }

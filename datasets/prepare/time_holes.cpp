@@ -55,9 +55,10 @@ std::vector<std::string> holes_in_what_counts(const Campaign& campaign, const Co
         repeat.source, first.row, first.from_s, first.to_s, others,
         is_felt_later
             ? "what the command did there moves the piston for good: end the window before "
-              "it, or save what follows as a recording of its own"
-            : "leave the hole out with two windows, or save both sides as recordings of "
-              "their own"));
+              "it, save what follows as a recording of its own, or bridge it (holes = "
+              "\"bridge\")"
+            : "leave the hole out with two windows, save both sides as recordings of their "
+              "own, or bridge it (holes = \"bridge\")"));
   }
   return texts;
 }

@@ -1,11 +1,14 @@
 #include "datasets/read/record_reader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <fstream>
 #include <system_error>
 
+#include "common/error.hpp"
 #include "datasets/read/csv/load_csv.hpp"
 #include "datasets/read/hdf5/load_hdf5.hpp"
 #include "datasets/read/mat/load_mat.hpp"
@@ -25,6 +28,65 @@ constexpr std::array kReaders{
     RecordReader{"CSV", ".csv", [](const FileStart&) { return true; }, csv_record_columns,
                  load_csv_record, "expected a header line"},
 };
+
+/// A format that is known, but not read.
+struct OtherFormat {
+  std::string_view name;
+  std::string_view extensions;  ///< empty: known by its bytes alone
+  bool (*sniff)(std::string_view bytes);
+  std::string_view instead;
+};
+
+bool is_universal_file(std::string_view bytes) {
+  const auto word = [&bytes] {
+    const std::size_t begin = std::min(bytes.find_first_not_of(" \t\r\n"), bytes.size());
+    const std::size_t end = std::min(bytes.find_first_of(" \t\r\n", begin), bytes.size());
+    const std::string_view found = bytes.substr(begin, end - begin);
+    bytes.remove_prefix(end);
+    return found;
+  };
+  if (word() != "-1") return false;
+  const std::string_view number = word();
+  return number.starts_with("58") || number == "151";
+}
+
+constexpr std::array kOtherFormats{
+    OtherFormat{"TDMS, of LabVIEW", ".tdms",
+                [](std::string_view b) { return b.starts_with("TDSm") || b.starts_with("TDSh"); },
+                "CSV or .lvm from LabVIEW or DIAdem, or HDF5 by npTDMS"},
+    OtherFormat{
+        "MDF, of ASAM", ".mf4 .mdf",
+        [](std::string_view b) { return b.starts_with("MDF     ") || b.starts_with("UnFinMF "); },
+        "CSV or HDF5, as by asammdf"},
+    OtherFormat{"RPC III, of MTS", ".rsp .rpc",
+                [](std::string_view b) { return b.starts_with(std::string_view("FORMAT\0", 7)); },
+                "CSV from the rig's software"},
+    OtherFormat{"UFF, the universal file format", ".uff .unv", is_universal_file,
+                "CSV or MAT, as by pyuff"},
+    OtherFormat{"NPY, of NumPy", ".npy",
+                [](std::string_view b) { return b.starts_with("\x93NUMPY"); },
+                "CSV by numpy.savetxt with a header, or HDF5"},
+    OtherFormat{"NPZ, of NumPy", ".npz", [](std::string_view) { return false; },
+                "CSV by numpy.savetxt with a header, or HDF5"},
+    OtherFormat{"Parquet", ".parquet", [](std::string_view b) { return b.starts_with("PAR1"); },
+                "CSV"},
+    OtherFormat{"a file packed by gzip", ".gz",
+                [](std::string_view b) { return b.starts_with("\x1f\x8b"); },
+                "the file in it (gunzip)"},
+    OtherFormat{"a file packed by bzip2", ".bz2",
+                [](std::string_view b) { return b.starts_with("BZh"); },
+                "the file in it (bunzip2)"},
+    OtherFormat{"a file packed by xz", ".xz",
+                [](std::string_view b) {
+                  return b.starts_with(
+                      "\xfd"
+                      "7zXZ");
+                },
+                "the file in it (unxz)"},
+};
+
+/// Text files that a logger writes; but others are named so, too.
+constexpr std::string_view kTextExtensions = ".txt .dat .lvm .tsv .asc";
 
 constexpr bool is_complete(const RecordReader& reader) {
   return !reader.name.empty() && reader.extensions.starts_with('.') && reader.sniff != nullptr &&
@@ -54,8 +116,7 @@ FileStart start_of(const std::filesystem::path& path) {
 
 /// Calls `take` with each of the extensions.
 template <typename Take>
-void for_each_extension(const RecordReader& reader, Take take) {
-  std::string_view rest = reader.extensions;
+void for_each_extension(std::string_view rest, Take take) {
   while (!rest.empty()) {
     const std::size_t end = std::min(rest.find(' '), rest.size());
     take(rest.substr(0, end));
@@ -73,20 +134,47 @@ std::string listed(const std::vector<std::string_view>& words) {
   return text;
 }
 
+bool has_extension(std::string_view extensions, const std::string& extension) {
+  bool found = false;
+  for_each_extension(extensions, [&](std::string_view own) { found = found || own == extension; });
+  return found;
+}
+
+/// @throws InputError  the file is of a format that is known, but not read
+void refuse_other_format(const std::filesystem::path& path, const FileStart& start) {
+  const auto other =
+      std::find_if(kOtherFormats.begin(), kOtherFormats.end(), [&](const OtherFormat& format) {
+        return format.sniff(start.bytes) || has_extension(format.extensions, start.extension);
+      });
+  if (other == kOtherFormats.end() || start.bytes.empty()) return;
+  throw InputError({path.string()}, fmt::format("is {}, which rigcal does not read; expected {}",
+                                                other->name, other->instead));
+}
+
 }  // namespace
 
 const RecordReader& record_reader(const std::filesystem::path& path) {
   const FileStart start = start_of(path);
+  refuse_other_format(path, start);
   return *std::find_if(kReaders.begin(), kReaders.end() - 1,
                        [&](const RecordReader& reader) { return reader.sniff(start); });
 }
 
 bool has_record_name(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);
-  bool found = false;
-  for (const RecordReader& reader : kReaders)
-    for_each_extension(reader, [&](std::string_view own) { found = found || own == extension; });
-  return found;
+  return std::any_of(kReaders.begin(), kReaders.end(), [&](const RecordReader& reader) {
+    return has_extension(reader.extensions, extension);
+  });
+}
+
+bool may_be_recording(const std::filesystem::path& path) {
+  return has_record_name(path) || has_extension(kTextExtensions, lower_extension(path));
+}
+
+bool has_other_format_name(const std::filesystem::path& path) {
+  return std::any_of(kOtherFormats.begin(), kOtherFormats.end(), [&](const OtherFormat& format) {
+    return has_extension(format.extensions, lower_extension(path));
+  });
 }
 
 std::string record_format_names() {
@@ -98,7 +186,9 @@ std::string record_format_names() {
 std::string record_extensions() {
   std::vector<std::string_view> extensions;
   for (auto reader = kReaders.rbegin(); reader != kReaders.rend(); ++reader)
-    for_each_extension(*reader, [&](std::string_view own) { extensions.push_back(own); });
+    for_each_extension(reader->extensions,
+                       [&](std::string_view own) { extensions.push_back(own); });
+  for_each_extension(kTextExtensions, [&](std::string_view own) { extensions.push_back(own); });
   return listed(extensions);
 }
 

@@ -24,10 +24,17 @@ struct RecordReader {
 };
 
 /// The format of a file: the first of the table that takes it. CSV takes what no other does.
+/// @throws InputError  it is of a format that is known, but not read
 const RecordReader& record_reader(const std::filesystem::path& path);
 
 /// Whether the name of a file is that of a recording.
 bool has_record_name(const std::filesystem::path& path);
+
+/// Whether it may be that of one: text files have it, too (".txt", ".dat").
+bool may_be_recording(const std::filesystem::path& path);
+
+/// Whether it is that of a recording in a format that is not read.
+bool has_other_format_name(const std::filesystem::path& path);
 
 /// Names and extensions of all formats, for messages: "CSV, MAT or ...", ".csv, .mat or ...".
 std::string record_format_names();

@@ -145,7 +145,14 @@ int weight_of(std::string_view unit) {
   return unit.size() == 1 ? 1 : 2;
 }
 
-/// The last of those of most weight. Behind others: a last "pa" is no chamber.
+bool is_number(std::string_view name, const Part& part) {
+  return std::all_of(name.begin() + static_cast<std::ptrdiff_t>(part.begin),
+                     name.begin() + static_cast<std::ptrdiff_t>(part.end),
+                     [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+/// The last of those of most weight. Behind others: a last "pa" is no chamber. A unit that is a
+/// word, too, is one where nothing but a number follows it: not the "in" of "duty_in_pct".
 std::optional<UnitInName> behind_a_word(std::string_view name) {
   const std::size_t first = begin_of_last(name);
   std::vector<Part> parts = name_parts(name.substr(first));
@@ -158,6 +165,7 @@ std::optional<UnitInName> behind_a_word(std::string_view name) {
         name.substr(parts[i - 1].begin, parts[i - 1].end - parts[i - 1].begin);
     const bool is_pascal = text == "pa" && i + 1 == parts.size();
     if (!is_pascal && (!is_among(kUnits, text) || is_chamber(text, before))) continue;
+    if (is_among(kWords, text) && i + 1 < parts.size() && !is_number(name, parts[i + 1])) continue;
     const int weight = weight_of(text);
     if (weight < most) continue;
     most = weight;

@@ -16,7 +16,14 @@ std::optional<model::Output> model_output(Channel channel) {
       return model::Output::force;
     case Channel::command:
       return model::Output::command;
+    case Channel::acceleration:
+      return model::Output::acceleration;
+    case Channel::payload_acceleration:
+      return model::Output::payload_acceleration;
     case Channel::reference:
+    case Channel::force_reference:
+    case Channel::load_pressure_reference:
+    case Channel::acceleration_reference:
     case Channel::supply_pressure:
     case Channel::tank_pressure:
     case Channel::temperature:

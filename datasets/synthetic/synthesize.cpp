@@ -8,6 +8,7 @@
 #include "common/file.hpp"
 #include "common/parallel.hpp"
 #include "datasets/prepare/load_record.hpp"
+#include "datasets/prepare/time_holes.hpp"
 #include "datasets/synthetic/synthetic_files.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
 
@@ -22,7 +23,9 @@ std::optional<Record> driving_record(const Campaign& campaign, const Condition& 
                      fmt::format("condition \"{}\" has a recorded waveform but no record; expected "
                                  "repeats, or another waveform",
                                  condition.id));
-  return load_record(campaign, condition);
+  Record record = load_record(campaign, condition);
+  require_no_holes(campaign, record);
+  return record;
 }
 
 }  // namespace

@@ -124,7 +124,7 @@ Channels clean_channels(const Campaign& truth, const Condition& condition, const
       const auto column = std::find(outputs.begin(), outputs.end(), *output) - outputs.begin();
       return run.outputs(static_cast<Eigen::Index>(times.sample[i]), column);
     }
-    if (channel == Channel::reference) return started ? inputs.drive.value(t) : 0.0;
+    if (channel == drive_channel(truth)) return started ? inputs.drive.value(t) : 0.0;
     if (channel == Channel::supply_pressure)
       return inputs.supply_pressure_pa ? inputs.supply_pressure_pa->value(t)
                                        : values["supply_pressure"];
@@ -209,7 +209,7 @@ Campaign true_campaign(const Campaign& campaign) {
 std::vector<Channel> made_channels(const Campaign& campaign) {
   std::vector<Channel> channels;
   for (const auto& [channel, setting] : campaign.channels)
-    if (channel != Channel::reference || campaign.rig.controller == model::ControllerKind::pid)
+    if (!is_drive(channel) || channel == Channel::command || channel == drive_channel(campaign))
       channels.push_back(channel);
   return channels;
 }

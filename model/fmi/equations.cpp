@@ -8,6 +8,7 @@
 
 #include "model/fmi/indicators.hpp"
 #include "model/plant/system.hpp"
+#include "model/solver/equilibrium.hpp"
 #include "model/solver/error_norm.hpp"
 #include "model/solver/rosenbrock.hpp"
 
@@ -15,18 +16,6 @@ namespace rigcal::model {
 namespace {
 
 constexpr double kDoubleEpsilon = std::numeric_limits<double>::epsilon();
-
-/// Size below which each state counts as zero in the error control, as in run.hpp.
-template <typename Plant, int N>
-Values<N> floors(const Layout& layout) {
-  Values<N> floor;
-  floor.fill(1e-3);  // volts, and the memory of hoses
-  std::copy(Plant::kFloor.begin(), Plant::kFloor.end(), floor.begin());
-  if (layout.supply >= 0) floor[static_cast<std::size_t>(layout.supply)] = 100.0;
-  if (layout.valve_order == 2) floor[static_cast<std::size_t>(layout.valve) + 1] = 1.0;  // V/s
-  if (layout.filter >= 0) floor[static_cast<std::size_t>(layout.filter)] = Plant::kFloor[0];
-  return floor;
-}
 
 InputTrack track(const Ramp& ramp, double length_s) {
   if (ramp.slope_per_s == 0.0) return {Signal::constant(ramp.value), 0.0, 0.0};
@@ -42,6 +31,7 @@ class SizedEquations final : public Equations {
 
   explicit SizedEquations(const ExportedRig& rig)
       : initial_(rig.rig.initial),
+        before_(rig.rig.before),
         layout_(exported_layout(rig)),
         system_(system(rig.values, {}, 1.0)) {}
 
@@ -59,7 +49,12 @@ class SizedEquations final : public Equations {
     values.set("external_force", inputs_.external_force_n.value);
     Sys system(layout_, values, {}, track(inputs_.drive, 1.0), std::nullopt,
                track(inputs_.supply_pressure_pa, 1.0), track(inputs_.tank_pressure_pa, 1.0));
-    return shortened(system.initial(initial_, 0.0));
+    Values<N> state = system.initial(initial_, before_, 0.0);
+    if (before_ == Before::steady &&
+        !settle(system, state_floors<Plant, static_cast<std::size_t>(N)>(layout_), state))
+      throw std::runtime_error("the rig does not settle at the first value of its drive");
+    system.forget_hoses(state, 0.0);
+    return shortened(state);
   }
 
   std::vector<double> derivatives(std::span<const double> x) const override {
@@ -81,8 +76,7 @@ class SizedEquations final : public Equations {
     std::vector<double> indicators;
     plant_indicators(p, layout_.terms, state, system_.derivative_of_values(state, 0.0), spool_v,
                      indicators);
-    loop_indicators(p, layout_, state, inputs_.drive.value - state[Plant::position], command_v,
-                    indicators);
+    loop_indicators(p, layout_, state, system_.control(state, 0.0).wanted, command_v, indicators);
     return indicators;
   }
 
@@ -94,7 +88,7 @@ class SizedEquations final : public Equations {
 
   void advance(std::vector<double>& x, StepMemory& memory, double from_s, double to_s,
                double tolerance) const override {
-    Values<N> peak = floors<Plant, N>(layout_);
+    Values<N> peak = state_floors<Plant, static_cast<std::size_t>(N)>(layout_);
     for (std::size_t i = 0; i < memory.peak.size(); ++i)
       peak[i] = std::max(peak[i], memory.peak[i]);
     ErrorNorm<N, 0> norm(layout_.states, peak, {}, tolerance, 1.0);
@@ -183,6 +177,7 @@ class SizedEquations final : public Equations {
   }
 
   InitialState initial_;
+  Before before_;
   Layout layout_;
   ParameterValues values_;
   RigInputs inputs_;
@@ -203,7 +198,7 @@ std::unique_ptr<Equations> sized(const ExportedRig& rig) {
 std::unique_ptr<Equations> make_equations(const ExportedRig& rig) {
   switch (rig.rig.plant) {
     case PlantKind::load_pressure:
-      return sized<LoadPressurePlant, 5, 8>(rig);
+      return sized<LoadPressurePlant, 5, 10>(rig);
     case PlantKind::two_chamber:
       return sized<TwoChamberPlant, 5, 12>(rig);
   }

@@ -8,11 +8,15 @@
 #include <sstream>
 #include <stdexcept>
 #include <system_error>
+#include <utility>
 
 namespace rigcal::model {
 namespace {
 
 constexpr std::string_view kFirstLine = "rigcal.rig/1";
+
+constexpr std::array<std::pair<std::string_view, Before>, 3> kBefore{
+    {{"hold", Before::hold}, {"rest", Before::rest}, {"steady", Before::steady}}};
 
 /// Shortest digits that read back to the same bits.
 std::string digits(double value) {
@@ -66,6 +70,14 @@ void read_plant(Line& line, ExportedRig& rig) {
   rig.values = ParameterValues::defaults(*plant);
 }
 
+void read_feedback(Line& line, ExportedRig& rig) {
+  const std::string name = line.word("what the controller acts on");
+  const auto row = std::find_if(kFeedbacks.begin(), kFeedbacks.end(),
+                                [&](const FeedbackRow& each) { return each.name == name; });
+  if (row == kFeedbacks.end()) line.fail(name, "what the controller acts on");
+  rig.rig.feedback = static_cast<Feedback>(row - kFeedbacks.begin());
+}
+
 bool read_choice(Line& line, const char* yes, const char* no) {
   const std::string word = line.word(yes);
   if (word != yes && word != no) line.fail(word, std::string(yes) + " or " + no);
@@ -117,7 +129,10 @@ std::string exported_rig_text(const ExportedRig& rig) {
   std::string text(kFirstLine);
   text += "\nguid " + rig.guid + "\nplant " + std::string(to_string(rig.rig.plant));
   text += rig.rig.controller == ControllerKind::pid ? "\ncontroller pid" : "\ncontroller none";
+  text += "\nfeedback " + std::string(gain_keys(rig.rig.feedback).name);
   text += rig.rig.initial == InitialState::given ? "\ninitial given" : "\ninitial rest";
+  for (const auto& [name, before] : kBefore)
+    if (rig.rig.before == before) text += "\nbefore " + std::string(name);
   text += "\ntolerance " + digits(rig.tolerance) + "\n";
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!rig.values.given[i]) continue;
@@ -144,15 +159,23 @@ ExportedRig read_exported_rig(const std::filesystem::path& file) {
     } else if (key == "controller") {
       rig.rig.controller =
           read_choice(line, "pid", "none") ? ControllerKind::pid : ControllerKind::none;
+    } else if (key == "feedback") {
+      read_feedback(line, rig);
     } else if (key == "initial") {
       rig.rig.initial =
           read_choice(line, "given", "rest") ? InitialState::given : InitialState::rest;
+    } else if (key == "before") {
+      const std::string word = line.word("hold, rest or steady");
+      const auto found = std::find_if(kBefore.begin(), kBefore.end(),
+                                      [&word](const auto& row) { return row.first == word; });
+      if (found == kBefore.end()) line.fail(word, "hold, rest or steady");
+      rig.rig.before = found->second;
     } else if (key == "tolerance") {
       rig.tolerance = line.number();
     } else if (key == "parameter") {
       read_parameter(line, rig.values);
     } else {
-      line.fail(key, "guid, plant, controller, initial, tolerance or parameter");
+      line.fail(key, "guid, plant, controller, feedback, initial, before, tolerance or parameter");
     }
   }
   return rig;

@@ -48,13 +48,12 @@ void plant_indicators(const TwoChamberPlant::Coefficients<double>& p, const Pres
 
 /// Limits of the controller's output and of the spool's rate.
 ///
-/// @param error_m    reference minus position
+/// @param wanted_v   what the controller would give without its limit
 /// @param command_v  what the valve is told
 template <typename P, std::size_t N>
 void loop_indicators(const P& p, const Layout& layout, const std::array<double, N>& x,
-                     double error_m, double command_v, std::vector<double>& indicators) {
+                     double wanted_v, double command_v, std::vector<double>& indicators) {
   if (layout.pid && !layout.sampled() && std::isfinite(p.output_limit_v)) {
-    const double wanted_v = controller_output(error_m, x, p, layout).wanted;
     indicators.push_back(p.output_limit_v - wanted_v);
     indicators.push_back(p.output_limit_v + wanted_v);
   }

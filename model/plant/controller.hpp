@@ -12,19 +12,52 @@ struct ControllerOutput {
   X limited{};
 };
 
-/// u = K_p e + I + K_d N (e - e_f), then the limit.
+/// Puts the gains of a loop on another quantity where those of a loop on position are, since the
+/// controller computes the same with either: in V per unit of what it controls.
+template <typename P>
+void take_gains(Feedback feedback, P& p) {
+  switch (feedback) {
+    case Feedback::position:
+      return;
+    case Feedback::force:
+      p.kp_v_per_m = p.force_kp_v_per_n;
+      p.ki_v_per_m_s = p.force_ki_v_per_n_s;
+      p.kd_v_s_per_m = p.force_kd_v_s_per_n;
+      return;
+    case Feedback::load_pressure:
+      p.kp_v_per_m = p.load_pressure_kp_v_per_pa;
+      p.ki_v_per_m_s = p.load_pressure_ki_v_per_pa_s;
+      p.kd_v_s_per_m = p.load_pressure_kd_v_s_per_pa;
+      return;
+    case Feedback::acceleration:
+      p.kp_v_per_m = p.acceleration_kp_v_s2_per_m;
+      p.ki_v_per_m_s = p.acceleration_ki_v_s_per_m;
+      p.kd_v_s_per_m = p.acceleration_kd_v_s3_per_m;
+      return;
+  }
+}
+
+/// What the controller acts on.
+template <typename X>
+struct LoopError {
+  X error{};        ///< reference less what the loop controls, in the unit of that
+  X pressure_pa{};  ///< load pressure, where it is fed back
+};
+
+/// u = K_p e + I + K_d N (e - e_f) - K_dp P_L, then the limit.
 ///
-/// @param error_m  reference minus position [m]
 /// @param state    the whole state vector; `layout` says where integral and filter stand
 template <typename X, typename State, typename P>
-ControllerOutput<X> controller_output(const X& error_m, const State& state, const P& p,
+ControllerOutput<X> controller_output(const LoopError<X>& loop, const State& state, const P& p,
                                       const Layout& layout) {
-  X wanted = error_m * p.kp_v_per_m;
+  const X& error = loop.error;
+  X wanted = error * p.kp_v_per_m;
   if (layout.integral >= 0) wanted = wanted + state[static_cast<std::size_t>(layout.integral)];
   if (layout.filter >= 0) {
-    wanted = wanted + (error_m - state[static_cast<std::size_t>(layout.filter)]) *
+    wanted = wanted + (error - state[static_cast<std::size_t>(layout.filter)]) *
                           (p.kd_v_s_per_m * p.derivative_filter_rad_per_s);
   }
+  if (layout.pressure_feedback) wanted = wanted - loop.pressure_pa * p.pressure_feedback_v_per_pa;
   return {wanted, clamp_symmetric(wanted, p.output_limit_v)};
 }
 
@@ -40,27 +73,28 @@ auto anti_windup_rate(const P& p) {
 
 /// Time derivative of the integral [V/s] under back-calculation.
 template <typename X, typename P>
-X integral_rate(const X& error_m, const ControllerOutput<X>& u, const P& p) {
-  return error_m * p.ki_v_per_m_s + (u.limited - u.wanted) * anti_windup_rate(p);
+X integral_rate(const X& error, const ControllerOutput<X>& u, const P& p) {
+  return error * p.ki_v_per_m_s + (u.limited - u.wanted) * anti_windup_rate(p);
 }
 
 /// One tick of the sampled controller: the filter by backward Euler, the output held until the next
 /// tick, the integral advanced by forward Euler with the same back-calculation, which reaches the
 /// limit within one period at the fastest and so cannot overshoot it.
 template <typename X, typename State, typename P>
-void controller_tick(const X& error_m, State& state, const P& p, const Layout& layout) {
+void controller_tick(const LoopError<X>& loop, State& state, const P& p, const Layout& layout) {
+  const X& error = loop.error;
   const double period_s = value_of(p.sample_time_s);
   if (layout.filter >= 0) {
     auto& filtered = state[static_cast<std::size_t>(layout.filter)];
     const X step = X(p.derivative_filter_rad_per_s * period_s);
-    filtered = (filtered + step * error_m) / (1.0 + step);
+    filtered = (filtered + step * error) / (1.0 + step);
   }
-  const ControllerOutput<X> u = controller_output(error_m, state, p, layout);
+  const ControllerOutput<X> u = controller_output(loop, state, p, layout);
   if (layout.integral >= 0) {
     auto& integral = state[static_cast<std::size_t>(layout.integral)];
     auto pull = anti_windup_rate(p) * period_s;
     if (value_of(pull) > 1.0) pull = 1.0;
-    integral = integral + error_m * (p.ki_v_per_m_s * period_s) + (u.limited - u.wanted) * pull;
+    integral = integral + error * (p.ki_v_per_m_s * period_s) + (u.limited - u.wanted) * pull;
   }
   state[static_cast<std::size_t>(layout.held)] = u.limited;
 }

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <span>
 #include <string_view>
 
@@ -19,11 +21,14 @@ struct PresentTerms {
   bool valve_offset = false;    ///< null shift: not zero, or free
   bool spool_shape = false;     ///< null shift or overlap: not zero, or free
   bool external_force = false;  ///< recorded, or not zero, or free
+  bool varying_load = false;    ///< the load's gradient or curvature: not zero, or free
+  bool curved_load = false;     ///< its curvature is among them
   bool null_opening = false;    ///< covered edges leak through an orifice
   bool line_loss = false;       ///< the lines throttle too
   bool air = false;             ///< the bulk modulus falls at low pressure
   bool external_leak = false;   ///< of either chamber: not zero, or free
   int hoses = -1;               ///< where the states of hoses that yield begin; -1: rigid ones
+  int payload = -1;             ///< where the states of the second mass begin; -1: there is none
   bool valve_rate_limit = false;
   bool retracted_position = false;     ///< else half a stroke below zero
   bool initial_load_pressure = false;  ///< else the load pressure starts in equilibrium
@@ -31,62 +36,138 @@ struct PresentTerms {
   bool initial_pressure_b = false;
 };
 
+/// All that the program knows about a state: error control, solver and FMU follow from this row.
+/// Its rate is in the plant's derivative() or, beside those of the plant, in system.hpp.
+struct StateRow {
+  std::string_view name;     ///< that of the output where it is one
+  std::string_view unit;     ///< SI
+  std::string_view meaning;  ///< one line
+  double floor = 0.0;        ///< size below which it counts as zero in the error control
+  /// Typical size, of a pressure as a fraction of the supply's; an importer's absolute tolerance
+  /// rests on it.
+  double nominal = 0.0;
+};
+
+// States of every plant.
+inline constexpr StateRow kPistonPosition{"position", "m", "position of the piston", 1e-6, 0.01};
+inline constexpr StateRow kPistonVelocity{"velocity", "m/s", "velocity of the piston", 1e-5, 0.1};
+
+// The states that a rig may have beside those of its plant.
+inline constexpr StateRow kHoseMemoryA{"hose_memory_a", "1",
+                                       "strain memory of the hose of chamber A", 1e-3, 1.0};
+inline constexpr StateRow kHoseMemoryB{"hose_memory_b", "1",
+                                       "strain memory of the hose of chamber B", 1e-3, 1.0};
+inline constexpr StateRow kPayloadPosition{"payload_position", "m", "position of the second mass",
+                                           1e-6, 0.01};
+inline constexpr StateRow kPayloadVelocity{"payload_velocity", "m/s", "velocity of the second mass",
+                                           1e-5, 0.1};
+inline constexpr StateRow kValveSupply{"valve_supply_pressure", "Pa",
+                                       "supply pressure at the valve", 100.0, 0.1};
+inline constexpr StateRow kValveSignal{"valve_signal", "V", "signal that the spool stands at", 1e-3,
+                                       1.0};
+inline constexpr StateRow kValveSignalRate{"valve_signal_rate", "V/s", "its rate", 1.0, 100.0};
+inline constexpr StateRow kIntegral{"controller_integral", "V", "integral action", 1e-3, 1.0};
+inline constexpr StateRow kHeldOutput{"controller_held_output", "V",
+                                      "output of the sampled controller", 1e-3, 1.0};
+/// The filtered error, in the unit of what the loop controls.
+inline constexpr std::array<StateRow, kFeedbackCount> kFilteredError{
+    StateRow{"controller_filtered_error", "m", "filtered error", 1e-6, 0.01},
+    StateRow{"controller_filtered_error", "N", "filtered error", 0.1, 1e3},
+    StateRow{"controller_filtered_error", "Pa", "filtered error", 100.0, 0.1},
+    StateRow{"controller_filtered_error", "m/s2", "filtered error", 1e-3, 1.0}};
+
 /// Which states a rig has beside those of its plant, and where they stand in the state vector.
 struct Layout {
   int plant_states = 0;
   int hoses = -1;       ///< strain memory of both hoses [1]
   int supply = -1;      ///< supply pressure at the valve [Pa]
+  int payload = -1;     ///< position [m] and velocity [m/s] of the second mass
   int valve_order = 0;  ///< 0: spool follows the command; 1, 2: lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
   bool pid = false;
-  int integral = -1;  ///< integral action [V]
-  int filter = -1;    ///< filtered error [m]
-  int held = -1;      ///< output of a sampled controller, held [V]
+  Feedback feedback = Feedback::position;  ///< what the loop controls
+  bool pressure_feedback = false;          ///< the load pressure is fed back inside the loop
+  int integral = -1;                       ///< integral action [V]
+  int filter = -1;                         ///< filtered error, in the unit of `feedback`
+  int held = -1;                           ///< output of a sampled controller, held [V]
   PresentTerms terms;
   int states = 0;
 
+  static constexpr std::size_t kMostAdded = 12;
+  std::array<const StateRow*, kMostAdded> added{};  ///< the states behind those of the plant
+
   bool sampled() const { return held >= 0; }
+  /// Whether the loop sees the position of the piston and nothing else.
+  bool position_alone() const { return feedback == Feedback::position && !pressure_feedback; }
+
+  /// @return  where the state stands
+  int add(const StateRow& row) {
+    added.at(static_cast<std::size_t>(states - plant_states)) = &row;
+    return states++;
+  }
 };
+
+/// Size below which each state counts as zero; those that a rig does not have stay zero.
+template <typename Plant, std::size_t N>
+std::array<double, N> state_floors(const Layout& layout) {
+  std::array<double, N> floor;
+  floor.fill(1.0);
+  const auto plant = static_cast<std::size_t>(Plant::kStates);
+  for (std::size_t i = 0; i < plant; ++i) floor[i] = Plant::kStateRows[i].floor;
+  for (std::size_t i = plant; i < static_cast<std::size_t>(layout.states); ++i)
+    floor[i] = layout.added.at(i - plant)->floor;
+  return floor;
+}
 
 /// @param free  table indices of the parameters whose sensitivities are wanted
 inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span<const int> free,
                         int plant_states, bool force_recorded = false) {
   Layout layout;
   layout.plant_states = plant_states;
-  int next = plant_states;
+  layout.states = plant_states;
   // Terms of another plant are not in the table of this one.
   const auto given = [&values](std::string_view key) {
     return parameter_index(values.plant, key) >= 0 && values.is_given(key);
   };
-  if (given("hose_yield") || given("hose_yield_ratio")) {
-    layout.hoses = next;
-    next += 2;
-  }
-  if (given("supply_capacity")) layout.supply = next++;
-  if (given("valve_frequency")) {
-    layout.valve_order = 2;
-  } else if (given("valve_time_constant")) {
-    layout.valve_order = 1;
-  }
-  if (layout.valve_order > 0) layout.valve = next;
-  next += layout.valve_order;
-  layout.pid = rig.controller == ControllerKind::pid;
-  if (layout.pid) {
-    if (given("ki")) layout.integral = next++;
-    if (given("kd")) layout.filter = next++;
-    if (given("sample_time")) layout.held = next++;
-  }
-  layout.terms.stribeck = given("stribeck_friction");
-  layout.terms.friction = layout.terms.stribeck || given("coulomb_friction");
   const auto acts = [&](std::string_view key) {
     const int index = parameter_index(values.plant, key);
     return index >= 0 &&
            (values[key] != 0.0 || std::find(free.begin(), free.end(), index) != free.end());
   };
+  if (given("hose_yield") || given("hose_yield_ratio")) {
+    layout.hoses = layout.add(kHoseMemoryA);
+    layout.add(kHoseMemoryB);
+  }
+  if (given("supply_capacity")) layout.supply = layout.add(kValveSupply);
+  if (given("payload_mass")) {
+    layout.payload = layout.add(kPayloadPosition);
+    layout.add(kPayloadVelocity);
+  }
+  if (given("valve_frequency")) {
+    layout.valve_order = 2;
+    layout.valve = layout.add(kValveSignal);
+    layout.add(kValveSignalRate);
+  } else if (given("valve_time_constant")) {
+    layout.valve_order = 1;
+    layout.valve = layout.add(kValveSignal);
+  }
+  layout.pid = rig.controller == ControllerKind::pid;
+  if (layout.pid) {
+    layout.feedback = rig.feedback;
+    layout.pressure_feedback = acts("pressure_feedback");
+    if (given(gain_keys(rig.feedback).ki)) layout.integral = layout.add(kIntegral);
+    if (given(gain_keys(rig.feedback).kd))
+      layout.filter = layout.add(kFilteredError.at(static_cast<std::size_t>(rig.feedback)));
+    if (given("sample_time")) layout.held = layout.add(kHeldOutput);
+  }
+  layout.terms.stribeck = given("stribeck_friction");
+  layout.terms.friction = layout.terms.stribeck || given("coulomb_friction");
   layout.terms.orifice_leak = acts("leakage_coefficient");
   layout.terms.laminar_leak = acts("laminar_leakage");
   layout.terms.null_leak = acts("valve_null_leakage");
   layout.terms.external_force = force_recorded || acts("external_force");
+  layout.terms.curved_load = acts("load_curvature");
+  layout.terms.varying_load = layout.terms.curved_load || acts("load_gradient");
   layout.terms.valve_offset = acts("valve_offset");
   layout.terms.spool_shape = layout.terms.valve_offset || acts("valve_dead_band");
   layout.terms.external_leak = acts("external_leakage_a") || acts("external_leakage_b");
@@ -94,12 +175,12 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.line_loss = given("valve_line_opening");
   layout.terms.air = given("air_fraction");
   layout.terms.hoses = layout.hoses;
+  layout.terms.payload = layout.payload;
   layout.terms.valve_rate_limit = given("valve_rate_limit");
   layout.terms.retracted_position = given("retracted_position");
   layout.terms.initial_load_pressure = given("initial_load_pressure");
   layout.terms.initial_pressure_a = given("initial_pressure_a");
   layout.terms.initial_pressure_b = given("initial_pressure_b");
-  layout.states = next;
   return layout;
 }
 

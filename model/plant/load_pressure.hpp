@@ -11,7 +11,7 @@ namespace rigcal::model {
 
 /// The paper's plant: piston and load pressure of a symmetric cylinder of constant volume.
 ///
-///   m x''  = A P_L - b x' - k x - F_dry(x') - F_ext                    eq. 12
+///   m x''  = A P_L - b x' - k x - F_dry(x') - F_ext(x) - m_2 x_2''     eq. 12
 ///   P_L'   = (4 beta / V_t) (Q_L - Q_leak - A x')                      eq. 13
 ///
 /// A plant is a parameter table (`Parameters`), a right-hand side and its outputs.
@@ -43,8 +43,9 @@ struct LoadPressurePlant {
   static constexpr const auto& fields() {
     return kLoadPressureFields<T>;
   }
-  /// Size below which a state counts as zero in the error control [m, m/s, Pa].
-  static constexpr std::array<double, kStates> kFloor{1e-6, 1e-5, 100.0};
+  static constexpr std::array<StateRow, kStates> kStateRows{
+      kPistonPosition, kPistonVelocity,
+      StateRow{"load_pressure", "Pa", "pressure of chamber A less that of B", 100.0, 0.1}};
 
   /// The state that an output reads, but for its sensor; none: it takes more.
   static constexpr std::optional<int> state_of(Output output) {
@@ -63,8 +64,8 @@ struct LoadPressurePlant {
   /// Whether reversed inputs reverse the states and an output: all terms are odd functions but for
   /// what acts in one direction; the chamber pressures trade places.
   static bool reversible(Output output, const PresentTerms& terms) {
-    return !terms.external_force && !terms.valve_offset && output != Output::pressure_a &&
-           output != Output::pressure_b;
+    return !terms.external_force && !terms.curved_load && !terms.valve_offset &&
+           output != Output::pressure_a && output != Output::pressure_b;
   }
 
   /// Spool travel [m], eq. 6: x_v = k_sv u, after null shift and overlap.
@@ -107,7 +108,12 @@ struct LoadPressurePlant {
     const C& A = p.piston_area_m2;
     X force = P_L * A - v * p.damping_n_s_per_m - x[position] * p.stiffness_n_per_m;
     if (terms.friction) force = force - friction(v, p, terms);
-    if (terms.external_force) force = force - in.external_force_n;
+    if (terms.external_force || terms.varying_load)
+      force = force - external_load(x[position], in, p, terms);
+    if constexpr (M > kStates + 1) {
+      if (terms.payload >= 0)
+        force = force - payload_acceleration(x, position, terms, p) * p.payload_mass_kg;
+    }
     const X flow = servo_flow(P_L, in, p, terms) - leakage_flow(P_L, p, terms) - v * A;
     return {v, force * p.inverse_mass, flow * p.inverse_capacity};
   }
@@ -116,10 +122,10 @@ struct LoadPressurePlant {
   /// pressure equally; `force` is what a load cell in the rod reads: the force that the rod passes
   /// to mass, damper and spring of the load, A P_L less the dry friction of the cylinder
   /// (docs/model.md).
-  template <typename C, std::size_t M>
-  static C output(Output output, const std::array<C, M>& x, const PlantInput<C>& in,
+  template <typename X, std::size_t M, typename C>
+  static X output(Output output, const std::array<X, M>& x, const PlantInput<X>& in,
                   const Coefficients<C>& p, const PresentTerms& terms) {
-    const C& P_L = x[load_pressure];
+    const X& P_L = x[load_pressure];
     switch (output) {
       case Output::load_pressure:
         return P_L;
@@ -139,10 +145,12 @@ struct LoadPressurePlant {
         return x[velocity] * p.piston_area_m2;
       case Output::position:
       case Output::velocity:
+      case Output::acceleration:
+      case Output::payload_acceleration:
       case Output::command:
         break;
     }
-    return C(0.0);
+    return X(0.0);
   }
 
   /// State at rest: zero.
@@ -161,7 +169,9 @@ struct LoadPressurePlant {
     const C P_L =
         terms.initial_load_pressure
             ? C((p.initial_load_pressure_pa - p.load_pressure_offset_pa) / p.load_pressure_gain)
-            : C((p.external_force_n + p.stiffness_n_per_m * x) / p.piston_area_m2);
+            : C((p.external_force_n + p.stiffness_n_per_m * x +
+                 varying_load(x, p.load_gradient_n_per_m, p.load_curvature_n_per_m2)) /
+                p.piston_area_m2);
     return {x, p.initial_velocity_m_per_s, P_L};
   }
 };

@@ -45,6 +45,11 @@ struct CommonParameters {
   T stribeck_velocity_m_per_s{};
   T friction_smoothing_m_per_s{};
   T external_force_n{};
+  T load_gradient_n_per_m{};
+  T load_curvature_n_per_m2{};
+  T payload_mass_kg{};
+  T payload_frequency_rad_per_s{};
+  T payload_damping_ratio{};
   T laminar_leakage_m3_per_s_pa{};
   T transport_delay_s{};
   T position_gain{};
@@ -52,26 +57,45 @@ struct CommonParameters {
   T pressure_a_gain{};
   T pressure_b_gain{};
   T force_gain{};
+  T acceleration_gain{};
+  T payload_acceleration_gain{};
   T position_lag_s{};
   T load_pressure_lag_s{};
   T pressure_a_lag_s{};
   T pressure_b_lag_s{};
   T force_lag_s{};
+  T acceleration_lag_s{};
+  T payload_acceleration_lag_s{};
   T position_maximum_m{};
   T load_pressure_maximum_pa{};
   T pressure_a_maximum_pa{};
   T pressure_b_maximum_pa{};
   T force_maximum_n{};
+  T acceleration_maximum_m_per_s2{};
+  T payload_acceleration_maximum_m_per_s2{};
   T position_offset_m{};
   T load_pressure_offset_pa{};
   T pressure_a_offset_pa{};
   T pressure_b_offset_pa{};
   T force_offset_n{};
+  T acceleration_offset_m_per_s2{};
+  T payload_acceleration_offset_m_per_s2{};
   T initial_position_m{};
   T initial_velocity_m_per_s{};
+  T initial_integral_v{};
   T kp_v_per_m{};
   T ki_v_per_m_s{};
   T kd_v_s_per_m{};
+  T force_kp_v_per_n{};
+  T force_ki_v_per_n_s{};
+  T force_kd_v_s_per_n{};
+  T load_pressure_kp_v_per_pa{};
+  T load_pressure_ki_v_per_pa_s{};
+  T load_pressure_kd_v_s_per_pa{};
+  T acceleration_kp_v_s2_per_m{};
+  T acceleration_ki_v_s_per_m{};
+  T acceleration_kd_v_s3_per_m{};
+  T pressure_feedback_v_per_pa{};
   T derivative_filter_rad_per_s{};
   T output_limit_v{};
   T sample_time_s{};
@@ -168,6 +192,11 @@ constexpr auto load_rows() {
       F{&P::stribeck_velocity_m_per_s, {"stribeck_velocity", "stribeck_velocity_m_per_s", "v_st", "m/s", "velocity at which the breakaway friction fades", "docs/model.md", K::term, 1e-6, 100, 0.01}},
       F{&P::friction_smoothing_m_per_s, {"friction_smoothing", "friction_smoothing_m_per_s", "v_0", "m/s", "velocity below which dry friction is straightened", "docs/model.md", K::term, 1e-6, 10, 1e-3, false}},
       F{&P::external_force_n, {"external_force", "external_force_n", "F_ext", "N", "constant load against positive travel", "docs/model.md", K::term, -1e8, 1e8, 0.0}},
+      F{&P::load_gradient_n_per_m, {"load_gradient", "load_gradient_n_per_m", "k_F", "N/m", "what the load grows by per travel; negative where it falls", "docs/model.md", K::term, -1e12, 1e12, 0.0}},
+      F{&P::load_curvature_n_per_m2, {"load_curvature", "load_curvature_n_per_m2", "c_F", "N/m2", "what the load grows by per square of travel", "docs/model.md", K::term, -1e12, 1e12, 0.0}},
+      F{&P::payload_mass_kg, {"payload_mass", "payload_mass_kg", "m_2", "kg", "second mass, behind a spring and a damper", "docs/model.md", K::term, 1e-3, 1e6, 0.0}},
+      F{&P::payload_frequency_rad_per_s, {"payload_frequency", "payload_frequency_rad_per_s", "omega_2", "rad/s", "natural frequency of the second mass where the first stands still", "docs/model.md", K::term, 1e-2, 1e6, 0.0}},
+      F{&P::payload_damping_ratio, {"payload_damping_ratio", "payload_damping_ratio", "zeta_2", "1", "damping ratio of the second mass where the first stands still", "docs/model.md", K::term, 0, 100, 0.0}},
       F{&P::laminar_leakage_m3_per_s_pa, {"laminar_leakage", "laminar_leakage_m3_per_s_pa", "G_leak", "m3/(s Pa)", "laminar internal leak", "docs/model.md", K::term, 0, 1, 0.0}},
       // clang-format on
   };
@@ -188,23 +217,32 @@ constexpr auto sensor_rows() {
       F{&P::pressure_a_gain, {"pressure_a_gain", "pressure_a_gain", "s_pA", "1", "recorded pressure A per pressure A", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
       F{&P::pressure_b_gain, {"pressure_b_gain", "pressure_b_gain", "s_pB", "1", "recorded pressure B per pressure B", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
       F{&P::force_gain, {"force_gain", "force_gain", "s_F", "1", "recorded force per force", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::acceleration_gain, {"acceleration_gain", "acceleration_gain", "s_a", "1", "recorded acceleration per acceleration", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
+      F{&P::payload_acceleration_gain, {"payload_acceleration_gain", "payload_acceleration_gain", "s_a2", "1", "recorded acceleration of the payload per acceleration", "docs/model.md", K::sensor, 0.1, 10, 1.0}},
       F{&P::position_lag_s, {"position_lag", "position_lag_s", "tau_x", "s", "first-order lag of the position sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
       F{&P::load_pressure_lag_s, {"load_pressure_lag", "load_pressure_lag_s", "tau_PL", "s", "first-order lag of the load pressure sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
       F{&P::pressure_a_lag_s, {"pressure_a_lag", "pressure_a_lag_s", "tau_pA", "s", "first-order lag of the pressure A sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
       F{&P::pressure_b_lag_s, {"pressure_b_lag", "pressure_b_lag_s", "tau_pB", "s", "first-order lag of the pressure B sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
       F{&P::force_lag_s, {"force_lag", "force_lag_s", "tau_F", "s", "first-order lag of the force sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::acceleration_lag_s, {"acceleration_lag", "acceleration_lag_s", "tau_a", "s", "first-order lag of the acceleration sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
+      F{&P::payload_acceleration_lag_s, {"payload_acceleration_lag", "payload_acceleration_lag_s", "tau_a2", "s", "first-order lag of the payload's acceleration sensor", "docs/model.md", K::sensor, 1e-6, 10, 0.0}},
       F{&P::position_maximum_m, {"position_maximum", "position_maximum_m", "max_x", "m", "largest position that its sensor and converter can tell", "docs/model.md", K::sensor, -100, kInf, kInf, false}},
       F{&P::load_pressure_maximum_pa, {"load_pressure_maximum", "load_pressure_maximum_pa", "max_PL", "Pa", "largest load pressure that its sensor and converter can tell", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
       F{&P::pressure_a_maximum_pa, {"pressure_a_maximum", "pressure_a_maximum_pa", "max_pA", "Pa", "largest pressure A that its sensor and converter can tell", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
       F{&P::pressure_b_maximum_pa, {"pressure_b_maximum", "pressure_b_maximum_pa", "max_pB", "Pa", "largest pressure B that its sensor and converter can tell", "docs/model.md", K::sensor, -1e9, kInf, kInf, false}},
       F{&P::force_maximum_n, {"force_maximum", "force_maximum_n", "max_F", "N", "largest force that its sensor and converter can tell", "docs/model.md", K::sensor, -1e8, kInf, kInf, false}},
+      F{&P::acceleration_maximum_m_per_s2, {"acceleration_maximum", "acceleration_maximum_m_per_s2", "max_a", "m/s2", "largest acceleration that its sensor and converter can tell", "docs/model.md", K::sensor, -1e6, kInf, kInf, false}},
+      F{&P::payload_acceleration_maximum_m_per_s2, {"payload_acceleration_maximum", "payload_acceleration_maximum_m_per_s2", "max_a2", "m/s2", "largest acceleration of the payload that its sensor and converter can tell", "docs/model.md", K::sensor, -1e6, kInf, kInf, false}},
       F{&P::position_offset_m, {"position_offset", "position_offset_m", "x_0", "m", "recorded position minus position", "docs/model.md", K::sensor, -100, 100, 0.0}},
       F{&P::load_pressure_offset_pa, {"load_pressure_offset", "load_pressure_offset_pa", "P_L0", "Pa", "recorded load pressure minus load pressure", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
       F{&P::pressure_a_offset_pa, {"pressure_a_offset", "pressure_a_offset_pa", "p_A0", "Pa", "recorded pressure A minus pressure A", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
       F{&P::pressure_b_offset_pa, {"pressure_b_offset", "pressure_b_offset_pa", "p_B0", "Pa", "recorded pressure B minus pressure B", "docs/model.md", K::sensor, -1e9, 1e9, 0.0}},
       F{&P::force_offset_n, {"force_offset", "force_offset_n", "F_0", "N", "recorded force minus force", "docs/model.md", K::sensor, -1e8, 1e8, 0.0}},
+      F{&P::acceleration_offset_m_per_s2, {"acceleration_offset", "acceleration_offset_m_per_s2", "a_0", "m/s2", "recorded acceleration minus acceleration", "docs/model.md", K::sensor, -1e6, 1e6, 0.0}},
+      F{&P::payload_acceleration_offset_m_per_s2, {"payload_acceleration_offset", "payload_acceleration_offset_m_per_s2", "a_20", "m/s2", "recorded acceleration of the payload minus acceleration", "docs/model.md", K::sensor, -1e6, 1e6, 0.0}},
       F{&P::initial_position_m, {"initial_position", "initial_position_m", "x(0)", "m", "recorded position at the first sample", "docs/model.md", K::initial, -100, 100, 0.0}},
       F{&P::initial_velocity_m_per_s, {"initial_velocity", "initial_velocity_m_per_s", "v(0)", "m/s", "velocity at the first sample", "docs/model.md", K::initial, -100, 100, 0.0}},
+      F{&P::initial_integral_v, {"initial_integral", "initial_integral_v", "I(0)", "V", "integral action at the first sample", "docs/model.md", K::initial, -1e6, 1e6, 0.0}},
       // clang-format on
   };
 }
@@ -228,6 +266,16 @@ constexpr auto controller_rows() {
       F{&P::kp_v_per_m, {"kp", "kp_v_per_m", "K_p", "V/m", "proportional gain", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::ki_v_per_m_s, {"ki", "ki_v_per_m_s", "K_i", "V/(m s)", "integral gain", "docs/model.md", K::controller, 0, 1e9, 0.0}},
       F{&P::kd_v_s_per_m, {"kd", "kd_v_s_per_m", "K_d", "V s/m", "derivative gain", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::force_kp_v_per_n, {"force_kp", "force_kp_v_per_n", "K_pF", "V/N", "proportional gain of a loop on force", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::force_ki_v_per_n_s, {"force_ki", "force_ki_v_per_n_s", "K_iF", "V/(N s)", "integral gain of a loop on force", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::force_kd_v_s_per_n, {"force_kd", "force_kd_v_s_per_n", "K_dF", "V s/N", "derivative gain of a loop on force", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::load_pressure_kp_v_per_pa, {"load_pressure_kp", "load_pressure_kp_v_per_pa", "K_pP", "V/Pa", "proportional gain of a loop on load pressure", "docs/model.md", K::controller, 0, 1e6, 0.0}},
+      F{&P::load_pressure_ki_v_per_pa_s, {"load_pressure_ki", "load_pressure_ki_v_per_pa_s", "K_iP", "V/(Pa s)", "integral gain of a loop on load pressure", "docs/model.md", K::controller, 0, 1e6, 0.0}},
+      F{&P::load_pressure_kd_v_s_per_pa, {"load_pressure_kd", "load_pressure_kd_v_s_per_pa", "K_dP", "V s/Pa", "derivative gain of a loop on load pressure", "docs/model.md", K::controller, 0, 1e6, 0.0}},
+      F{&P::acceleration_kp_v_s2_per_m, {"acceleration_kp", "acceleration_kp_v_s2_per_m", "K_pa", "V s2/m", "proportional gain of a loop on acceleration", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::acceleration_ki_v_s_per_m, {"acceleration_ki", "acceleration_ki_v_s_per_m", "K_ia", "V s/m", "integral gain of a loop on acceleration", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::acceleration_kd_v_s3_per_m, {"acceleration_kd", "acceleration_kd_v_s3_per_m", "K_da", "V s3/m", "derivative gain of a loop on acceleration", "docs/model.md", K::controller, 0, 1e9, 0.0}},
+      F{&P::pressure_feedback_v_per_pa, {"pressure_feedback", "pressure_feedback_v_per_pa", "K_dp", "V/Pa", "gain of the inner feedback of the load pressure", "docs/model.md", K::controller, 0, 1e6, 0.0}},
       F{&P::derivative_filter_rad_per_s, {"derivative_filter", "derivative_filter_rad_per_s", "N", "rad/s", "corner of the derivative's filter", "docs/model.md", K::controller, 1e-3, 1e6, 0.0}},
       F{&P::output_limit_v, {"output_limit", "output_limit_v", "u_max", "V", "limit of the controller's output, both signs", "docs/model.md", K::controller, 1e-6, kInf, kInf}},
       F{&P::sample_time_s, {"sample_time", "sample_time_s", "T_s", "s", "period of a sampled controller; continuous if not given", "docs/model.md", K::controller, 1e-6, 100, 0.0, false}},

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
+
 #include "model/plant/layout.hpp"
 #include "model/plant/parameter_values.hpp"
 #include "model/plant/terms.hpp"
@@ -22,6 +25,29 @@ X friction(const X& v, const CommonParameters<C>& p, const PresentTerms& terms) 
   if (!terms.stribeck) return p.coulomb_friction_n * smooth_sign(v, p.friction_smoothing_m_per_s);
   return dry_friction(v, p.coulomb_friction_n, p.stribeck_friction_n, p.stribeck_velocity_m_per_s,
                       p.friction_smoothing_m_per_s);
+}
+
+/// Load against positive travel [N]: the external one, and what it grows by along the travel.
+template <typename X, typename C>
+X external_load(const X& x, const PlantInput<X>& in, const CommonParameters<C>& p,
+                const PresentTerms& terms) {
+  X load = terms.external_force ? in.external_force_n : X(0.0);
+  if (terms.curved_load)
+    return load + varying_load(x, p.load_gradient_n_per_m, p.load_curvature_n_per_m2);
+  if (terms.varying_load) load = load + x * p.load_gradient_n_per_m;
+  return load;
+}
+
+/// Acceleration of the second mass [m/s2]; its states are where `terms` says.
+///
+/// @param position  index of the first mass's position, before its velocity
+template <typename X, std::size_t M, typename C>
+X payload_acceleration(const std::array<X, M>& x, int position, const PresentTerms& terms,
+                       const CommonParameters<C>& p) {
+  const auto first = static_cast<std::size_t>(position);
+  const auto second = static_cast<std::size_t>(terms.payload);
+  return spring_and_damper(X(x[first] - x[second]), X(x[first + 1] - x[second + 1]),
+                           p.payload_frequency_rad_per_s, p.payload_damping_ratio);
 }
 
 }  // namespace rigcal::model

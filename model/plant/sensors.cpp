@@ -25,6 +25,10 @@ std::string_view sensor_name(Output output) {
       return "pressure_b";
     case Output::force:
       return "force";
+    case Output::acceleration:
+      return "acceleration";
+    case Output::payload_acceleration:
+      return "payload_acceleration";
     default:
       return {};
   }

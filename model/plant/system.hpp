@@ -86,14 +86,14 @@ class System {
   void follow_drive(const Values<N>& x, double t, Linearisation<N, P>& lin) const {
     if constexpr (N > Plant::kStates) {
       Numbers<ByStates> rates{};
-      loop_rates(ByStates{}, lifted(x), input_value(ByStates{}, drive_, t, true), rates);
+      loop_rates(ByStates{}, lifted(x), input_value(ByStates{}, drive_, t, true), t, rates);
       for (std::size_t i = Plant::kStates; i < N; ++i) {
         if (is_of_loop(i)) take_row(rates[i], i, lin);
       }
       if constexpr (P > 0) {
         X by_parameters{};
         loop_rates(ByParameters{}, held<ByParameters>(x),
-                   input_value(ByParameters{}, drive_, t, true), by_parameters);
+                   input_value(ByParameters{}, drive_, t, true), t, by_parameters);
         for (std::size_t i = Plant::kStates; i < N; ++i) {
           if (is_of_loop(i)) lin.f_p[i] = by_parameters[i].derivative;
         }
@@ -101,10 +101,33 @@ class System {
     }
   }
 
+  /// f and its derivatives for who looks for where the rig settles: a sampled controller, which
+  /// changes at its ticks alone, as if they never ended.
+  Linearisation<N, P> linearise_settling(const Values<N>& x, double t) const {
+    Linearisation<N, P> lin = linearise(x, t);
+    if (!layout_.sampled()) return lin;
+    const auto rates = tick_rates(ByStates{}, lifted(x), t);
+    const auto by_parameters = tick_rates(ByParameters{}, held<ByParameters>(x), t);
+    for (const int state : {layout_.integral, layout_.filter, layout_.held}) {
+      if (state < 0) continue;
+      const auto i = static_cast<std::size_t>(state);
+      take_row(rates[i], i, lin);
+      if constexpr (P > 0) lin.f_p[i] = by_parameters[i].derivative;
+    }
+    return lin;
+  }
+
   /// The sampled controller's tick at t.
   void tick(X& x, double t) const {
-    const C error = input_value(ByParameters{}, drive_, t, true) - x[Plant::position];
-    controller_tick(error, x, parameters_of(ByParameters{}), layout_);
+    const C drive = input_value(ByParameters{}, drive_, t, true);
+    controller_tick(loop_error(ByParameters{}, x, drive, t), x, parameters_of(ByParameters{}),
+                    layout_);
+  }
+
+  /// What a continuous controller wants and gives at x.
+  ControllerOutput<double> control(const Values<N>& x, double t) const {
+    const double drive = input_value(Plain{}, drive_, t, true);
+    return controller_output(loop_error(Plain{}, x, drive, t), x, passive_, layout_);
   }
 
   /// Value of each wanted output, with sensitivities; sensors come after (sensors.hpp).
@@ -114,7 +137,7 @@ class System {
     const bool of_states_alone = std::all_of(outputs.begin(), outputs.end(),
                                              [](Output output) { return Plant::state_of(output); });
     if (!of_states_alone) {
-      command = valve_command(ByParameters{}, x, input_value(ByParameters{}, drive_, t, true));
+      command = valve_command(ByParameters{}, x, input_value(ByParameters{}, drive_, t, true), t);
       in = plant_input(ByParameters{}, x, command, t);
     }
     for (std::size_t k = 0; k < outputs.size(); ++k) {
@@ -128,6 +151,13 @@ class System {
         case Output::command:
           result[k] = command;
           break;
+        case Output::acceleration:
+          result[k] = Plant::derivative(x, in, parameters_of(ByParameters{}),
+                                        layout_.terms)[Plant::velocity];
+          break;
+        case Output::payload_acceleration:
+          result[k] = payload_acceleration(ByParameters{}, x);
+          break;
         default:
           result[k] =
               Plant::output(outputs[k], x, in, parameters_of(ByParameters{}), layout_.terms);
@@ -135,8 +165,8 @@ class System {
     }
   }
 
-  /// State at the first sample.
-  X initial(InitialState mode, double t) const {
+  /// State at the first sample, for Before::steady one to settle from; forget_hoses() is to follow.
+  X initial(InitialState mode, Before before, double t) {
     const Coefficients<C>& p = parameters_of(ByParameters{});
     X states;
     states.fill(C(0.0));
@@ -147,29 +177,50 @@ class System {
     const auto plant =
         given ? Plant::initial(in, p, layout_.terms) : Plant::rest(in, p, layout_.terms);
     for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
-    if constexpr (requires { p.hose_yield_pa; }) {
-      if (layout_.hoses >= 0) {
-        const auto first = static_cast<std::size_t>(layout_.hoses);
-        states[first] = Plant::hose_memory(plant[Plant::pressure_a], in);
-        states[first + 1] = Plant::hose_memory(plant[Plant::pressure_b], in);
-      }
+    while_it_waits_ = C(0.0);
+    // At rest a loop wants what it measures.
+    if (before == Before::rest && layout_.pid)
+      while_it_waits_ = C(0.0) - loop_error(ByParameters{}, states, C(0.0), t).error;
+    if (before == Before::steady) {
+      while_it_waits_ = C(drive_.first_value());
+      if (layout_.pid && layout_.feedback == Feedback::position)
+        states[Plant::position] = while_it_waits_;
     }
-    if (given) {
+    if (layout_.payload >= 0) {  // as if it were fixed to the first mass
+      const auto payload = static_cast<std::size_t>(layout_.payload);
+      states[payload] = states[Plant::position];
+      states[payload + 1] = states[Plant::velocity];
+    }
+    if (given && layout_.integral >= 0)
+      states[static_cast<std::size_t>(layout_.integral)] = p.initial_integral_v;
+    if (given || before == Before::steady) {
       // The loop was closed before the record began: no kick of the derivative, spool at rest.
-      const C drive = input_value(ByParameters{}, drive_, t, true);
-      if (layout_.filter >= 0) {
-        states[static_cast<std::size_t>(layout_.filter)] = drive - plant[Plant::position];
-      }
+      const C drive =
+          before == Before::hold ? input_value(ByParameters{}, drive_, t, true) : while_it_waits_;
+      const LoopError<C> loop = loop_error(ByParameters{}, states, drive, t);
+      if (layout_.filter >= 0) states[static_cast<std::size_t>(layout_.filter)] = loop.error;
       if (layout_.sampled()) {
         states[static_cast<std::size_t>(layout_.held)] =
-            controller_output(C(drive - plant[Plant::position]), states, p, layout_).limited;
+            controller_output(loop, states, p, layout_).limited;
       }
       if (layout_.valve_order > 0) {
         states[static_cast<std::size_t>(layout_.valve)] =
-            valve_command(ByParameters{}, states, drive);
+            valve_command(ByParameters{}, states, drive, t);
       }
     }
     return states;
+  }
+
+  /// Puts the memory of hoses where they are when they came to their pressure in one go.
+  void forget_hoses([[maybe_unused]] X& states, [[maybe_unused]] double t) const {
+    [[maybe_unused]] const Coefficients<C>& p = parameters_of(ByParameters{});
+    if constexpr (requires { p.hose_yield_pa; }) {
+      if (layout_.hoses < 0) return;
+      const PlantInput<C> in = plant_input(ByParameters{}, states, C(0.0), t);
+      const auto first = static_cast<std::size_t>(layout_.hoses);
+      states[first] = Plant::hose_memory(states[Plant::pressure_a], in);
+      states[first + 1] = Plant::hose_memory(states[Plant::pressure_b], in);
+    }
   }
 
   /// States that the outputs are made of.
@@ -212,7 +263,7 @@ class System {
   using Numbers = std::array<Number<K>, static_cast<std::size_t>(N)>;
 
   template <typename T>
-  static Coefficients<T> coefficients(const ParameterValues& values, std::span<const int> free) {
+  Coefficients<T> coefficients(const ParameterValues& values, std::span<const int> free) const {
     const auto& fields = Plant::template fields<T>();
     typename Plant::template Parameters<T> parameters;
     for (std::size_t i = 0; i < fields.size(); ++i) {
@@ -224,6 +275,7 @@ class System {
         (parameters.*(field.member)).derivative.set(j, 1.0);
       }
     }
+    if (layout_.pid) take_gains(layout_.feedback, parameters);
     return Coefficients<T>(parameters);
   }
 
@@ -250,6 +302,7 @@ class System {
   /// it is delayed and that is a parameter of the sensitivities.
   template <typename K>
   Number<K> input_value(K by, const InputTrack& track, double t, bool delayed) const {
+    if (delayed && track.waits()) return drive_that_waits(by);
     if constexpr (std::is_same_v<Number<K>, double>) {
       return track.value(t);
     } else if constexpr (!std::is_same_v<K, ByStates>) {
@@ -265,6 +318,31 @@ class System {
       value.derivative.set(kTime, s.slope);
       return value;
     }
+  }
+
+  /// The drive before its first sample.
+  template <typename K>
+  Number<K> drive_that_waits([[maybe_unused]] K by) const {
+    if constexpr (std::is_same_v<K, ByParameters>) {
+      return while_it_waits_;
+    } else {
+      Number<K> value(value_of(while_it_waits_));
+      if constexpr (P > 0 && std::is_same_v<K, ByBlock>) {
+        for (std::size_t i = 0; i < kBlock; ++i)
+          value.derivative.set(i, while_it_waits_.derivative[by.block * kBlock + i]);
+      }
+      return value;
+    }
+  }
+
+  /// What a tick changes, per time from one to the next.
+  template <typename K>
+  Numbers<K> tick_rates(K by, const Numbers<K>& x, double t) const {
+    const auto& p = parameters_of(by);
+    Numbers<K> rates = x;
+    controller_tick(loop_error(by, x, input_value(by, drive_, t, true), t), rates, p, layout_);
+    for (std::size_t i = 0; i < N; ++i) rates[i] = (rates[i] - x[i]) / p.sample_time_s;
+    return rates;
   }
 
   /// Whether loop_rates() gives the derivative of a state.
@@ -315,16 +393,63 @@ class System {
 
   /// What the valve is told: the held output, the controller's, or the recorded command.
   template <typename K>
-  Number<K> valve_command(K by, const Numbers<K>& x, const Number<K>& drive) const {
+  Number<K> valve_command(K by, const Numbers<K>& x, const Number<K>& drive, double t) const {
     if (!layout_.pid) return drive;
-    const Number<K> error = drive - x[Plant::position];
     if constexpr (N == Plant::kStates) {
       constexpr Layout kNoStates;
-      return controller_output(error, x, parameters_of(by), kNoStates).limited;
+      return controller_output(loop_error(by, x, drive, t), x, parameters_of(by), kNoStates)
+          .limited;
     } else {
       if (layout_.sampled()) return x[static_cast<std::size_t>(layout_.held)];
-      return controller_output(error, x, parameters_of(by), layout_).limited;
+      return controller_output(loop_error(by, x, drive, t), x, parameters_of(by), layout_).limited;
     }
+  }
+
+  /// What the controller acts on. The solver of the plant's states alone knows loops on position.
+  template <typename K>
+  LoopError<Number<K>> loop_error(K by, const Numbers<K>& x, const Number<K>& drive,
+                                  double t) const {
+    if constexpr (N > Plant::kStates) {
+      if (!layout_.position_alone()) return other_loop_error(by, x, drive, t);
+    }
+    return {drive - x[Plant::position], Number<K>(0.0)};
+  }
+
+  /// By itself, so that loops on position stay as short as they are.
+  template <typename K>
+  [[gnu::noinline]] LoopError<Number<K>> other_loop_error(K by, const Numbers<K>& x,
+                                                          const Number<K>& drive, double t) const {
+    const auto& p = parameters_of(by);
+    // Neither of these depends on the spool, so the command need not be known.
+    const PlantInput<Number<K>> in = plant_input(by, x, Number<K>(0.0), t);
+    LoopError<Number<K>> loop{drive, Number<K>(0.0)};
+    switch (layout_.feedback) {
+      case Feedback::position:
+        loop.error = drive - x[Plant::position];
+        break;
+      case Feedback::force:
+        loop.error = drive - Plant::output(Output::force, x, in, p, layout_.terms);
+        break;
+      case Feedback::load_pressure:
+        loop.error = drive - Plant::output(Output::load_pressure, x, in, p, layout_.terms);
+        break;
+      case Feedback::acceleration:
+        loop.error = drive - Plant::derivative(x, in, p, layout_.terms)[Plant::velocity];
+        break;
+    }
+    if (layout_.pressure_feedback)
+      loop.pressure_pa = Plant::output(Output::load_pressure, x, in, p, layout_.terms);
+    return loop;
+  }
+
+  /// Acceleration of the second mass [m/s2].
+  template <typename K>
+  Number<K> payload_acceleration(K by, const Numbers<K>& x) const {
+    if constexpr (N > Plant::kStates + 1) {
+      if (layout_.payload >= 0)
+        return model::payload_acceleration(x, Plant::position, layout_.terms, parameters_of(by));
+    }
+    return Number<K>(0.0);
   }
 
   template <typename K>
@@ -369,7 +494,7 @@ class System {
   Numbers<K> right_hand_side(K by, const Numbers<K>& x, double t) const {
     const Number<K> drive = input_value(by, drive_, t, true);
     if constexpr (N == Plant::kStates) {
-      const Number<K> command = valve_command(by, x, drive);
+      const Number<K> command = valve_command(by, x, drive, t);
       return Plant::derivative(x, plant_input(by, x, command, t), parameters_of(by), layout_.terms);
     } else {
       return with_states_of_the_loop(by, x, drive, t);
@@ -380,22 +505,23 @@ class System {
   ///
   /// @return  what the valve is told
   template <typename K>
-  Number<K> loop_rates(K by, const Numbers<K>& x, const Number<K>& drive, Numbers<K>& dx) const {
+  Number<K> loop_rates(K by, const Numbers<K>& x, const Number<K>& drive, double t,
+                       Numbers<K>& dx) const {
     const auto& p = parameters_of(by);
     Number<K> command = drive;
     if (layout_.pid) {
       if (layout_.sampled()) {
         command = x[static_cast<std::size_t>(layout_.held)];
       } else {
-        const Number<K> error = drive - x[Plant::position];
-        const ControllerOutput<Number<K>> u = controller_output(error, x, p, layout_);
+        const LoopError<Number<K>> loop = loop_error(by, x, drive, t);
+        const ControllerOutput<Number<K>> u = controller_output(loop, x, p, layout_);
         command = u.limited;
         if (layout_.integral >= 0) {
-          dx[static_cast<std::size_t>(layout_.integral)] = integral_rate(error, u, p);
+          dx[static_cast<std::size_t>(layout_.integral)] = integral_rate(loop.error, u, p);
         }
         if (layout_.filter >= 0) {
           const auto filter = static_cast<std::size_t>(layout_.filter);
-          dx[filter] = (error - x[filter]) * p.derivative_filter_rad_per_s;
+          dx[filter] = (loop.error - x[filter]) * p.derivative_filter_rad_per_s;
         }
       }
     }
@@ -418,10 +544,17 @@ class System {
                                      double t) const {
     const auto& p = parameters_of(by);
     Numbers<K> dx{};
-    const Number<K> command = loop_rates(by, x, drive, dx);
+    const Number<K> command = loop_rates(by, x, drive, t, dx);
     const PlantInput<Number<K>> in = plant_input(by, x, command, t);
     const auto plant_dx = Plant::derivative(x, in, p, layout_.terms);
     for (std::size_t i = 0; i < plant_dx.size(); ++i) dx[i] = plant_dx[i];
+    if constexpr (N > Plant::kStates + 1) {
+      if (layout_.payload >= 0) {
+        const auto payload = static_cast<std::size_t>(layout_.payload);
+        dx[payload] = x[payload + 1];
+        dx[payload + 1] = payload_acceleration(by, x);
+      }
+    }
     if constexpr (requires { p.hose_yield_pa; }) {
       if (layout_.hoses >= 0) {
         const auto rates = Plant::hose_rates(x, plant_dx, p, layout_.terms);
@@ -449,6 +582,7 @@ class System {
   std::optional<InputTrack> supply_pressure_;
   std::optional<InputTrack> tank_pressure_;
   int delay_direction_ = -1;
+  C while_it_waits_{0.0};  ///< the drive before its first sample
 };
 
 }  // namespace rigcal::model

@@ -56,6 +56,23 @@ X dry_friction(const X& velocity_m_per_s, const C& coulomb_n, const C& stribeck_
          smooth_sign(velocity_m_per_s, smoothing_m_per_s);
 }
 
+/// Acceleration of a second mass on a spring and a damper [m/s2]:
+/// omega_2^2 (x - x_2) + 2 zeta_2 omega_2 (x' - x_2').
+///
+/// @param travel_m, rate_m_per_s  x - x_2 and its rate
+template <typename X, typename C>
+X spring_and_damper(const X& travel_m, const X& rate_m_per_s, const C& frequency_rad_per_s,
+                    const C& damping_ratio) {
+  return travel_m * (frequency_rad_per_s * frequency_rad_per_s) +
+         rate_m_per_s * (2.0 * damping_ratio * frequency_rad_per_s);
+}
+
+/// Load that varies with travel [N]: k_F x + c_F x^2.
+template <typename X, typename C>
+X varying_load(const X& x, const C& gradient_n_per_m, const C& curvature_n_per_m2) {
+  return (x * curvature_n_per_m2 + gradient_n_per_m) * x;
+}
+
 /// Opening of a metering edge that leaks while it is covered: c + y where it is open, c^2 / (c - y)
 /// beyond, so that the leak fades as the land covers more of it. Continuous with its slope.
 ///

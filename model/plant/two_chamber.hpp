@@ -13,10 +13,10 @@ namespace rigcal::model {
 
 /// Piston and both chamber pressures of a cylinder behind a valve of four metering edges.
 ///
-///   m v'  = A_A p_A - A_B p_B - b v - k x - F_dry(v) + F_stops - m g - F_ext
-///   p_A'  = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) - A_A v),  V_A = V_A0 + A_A (x - x_R)
-///   p_B'  = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + A_B v),  V_B = V_B0 + A_B (x_R + H -
-///   x)
+///   m v'  = A_A p_A - A_B p_B - b v - k x - F_dry(v) + F_stops - (m + m_2) g - F_ext(x) - m_2
+///   x_2'' p_A'  = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) - A_A v),  V_A = V_A0 + A_A (x -
+///   x_R) p_B'  = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + A_B v),  V_B = V_B0 + A_B (x_R
+///   + H - x)
 ///
 /// Q_A flows from the valve into chamber A, Q_B from chamber B into the valve.
 struct TwoChamberPlant {
@@ -46,8 +46,10 @@ struct TwoChamberPlant {
   static constexpr const auto& fields() {
     return kTwoChamberFields<T>;
   }
-  /// Size below which a state counts as zero in the error control [m, m/s, Pa, Pa].
-  static constexpr std::array<double, kStates> kFloor{1e-6, 1e-5, 100.0, 100.0};
+  static constexpr std::array<StateRow, kStates> kStateRows{
+      kPistonPosition, kPistonVelocity,
+      StateRow{"pressure_a", "Pa", "pressure of chamber A", 100.0, 0.1},
+      StateRow{"pressure_b", "Pa", "pressure of chamber B", 100.0, 0.1}};
 
   /// The state that an output reads, but for its sensor; none: it takes more.
   static constexpr std::optional<int> state_of(Output output) {
@@ -168,7 +170,13 @@ struct TwoChamberPlant {
               x[position] * p.stiffness_n_per_m + stops_force(x[position], v, p, terms) -
               p.mass_kg * p.gravity_m_per_s2;
     if (terms.friction) force = force - friction(v, p, terms);
-    if (terms.external_force) force = force - in.external_force_n;
+    if (terms.external_force || terms.varying_load)
+      force = force - external_load(x[position], in, p, terms);
+    if constexpr (M > kStates + 1) {
+      if (terms.payload >= 0)
+        force = force - (payload_acceleration(x, position, terms, p) + p.gravity_m_per_s2) *
+                            p.payload_mass_kg;
+    }
     const ValveFlows<X> q = valve_flows(x, in, p, terms);
     const X leak = leakage_flow(x, p, terms);
     const auto volume = volumes(x[position], p, terms);
@@ -221,8 +229,8 @@ struct TwoChamberPlant {
 
   /// What the plant tells beside position and velocity. Servo and work flow are the means of both
   /// chambers: Q_L = (Q_A + Q_B) / 2.
-  template <typename C, std::size_t M>
-  static C output(Output output, const std::array<C, M>& x, const PlantInput<C>& in,
+  template <typename X, std::size_t M, typename C>
+  static X output(Output output, const std::array<X, M>& x, const PlantInput<X>& in,
                   const Coefficients<C>& p, const PresentTerms& terms) {
     switch (output) {
       case Output::load_pressure:
@@ -237,7 +245,7 @@ struct TwoChamberPlant {
       case Output::spool:
         return spool(in, p);
       case Output::servo_flow: {
-        const ValveFlows<C> q = valve_flows(x, in, p, terms);
+        const ValveFlows<X> q = valve_flows(x, in, p, terms);
         return 0.5 * (q.supply_to_a - q.a_to_tank + q.b_to_tank - q.supply_to_b);
       }
       case Output::leakage_flow:
@@ -246,10 +254,12 @@ struct TwoChamberPlant {
         return x[velocity] * (0.5 * (p.area_a_m2 + p.area_b_m2));
       case Output::position:
       case Output::velocity:
+      case Output::acceleration:
+      case Output::payload_acceleration:
       case Output::command:
         break;
     }
-    return C(0.0);
+    return X(0.0);
   }
 
   /// State at rest: where x = 0 lies, or at the nearer stop; pressures that hold the load, their
@@ -279,7 +289,8 @@ struct TwoChamberPlant {
                                         const Coefficients<C>& p, const PresentTerms& terms,
                                         bool given_a, bool given_b) {
     C load = p.mass_kg * p.gravity_m_per_s2 + p.stiffness_n_per_m * x[position];
-    if (terms.external_force) load = load + in.external_force_n;
+    if (terms.payload >= 0) load = load + p.payload_mass_kg * p.gravity_m_per_s2;
+    load = load + external_load(x[position], in, p, terms);
     const C &A = p.area_a_m2, &B = p.area_b_m2;
     if (!given_a && !given_b) {
       x[pressure_a] = (B * (in.supply_pressure_pa + in.tank_pressure_pa) + load) / (A + B);

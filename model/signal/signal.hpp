@@ -13,6 +13,13 @@ struct SignalSample {
   double slope = 0.0;
 };
 
+/// What a drive was before its first sample.
+enum class Before {
+  hold,    ///< its first value; the rig is in its initial state all the same
+  rest,    ///< neutral: no command, or a reference at which the piston stands
+  steady,  ///< its first value, and the rig had settled at it
+};
+
 /// One period of a signal of amplitude 1, in pieces of equal length within which it is smooth. To
 /// add a waveform: a shape, and a row of datasets/campaign/waveform.cpp.
 struct PeriodicShape {

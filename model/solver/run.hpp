@@ -86,13 +86,7 @@ class Run {
 
   /// Size below which each state counts as zero.
   static std::array<double, static_cast<std::size_t>(N)> floors(const Layout& layout) {
-    std::array<double, static_cast<std::size_t>(N)> floor;
-    floor.fill(1e-3);  // volts
-    std::copy(Plant::kFloor.begin(), Plant::kFloor.end(), floor.begin());
-    if (layout.supply >= 0) floor[static_cast<std::size_t>(layout.supply)] = 100.0;
-    if (layout.valve_order == 2) floor[static_cast<std::size_t>(layout.valve) + 1] = 1.0;  // V/s
-    if (layout.filter >= 0) floor[static_cast<std::size_t>(layout.filter)] = Plant::kFloor[0];
-    return floor;
+    return state_floors<Plant, static_cast<std::size_t>(N)>(layout);
   }
 
  private:

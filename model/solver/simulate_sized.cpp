@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "model/solver/equilibrium.hpp"
 #include "model/solver/run.hpp"
 #include RIGCAL_PLANT_HEADER
 
@@ -47,15 +48,13 @@ State<N, P> state_to_go_on_from(const SizedRequest& request, int first, int coun
 template <typename Plant, int N, int P>
 void pass(const SizedRequest& request, int first, int count, Simulation& result) {
   const double start_s = request.times_s.front();
-  const auto track = [start_s](const Signal& signal, double delay_s) {
-    return InputTrack(signal, start_s, delay_s);
-  };
+  const auto track = [start_s](const Signal& signal) { return InputTrack(signal, start_s, 0.0); };
   std::optional<InputTrack> force;
   std::optional<InputTrack> supply;
   std::optional<InputTrack> tank;
-  if (request.inputs.external_force_n) force = track(*request.inputs.external_force_n, 0.0);
-  if (request.inputs.supply_pressure_pa) supply = track(*request.inputs.supply_pressure_pa, 0.0);
-  if (request.inputs.tank_pressure_pa) tank = track(*request.inputs.tank_pressure_pa, 0.0);
+  if (request.inputs.external_force_n) force = track(*request.inputs.external_force_n);
+  if (request.inputs.supply_pressure_pa) supply = track(*request.inputs.supply_pressure_pa);
+  if (request.inputs.tank_pressure_pa) tank = track(*request.inputs.tank_pressure_pa);
   const auto of_parameters = static_cast<int>(request.free.size());
   const int begin = std::min(first, of_parameters);
   const int end = std::min(first + count, of_parameters);
@@ -75,12 +74,21 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
     scale[static_cast<std::size_t>(column - first)] = std::max(
         std::abs((*request.state)(i)), kFloorsOfAState * floors[static_cast<std::size_t>(i)]);
   }
-  System<Plant, N, P> system(request.layout, request.parameters, free,
-                             track(request.inputs.drive, request.parameters["transport_delay"]),
-                             std::move(force), std::move(supply), std::move(tank));
-  const State<N, P> start = request.state != nullptr
-                                ? state_to_go_on_from<N, P>(request, first, count)
-                                : system.initial(request.initial, 0.0);
+  System<Plant, N, P> system(
+      request.layout, request.parameters, free,
+      InputTrack(request.inputs.drive, start_s, request.parameters["transport_delay"],
+                 request.before, request.inputs.drive_begins_s),
+      std::move(force), std::move(supply), std::move(tank));
+  State<N, P> start = system.initial(request.initial, request.before, 0.0);
+  if (request.state != nullptr) {
+    start = state_to_go_on_from<N, P>(request, first, count);
+  } else if (request.before == Before::steady && !settle(system, floors, start)) {
+    result.status = SimulationStatus::no_equilibrium;
+    result.failed_at_s = start_s;
+    result.reason = "the rig does not settle at the first value of its drive";
+    return;
+  }
+  if (request.state == nullptr) system.forget_hoses(start, 0.0);
   ThisRun run(std::move(system), scale, request.times_s, request.outputs, request.options,
               request.period, request.started);
   run(start, result, first, count);

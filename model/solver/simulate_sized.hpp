@@ -14,6 +14,7 @@ namespace rigcal::model {
 struct SizedRequest {
   const Layout& layout;
   InitialState initial;
+  Before before;
   const Eigen::VectorXd* state;  ///< to go on from, in place of `initial`; null: none
   const ParameterValues& parameters;
   std::span<const int> free;

@@ -58,13 +58,10 @@ std::string results_table(const StoredComparison& comparison, std::size_t column
 /// "85.011 [84.96, 85.06]", "6.2 (known)", "-" in the unit of the row.
 std::string estimate_text(const std::optional<StoredEstimate>& estimate, const RowUnit& unit) {
   if (!estimate || !estimate->value) return "-";
-  const Json shown = shown_estimate(estimate->value, estimate->ci95, unit.si);
-  const std::string text = text_of(shown.at("value"), "text");
-  if (!estimate->fitted) return text + " (known)";
-  const Json& interval = shown.at("interval");
-  if (!interval.at("known").get<bool>()) return text + " (no interval)";
-  return fmt::format("{} [{}, {}]", text, text_of(interval.at("low"), "text"),
-                     text_of(interval.at("high"), "text"));
+  const doc::Estimate shown = doc::estimate(estimate->value, estimate->ci95, unit.si);
+  if (!estimate->fitted) return shown.value.text + " (known)";
+  if (!shown.has_interval) return shown.value.text + " (no interval)";
+  return fmt::format("{} [{}, {}]", shown.value.text, shown.low.text, shown.high.text);
 }
 
 std::string unit_text(const RowUnit& unit) { return unit.name.empty() ? "1" : unit.name; }
@@ -158,9 +155,7 @@ std::string metrics_table(const StoredComparison& comparison, std::size_t column
     for (std::size_t i = 1; i < metric.against_first.size(); ++i) {
       const auto& against = metric.against_first[i];
       if (!against) continue;
-      const auto mean_text = [&](double mean) {
-        return text_of(shown_score(metric.metric, mean), "text");
-      };
+      const auto mean_text = [&](double mean) { return doc::score(metric.metric, mean).text; };
       table.add({metric.channel, metric_title(metric.metric), comparison.results.at(i).name,
                  fmt::format("{}", against->conditions), mean_text(against->mean_of_first),
                  mean_text(against->mean), fmt::format("{}", against->better),

@@ -59,10 +59,12 @@ std::vector<TimePlot> time_plots(const Table& table) {
     if (measured != nullptr) both.lines.push_back({"measured", "measured", measured});
     if (simulated != nullptr) both.lines.push_back({"model", "model", simulated});
     both.sd = measured != nullptr ? column("sd") : nullptr;
-    if (about.channel == datasets::Channel::position) {
-      const auto* reference = table.find("reference_m");
-      if (has_numbers(reference)) both.lines.push_back({"reference", "reference", reference});
-    }
+    const bool is_position = about.channel == datasets::Channel::position;
+    const std::string wanted =
+        is_position ? "reference_m"
+                    : fmt::format("{}_reference{}", about.key, about.name.substr(about.key.size()));
+    if (const auto* reference = table.find(wanted); has_numbers(reference))
+      both.lines.push_back({"reference", "reference", reference});
     both.prediction_sd = simulated != nullptr ? column("prediction_sd") : nullptr;
     both.prediction_middle = simulated;
     const auto* prediction_sd = both.prediction_sd;

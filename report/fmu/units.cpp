@@ -24,6 +24,7 @@ constexpr std::array kBaseUnits{
     BaseUnits{"m3/s",       0,  3, -1,  0, 0},
     BaseUnits{"N",          1,  1, -2,  0, 0},
     BaseUnits{"N/m",        1,  0, -2,  0, 0},
+    BaseUnits{"N/m2",       1, -1, -2,  0, 0},
     BaseUnits{"N s/m",      1,  0, -1,  0, 0},
     BaseUnits{"Pa",         1, -1, -2,  0, 0},
     BaseUnits{"Pa/s",       1, -1, -3,  0, 0},
@@ -39,6 +40,14 @@ constexpr std::array kBaseUnits{
     BaseUnits{"V/m",        1,  1, -3, -1, 0},
     BaseUnits{"V/(m s)",    1,  1, -4, -1, 0},
     BaseUnits{"V s/m",      1,  1, -2, -1, 0},
+    BaseUnits{"V/N",        0,  1, -1, -1, 0},
+    BaseUnits{"V/(N s)",    0,  1, -2, -1, 0},
+    BaseUnits{"V s/N",      0,  1,  0, -1, 0},
+    BaseUnits{"V/Pa",       0,  3, -1, -1, 0},
+    BaseUnits{"V/(Pa s)",   0,  3, -2, -1, 0},
+    BaseUnits{"V s/Pa",     0,  3,  0, -1, 0},
+    BaseUnits{"V s2/m",     1,  1, -1, -1, 0},
+    BaseUnits{"V s3/m",     1,  1,  0, -1, 0},
     BaseUnits{"m/V",       -1, -1,  3,  1, 0},
 };
 // clang-format on

@@ -32,6 +32,9 @@ constexpr std::array kOutputs{
     OutputRow{Output::servo_flow, "servo_flow", "m3/s", "flow of the servo valve to the load"},
     OutputRow{Output::leakage_flow, "leakage_flow", "m3/s", "internal leakage across the piston"},
     OutputRow{Output::work_flow, "work_flow", "m3/s", "flow that moves the piston"},
+    OutputRow{Output::acceleration, "acceleration", "m/s2", "acceleration of the piston"},
+    OutputRow{Output::payload_acceleration, "payload_acceleration", "m/s2",
+              "acceleration of the second mass"},
 };
 static_assert(kOutputs.size() == model::kAllOutputs.size(), "every output has a row");
 
@@ -49,7 +52,8 @@ FmuVariable input(unsigned number, const char* name, const char* unit, const cha
 
 void add_inputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
   if (rig.rig.controller == model::ControllerKind::pid) {
-    variables.push_back(input(0, "reference", "m", "where the piston is to be", 0.0));
+    const model::FeedbackRow& loop = model::gain_keys(rig.rig.feedback);
+    variables.push_back(input(0, "reference", loop.unit.data(), loop.meaning.data(), 0.0));
   } else {
     variables.push_back(input(0, "command", "V", "what the valve is told", 0.0));
   }
@@ -85,10 +89,12 @@ void add_states(const ExportedRig& rig, const Layout& layout, std::vector<FmuVar
   }
 }
 
-void add_outputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
+void add_outputs(const ExportedRig& rig, const Layout& layout,
+                 std::vector<FmuVariable>& variables) {
   for (const OutputRow& row : kOutputs) {
     if (row.output == Output::command && rig.rig.controller == model::ControllerKind::none)
       continue;  // it is the input
+    if (row.output == Output::payload_acceleration && layout.payload < 0) continue;
     const bool is_state = std::any_of(variables.begin(), variables.end(),
                                       [&](const auto& each) { return each.name == row.name; });
     if (is_state) continue;
@@ -147,7 +153,7 @@ std::vector<FmuVariable> fmu_variables(const ExportedRig& rig, const Layout& lay
   std::vector<FmuVariable> variables;
   add_inputs(rig, variables);
   add_states(rig, layout, variables);
-  add_outputs(rig, variables);
+  add_outputs(rig, layout, variables);
   add_derivatives(variables);
   add_parameters(rig, variables);
   return variables;

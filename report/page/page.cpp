@@ -6,10 +6,12 @@
 #include <exception>
 
 #include "common/error.hpp"
+#include "common/file.hpp"
+#include "report/document/render_html.hpp"
 #include "report/figure/pdf.hpp"
 #include "report/page/assets.hpp"
-#include "report/page/render.hpp"
 #include "report/page/section.hpp"
+#include "report/text/escape.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -32,14 +34,9 @@ std::string nothing_found() {
   return text + "; expected a result folder";
 }
 
-struct DrawnPart {
-  const Section* section = nullptr;
-  Part part;
-};
-
 struct Parts {
-  std::vector<DrawnPart> drawn;
-  Json problems = Json::array();  ///< results that are there but could not be drawn
+  std::vector<Part> drawn;
+  std::vector<std::string> problems;  ///< results that are there but could not be drawn
 };
 
 /// What is there; what cannot be read is named on the page, unless it is all there is.
@@ -49,9 +46,7 @@ Parts parts_of(const ResultFolder& folder) {
   for (const Section& section : sections()) {
     if (!has_result(folder, section)) continue;
     try {
-      with_json_errors(folder.where, [&] {
-        parts.drawn.push_back({&section, section.part(folder)});
-      });
+      with_json_errors(folder.where, [&] { parts.drawn.push_back(section.part(folder)); });
     } catch (const InputError& error) {
       if (!first) first = std::current_exception();
       parts.problems.push_back(fmt::format("Left out: {}", error.what()));
@@ -62,63 +57,149 @@ Parts parts_of(const ResultFolder& folder) {
   throw InputError({folder.where}, nothing_found());
 }
 
-/// The first part speaks for the page; the others say beside it what they found.
-Json page_view(Parts parts) {
-  Json view;
-  const Part& first = parts.drawn.front().part;
-  view["kind"] = first.name;
-  view["campaign"] = first.campaign;
-  view["identity"] = first.identity;
-  view["overview"] = first.overview;
-  view["headline"] = first.headline;
-  view["page_class"] = first.headline.at("class");
-  view["problems"] = std::move(parts.problems);
-  view["beside"] = Json::array();
-  view["nav"] = Json::array();
-  view["provenance"] = Json::array();
-  bool synthetic = false;
-  for (auto& [section, part] : parts.drawn) {
-    synthetic = synthetic || part.synthetic;
-    if (&part != &first) {
-      view["beside"].push_back({{"link", part.link},
-                                {"name", part.name},
-                                {"text", part.headline.at("sentence")},
-                                {"word", part.headline.at("word")},
-                                {"class", part.headline.at("class")}});
-      // What cannot be used marks the page, wherever it stands.
-      if (part.headline.at("class") == "bad") view["page_class"] = "bad";
-    }
-    for (const auto& [id, name] : part.nav) view["nav"].push_back({{"id", id}, {"name", name}});
-    view["provenance"].push_back(std::move(part.provenance));
-    view["has_" + section->name] = true;
-    for (auto& [name, value] : part.view.items()) view[name] = std::move(value);
+/// A text as a string of a style sheet, where nothing in it has a meaning.
+std::string css_string(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool plain = byte >= 0x80 || c == ' ' || c == '.' || c == '-' || c == ',' ||
+                       (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    result += plain ? std::string(1, c) : fmt::format("\\{:x} ", byte);
   }
-  for (const auto& [id, name] : {std::pair{"provenance", "Provenance"}, {"formulas", "Formulas"}})
-    view["nav"].push_back({{"id", id}, {"name", name}});
-  view["bad"] = view["page_class"] == "bad";
-  view["synthetic"] = synthetic;
-  view["has_beside"] = !view["beside"].empty();
-  view["formulas"] = formulas_view();
-  view["style_html"] = std::string(asset("report.css")) + std::string(asset("uPlot.css"));
-  // Its licence asks for its notice in every copy, which each page is.
-  view["plot_library_html"] =
-      fmt::format("/*! uPlot\n\n{}*/\n{}", asset("uPlot.LICENSE"), asset("uPlot.js"));
-  view["script_html"] = std::string(asset("report.js"));
-  return view;
+  return result + "\"";
+}
+
+/// What stands at the foot of every sheet: whose report it is, and of which file.
+std::string foot_style(const Part& first, bool bad, const std::string& sha256) {
+  std::string left;
+  const auto add = [&](const std::string& text) {
+    if (!text.empty()) left += (left.empty() ? "" : " · ") + text;
+  };
+  add(first.identity.number);
+  add(first.identity.rig.empty() ? first.campaign : first.identity.rig);
+  add(first.verdict.badge.words);
+  if (!first.identity.issued.empty()) add("issued " + first.identity.issued);
+  if (!first.identity.number.empty()) add("relates only to the items tested");
+  const std::string right =
+      css_string(fmt::format("SHA-256 of {} {} · page ", first.file, sha256.substr(0, 8)));
+  return fmt::format(
+      "@page {{ @bottom-left {{ content: {}; width: 62%; font-size: 7pt; color: {}; }} "
+      "@bottom-right {{ content: {} counter(page) \" of \" counter(pages); font-size: 7pt; color: "
+      "#444; }} }}",
+      css_string(left), bad ? "#8f1607; font-weight: bold" : "#444", right);
+}
+
+/// Title, whose report it is, and its number.
+void add_top(const Part& first, bool synthetic, std::string& page) {
+  const Identity& identity = first.identity;
+  page += "<header class=\"top\"><div>\n<h1 id=\"title\">" + escaped(first.name) +
+          (first.campaign.empty() ? "" : " of " + escaped(first.campaign)) + "</h1>\n";
+  std::string whose = escaped(identity.laboratory);
+  if (!identity.customer.empty())
+    whose += (whose.empty() ? "for " : " · for ") + escaped(identity.customer);
+  if (!whose.empty()) page += "<p>" + whose + "</p>\n";
+  if (synthetic) page += "<p><strong>synthetic records</strong></p>\n";
+  page += "</div>\n";
+  if (!identity.number.empty() || !identity.issued.empty()) {
+    page += "<p class=\"issue\">";
+    if (!identity.number.empty())
+      page += "Report number <strong>" + escaped(identity.number) + "</strong>";
+    if (!identity.issued.empty())
+      page +=
+          std::string(identity.number.empty() ? "" : "<br>") + "issued " + escaped(identity.issued);
+    page += "</p>\n";
+  }
+  page += "</header>\n";
+}
+
+/// What is signed: the verdict of the first result with what it rests on, then what the others
+/// found.
+void add_first_page(const Parts& parts, bool synthetic, const std::string& sha256,
+                    std::string& page) {
+  const Part& first = parts.drawn.front();
+  page += "<section id=\"verdict\" aria-labelledby=\"title\">\n";
+  add_top(first, synthetic, page);
+  doc::Blocks blocks{first.verdict};
+  for (const std::string& problem : parts.problems)
+    blocks.emplace_back(doc::Paragraph{{problem}, doc::Paragraph::Tone::problem});
+  doc::List beside;
+  for (std::size_t i = 1; i < parts.drawn.size(); ++i) {
+    const Part& part = parts.drawn[i];
+    doc::Line line{part.verdict.badge, " ", doc::Link{"#" + part.link, part.name}, ": "};
+    line.insert(line.end(), part.verdict.sentence.begin(), part.verdict.sentence.end());
+    beside.items.push_back(std::move(line));
+  }
+  blocks.emplace_back(std::move(beside));
+  doc::render_html(blocks, page);
+  doc::render_html(first.front, page);
+  doc::Facts facts = first.identity.facts;
+  if (!facts.rows.empty() || !first.front.empty()) {
+    facts.shape = doc::Facts::Shape::grid;
+    facts.rows.push_back({"Software", {first.program}});
+    facts.rows.push_back(
+        {"Result", {fmt::format("{}, SHA-256 {}…", first.file, sha256.substr(0, 16))}});
+    doc::render_html({doc::Heading{{"Item and method"}, 2}, std::move(facts)}, page);
+  }
+  doc::render_html({first.identity.signatures}, page);
+  page += "</section>\n\n";
+}
+
+std::string page_of(const Parts& parts, const std::string& sha256) {
+  const Part& first = parts.drawn.front();
+  // What cannot be used marks the page, wherever it stands.
+  const bool bad = std::any_of(parts.drawn.begin(), parts.drawn.end(), [](const Part& part) {
+    return part.verdict.badge.state == doc::State::bad;
+  });
+  const bool synthetic = std::any_of(parts.drawn.begin(), parts.drawn.end(),
+                                     [](const Part& part) { return part.synthetic; });
+  const doc::Badge& badge = first.verdict.badge;
+  std::string page = fmt::format(
+      "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
+      "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
+      "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+      "'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:\">\n<meta "
+      "name=\"color-scheme\" content=\"light dark\">\n<title>{} – {} – {}</title>\n",
+      escaped(badge.words), escaped(first.campaign), escaped(first.name));
+  page += fmt::format("<style>{}{}{}</style>\n</head>\n", asset("report.css"), asset("uPlot.css"),
+                      foot_style(first, bad, sha256));
+  page += fmt::format(
+      "<body class=\"{}\">\n<a class=\"skip\" href=\"#verdict\">Skip to the verdict</a>\n<header "
+      "class=\"bar\">\n<span class=\"badge {}\"><span aria-hidden=\"true\">{}</span> "
+      "{}</span>\n<strong class=\"name\">{}</strong>\n<nav aria-label=\"Sections\">\n",
+      bad ? "bad" : doc::css(badge.state), doc::css(badge.state), doc::mark(badge.state),
+      escaped(badge.words), escaped(first.campaign));
+  const auto add_link = [&](const std::string& id, const std::string& name) {
+    page += fmt::format("<a href=\"#{}\">{}</a>", escaped(id), escaped(name));
+  };
+  for (const Part& part : parts.drawn)
+    for (const auto& [id, name] : part.nav) add_link(id, name);
+  add_link("provenance", "Provenance");
+  add_link("formulas", "Formulas");
+  page += "\n</nav>\n</header>\n<main>\n";
+  add_first_page(parts, synthetic, sha256, page);
+  doc::Section provenance{
+      "provenance",
+      "Provenance",
+      {doc::reading("The same inputs and these commands make the same numbers again.")}};
+  for (const Part& part : parts.drawn) {
+    for (const doc::Section& section : part.sections) doc::render_html(section, page);
+    provenance.blocks.insert(provenance.blocks.end(), part.provenance.begin(),
+                             part.provenance.end());
+  }
+  doc::render_html(provenance, page);
+  doc::render_html(formulas_section(), page);
+  // The licence of the plot library asks for its notice in every copy, which each page is.
+  page += fmt::format("</main>\n<script>/*! uPlot\n\n{}*/\n{}</script>\n<script>{}</script>\n",
+                      asset("uPlot.LICENSE"), asset("uPlot.js"), asset("report.js"));
+  return page + "</body>\n</html>\n";
 }
 
 }  // namespace
 
 std::string result_page(const ReadFile& read, const std::string& where, int threads,
                         const ReadTable& made) {
-  std::string lines;  // of the page's template: each section that there is
-  std::vector<Partial> partials;
-  for (const Section& section : sections()) {
-    lines += fmt::format("{{{{#has_{0}}}}}{{{{>section_{0}}}}}{{{{/has_{0}}}}}\n", section.name);
-    partials.push_back({"section_" + section.name, asset(section.name + ".html")});
-  }
-  partials.push_back({"sections", lines});
-  return render(asset("report.html"), page_view(parts_of({read, where, threads, made})), partials);
+  const Parts parts = parts_of({read, where, threads, made});
+  return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")));
 }
 
 std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& read,

@@ -26,26 +26,21 @@ bool is_measured(const std::string& channel) {
   return known && datasets::info(*known).is_output;
 }
 
-Json agreement_rows(const StoredRecord& record) {
-  Json rows = Json::array();
+void add_agreement_rows(const StoredRecord& record, doc::Table& table) {
   for (const auto& [channel, found] : record.channels) {
     if (!is_measured(channel)) continue;  // a command is what it was told to be
     const std::optional<StoredNoiseFloor>& noise_floor = found.noise_floor;
     const auto floor = [&](double StoredNoiseFloor::*value) -> Number {
       return noise_floor ? std::optional((*noise_floor).*value) : std::nullopt;
     };
-    rows.push_back({{"condition", record.condition},
-                    {"channel", channel},
-                    {"samples", fmt::format("{}", record.samples)},
-                    {"repeats", fmt::format("{}", found.repeats)},
-                    {"sd", shown(found.pooled_sd, found.unit, 3)},
-                    {"sd_of_mean", shown(found.sd_of_mean, found.unit, 3)},
-                    {"rho2", shown_agreement(floor(&StoredNoiseFloor::rho2))},
-                    {"error", shown_in(floor(&StoredNoiseFloor::absolute_error_percent), 1.0, 3)},
-                    {"offsets", offsets_text(record)},
-                    {"outliers", fmt::format("{}", record.outliers())}});
+    table.rows.push_back(
+        {{record.condition, channel, fmt::format("{}", record.samples),
+          fmt::format("{}", found.repeats), doc::readable(found.pooled_sd, found.unit, 3),
+          doc::readable(found.sd_of_mean, found.unit, 3),
+          doc::agreement(floor(&StoredNoiseFloor::rho2)),
+          doc::in_unit(floor(&StoredNoiseFloor::absolute_error_percent), 1.0, 3),
+          offsets_text(record), fmt::format("{}", record.outliers())}});
   }
-  return rows;
 }
 
 /// What is said of every record, with its condition.
@@ -145,7 +140,7 @@ Plot offset_plot(const StoredRecord& record) {
   return plot;
 }
 
-Json average_headline(const AverageFiles& stored) {
+doc::Verdict average_headline(const AverageFiles& stored) {
   const std::vector<StoredRecord>& records = stored.result.records;
   long outliers = 0;
   long repeats = 0;
@@ -157,49 +152,66 @@ Json average_headline(const AverageFiles& stored) {
   }
   const std::vector<std::string> warnings = texts_of(stored.result, &StoredRecord::warnings);
   const bool doubtful = outliers > 0 || !warnings.empty();
-  Json view = make_headline(
-      "AVERAGED", doubtful ? "!" : "✓", doubtful ? "warn" : "good",
-      fmt::format(
+  doc::Verdict verdict{
+      {doubtful ? doc::State::warn : doc::State::good, "AVERAGED"},
+      {fmt::format(
           "{} condition{}, {} repeat{}; repeats of a condition start up to {:.2g} ms apart.",
           records.size(), records.size() == 1 ? "" : "s", repeats, repeats == 1 ? "" : "s",
-          1e3 * offset_s));
+          1e3 * offset_s)}};
   if (outliers > 0)
-    add_reason(view, fmt::format("{} repeat{} named outlier", outliers, outliers == 1 ? "" : "s"),
+    add_reason(verdict,
+               fmt::format("{} repeat{} named outlier", outliers, outliers == 1 ? "" : "s"),
                "repeatability");
-  for (const std::string& text : warnings) add_reason(view, text, "repeatability");
-  return view;
+  for (const std::string& text : warnings) add_reason(verdict, text, "repeatability");
+  return verdict;
 }
 
-Json average_view(const AverageFiles& stored) {
-  Json view;
-  view["rows"] = Json::array();
-  view["records"] = Json::array();
+std::vector<doc::Section> average_sections(const AverageFiles& stored) {
+  using Kind = doc::Column::Kind;
+  doc::Table table{"Repeatability of every condition and channel"};
+  table.shape = doc::Table::Shape::cards;
+  table.style = "repeatability";
+  table.columns = {{"Condition"},
+                   {"Channel"},
+                   {"Samples", Kind::number},
+                   {"Repeats", Kind::number},
+                   {"sd of one", Kind::number},
+                   {"sd of the mean", Kind::number},
+                   {"Floor of rho2", Kind::number},
+                   {"Floor of the error, %", Kind::number},
+                   {"Offsets", Kind::number},
+                   {"Outliers", Kind::number}};
+  doc::Section means{"means", "Means"};
   const std::vector<StoredRecord>& records = stored.result.records;
   for (std::size_t i = 0; i < records.size(); ++i) {
-    for (Json& row : agreement_rows(records[i])) view["rows"].push_back(std::move(row));
+    add_agreement_rows(records[i], table);
     const std::string& id = records[i].condition;
-    Json figures = Json::array();
-    for (const Figure& figure : average_figures(id, stored.series[i]))
-      figures.push_back({{"svg_html", svg(figure.plot)}});
-    const Plot offsets = offset_plot(records[i]);
-    view["records"].push_back({{"condition", id},
-                               {"open", i == 0 || records.size() <= kFew},
-                               {"figures", std::move(figures)},
-                               {"has_offsets", !offsets.traces.empty()},
-                               {"offsets_html", offsets.traces.empty() ? "" : svg(offsets)}});
+    doc::Gallery gallery;
+    gallery.wide = true;
+    for (Figure& figure : average_figures(id, stored.series[i]))
+      gallery.figures.push_back(figure_of(std::move(figure.plot)));
+    Plot offsets = offset_plot(records[i]);
+    if (!offsets.traces.empty()) gallery.figures.push_back(figure_of(std::move(offsets)));
+    means.blocks.emplace_back(
+        doc::Fold{id, {std::move(gallery)}, i == 0 || records.size() <= kFew});
   }
-  view["warnings"] = texts_of(stored.result, &StoredRecord::warnings);
-  view["has_warnings"] = !view["warnings"].empty();
-  view["few_warnings"] = view["warnings"].size() <= kFew;
-  view["warning_count"] = fmt::format("{}", view["warnings"].size());
-  view["notes"] = texts_of(stored.result, &StoredRecord::notes);
-  view["has_notes"] = !view["notes"].empty();
-  view["note_count"] = fmt::format("{}", view["notes"].size());
-  return view;
-}
-
-void add_average(const AverageFiles& /*stored*/, Part& part) {
-  part.nav.emplace_back("means", "Means");
+  doc::Section section{
+      "repeatability",
+      "Repeatability",
+      {doc::reading("How the repeats of each condition agree. Floor: what the noise of their mean "
+                    "leaves to any model, however right. Offsets: how far apart the repeats "
+                    "started."),
+       std::move(table)}};
+  const std::vector<std::string> warnings = texts_of(stored.result, &StoredRecord::warnings);
+  if (!warnings.empty())
+    section.blocks.emplace_back(doc::Fold{fmt::format("Warnings ({})", warnings.size()),
+                                          {list_of(warnings, doc::State::warn)},
+                                          warnings.size() <= kFew});
+  const std::vector<std::string> notes = texts_of(stored.result, &StoredRecord::notes);
+  if (!notes.empty())
+    section.blocks.emplace_back(doc::Fold{
+        fmt::format("What was done to the recordings ({})", notes.size()), {list_of(notes)}});
+  return {std::move(section), std::move(means)};
 }
 
 }  // namespace rigcal::report

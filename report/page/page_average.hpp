@@ -18,8 +18,7 @@ std::vector<Figure> average_figures(const AverageFiles& stored);
 Plot offset_plot(const StoredRecord& record);
 
 /// average.json: how the repeats of every condition agree.
-Json average_headline(const AverageFiles& stored);
-Json average_view(const AverageFiles& stored);
-void add_average(const AverageFiles& stored, Part& part);
+doc::Verdict average_headline(const AverageFiles& stored);
+std::vector<doc::Section> average_sections(const AverageFiles& stored);
 
 }  // namespace rigcal::report

@@ -8,6 +8,7 @@
 
 #include "common/calendar.hpp"
 #include "report/batch/batch.hpp"
+#include "report/document/words.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -26,42 +27,46 @@ std::string as_link(const std::string& path) {
   return link;
 }
 
-Json rig_badge(const StoredRig& rig) {
-  if (!rig.status) return {{"word", "no result"}, {"mark", "✕"}, {"class", "bad"}};
-  if (!has_converged(rig))
-    return {{"word", to_string(*rig.status)}, {"mark", "✕"}, {"class", "bad"}};
-  return badge(rig.verdict);
+doc::Badge rig_badge(const StoredRig& rig) {
+  if (!rig.status) return {doc::State::bad, "no result"};
+  if (!has_converged(rig)) return {doc::State::bad, std::string(to_string(*rig.status))};
+  return doc::badge(rig.verdict);
 }
 
-Json score_views(const StoredRig& rig) {
-  Json list = Json::array();
+doc::Cell score_lines(const StoredRig& rig) {
+  doc::Cell cell;
   for (const StoredRigScore& score : rig.worst_scores) {
-    list.push_back({{"condition", score.condition},
-                    {"channel", score.channel},
-                    {"failed", !score.failure.empty()},
-                    {"badge", badge(score.verdict)},
-                    {"rho2", shown_agreement(score.rho2)},
-                    {"error", shown_in(score.absolute_error_percent, 1.0, 3)}});
+    if (!score.failure.empty()) {
+      cell.paragraphs.push_back({score.condition + ": not simulated"});
+      continue;
+    }
+    cell.paragraphs.push_back({fmt::format("{} {}: ", score.condition, score.channel),
+                               doc::agreement(score.rho2), ", ",
+                               doc::in_unit(score.absolute_error_percent, 1.0, 3), " %"});
   }
-  return list;
+  return cell;
 }
 
-Json rig_estimate_views(const StoredRig& rig) {
-  Json list = Json::array();
+doc::Cell estimate_lines(const StoredRig& rig) {
+  doc::Cell cell;
   for (const StoredRigEstimate& each : rig.parameters) {
     const RowUnit unit = row_unit(each.value, each.unit);
-    const Json shown = shown_estimate(each.value, each.ci95, unit.si);
-    const Json& interval = shown.at("interval");
-    list.push_back({{"name", parameter_label(each)},
-                    {"unit", unit.name},
-                    {"value", shown.at("value")},
-                    {"interval", interval.at("known")},
-                    {"low", interval.at("low")},
-                    {"high", interval.at("high")},
-                    {"doubtful", is_doubtful(each.identifiability)},
-                    {"grade", grade_words(each.identifiability)}});
+    const doc::Estimate shown = doc::estimate(each.value, each.ci95, unit.si);
+    doc::Quantity value = shown.value;
+    value.unit = unit.name;
+    doc::Line line{parameter_label(each) + " ", std::move(value)};
+    if (shown.has_interval) {
+      line.emplace_back(" (");
+      for (doc::Inline& part : shown.interval()) line.push_back(std::move(part));
+      line.emplace_back(")");
+    }
+    if (is_doubtful(each.identifiability)) {
+      line.emplace_back(" ");
+      line.emplace_back(doc::badge(*each.identifiability));
+    }
+    cell.paragraphs.push_back(std::move(line));
   }
-  return list;
+  return cell;
 }
 
 /// Points over days since the first; nothing where fewer than two have a date.
@@ -108,47 +113,63 @@ std::optional<Plot> rig_trend_plot(const StoredRig& rig, const StoredRigTrend& t
   return plot;
 }
 
-Json trend_views_of(const StoredRig& rig) {
-  Json list = Json::array();
-  for (const StoredRigTrend& trend : rig.trends) {
-    const auto plot = rig_trend_plot(rig, trend);
-    if (plot) list.push_back({{"svg_html", svg(*plot)}, {"reading", trend_sentence(trend)}});
-  }
-  return list;
+/// Why it is no PASS, and its first warnings.
+doc::Cell reason_lines(const StoredRig& rig) {
+  doc::Cell cell;
+  if (!has_converged(rig) || rig.exit_code > 1) cell.paragraphs.push_back({rig.message});
+  for (const std::string& reason : rig.reasons) cell.paragraphs.push_back({reason});
+  const std::size_t shown = std::min(rig.warnings.size(), kShownWarnings);
+  for (std::size_t i = 0; i < shown; ++i) cell.paragraphs.push_back({rig.warnings[i]});
+  if (rig.warnings.size() > shown)
+    cell.paragraphs.push_back({fmt::format("{} in all", rig.warnings.size())});
+  return cell;
 }
 
-Json rig_view(const StoredRig& rig) {
-  Json warnings = Json::array();
-  for (std::size_t i = 0; i < std::min(rig.warnings.size(), kShownWarnings); ++i)
-    warnings.push_back(rig.warnings[i]);
-  const bool troubled = !has_converged(rig) || rig.exit_code > 1;
-  Json trends = trend_views_of(rig);
-  const bool undated = trends.empty() && !rig.trends.empty();
-  return {{"rig", rig.rig},
-          {"anchor", anchor(rig.rig)},
-          {"name", rig.name.value_or("")},
-          {"link", as_link(rig.folder + "/report.html")},
-          {"has_report", rig.has_report},
-          {"badge", rig_badge(rig)},
-          {"exit_code", fmt::format("{}", rig.exit_code)},
-          {"unchanged", rig.unchanged},
-          {"seconds", shown_in(rig.seconds, 1.0, 3)},
-          {"message", rig.message},
-          {"troubled", troubled},
-          {"reasons", rig.reasons},
-          {"scores", score_views(rig)},
-          {"parameters", rig_estimate_views(rig)},
-          {"warnings", std::move(warnings)},
-          {"warning_count", fmt::format("{}", rig.warnings.size())},
-          {"more_warnings", rig.warnings.size() > kShownWarnings},
-          {"has_trends", !trends.empty()},
-          {"undated", undated},
-          {"trends", std::move(trends)}};
+doc::Row rig_row(const StoredRig& rig) {
+  doc::Cell name = doc::Cell(rig.rig);
+  if (rig.has_report) name.line = {doc::Link{as_link(rig.folder + "/report.html"), rig.rig}};
+  name.below = {{rig.name.value_or("")}};
+  doc::Cell verdict{doc::Line{rig_badge(rig)}};
+  if (rig.unchanged) verdict.below = {{"unchanged"}};
+  return {{std::move(name), std::move(verdict), score_lines(rig), estimate_lines(rig),
+           reason_lines(rig), fmt::format("{}", rig.exit_code), doc::in_unit(rig.seconds, 1.0, 3)},
+          {},
+          "rig-" + anchor(rig.rig)};
+}
+
+doc::Section trends_section(const StoredBatch& batch) {
+  doc::Section section{"rig-trends", "Trends"};
+  bool any = false;
+  for (const StoredRig& rig : batch.rigs) {
+    doc::Gallery gallery;
+    for (const StoredRigTrend& trend : rig.trends) {
+      auto plot = rig_trend_plot(rig, trend);
+      if (plot) gallery.figures.push_back(figure_of(std::move(*plot), {}, trend_sentence(trend)));
+    }
+    if (!gallery.figures.empty()) {
+      any = true;
+      section.blocks.emplace_back(doc::Heading{{rig.rig}});
+      section.blocks.emplace_back(std::move(gallery));
+    } else if (!rig.trends.empty()) {
+      section.blocks.emplace_back(
+          doc::reading(rig.rig + ": its results have fewer than two dates."));
+    }
+  }
+  doc::Paragraph first{
+      {"Estimates over the dates of their records, of earlier results and this "
+       "one. A line is drawn where a trend can be tested: three dated estimates "
+       "or more, of different records."}};
+  if (!any)
+    first.line = {"No rig has an earlier result with dated records: ", doc::Code{"--earlier"},
+                  " names folders of earlier batches, and ", doc::Code{"date"},
+                  " of a condition its day."};
+  section.blocks.insert(section.blocks.begin(), std::move(first));
+  return section;
 }
 
 }  // namespace
 
-Json batch_headline(const StoredBatch& batch) {
+doc::Verdict batch_headline(const StoredBatch& batch) {
   const bool failed = batch.exit_code > 1;
   const bool fails = batch.exit_code == 1;
   const bool warns = std::any_of(batch.rigs.begin(), batch.rigs.end(), [](const StoredRig& rig) {
@@ -157,36 +178,45 @@ Json batch_headline(const StoredBatch& batch) {
   const bool judged = std::all_of(batch.rigs.begin(), batch.rigs.end(),
                                   [](const StoredRig& rig) { return rig.verdict.has_value(); });
   const std::string sentence = batch_sentence(batch) + ".";
-  Json view = failed   ? make_headline("INCOMPLETE", "✕", "bad", sentence)
-              : fails  ? make_headline("FAIL", "✕", "bad", sentence)
-              : warns  ? make_headline("WARN", "!", "warn", sentence)
-              : judged ? make_headline("PASS", "✓", "good", sentence)
-                       : make_headline("DONE", "○", "none", sentence);
+  doc::Verdict verdict{failed   ? doc::Badge{doc::State::bad, "INCOMPLETE"}
+                       : fails  ? doc::Badge{doc::State::bad, "FAIL"}
+                       : warns  ? doc::Badge{doc::State::warn, "WARN"}
+                       : judged ? doc::Badge{doc::State::good, "PASS"}
+                                : doc::Badge{doc::State::none, "DONE"},
+                       {sentence}};
   for (const StoredRig& rig : batch.rigs) {
     const std::string link = "rig-" + anchor(rig.rig);
     if (!has_converged(rig) || rig.exit_code > 1)
-      add_reason(view, fmt::format("{}: {}", rig.rig, rig.message), link);
+      add_reason(verdict, fmt::format("{}: {}", rig.rig, rig.message), link);
     for (const std::string& reason : rig.reasons)
-      add_reason(view, fmt::format("{}: {}", rig.rig, reason), link);
+      add_reason(verdict, fmt::format("{}: {}", rig.rig, reason), link);
     for (const StoredRigTrend& trend : rig.trends) {
       if (is_significant(trend))
-        add_reason(view, fmt::format("{}: {}", rig.rig, trend_sentence(trend)), "rig-trends");
+        add_reason(verdict, fmt::format("{}: {}", rig.rig, trend_sentence(trend)), "rig-trends");
     }
   }
-  return view;
+  return verdict;
 }
 
-Json batch_view(const StoredBatch& batch) {
-  Json view;
-  view["folder"] = batch.folder;
-  view["rigs"] = Json::array();
-  bool any_trend = false;
-  for (const StoredRig& rig : batch.rigs) {
-    view["rigs"].push_back(rig_view(rig));
-    any_trend = any_trend || view["rigs"].back().at("has_trends").get<bool>();
-  }
-  view["has_any_trend"] = any_trend;
-  return view;
+std::vector<doc::Section> batch_sections(const StoredBatch& batch) {
+  using Kind = doc::Column::Kind;
+  doc::Table table{"One row for each rig"};
+  table.style = "rigs";
+  table.columns = {{"Rig"},
+                   {"Verdict"},
+                   {"Worst scores"},
+                   {"Estimates"},
+                   {"Reasons and warnings", Kind::words},
+                   {"Exit", Kind::number},
+                   {"Time, s", Kind::number}};
+  for (const StoredRig& rig : batch.rigs) table.rows.push_back(rig_row(rig));
+  return {{"rigs",
+           "Rigs",
+           {doc::reading("The three worst scores of each rig (rho2, mean absolute error in "
+                         "percent), its estimates with 95 % intervals, why it is no PASS, and its "
+                         "first warnings. The name leads to its own report."),
+            std::move(table)}},
+          trends_section(batch)};
 }
 
 std::vector<Figure> batch_figures(const StoredBatch& batch) {
@@ -210,7 +240,6 @@ void add_batch(const StoredBatch& batch, Part& part) {
   part.campaign = batch.folder;
   part.synthetic = std::any_of(batch.rigs.begin(), batch.rigs.end(),
                                [](const StoredRig& rig) { return rig.synthetic; });
-  part.nav.emplace_back("rig-trends", "Trends");
 }
 
 }  // namespace rigcal::report

@@ -6,61 +6,70 @@
 
 #include "common/calendar.hpp"
 #include "report/comparison/comparison_parts.hpp"
+#include "report/document/words.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
 namespace {
 
-Json estimate_cell(const std::optional<StoredEstimate>& estimate, const RowUnit& unit) {
-  if (!estimate) return {{"there", false}};
-  const Json shown = shown_estimate(estimate->value, estimate->ci95, unit.si);
-  const Json& interval = shown.at("interval");
-  return {{"there", true},
-          {"value", shown.at("value")},
-          {"fitted", estimate->fitted},
-          {"interval", interval.at("known")},
-          {"low", interval.at("low")},
-          {"high", interval.at("high")},
-          {"doubtful", is_doubtful(estimate->identifiability)},
-          {"grade", grade_words(estimate->identifiability)}};
-}
+using doc::Line;
+using Kind = doc::Column::Kind;
 
-Json change_cell(const std::optional<StoredDifference>& difference, const RowUnit& unit) {
-  if (!difference) return {{"there", false}};
+/// What changed from the first result; nothing where there is nothing to say.
+std::optional<doc::Line> change_line(const std::optional<StoredDifference>& difference,
+                                     const RowUnit& unit) {
+  if (!difference) return std::nullopt;
   const std::string by = change_text(*difference, unit);
+  if (by.empty()) return std::nullopt;
+  Line line{doc::Quantity{difference->difference, by}, " "};
   const auto& p = difference->p_value_of_all;
-  const bool significant = p && difference->significant == true;
-  return {{"there", !by.empty()},
-          {"by", by},
-          {"exact", shown_in(difference->difference, 1.0).at("exact")},
-          {"judged", p.has_value()},
-          {"p", p ? p_value_text(*p) : std::string()},
-          {"class", !p            ? "none"
-                    : significant ? "warn"
-                                  : "good"},
-          {"word", p ? significant ? "significant" : "not significant"
-                   : difference->reason == kKnownInBoth ? "known in both"
-                                                        : "not tested"},
-          {"reason", difference->reason.value_or("")}};
+  if (!p) {
+    const bool known = difference->reason == kKnownInBoth;
+    line.emplace_back(doc::Badge{doc::State::none, known ? "known in both" : "not tested"});
+    if (!known && difference->reason) line.emplace_back(" " + *difference->reason);
+    return line;
+  }
+  const bool significant = difference->significant == true;
+  line.emplace_back(doc::Badge{significant ? doc::State::warn : doc::State::good,
+                               significant ? "significant" : "not significant"});
+  line.emplace_back(" " + p_value_text(*p));
+  return line;
 }
 
-Json parameter_rows(const StoredComparison& comparison) {
-  Json rows = Json::array();
+doc::Cell estimate_cell(const std::optional<StoredEstimate>& estimate, const RowUnit& unit) {
+  if (!estimate) return doc::Cell("–");
+  const doc::Estimate shown = doc::estimate(estimate->value, estimate->ci95, unit.si);
+  doc::Cell cell{Line{shown.value}};
+  if (!estimate->fitted) cell.line.emplace_back(doc::Soft{" known"});
+  if (shown.has_interval) cell.below.push_back(shown.interval());
+  if (is_doubtful(estimate->identifiability))
+    cell.below.push_back({doc::badge(*estimate->identifiability)});
+  return cell;
+}
+
+/// A column for each result, by its number and name.
+void add_result_columns(const StoredComparison& comparison, Kind kind, doc::Table& table) {
+  for (std::size_t i = 0; i < comparison.results.size(); ++i)
+    table.columns.push_back({fmt::format("{} {}", i + 1, comparison.results[i].name), kind});
+}
+
+doc::Table parameter_table_of(const StoredComparison& comparison) {
+  doc::Table table{"Parameters side by side"};
+  table.style = "estimates";
+  table.columns = {{"Parameter"}, {"Unit"}};
+  add_result_columns(comparison, Kind::number, table);
   for (const StoredComparedParameter& parameter : comparison.parameters) {
     if (!worth_a_row(parameter)) continue;
     const RowUnit unit = unit_of_estimates(parameter);
-    Json cells = Json::array();
+    doc::Row row{{parameter_label(parameter), unit.name.empty() ? std::string("1") : unit.name}};
     for (std::size_t i = 0; i < parameter.estimates.size(); ++i) {
-      Json cell{{"estimate", estimate_cell(parameter.estimates[i], unit)}};
-      cell["later"] = i > 0;
-      cell["change"] = change_cell(parameter.differences.at(i), unit);
-      cells.push_back(std::move(cell));
+      doc::Cell& cell = row.cells.emplace_back(estimate_cell(parameter.estimates[i], unit));
+      auto change = i > 0 ? change_line(parameter.differences.at(i), unit) : std::nullopt;
+      if (change) cell.below.push_back(std::move(*change));
     }
-    rows.push_back({{"name", parameter_label(parameter)},
-                    {"unit", unit.name.empty() ? std::string("1") : unit.name},
-                    {"cells", std::move(cells)}});
+    table.rows.push_back(std::move(row));
   }
-  return rows;
+  return table;
 }
 
 /// Each fitted parameter by result, with its interval.
@@ -166,60 +175,66 @@ std::string trend_reading(const StoredSeries& series, const TrendAxis& axis) {
                      trend.significant == true ? "significant trend" : "no significant trend");
 }
 
-Json trend_views(const StoredComparison& comparison) {
-  Json list = Json::array();
-  for (const StoredSeries& series : comparison.leak_trends) {
-    for (const TrendAxis& axis : kTrendAxes) {
-      if (!differ(series, axis)) continue;
-      list.push_back(
-          {{"svg_html", svg(trend_plot(series, axis))}, {"reading", trend_reading(series, axis)}});
-    }
-  }
-  return list;
+doc::Tile score_tile(const StoredComparedScore& score) {
+  if (score.failure) return {doc::badge(calib::Verdict::fail), {"not simulated"}};
+  doc::Tile tile{doc::badge(score.verdict), {doc::agreement(score.rho2)}};
+  tile.below = {{doc::in_unit(score.absolute_error_percent, 1.0, 3),
+                 fmt::format(" % · {}", to_string(score.use))}};
+  return tile;
 }
 
-Json score_cell(const std::optional<StoredComparedScore>& score) {
-  if (!score) return {{"there", false}};
-  const bool failed = score->failure.has_value();
-  return {{"there", true},
-          {"failed", failed},
-          {"badge", badge(failed ? std::optional(calib::Verdict::fail) : score->verdict)},
-          {"rho2", shown_agreement(score->rho2)},
-          {"error", shown_in(score->absolute_error_percent, 1.0, 3)},
-          {"use", to_string(score->use)}};
-}
-
-Json score_rows_of(const StoredComparison& comparison) {
-  Json rows = Json::array();
+doc::Table score_table(const StoredComparison& comparison) {
+  doc::Table table{"Scores side by side"};
+  table.caption = {"rho2, and the mean absolute error in percent of the range"};
+  table.shape = doc::Table::Shape::matrix;
+  table.columns = {{"Condition"}, {"Channel"}};
+  add_result_columns(comparison, Kind::text, table);
   for (const StoredComparedCondition& condition : comparison.conditions) {
-    Json cells = Json::array();
-    for (const auto& score : condition.scores) cells.push_back(score_cell(score));
-    rows.push_back(
-        {{"condition", condition.id}, {"channel", condition.channel}, {"cells", std::move(cells)}});
+    doc::Row row{{condition.id, condition.channel}};
+    for (const auto& score : condition.scores) {
+      doc::Cell& cell = row.cells.emplace_back();
+      if (score) cell.tiles = {score_tile(*score)};
+    }
+    table.rows.push_back(std::move(row));
   }
-  return rows;
+  return table;
 }
 
-Json metric_rows(const StoredComparison& comparison) {
-  Json rows = Json::array();
+doc::Table metric_table(const StoredComparison& comparison) {
+  doc::Table table{"Means of the scores"};
+  table.caption = {"Over the conditions that the first result has too; sign test over conditions"};
+  table.heading = 2;
+  table.columns = {{"Channel"},
+                   {"Metric"},
+                   {"Result"},
+                   {"Conditions", Kind::number},
+                   {"Mean of the first", Kind::number},
+                   {"Mean", Kind::number},
+                   {"Better in", Kind::number},
+                   {"Worse in", Kind::number},
+                   {"Significance"}};
   for (const StoredComparedMetric& metric : comparison.metrics) {
     for (std::size_t i = 1; i < metric.against_first.size(); ++i) {
       const auto& against = metric.against_first[i];
       if (!against) continue;
       const auto& p = against->p_value;
-      rows.push_back({{"channel", metric.channel},
-                      {"metric", metric.metric},
-                      {"result", comparison.results.at(i).name},
-                      {"conditions", fmt::format("{}", against->conditions)},
-                      {"first", shown_score(metric.metric, against->mean_of_first)},
-                      {"mean", shown_score(metric.metric, against->mean)},
-                      {"better", fmt::format("{}", against->better)},
-                      {"worse", fmt::format("{}", against->worse)},
-                      {"p", p ? p_value_text(*p) : against->reason.value_or("")},
-                      {"significant", against->significant == true}});
+      Line significance{p ? p_value_text(*p) : against->reason.value_or("")};
+      if (against->significant == true) {
+        significance.emplace_back(" ");
+        significance.emplace_back(doc::Badge{doc::State::warn, "significant"});
+      }
+      table.rows.push_back({{metric.channel,
+                             metric.metric,
+                             comparison.results.at(i).name,
+                             fmt::format("{}", against->conditions),
+                             doc::score(metric.metric, against->mean_of_first),
+                             doc::score(metric.metric, against->mean),
+                             fmt::format("{}", against->better),
+                             fmt::format("{}", against->worse),
+                             {std::move(significance)}}});
     }
   }
-  return rows;
+  return table;
 }
 
 /// "1 to 2", or "1" where both are the same.
@@ -227,50 +242,63 @@ std::string span(const std::string& first, const std::string& last) {
   return first == last ? first : fmt::format("{} to {}", first, last);
 }
 
-Json result_rows(const StoredComparison& comparison) {
-  Json rows = Json::array();
+doc::Table result_table(const StoredComparison& comparison) {
+  doc::Table table{"Results side by side"};
+  table.heading = 1;
+  table.columns = {{"No.", Kind::number},
+                   {"Result"},
+                   {"Verdict"},
+                   {"Campaign"},
+                   {"Plant"},
+                   {"Conditions", Kind::number},
+                   {"Dates"},
+                   {"Temperature, °C", Kind::number},
+                   {"Cost", Kind::number},
+                   {"Residuals", Kind::number},
+                   {"Reduced chi-square", Kind::number}};
   for (const StoredComparedResult& result : comparison.results) {
-    Json mark = badge(result.verdict);
+    doc::Badge verdict = doc::badge(result.verdict);
     if (result.status != calib::FitStatus::converged)
-      mark = {{"word", to_string(result.status)}, {"mark", "✕"}, {"class", "bad"}};
+      verdict = {doc::State::bad, std::string(to_string(result.status))};
     std::string warm;
     if (const auto& kelvin = result.temperature_k)
       warm = span(fmt::format("{:.4g}", kelvin->low - 273.15),
                   fmt::format("{:.4g}", kelvin->high - 273.15));
     const auto& dates = result.dates;
-    rows.push_back({{"number", fmt::format("{}", rows.size() + 1)},
-                    {"name", result.name},
-                    {"badge", std::move(mark)},
-                    {"campaign", result.campaign},
-                    {"model", result.model ? to_string(*result.model) : ""},
-                    {"conditions", fmt::format("{}", result.conditions)},
-                    {"dates", dates ? span((*dates)[0], (*dates)[1]) : std::string()},
-                    {"temperature", warm},
-                    {"cost", shown_in(result.cost, 1.0, 6)},
-                    {"residuals", fmt::format("{}", result.residual_count)},
-                    {"chi", shown_in(result.reduced_chi_square, 1.0, 4)},
-                    {"command", result.command}});
+    table.rows.push_back(
+        {{fmt::format("{}", table.rows.size() + 1), result.name, std::move(verdict),
+          result.campaign, result.model ? std::string(to_string(*result.model)) : std::string(),
+          fmt::format("{}", result.conditions),
+          dates ? span((*dates)[0], (*dates)[1]) : std::string(), warm,
+          doc::in_unit(result.cost, 1.0, 6), fmt::format("{}", result.residual_count),
+          doc::in_unit(result.reduced_chi_square, 1.0, 4)}});
   }
-  return rows;
+  return table;
 }
 
-Json model_rows(const StoredComparison& comparison) {
-  Json rows = Json::array();
+doc::Table model_table(const StoredComparison& comparison) {
+  doc::Table table{"Models"};
+  table.caption = {"AIC, BIC and likelihood ratio, against the first result"};
+  table.style = "models";
+  table.columns = {{"Result"},
+                   {"AIC", Kind::number},
+                   {"BIC", Kind::number},
+                   {"Likelihood ratio", Kind::number},
+                   {"Additional parameters", Kind::number},
+                   {"Significance"},
+                   {"In words", Kind::words}};
   for (std::size_t i = 1; i < comparison.models.size(); ++i) {
     const StoredModelChoice model = comparison.models[i].value_or(StoredModelChoice());
     const auto& p = model.p_value;
-    rows.push_back(
-        {{"name", comparison.results.at(i).name},
-         {"aic", shown_in(model.delta_aic, 1.0, 4)},
-         {"bic", shown_in(model.delta_bic, 1.0, 4)},
-         {"ratio", shown_in(model.likelihood_ratio, 1.0, 4)},
-         {"freedom", p && model.freedom ? fmt::format("{}", *model.freedom) : std::string("–")},
-         {"p", p ? p_value_text(*p) : std::string("–")},
-         {"verdict", model.verdict.value_or("not compared")},
-         {"reason", model.reason.value_or("")},
-         {"has_reason", model.reason.has_value()}});
+    doc::Cell words = doc::Cell(model.verdict.value_or("not compared"));
+    if (model.reason) words.below = {{*model.reason}};
+    table.rows.push_back(
+        {{comparison.results.at(i).name, doc::in_unit(model.delta_aic, 1.0, 4),
+          doc::in_unit(model.delta_bic, 1.0, 4), doc::in_unit(model.likelihood_ratio, 1.0, 4),
+          p && model.freedom ? fmt::format("{}", *model.freedom) : std::string("–"),
+          p ? p_value_text(*p) : std::string("–"), std::move(words)}});
   }
-  return rows;
+  return table;
 }
 
 std::string change_sentence(const Change& change) {
@@ -300,45 +328,54 @@ std::string significance_sentence(const StoredComparison& comparison) {
                      significant, compared - tested);
 }
 
-/// Adds the records, and how many are in all results.
-void add_records(const StoredComparison& comparison, Json& view) {
-  view["records"] = Json::array();
+/// Every file, and the results that it was used for.
+doc::Section records_section(const StoredComparison& comparison) {
+  doc::Table table{"Files and the results that they were used for"};
+  table.style = "hashes";
+  table.columns = {{"File"}};
+  for (std::size_t i = 0; i < comparison.results.size(); ++i)
+    table.columns.push_back({fmt::format("{}", i + 1)});
+  table.columns.push_back({"SHA-256"});
   std::size_t shared = 0;
   for (const StoredComparedRecord& record : comparison.records) {
-    Json cells = Json::array();
+    doc::Row row{{record.file}};
     bool everywhere = true;
     for (const bool in : record.in) {
-      cells.push_back(in ? "✓" : "–");
+      row.cells.push_back(in ? "✓" : "–");
       everywhere = everywhere && in;
     }
+    row.cells.push_back(record.sha256);
     shared += everywhere ? 1 : 0;
-    view["records"].push_back(
-        {{"file", record.file}, {"sha256", record.sha256}, {"cells", std::move(cells)}});
+    table.rows.push_back(std::move(row));
   }
-  view["record_count"] = fmt::format("{}", comparison.records.size());
-  view["shared"] = fmt::format("{}", shared);
+  return {"records",
+          "Records",
+          {doc::reading(fmt::format(
+               "{} of {} files were used for every result; the same content, whatever the name.",
+               shared, comparison.records.size())),
+           doc::Fold{"Every file", {std::move(table)}}}};
 }
 
 }  // namespace
 
-Json comparison_headline(const StoredComparison& comparison) {
+doc::Verdict comparison_headline(const StoredComparison& comparison) {
   const auto changes = changes_of(comparison);
   const bool different = !changes.empty() && changes.front().p.has_value();
-  Json view = comparison.status != "done"
-                  ? make_headline("FAILED", "✕", "bad",
-                                  "Fewer than two results are usable: there is nothing to "
-                                  "compare.")
-                  : make_headline(different ? "DIFFERENT" : "COMPARED", different ? "!" : "○",
-                                  different ? "warn" : "none", significance_sentence(comparison));
+  doc::Verdict verdict{
+      {different ? doc::State::warn : doc::State::none, different ? "DIFFERENT" : "COMPARED"},
+      {significance_sentence(comparison)}};
+  if (comparison.status != "done")
+    verdict = {{doc::State::bad, "FAILED"},
+               {"Fewer than two results are usable: there is nothing to compare."}};
   for (const StoredComparedResult& result : comparison.results) {
     if (result.status == calib::FitStatus::converged) continue;
-    view["class"] = "bad";
-    add_reason(view,
+    verdict.badge.state = doc::State::bad;
+    add_reason(verdict,
                fmt::format("{}: {}: {}", result.name, to_string(result.status), result.message),
                "results");
   }
-  for (const Change& change : changes) add_reason(view, change_sentence(change), "estimates");
-  return view;
+  for (const Change& change : changes) add_reason(verdict, change_sentence(change), "estimates");
+  return verdict;
 }
 
 std::vector<Figure> comparison_figures(const StoredComparison& comparison) {
@@ -353,30 +390,57 @@ std::vector<Figure> comparison_figures(const StoredComparison& comparison) {
   return figures;
 }
 
-Json comparison_view(const StoredComparison& comparison) {
-  Json view;
-  view["results"] = result_rows(comparison);
-  view["significance"] = Json::array();
+std::vector<doc::Section> comparison_sections(const StoredComparison& comparison) {
+  std::vector<doc::Section> sections;
+  sections.push_back({"results",
+                      "Results side by side",
+                      {result_table(comparison), list_of(comparison.warnings, doc::State::warn)},
+                      "Results"});
+  doc::Section estimates{
+      "estimates",
+      "Parameters",
+      {doc::reading("95 % intervals. Change: from the first result, with its probability if "
+                    "nothing had changed, for all parameters together (Holm).")}};
   for (std::size_t i = 1; i < comparison.significance.size(); ++i) {
     const auto& each = comparison.significance[i];
-    view["significance"].push_back(
-        fmt::format("{}: {}.", comparison.results.at(i).name, each ? each->text : std::string()));
+    estimates.blocks.emplace_back(doc::reading(
+        fmt::format("{}: {}.", comparison.results.at(i).name, each ? each->text : std::string())));
   }
-  view["parameters"] = parameter_rows(comparison);
-  view["plots"] = Json::array();
-  for (const Figure& figure : parameter_figures(comparison))
-    view["plots"].push_back({{"svg_html", svg(figure.plot)}});
-  view["metrics"] = metric_rows(comparison);
-  view["models"] = model_rows(comparison);
-  view["has_metrics"] = !view["metrics"].empty();
-  view["conditions"] = score_rows_of(comparison);
-  view["has_conditions"] = !view["conditions"].empty();
-  view["trends"] = trend_views(comparison);
-  view["has_trends"] = !view["trends"].empty();
-  add_records(comparison, view);
-  view["warnings"] = comparison.warnings;
-  view["has_warnings"] = !comparison.warnings.empty();
-  return view;
+  estimates.blocks.emplace_back(parameter_table_of(comparison));
+  doc::Gallery gallery;
+  for (Figure& figure : parameter_figures(comparison))
+    gallery.figures.push_back(figure_of(std::move(figure.plot)));
+  estimates.blocks.emplace_back(std::move(gallery));
+  sections.push_back(std::move(estimates));
+  sections.push_back(
+      {"models",
+       "Which model the records prefer",
+       {doc::reading("Information criteria against the first result, below zero where this one is "
+                     "the better, and the likelihood-ratio test where one model contains the "
+                     "other. Where residuals are autocorrelated, the likelihood counts as many of "
+                     "them as are independent."),
+        model_table(comparison)},
+       "Models"});
+  doc::Gallery trends;
+  trends.wide = true;
+  for (const StoredSeries& series : comparison.leak_trends) {
+    for (const TrendAxis& axis : kTrendAxes) {
+      if (differ(series, axis))
+        trends.figures.push_back(
+            figure_of(trend_plot(series, axis), {}, trend_reading(series, axis)));
+    }
+  }
+  if (!trends.figures.empty())
+    sections.push_back({"trends", "Trend of the leak", {std::move(trends)}, "Trend"});
+  if (!comparison.conditions.empty()) {
+    doc::Section scores{"scores", "Scores"};
+    doc::Table means = metric_table(comparison);
+    if (!means.rows.empty()) scores.blocks.emplace_back(std::move(means));
+    scores.blocks.emplace_back(score_table(comparison));
+    sections.push_back(std::move(scores));
+  }
+  sections.push_back(records_section(comparison));
+  return sections;
 }
 
 }  // namespace rigcal::report

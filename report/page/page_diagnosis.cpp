@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "report/document/words.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/gathered_warnings.hpp"
 #include "report/text/readable.hpp"
@@ -12,82 +13,73 @@
 namespace rigcal::report {
 namespace {
 
+using doc::Line;
+using Kind = doc::Column::Kind;
+
 using datasets::LeakClass;
-
-/// Verdict class of the page for a class of leaks.
-struct LeakMark {
-  const char* mark;
-  const char* css;
-};
-
-LeakMark mark_of(LeakClass leak_class) {
-  switch (leak_class) {
-    case LeakClass::normal:
-      return {"✓", "good"};
-    case LeakClass::slight:
-    case LeakClass::medium:
-      return {"!", "warn"};
-    case LeakClass::critical:
-    case LeakClass::supercritical:
-      break;
-  }
-  return {"✕", "bad"};
-}
 
 std::string class_text(const std::optional<LeakClass>& leak_class) {
   return leak_class ? std::string(to_string(*leak_class)) : std::string();
 }
 
-Json class_badge(LeakClass leak_class) {
-  const LeakMark mark = mark_of(leak_class);
-  return {{"word", to_string(leak_class)}, {"mark", mark.mark}, {"class", mark.css}};
-}
-
 /// A leak below zero: supply or valve are not as in the fit.
-Json incompatible_badge() {
-  return {{"word", "incompatible with the model"}, {"mark", "✕"}, {"class", "bad"}};
+const doc::Badge kIncompatible{doc::State::bad, "incompatible with the model"};
+
+doc::Badge leak_badge(const StoredDiagnosedRecord& record) {
+  if (record.failure) return {doc::State::bad, "not fitted"};
+  if (record.is_reference) return {doc::State::none, "reference"};
+  if (record.leak.compatible_with_model == false) return kIncompatible;
+  if (record.explained_by_leak == false) return {doc::State::bad, "not explained by a leak"};
+  if (!record.leak.class_) return {doc::State::none, "undecided"};
+  return doc::badge(*record.leak.class_);
 }
 
-Json leak_badge(const StoredDiagnosedRecord& record) {
-  if (record.failure) return {{"word", "not fitted"}, {"mark", "✕"}, {"class", "bad"}};
-  if (record.is_reference) return {{"word", "reference"}, {"mark", "○"}, {"class", "none"}};
-  if (record.leak.compatible_with_model == false) return incompatible_badge();
-  if (record.explained_by_leak == false)
-    return {{"word", "not explained by a leak"}, {"mark", "✕"}, {"class", "bad"}};
-  if (!record.leak.class_) return {{"word", "undecided"}, {"mark", "?"}, {"class", "none"}};
-  return class_badge(*record.leak.class_);
+/// A value in a unit, its 95 % interval below.
+doc::Cell value_cell(const std::optional<double>& value, const std::optional<Range>& interval,
+                     double si_per_unit = 1.0, int digits = 4) {
+  doc::Cell cell{Line{doc::in_unit(value, si_per_unit, digits)}};
+  const auto& ends = doc::Interval(interval).ends;
+  if (!ends) return cell;
+  const double middle = 0.5 * (ends->low + ends->high);
+  cell.below = {doc::estimate(middle, *ends, si_per_unit).interval()};
+  return cell;
 }
 
-Json probabilities_view(const StoredDiagnosedRecord& record) {
-  Json cells = Json::array();
-  for (const auto& [name, value] : record.leak.class_probabilities) {
-    const double p = value.value_or(0.0);
-    Json cell{{"p", shown_in(value, 1.0, 3)}, {"strength", fmt::format("{:.2f}", p)}};
-    if (value) cell["p"]["text"] = fmt::format("{:.3f}", p);
-    cells.push_back(std::move(cell));
-  }
-  return cells;
+doc::Cell probability_cell(const std::optional<double>& p) {
+  doc::Cell cell{Line{doc::decimals(p, 3)}};
+  cell.shade = -p.value_or(0.0);  // blue
+  return cell;
 }
 
-Json diagnosed_row(const StoredDiagnosedRecord& record, std::size_t number) {
-  Json row;
-  row["number"] = fmt::format("{}", number);
-  row["condition"] = record.condition;
-  row["repeat"] = record.repeat ? fmt::format("{}", *record.repeat) : std::string();
-  row["badge"] = leak_badge(record);
-  row["reference"] = record.is_reference;
-  row["coefficient"] = shown_in(record.leak.leakage_coefficient, 1.0, 4);
-  row["ci"] = shown_interval(record.leak.ci95, 1.0);
-  row["share"] = shown_in(record.leak.leak_share_percent, 1.0, 4);
-  row["share_ci"] = shown_interval(record.leak.leak_share_ci95_percent, 1.0);
-  row["flow"] = shown_in(record.leak.leak_flow_l_per_min, 1.0, 3);
-  row["probabilities"] = probabilities_view(record);
-  row["by_features"] = class_text(record.class_by_features);
-  row["truth"] = class_text(record.true_class);
-  row["true_share"] = shown_in(record.true_share_percent, 1.0, 4);
-  row["failure"] = record.failure.value_or("");
-  row["failed"] = record.failure.has_value();
+doc::Row average_row(const StoredDiagnosedRecord& record, std::size_t number) {
+  doc::Cell name = doc::Cell(record.condition);
+  if (record.is_reference) name.below = {{"reference"}};
+  doc::Row row{{fmt::format("{}", number), std::move(name), leak_badge(record),
+                value_cell(record.leak.leak_share_percent, record.leak.leak_share_ci95_percent),
+                doc::in_unit(record.leak.leak_flow_l_per_min, 1.0, 3),
+                value_cell(record.leak.leakage_coefficient, record.leak.ci95)}};
+  for (const auto& [name_of_class, p] : record.leak.class_probabilities)
+    row.cells.push_back(probability_cell(p));
+  row.cells.push_back(class_text(record.class_by_features));
+  row.cells.push_back(class_text(record.true_class));
+  if (record.failure) row.notes = {*record.failure};
   return row;
+}
+
+doc::Row repeat_row(const StoredDiagnosedRecord& record) {
+  doc::Cell share = value_cell(record.leak.leak_share_percent, record.leak.leak_share_ci95_percent);
+  Line interval;
+  if (!share.below.empty()) interval = std::move(share.below.front());
+  share.below.clear();
+  return {{record.condition,
+           record.repeat ? fmt::format("{}", *record.repeat) : std::string(),
+           leak_badge(record),
+           std::move(share),
+           {std::move(interval)},
+           doc::in_unit(record.leak.leak_flow_l_per_min, 1.0, 3),
+           doc::in_unit(record.leak.leakage_coefficient, 1.0, 4),
+           class_text(record.class_by_features),
+           class_text(record.true_class)}};
 }
 
 /// Shares with their intervals in the order of the table, and the limits of the classes.
@@ -125,24 +117,6 @@ Plot share_plot(const StoredDiagnosis& diagnosis) {
   return plot;
 }
 
-Json confusion_view(const StoredConfusion& confusion) {
-  Json view{{"found", confusion.found}, {"rows", Json::array()}};
-  for (std::size_t i = 0; i < confusion.counts.size(); ++i) {
-    const auto& counts = confusion.counts[i];
-    const long total = std::accumulate(counts.begin(), counts.end(), 0L);
-    if (total == 0) continue;
-    Json cells = Json::array();
-    for (std::size_t j = 0; j < counts.size(); ++j) {
-      cells.push_back({{"count", fmt::format("{}", counts[j])},
-                       {"sign", i == j ? "minus" : "plus"},
-                       {"strength", fmt::format("{:.2f}", static_cast<double>(counts[j]) /
-                                                              static_cast<double>(total))}});
-    }
-    view["rows"].push_back({{"truth", confusion.truth[i]}, {"cells", std::move(cells)}});
-  }
-  return view;
-}
-
 struct MethodName {
   StoredAccuracy StoredMethods::*accuracy;
   const char* name;
@@ -155,27 +129,39 @@ constexpr std::array kMethods{
     MethodName{&StoredMethods::features_leave_one_signal_out,
                "Paper's features, learned without the signal"}};
 
-Json methods_view(const StoredMethods& methods) {
-  Json list = Json::array();
-  for (const MethodName& each : kMethods) {
-    const StoredAccuracy& method = methods.*each.accuracy;
-    if (method.records == 0) continue;
-    const auto percent = [](const std::optional<double>& value) {
-      return shown_in(value ? std::optional(100.0 * *value) : std::nullopt, 1.0, 4);
-    };
-    const auto& ci = method.accuracy_ci95;
-    list.push_back({{"name", each.name},
-                    {"right", fmt::format("{}", method.right)},
-                    {"records", fmt::format("{}", method.records)},
-                    {"conditions", fmt::format("{}", method.conditions)},
-                    {"undecided", fmt::format("{}", method.undecided)},
-                    {"off_by_two", fmt::format("{}", method.off_by_two_or_more)},
-                    {"accuracy", percent(method.accuracy)},
-                    {"low", percent(ci ? std::optional(ci->low) : std::nullopt)},
-                    {"high", percent(ci ? std::optional(ci->high) : std::nullopt)},
-                    {"confusion", confusion_view(method.confusion)}});
+/// How often a method is right, and what it takes for what.
+doc::Table confusion_table(const StoredAccuracy& method, const char* name) {
+  const auto percent = [](const std::optional<double>& value) {
+    return doc::in_unit(value ? std::optional(100.0 * *value) : std::nullopt, 1.0, 4);
+  };
+  const auto& ci = method.accuracy_ci95;
+  doc::Table table{fmt::format("Confusion: {}", name)};
+  table.style = "correlation confusion";
+  table.caption = {fmt::format("{}: {} of {} right, ", name, method.right, method.records),
+                   percent(method.accuracy),
+                   " % (",
+                   percent(ci ? std::optional(ci->low) : std::nullopt),
+                   " to ",
+                   percent(ci ? std::optional(ci->high) : std::nullopt),
+                   fmt::format(" %); {} undecided, {} off by two classes or more", method.undecided,
+                               method.off_by_two_or_more)};
+  table.columns = {{"Known"}};
+  const StoredConfusion& confusion = method.confusion;
+  for (const std::string& found : confusion.found) table.columns.push_back({found, Kind::number});
+  for (std::size_t i = 0; i < confusion.counts.size(); ++i) {
+    const auto& counts = confusion.counts[i];
+    const long total = std::accumulate(counts.begin(), counts.end(), 0L);
+    if (total == 0) continue;
+    doc::Row row{{confusion.truth[i]}};
+    for (std::size_t j = 0; j < counts.size(); ++j) {
+      doc::Cell cell = doc::Cell(fmt::format("{}", counts[j]));
+      const double fraction = static_cast<double>(counts[j]) / static_cast<double>(total);
+      cell.shade = i == j ? -fraction : fraction;  // blue is right
+      row.cells.push_back(std::move(cell));
+    }
+    table.rows.push_back(std::move(row));
   }
-  return list;
+  return table;
 }
 
 /// Those of all; then of the records, each once.
@@ -193,20 +179,25 @@ std::vector<std::string> diagnosis_warnings(const StoredDiagnosis& diagnosis) {
 }
 
 /// Rows of the leak table that gave the limits; none where [diagnosis] did.
-Json class_limits_view(const StoredDiagnosis& diagnosis) {
-  Json list = Json::array();
+doc::Table limits_of_classes(const StoredDiagnosis& diagnosis) {
+  doc::Table table{"Coefficient at each limit, by signal"};
+  table.columns = {{"Signal"},
+                   {"Share, %", Kind::number},
+                   {"Ends the class"},
+                   {"Coefficient", Kind::number, 0, "95 % interval"}};
   for (const StoredClassLimit& limit : diagnosis.class_limits) {
-    Json roots = Json::array();
+    doc::Cell roots;
     for (std::size_t i = 0; i < limit.coefficients.size(); ++i) {
-      roots.push_back({{"value", shown_in(limit.coefficients[i], 1.0, 4)},
-                       {"ci", shown_interval(limit.coefficients_ci95[i], 1.0)}});
+      doc::Cell root = value_cell(limit.coefficients[i], limit.coefficients_ci95[i]);
+      Line& line = roots.paragraphs.emplace_back(std::move(root.line));
+      if (root.below.empty()) continue;
+      line.emplace_back(", ");
+      for (doc::Inline& part : root.below.front()) line.push_back(std::move(part));
     }
-    list.push_back({{"signal", limit.signal},
-                    {"share", shown_in(limit.share_percent, 1.0, 4)},
-                    {"class", class_text(limit.class_)},
-                    {"roots", std::move(roots)}});
+    table.rows.push_back({{limit.signal, doc::in_unit(limit.share_percent, 1.0, 4),
+                           class_text(limit.class_), std::move(roots)}});
   }
-  return list;
+  return table;
 }
 
 /// Verdicts on the states of the machine, but for healthy references; the largest leak first.
@@ -220,13 +211,11 @@ std::vector<StoredState> judged_states(const StoredDiagnosis& diagnosis) {
   return states;
 }
 
-Json state_badge(const StoredState& state) {
-  if (state.is_reference) return {{"word", "reference"}, {"mark", "○"}, {"class", "none"}};
-  if (state.leak.compatible_with_model == false) return incompatible_badge();
-  if (state.leak.class_) return class_badge(*state.leak.class_);
-  return {{"word", state.leak.leakage_coefficient ? "undecided" : "no verdict"},
-          {"mark", "?"},
-          {"class", "none"}};
+doc::Badge state_badge(const StoredState& state) {
+  if (state.is_reference) return {doc::State::none, "reference"};
+  if (state.leak.compatible_with_model == false) return kIncompatible;
+  if (state.leak.class_) return doc::badge(*state.leak.class_);
+  return {doc::State::none, state.leak.leakage_coefficient ? "undecided" : "no verdict"};
 }
 
 std::string distance_text(const std::optional<StoredNearestLimit>& limit) {
@@ -244,25 +233,39 @@ std::string agreement_text_of(const std::optional<StoredSignalsAgreement>& agree
                      p_value_text(agreement->p));
 }
 
-Json state_row(const StoredState& state) {
-  Json row;
-  row["state"] = state.state;
-  row["badge"] = state_badge(state);
-  row["share"] = shown_in(state.leak.leak_share_percent, 1.0, 4);
-  row["share_ci"] = shown_interval(state.leak.leak_share_ci95_percent, 1.0);
-  row["duty"] = state.duty.value_or("");
-  row["coefficient"] = shown_in(state.leak.leakage_coefficient, 1.0, 4);
-  row["ci"] = shown_interval(state.leak.ci95, 1.0);
-  row["area"] = shown_in(state.leak_area_m2, 1e-6, 4);
-  row["area_ci"] = shown_interval(state.leak_area_ci95_m2, 1e-6);
-  row["limit"] = distance_text(state.nearest_limit);
-  row["agreement"] = state.is_reference ? std::string() : agreement_text_of(state.agreement);
-  row["left_out"] = state.left_out;
-  row["has_left_out"] = !state.left_out.empty() && !state.is_reference;
-  return row;
+doc::Table state_table(const std::vector<StoredState>& states) {
+  constexpr double kSquareMillimetre = 1e-6;
+  doc::Table table{"State of the machine"};
+  table.style = "states";
+  table.caption = {
+      "State of the machine: all signals and repeats of a leak level, specimen and date together"};
+  table.columns = {{"State"},
+                   {"Class"},
+                   {"Share, %", Kind::number, 0, "95 % interval"},
+                   {"At the duty"},
+                   {"Coefficient", Kind::number, 0, "95 % interval"},
+                   {"Leak area, mm²", Kind::number, 0, "95 % interval"},
+                   {"Nearest limit"},
+                   {"Signals"}};
+  for (const StoredState& state : states) {
+    doc::Row row{{state.state, state_badge(state),
+                  value_cell(state.leak.leak_share_percent, state.leak.leak_share_ci95_percent),
+                  state.duty.value_or(""),
+                  value_cell(state.leak.leakage_coefficient, state.leak.ci95),
+                  value_cell(state.leak_area_m2, state.leak_area_ci95_m2, kSquareMillimetre),
+                  distance_text(state.nearest_limit),
+                  state.is_reference ? std::string() : agreement_text_of(state.agreement)}};
+    if (!state.left_out.empty() && !state.is_reference) {
+      std::string note = "Left out:";
+      for (const std::string& each : state.left_out) note += " " + each + ".";
+      row.notes = {std::move(note)};
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
 }
 
-Json headline_of_states(const StoredDiagnosis& diagnosis, const std::string& sentence) {
+doc::Verdict headline_of_states(const StoredDiagnosis& diagnosis, const std::string& sentence) {
   const std::vector<StoredState> states = judged_states(diagnosis);
   const auto is_leak = [](const StoredState& state) {
     return state.leak.class_ && *state.leak.class_ != LeakClass::normal;
@@ -270,16 +273,19 @@ Json headline_of_states(const StoredDiagnosis& diagnosis, const std::string& sen
   const auto is_open = [](const StoredState& state) { return !state.leak.class_; };
   const bool leak = std::any_of(states.begin(), states.end(), is_leak);
   const auto open = std::count_if(states.begin(), states.end(), is_open);
-  Json view = leak             ? make_headline("LEAK", "!", "warn", sentence)
-              : states.empty() ? make_headline("NOT JUDGED", "○", "none", sentence)
-              : open == 0      ? make_headline("NO LEAK", "✓", "good", sentence)
-              : open == static_cast<std::ptrdiff_t>(states.size())
-                  ? make_headline("NOT JUDGED", "○", "none", sentence)
-                  : make_headline("UNCLEAR", "?", "warn", sentence);
+  doc::Badge badge{doc::State::warn, "UNCLEAR"};
+  if (leak)
+    badge = {doc::State::warn, "LEAK"};
+  else if (open == static_cast<std::ptrdiff_t>(states.size()))
+    badge = {doc::State::none, "NOT JUDGED"};
+  else if (open == 0)
+    badge = {doc::State::good, "NO LEAK"};
+  doc::Verdict verdict{std::move(badge), {sentence}};
   for (const StoredLeakTrend& trend : diagnosis.trends)
-    if (trend.significant) add_reason(view, trend.sentence, "diagnosis");
-  for (std::size_t i = 1; i < states.size(); ++i) add_reason(view, states[i].sentence, "diagnosis");
-  return view;
+    if (trend.significant) add_reason(verdict, trend.sentence, "diagnosis");
+  for (std::size_t i = 1; i < states.size(); ++i)
+    add_reason(verdict, states[i].sentence, "diagnosis");
+  return verdict;
 }
 
 std::string diagnosis_sentence(const StoredDiagnosis& diagnosis) {
@@ -298,10 +304,10 @@ std::string diagnosis_sentence(const StoredDiagnosis& diagnosis) {
 
 }  // namespace
 
-Json diagnosis_headline(const StoredDiagnosis& diagnosis) {
+doc::Verdict diagnosis_headline(const StoredDiagnosis& diagnosis) {
   const std::string sentence = diagnosis_sentence(diagnosis);
   if (diagnosis.status == LeakStatus::done) return headline_of_states(diagnosis, sentence);
-  return headline_without_result(diagnosis.status, sentence, diagnosis.reasons, "diagnosis");
+  return verdict_without_result(diagnosis.status, sentence, diagnosis.reasons, "diagnosis");
 }
 
 std::vector<Figure> diagnosis_figures(const StoredDiagnosis& diagnosis) {
@@ -312,50 +318,112 @@ std::vector<Figure> diagnosis_figures(const StoredDiagnosis& diagnosis) {
   return {{"diagnosis", share_plot(diagnosis)}};
 }
 
-Json diagnosis_view(const StoredDiagnosis& diagnosis) {
-  Json view;
-  view["sentence"] = diagnosis_sentence(diagnosis);
-  view["done"] = diagnosis.status == LeakStatus::done;
-  view["reasons"] = diagnosis.reasons;
-  view["classes"] = Json::array();
-  view["averages"] = Json::array();
-  view["repeats"] = Json::array();
-  for (const StoredDiagnosedRecord& record : diagnosis.records) {
-    if (view["classes"].empty()) {
-      for (const auto& [name, value] : record.leak.class_probabilities)
-        view["classes"].push_back(name);
-    }
-    Json& rows = view[record.is_average() ? "averages" : "repeats"];
-    Json row = diagnosed_row(record, rows.size() + 1);
-    rows.push_back(std::move(row));
+namespace {
+
+void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
+  doc::Table table{"Leak of each condition"};
+  table.style = "diagnosis";
+  table.caption = {"Average of each condition"};
+  table.heading = 1;
+  table.columns = {{"No.", Kind::number},
+                   {"Condition"},
+                   {"Class"},
+                   {"Share, %", Kind::number, 0, "95 % interval"},
+                   {"Leak, L/min", Kind::number},
+                   {"Coefficient", Kind::number, 0, "95 % interval"}};
+  if (!diagnosis.records.empty()) {
+    for (const auto& [name, value] : diagnosis.records.front().leak.class_probabilities)
+      table.columns.push_back({name, Kind::number, 0, "probability"});
   }
-  view["states"] = Json::array();
-  for (const StoredState& state : diagnosis.states) view["states"].push_back(state_row(state));
-  view["has_states"] = !view["states"].empty();
-  view["trends"] = Json::array();
-  for (const StoredLeakTrend& trend : diagnosis.trends) view["trends"].push_back(trend.sentence);
-  view["has_trends"] = !view["trends"].empty();
-  view["has_records"] = !view["averages"].empty();
-  view["has_repeats"] = !view["repeats"].empty();
-  if (!view["averages"].empty()) view["plot_html"] = svg(share_plot(diagnosis));
-  view["methods"] = methods_view(diagnosis.methods);
-  view["has_methods"] = !view["methods"].empty();
-  view["limits"] = Json::array();
-  for (const StoredSmallestLeak& each : diagnosis.smallest_leak_l_per_min) {
-    view["limits"].push_back({{"signal", each.signal},
-                              {"single", shown_in(each.single, 1.0, 3)},
-                              {"averaged", shown_in(each.averaged, 1.0, 3)},
-                              {"share", shown_in(each.averaged_share_percent, 1.0, 3)},
-                              {"reason", each.reason.value_or("")}});
+  table.columns.push_back({"By features"});
+  table.columns.push_back({"Known"});
+  for (const StoredDiagnosedRecord& record : diagnosis.records)
+    if (record.is_average()) table.rows.push_back(average_row(record, table.rows.size() + 1));
+  if (table.rows.empty()) return;
+  blocks.emplace_back(figure_of(share_plot(diagnosis)));
+  blocks.emplace_back(doc::reading(
+      "Dashed: the limits of the classes. The class is that of the share; shaded: how probable "
+      "each class is."));
+  blocks.emplace_back(std::move(table));
+}
+
+void add_methods(const StoredMethods& methods, doc::Blocks& blocks) {
+  doc::Blocks tables;
+  for (const MethodName& each : kMethods) {
+    const StoredAccuracy& method = methods.*each.accuracy;
+    if (method.records > 0) tables.emplace_back(confusion_table(method, each.name));
   }
-  view["has_limits"] = !view["limits"].empty();
-  view["class_limits"] = class_limits_view(diagnosis);
-  view["has_class_limits"] = !view["class_limits"].empty();
-  view["false_alarms"] = fmt::format("{:g}", 100.0 * diagnosis.settings.false_alarms);
-  view["detection"] = fmt::format("{:g}", 100.0 * diagnosis.settings.detection);
-  view["warnings"] = diagnosis_warnings(diagnosis);
-  view["has_warnings"] = !view["warnings"].empty();
-  return view;
+  if (tables.empty()) return;
+  blocks.emplace_back(doc::Heading{{"Against the known classes"}});
+  blocks.emplace_back(doc::reading(
+      "Undecided counts as wrong. Rows: known class; columns: found. Blue is right. Intervals: "
+      "Wilson, for as many trials as there are conditions."));
+  for (doc::Block& table : tables) blocks.push_back(std::move(table));
+}
+
+void add_smallest_leaks(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
+  if (diagnosis.smallest_leak_l_per_min.empty()) return;
+  doc::Table table{"Smallest leaks"};
+  table.caption = {
+      fmt::format("Smallest leak told from none ({:g} % false alarms, found in {:g} % of cases)",
+                  100.0 * diagnosis.settings.false_alarms, 100.0 * diagnosis.settings.detection)};
+  table.columns = {{"Signal"},
+                   {"Single record, L/min", Kind::number},
+                   {"Average, L/min", Kind::number},
+                   {"Average, share %", Kind::number},
+                   {"Note"}};
+  for (const StoredSmallestLeak& each : diagnosis.smallest_leak_l_per_min)
+    table.rows.push_back(
+        {{each.signal, doc::in_unit(each.single, 1.0, 3), doc::in_unit(each.averaged, 1.0, 3),
+          doc::in_unit(each.averaged_share_percent, 1.0, 3), each.reason.value_or("")}});
+  blocks.emplace_back(std::move(table));
+}
+
+void add_repeats(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
+  doc::Table table{"Leak of each repeat"};
+  table.columns = {{"Condition"},
+                   {"Repeat", Kind::number},
+                   {"Class"},
+                   {"Share, %", Kind::number},
+                   {"95 % interval", Kind::number},
+                   {"Leak, L/min", Kind::number},
+                   {"Coefficient", Kind::number},
+                   {"By features"},
+                   {"Known"}};
+  for (const StoredDiagnosedRecord& record : diagnosis.records)
+    if (!record.is_average()) table.rows.push_back(repeat_row(record));
+  if (!table.rows.empty()) blocks.emplace_back(doc::Fold{"Every repeat", {std::move(table)}});
+}
+
+}  // namespace
+
+std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
+  doc::Section section{"diagnosis", "Diagnosis"};
+  doc::Blocks& blocks = section.blocks;
+  if (diagnosis.status != LeakStatus::done) {
+    blocks.emplace_back(
+        doc::Paragraph{{diagnosis_sentence(diagnosis)}, doc::Paragraph::Tone::problem});
+    blocks.emplace_back(list_of(diagnosis.reasons, doc::State::warn));
+  }
+  if (!diagnosis.states.empty()) blocks.emplace_back(state_table(diagnosis.states));
+  if (!diagnosis.trends.empty()) {
+    blocks.emplace_back(doc::Heading{{"Trend"}});
+    for (const StoredLeakTrend& trend : diagnosis.trends)
+      blocks.emplace_back(doc::reading(trend.sentence));
+  }
+  add_averages(diagnosis, blocks);
+  add_methods(diagnosis.methods, blocks);
+  if (!diagnosis.class_limits.empty())
+    blocks.emplace_back(
+        doc::Fold{"Limits of the classes, by the leak table", {limits_of_classes(diagnosis)}});
+  add_smallest_leaks(diagnosis, blocks);
+  const std::vector<std::string> warnings = diagnosis_warnings(diagnosis);
+  if (!warnings.empty()) {
+    blocks.emplace_back(doc::Heading{{"Warnings"}});
+    blocks.emplace_back(list_of(warnings, doc::State::warn));
+  }
+  add_repeats(diagnosis, blocks);
+  return {std::move(section)};
 }
 
 }  // namespace rigcal::report

@@ -113,13 +113,16 @@ constexpr std::array kFormulas{
 
 }  // namespace
 
-Json formulas_view() {
-  Json rows = Json::array();
+doc::Section formulas_section() {
+  doc::Facts facts{"Formulas"};
   for (const metrics::MetricSpec& metric : metrics::kMetrics)
-    rows.push_back({{"name", metric.name}, {"formula", metric.formula}});
-  for (const Formula& each : kFormulas)
-    rows.push_back({{"name", each.name}, {"formula", each.formula}});
-  return rows;
+    facts.rows.push_back({std::string(metric.name), {std::string(metric.formula)}});
+  for (const Formula& each : kFormulas) facts.rows.push_back({each.name, {each.formula}});
+  return {"formulas",
+          "How each number is computed",
+          {doc::reading("y measured mean, s simulated, e = y - s, over the samples that count; "
+                        "population moments."),
+           std::move(facts)}};
 }
 
 }  // namespace rigcal::report

@@ -4,40 +4,71 @@
 #include "report/page/page_parts.hpp"
 
 namespace rigcal::report {
+namespace {
 
-Json identity_view(const Json& identity) {
-  if (!identity.is_object()) return {{"there", false}};
-  Json view{{"there", true}, {"facts", Json::array()}, {"sensors", Json::array()}};
-  const auto add = [&](std::string_view label, const std::string& value) {
-    if (!value.empty()) view["facts"].push_back({{"name", label}, {"value", value}});
-  };
-  for (const datasets::ReportField& field : datasets::kReportFields) {
-    // The test comes before its report was issued.
-    if (field.key == "laboratory") {
-      const Json& dates = identity.at("test_dates");
-      if (dates.is_array()) {
-        const std::string first = dates[0].get<std::string>();
-        const std::string last = dates[1].get<std::string>();
-        add("Tested", first == last ? first : fmt::format("{} to {}", first, last));
-      }
+/// "LVDT, serial number 4711, DKD 17, due 2027-01-31": all that is stated of a sensor. One that was
+/// overdue on the last day of the test is marked.
+doc::Line sensor_line(const Json& sensor, const std::string& tested) {
+  doc::Line line;
+  for (const datasets::ReportField& field : datasets::kSensorFields) {
+    const std::string text = text_of(sensor, std::string(field.key));
+    if (text.empty() || field.key == "channel") continue;
+    if (!line.empty()) line.emplace_back(", ");
+    if (field.key == "instrument") {
+      line.emplace_back(text);
+      continue;
     }
-    add(field.label, text_of(identity, std::string(field.key)));
+    std::string label(field.label);
+    label.front() = static_cast<char>(label.front() | 0x20);  // ASCII, to lower case
+    const std::string words = label + " " + text;
+    // Days of ISO 8601 sort as text.
+    const bool overdue = field.key == "due" && !tested.empty() && text.substr(0, 10) < tested;
+    line.push_back(overdue ? doc::Inline(doc::Badge{doc::State::bad, words}) : doc::Inline(words));
   }
-  for (const Json& sensor : identity.at("sensors")) {
-    Json cells = Json::array();
-    for (const datasets::ReportField& field : datasets::kSensorFields)
-      cells.push_back({{"text", text_of(sensor, std::string(field.key))}});
-    view["sensors"].push_back({{"cells", std::move(cells)}});
+  return line;
+}
+
+}  // namespace
+
+Identity identity_of(const Json& report) {
+  Identity identity;
+  if (!report.is_object()) return identity;
+  identity.number = text_of(report, "number");
+  identity.issued = text_of(report, "issued");
+  identity.laboratory = text_of(report, "laboratory");
+  identity.customer = text_of(report, "customer");
+  identity.rig = text_of(report, "rig");
+  identity.facts.label = "Item and method";
+  identity.facts.shape = doc::Facts::Shape::grid;
+  const auto add = [&](std::string_view label, const std::string& value) {
+    if (!value.empty()) identity.facts.rows.push_back({std::string(label), {value}});
+  };
+  std::string tested;
+  if (const Json& dates = report.at("test_dates"); dates.is_array()) {
+    const std::string first = dates[0].get<std::string>();
+    const std::string last = dates[1].get<std::string>();
+    tested = last.substr(0, 10);
+    add("Tested", first == last ? first : fmt::format("{} to {}", first, last));
   }
-  view["has_sensors"] = !view["sensors"].empty();
-  view["sensor_titles"] = Json::array();
-  for (const datasets::ReportField& field : datasets::kSensorFields)
-    view["sensor_titles"].push_back({{"title", field.label}});
-  view["operator"] = text_of(identity, "operator");
-  view["approver"] = text_of(identity, "approver");
+  for (const datasets::ReportField& field : datasets::kReportFields) {
+    // These stand at the top of the page, or are signed for at its foot.
+    if (field.key == "number" || field.key == "issued" || field.key == "laboratory" ||
+        field.key == "customer" || field.key == "operator" || field.key == "approver")
+      continue;
+    add(field.label, text_of(report, std::string(field.key)));
+  }
+  for (const Json& sensor : report.at("sensors")) {
+    const std::string channel = text_of(sensor, "channel");
+    identity.facts.rows.emplace_back(
+        channel.empty() ? std::string("Sensor") : "Sensor: " + spaced(channel),
+        sensor_line(sensor, tested));
+  }
   // Somebody is to put their name to it.
-  view["signed"] = !text_of(identity, "operator").empty() || !text_of(identity, "approver").empty();
-  return view;
+  const std::string tester = text_of(report, "operator");
+  const std::string approver = text_of(report, "approver");
+  if (!tester.empty() || !approver.empty())
+    identity.signatures.rows = {{"Tested by", tester}, {"Approved by", approver}};
+  return identity;
 }
 
 }  // namespace rigcal::report

@@ -4,12 +4,16 @@
 #include <array>
 #include <cmath>
 
+#include "report/document/words.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
 namespace {
+
+using doc::Line;
+using Kind = doc::Column::Kind;
 
 constexpr std::size_t kLevelPoints = 1200;
 /// Half an interval in parts of its middle, from which on its two ends are shown.
@@ -26,30 +30,17 @@ std::string drive_name(const Entry& entry) {
   return text;
 }
 
-Json grade_badge(calib::LeakGrade grade) {
-  using calib::LeakGrade;
-  const std::string word(to_string(grade));
-  switch (grade) {
-    case LeakGrade::within_10:
-      return {{"word", word}, {"mark", "✓"}, {"class", "good"}};
-    case LeakGrade::within_16:
-      return {{"word", word}, {"mark", "!"}, {"class", "warn"}};
-    case LeakGrade::outlier:
-      return {{"word", word}, {"mark", "✕"}, {"class", "bad"}};
-    case LeakGrade::not_published:
-      break;
-  }
-  return {{"word", word}, {"mark", ""}, {"class", "none"}};
-}
-
 /// All roots of an entry; "~" before those that the share hardly determines.
-std::string coefficients_text(const StoredLeakEntry& entry) {
-  std::string text;
+Line coefficients_line(const StoredLeakEntry& entry) {
+  Line line;
   for (const double root : entry.coefficients) {
     if (!std::isfinite(root)) continue;
-    text += fmt::format("{}{}{:.3g}", text.empty() ? "" : ", ", entry.determined ? "" : "~", root);
+    if (!line.empty()) line.emplace_back(", ");
+    if (!entry.determined) line.emplace_back("~");
+    line.emplace_back(doc::Quantity{root, fmt::format("{:.3g}", root)});
   }
-  return text.empty() ? "no coefficient" : text;
+  if (line.empty()) line.emplace_back("no coefficient");
+  return line;
 }
 
 /// Their intervals; results without a fit, or of before there were any, have none.
@@ -71,51 +62,47 @@ std::string error_text(const std::optional<double>& percent) {
   return percent ? fmt::format("{:+.1f} %", *percent) : std::string("–");
 }
 
-Json leak_cell(const StoredLeakEntry& entry) {
-  Json cell;
-  cell["coefficients"] = coefficients_text(entry);
-  cell["roots"] = Json::array();
-  for (const double root : entry.coefficients)
-    cell["roots"].push_back({{"exact", shown_in(root, 1.0).at("exact")}});
-  cell["interval"] = intervals_text(entry);
-  cell["has_interval"] = !cell["interval"].get_ref<const std::string&>().empty();
-  cell["published"] = entry.published_coefficient.has_value();
-  cell["badge"] = grade_badge(entry.grade);
-  if (!entry.published_coefficient) return cell;
-  cell["published_coefficient"] = shown_in(*entry.published_coefficient, 1.0, 6);
-  cell["error"] = error_text(entry.relative_error_percent);
-  cell["share"] = shown_in(entry.share_at_published_percent, 1.0, 3);
-  const auto& range = entry.share_by_rounding_percent;
-  cell["has_range"] = range.has_value();
-  if (range) {
-    cell["range_low"] = shown_in(range->low, 1.0, 3);
-    cell["range_high"] = shown_in(range->high, 1.0, 3);
-  }
+doc::Tile leak_tile(const StoredLeakEntry& entry) {
+  doc::Tile tile{doc::badge(entry.grade), coefficients_line(entry)};
+  const std::string interval = intervals_text(entry);
+  if (!interval.empty()) tile.below.push_back({interval});
+  if (entry.published_coefficient)
+    tile.below.push_back({"published ", doc::in_unit(*entry.published_coefficient, 1.0, 6),
+                          " · " + error_text(entry.relative_error_percent)});
+  return tile;
+}
+
+/// The share at the published coefficient, and what its rounding allows.
+doc::Cell published_share_cell(const StoredLeakEntry& entry) {
+  if (!entry.published_coefficient) return doc::Cell("–");
+  doc::Cell cell{Line{doc::in_unit(entry.share_at_published_percent, 1.0, 3)}};
+  if (const auto& range = entry.share_by_rounding_percent)
+    cell.below = {
+        {"(", doc::in_unit(range->low, 1.0, 3), " – ", doc::in_unit(range->high, 1.0, 3), ")"}};
   return cell;
 }
 
 /// Signals by target shares, in the order of the file.
-Json leak_rows(const std::vector<StoredLeakEntry>& entries, const std::vector<double>& targets) {
+///
+/// @param cell_of  what is shown of an entry
+template <typename CellOf>
+void add_leak_rows(const std::vector<StoredLeakEntry>& entries, const std::vector<double>& targets,
+                   CellOf cell_of, doc::Table& table) {
   std::vector<std::string> names;
   for (const StoredLeakEntry& entry : entries) {
     const std::string name = drive_name(entry);
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
-  Json rows = Json::array();
   for (const std::string& name : names) {
-    Json cells = Json::array();
+    doc::Row row{{name}};
     for (const double target : targets) {
-      Json cell{{"there", false}};
+      doc::Cell& cell = row.cells.emplace_back();
       for (const StoredLeakEntry& entry : entries) {
-        if (drive_name(entry) != name || entry.target_percent != target) continue;
-        cell = leak_cell(entry);
-        cell["there"] = true;
+        if (drive_name(entry) == name && entry.target_percent == target) cell = cell_of(entry);
       }
-      cells.push_back(std::move(cell));
     }
-    rows.push_back({{"signal", name}, {"cells", std::move(cells)}});
+    table.rows.push_back(std::move(row));
   }
-  return rows;
 }
 
 std::vector<double> targets_of(const std::vector<StoredLeakEntry>& entries) {
@@ -167,31 +154,36 @@ Plot agreement_plot(const std::vector<StoredLeakEntry>& entries) {
   return plot;
 }
 
-Json against_published(double computed, const std::optional<double>& published) {
-  Json cell{{"computed", shown_in(computed, 1.0, 4)}, {"published", published.has_value()}};
+doc::Cell against_published(double computed, const std::optional<double>& published) {
+  doc::Cell cell{Line{doc::in_unit(computed, 1.0, 4)}};
   if (!published) return cell;
-  cell["published_value"] = shown_in(*published, 1.0, 4);
   const bool has_error = std::isfinite(computed) && *published != 0.0;
-  cell["error"] =
-      error_text(has_error ? std::optional(100.0 * (computed / *published - 1.0)) : std::nullopt);
+  cell.below = {{"published ", doc::in_unit(*published, 1.0, 4),
+                 " · " + error_text(has_error ? std::optional(100.0 * (computed / *published - 1.0))
+                                              : std::nullopt)}};
   return cell;
 }
 
-Json feature_rows(const std::vector<StoredFeatures>& features) {
-  Json rows = Json::array();
+doc::Table feature_table(const std::vector<StoredFeatures>& features) {
+  doc::Table table{"Flows and features by level"};
+  table.columns = {{"Level"},
+                   {"Coefficient", Kind::number},
+                   {"Servo flow, L/min", Kind::number},
+                   {"Leak flow, L/min", Kind::number},
+                   {"Mean", Kind::number},
+                   {"RMS", Kind::number},
+                   {"Std", Kind::number}};
   for (const StoredFeatures& f : features) {
-    rows.push_back(
-        {{"level", f.level},
-         {"coefficient", shown_in(f.coefficient, 1.0, 4)},
-         {"cells",
-          {against_published(f.servo_flow_l_per_min, f.published_servo_flow_l_per_min),
-           against_published(f.leak_flow_l_per_min, f.published_leak_flow_l_per_min),
-           against_published(f.mean, f.published_mean), against_published(f.rms, f.published_rms),
-           against_published(f.std, f.published_std)}},
-         {"reason", f.reason.value_or("")},
-         {"has_reason", !f.reason.value_or("").empty()}});
+    doc::Row row{{f.level, doc::in_unit(f.coefficient, 1.0, 4),
+                  against_published(f.servo_flow_l_per_min, f.published_servo_flow_l_per_min),
+                  against_published(f.leak_flow_l_per_min, f.published_leak_flow_l_per_min),
+                  against_published(f.mean, f.published_mean),
+                  against_published(f.rms, f.published_rms),
+                  against_published(f.std, f.published_std)}};
+    if (f.reason && !f.reason->empty()) row.notes = {*f.reason};
+    table.rows.push_back(std::move(row));
   }
-  return rows;
+  return table;
 }
 
 Plot levels_plot(const std::vector<std::pair<std::string, Table>>& levels) {
@@ -305,21 +297,81 @@ std::string noted(const StoredLeakEntry& entry) {
   return fmt::format("{} at {:g} %: {}", drive_name(entry), entry.target_percent, entry.note);
 }
 
-/// Texts of a list, and whether there are any, as `has_<key>`.
-void put_texts(Json& view, const std::string& key, const std::vector<std::string>& texts) {
-  view[key] = texts;
-  view["has_" + key] = !texts.empty();
+/// What the published coefficients say of the computed ones.
+void add_published(const StoredLeakTable& table, const std::vector<double>& targets,
+                   doc::Blocks& blocks) {
+  if (table.summary.published == 0) return;
+  blocks.emplace_back(doc::reading("✓ within 10 %, ! within 16 %, ✕ further off."));
+  doc::Figure figure = figure_of(agreement_plot(table.entries));
+  figure.narrow = true;
+  blocks.emplace_back(std::move(figure));
+  doc::Table shares{"Shares at the published coefficients"};
+  shares.caption = {
+      "Share in percent at the published coefficient, and what its rounding allows; "
+      "off by ",
+      doc::in_unit(table.summary.share_rms_percent, 1.0, 3), " % rms"};
+  shares.columns = {{"Signal"}};
+  for (const double target : targets)
+    shares.columns.push_back({fmt::format("{:g} %", target), Kind::number});
+  add_leak_rows(table.entries, targets, published_share_cell, shares);
+  blocks.emplace_back(std::move(shares));
+}
+
+void add_features(const LeakTableFiles& stored, doc::Blocks& blocks) {
+  const StoredLeakTable& table = stored.result;
+  if (table.features.empty()) return;
+  blocks.emplace_back(doc::Heading{{"Flows and features of the residual"}});
+  blocks.emplace_back(doc::reading("Residual: " + table.residual + "."));
+  if (!stored.levels.empty()) {
+    blocks.emplace_back(figure_of(levels_plot(stored.levels)));
+    blocks.emplace_back(doc::reading("What the motion loses at each level, and what flows:"));
+    blocks.emplace_back(figure_of(positions_plot(stored.levels)));
+    doc::Fold flows{"Servo, work and leakage flow at each level"};
+    for (const auto& [level, series] : stored.levels)
+      flows.blocks.emplace_back(
+          figure_of(flows_plot(level, series), level_caption(table.features, level)));
+    blocks.emplace_back(std::move(flows));
+  }
+  blocks.emplace_back(feature_table(table.features));
+}
+
+void add_normals(const std::vector<StoredNormal>& normals, doc::Blocks& blocks) {
+  if (normals.empty()) return;
+  doc::Table table{"Without a fault"};
+  table.caption = {table.label};
+  table.columns = {
+      {"Signal"}, {"Published coefficient", Kind::number}, {"Share at it, %", Kind::number}};
+  for (const StoredNormal& normal : normals)
+    table.rows.push_back({{drive_name(normal), doc::in_unit(normal.published_coefficient, 1.0, 4),
+                           doc::in_unit(normal.share_at_published_percent, 1.0, 3)}});
+  blocks.emplace_back(std::move(table));
+}
+
+doc::Fold assumptions_fold(const StoredLeakTable& table) {
+  doc::Table values{"Values in use"};
+  values.columns = {{"Parameter"}, {"Value", Kind::number}, {"Source", Kind::words}};
+  for (const StoredAssumption& each : table.assumptions)
+    values.rows.push_back({{each.key, doc::readable(each.value, each.unit, 5), each.source}});
+  doc::Fold fold{"What it rests on", {std::move(values)}};
+  if (table.fixed_combinations.empty()) return fold;
+  doc::Table combinations{"Fixed combinations"};
+  combinations.caption = {"Combinations that the shares depend on, and not on the values in them"};
+  combinations.columns = {{"Combination"}, {"Value", Kind::number}, {"Unit"}};
+  for (const StoredCombination& each : table.fixed_combinations)
+    combinations.rows.push_back({{each.formula, doc::in_unit(each.value, 1.0, 5), each.unit}});
+  fold.blocks.emplace_back(std::move(combinations));
+  return fold;
 }
 
 }  // namespace
 
-Json leak_table_headline(const LeakTableFiles& stored) {
+doc::Verdict leak_table_headline(const LeakTableFiles& stored) {
   const StoredLeakTable& table = stored.result;
-  Json view = make_headline("LEAK TABLE", "○", "none", leak_sentence(table));
+  doc::Verdict verdict{{doc::State::none, "LEAK TABLE"}, {leak_sentence(table)}};
   for (const StoredLeakEntry& entry : table.entries) {
-    if (entry.grade == calib::LeakGrade::outlier) add_reason(view, noted(entry), "leak-table");
+    if (entry.grade == calib::LeakGrade::outlier) add_reason(verdict, noted(entry), "leak-table");
   }
-  return view;
+  return verdict;
 }
 
 std::vector<Figure> leak_table_figures(const LeakTableFiles& stored) {
@@ -334,60 +386,48 @@ std::vector<Figure> leak_table_figures(const LeakTableFiles& stored) {
   return figures;
 }
 
-Json leak_table_view(const LeakTableFiles& stored) {
+std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
   const StoredLeakTable& table = stored.result;
   const std::vector<double> targets = targets_of(table.entries);
-  const bool published = table.summary.published > 0;
-  Json view;
-  view["sentence"] = leak_sentence(table);
-  view["share"] = table.share;
-  view["targets"] = Json::array();
-  for (const double target : targets) view["targets"].push_back(fmt::format("{:g} %", target));
-  view["rows"] = leak_rows(table.entries, targets);
-  view["has_published"] = published;
-  if (published) {
-    view["share_rms"] = shown_in(table.summary.share_rms_percent, 1.0, 3);
-    view["plot_html"] = svg(agreement_plot(table.entries));
-  }
+  const auto fit_notes = table.notes.value_or(std::vector<std::string>());
+  doc::Section section{"leak-table", "Leak table"};
+  doc::Blocks& blocks = section.blocks;
+  blocks.emplace_back(doc::reading(fmt::format(
+      "{} The leakage coefficient at which a share of the servo flow leaks ({}).{} A tilde: the "
+      "share hardly determines the coefficient.{}",
+      leak_sentence(table), table.share,
+      table.summary.published > 0
+          ? " Below it the published one and how far the computed one is off."
+          : "",
+      fit_notes.empty() ? "" : " Small: 95 % interval by the covariance of the fit.")));
+  blocks.emplace_back(
+      list_of(table.warnings.value_or(std::vector<std::string>()), doc::State::warn));
+  for (const std::string& note : fit_notes) blocks.emplace_back(doc::reading(note + "."));
+  doc::Table coefficients{"Leakage coefficients"};
+  coefficients.caption = {"Leakage coefficient by signal and share of the servo flow"};
+  coefficients.shape = doc::Table::Shape::matrix;
+  coefficients.style = "leaks";
+  coefficients.columns = {{"Signal"}};
+  for (const double target : targets)
+    coefficients.columns.push_back({fmt::format("{:g} %", target)});
+  add_leak_rows(
+      table.entries, targets,
+      [](const StoredLeakEntry& entry) {
+        doc::Cell cell;
+        cell.tiles = {leak_tile(entry)};
+        return cell;
+      },
+      coefficients);
+  blocks.emplace_back(std::move(coefficients));
+  add_published(table, targets, blocks);
   std::vector<std::string> notes;
-  for (const StoredLeakEntry& entry : table.entries) {
+  for (const StoredLeakEntry& entry : table.entries)
     if (!entry.note.empty()) notes.push_back(noted(entry));
-  }
-  put_texts(view, "notes", notes);
-  put_texts(view, "of_fit", table.notes.value_or(std::vector<std::string>()));
-  put_texts(view, "warnings", table.warnings.value_or(std::vector<std::string>()));
-  view["normals"] = Json::array();
-  for (const StoredNormal& normal : table.normal) {
-    view["normals"].push_back({{"signal", drive_name(normal)},
-                               {"coefficient", shown_in(normal.published_coefficient, 1.0, 4)},
-                               {"share", shown_in(normal.share_at_published_percent, 1.0, 3)}});
-  }
-  view["has_normals"] = !table.normal.empty();
-  view["features"] = feature_rows(table.features);
-  view["has_features"] = !table.features.empty();
-  view["residual"] = table.residual;
-  view["has_levels"] = !stored.levels.empty();
-  if (!stored.levels.empty()) {
-    view["levels_html"] = svg(levels_plot(stored.levels));
-    view["positions_html"] = svg(positions_plot(stored.levels));
-  }
-  view["flows"] = Json::array();
-  for (const auto& [level, series] : stored.levels) {
-    view["flows"].push_back({{"caption", level_caption(table.features, level)},
-                             {"plot_html", svg(flows_plot(level, series))}});
-  }
-  view["assumptions"] = Json::array();
-  for (const StoredAssumption& each : table.assumptions) {
-    view["assumptions"].push_back(
-        {{"name", each.key}, {"value", shown(each.value, each.unit, 5)}, {"source", each.source}});
-  }
-  view["combinations"] = Json::array();
-  for (const StoredCombination& each : table.fixed_combinations) {
-    view["combinations"].push_back(
-        {{"formula", each.formula}, {"value", shown_in(each.value, 1.0, 5)}, {"unit", each.unit}});
-  }
-  view["has_combinations"] = !table.fixed_combinations.empty();
-  return view;
+  blocks.emplace_back(list_of(notes, doc::State::warn));
+  add_normals(table.normal, blocks);
+  add_features(stored, blocks);
+  blocks.emplace_back(assumptions_fold(table));
+  return {std::move(section)};
 }
 
 }  // namespace rigcal::report

@@ -89,21 +89,6 @@ std::vector<Figure> overlay_figures(const std::string& condition, const Table& c
   return figures;
 }
 
-Json overlays_view(const std::vector<std::pair<std::string, Table>>& curves,
-                   const std::vector<std::string>& names) {
-  Json view = Json::array();
-  for (const auto& [condition, table] : curves) {
-    Json figures = Json::array();
-    for (const Figure& figure : overlay_figures(condition, table, names))
-      figures.push_back({{"svg_html", svg(figure.plot)}});
-    if (figures.empty()) continue;
-    view.push_back({{"condition", condition},
-                    {"open", curves.size() <= kFew},
-                    {"figures", std::move(figures)}});
-  }
-  return view;
-}
-
 ComparisonFiles load_comparison_files(const ReadFile& read, const std::string& where) {
   ComparisonFiles files{load_comparison(read, where), {}};
   const ReadFile own = files_of_run(read, files.result.provenance, where, "comparison.json");
@@ -119,13 +104,30 @@ ComparisonFiles load_comparison_files(const ReadFile& read, const std::string& w
   return files;
 }
 
-Json comparison_headline(const ComparisonFiles& files) { return comparison_headline(files.result); }
+doc::Verdict comparison_headline(const ComparisonFiles& files) {
+  return comparison_headline(files.result);
+}
 
-Json comparison_view(const ComparisonFiles& files) {
-  Json view = comparison_view(files.result);
-  view["overlays"] = overlays_view(files.curves, names_of_results(files.result));
-  view["has_overlays"] = !view["overlays"].empty();
-  return view;
+std::vector<doc::Section> comparison_sections(const ComparisonFiles& files) {
+  std::vector<doc::Section> sections = comparison_sections(files.result);
+  doc::Section curves{
+      "curves",
+      "Curves",
+      {doc::reading("What was measured, and what the model of each result makes of it, by the "
+                    "numbers of the results; over the last two periods, or the whole record.")}};
+  const std::vector<std::string> names = names_of_results(files.result);
+  for (const auto& [condition, table] : files.curves) {
+    doc::Gallery gallery;
+    gallery.wide = true;
+    for (Figure& figure : overlay_figures(condition, table, names))
+      gallery.figures.push_back(figure_of(std::move(figure.plot)));
+    if (gallery.figures.empty()) continue;
+    curves.blocks.emplace_back(
+        doc::Fold{condition, {std::move(gallery)}, files.curves.size() <= kFew});
+  }
+  // Before the records.
+  if (curves.blocks.size() > 1) sections.insert(sections.end() - 1, std::move(curves));
+  return sections;
 }
 
 std::vector<Figure> comparison_figures(const ComparisonFiles& files) {
@@ -141,12 +143,6 @@ void add_comparison(const ComparisonFiles& files, Part& part) {
     part.campaign += (part.campaign.empty() ? "" : ", ") + result.name;
     part.synthetic = part.synthetic || result.synthetic;
   }
-  const auto has = [&](const char* what) { return part.view["comparison"].at(what).get<bool>(); };
-  part.nav = {{"results", "Results"}, {"estimates", "Parameters"}, {"models", "Models"}};
-  if (has("has_trends")) part.nav.emplace_back("trends", "Trend");
-  if (has("has_conditions")) part.nav.emplace_back("scores", "Scores");
-  if (has("has_overlays")) part.nav.emplace_back("curves", "Curves");
-  part.nav.emplace_back("records", "Records");
 }
 
 }  // namespace rigcal::report

@@ -17,22 +17,16 @@ namespace rigcal::report {
 std::vector<Figure> overlay_figures(const std::string& condition, const Table& curves,
                                     const std::vector<std::string>& names);
 
-/// For the template: an entry for each condition.
-///
-/// @param curves  by condition
-Json overlays_view(const std::vector<std::pair<std::string, Table>>& curves,
-                   const std::vector<std::string>& names);
-
 /// A comparison, and its overlaid curves by condition, in the order of its scores.
 struct ComparisonFiles {
   StoredComparison result;
   std::vector<std::pair<std::string, Table>> curves;
 };
 ComparisonFiles load_comparison_files(const ReadFile& read, const std::string& where);
-Json comparison_headline(const ComparisonFiles& files);
-Json comparison_view(const ComparisonFiles& files);
+doc::Verdict comparison_headline(const ComparisonFiles& files);
+std::vector<doc::Section> comparison_sections(const ComparisonFiles& files);
 std::vector<Figure> comparison_figures(const ComparisonFiles& files);
-/// Campaigns are those of its results; sections that have nothing are in no list.
+/// Campaigns are those of its results.
 void add_comparison(const ComparisonFiles& files, Part& part);
 
 }  // namespace rigcal::report

@@ -9,6 +9,9 @@
 namespace rigcal::report {
 namespace {
 
+using doc::Line;
+using Kind = doc::Column::Kind;
+
 constexpr double kMillimetres = 1e3;
 constexpr std::size_t kPoints = 1200;  ///< of one line of a picture
 constexpr int kLengthDigits = 3;
@@ -56,17 +59,13 @@ std::vector<Summary> summaries(const StoredParity& parity) {
   return list;
 }
 
-Json alarm_badge(const Summary& summary) {
+doc::Badge alarm_badge(const Summary& summary) {
   if (summary.judged == 0 && summary.reference && summary.failure.empty())
-    return {{"word", "reference"}, {"mark", "○"}, {"class", "none"}};
+    return {doc::State::none, "reference"};
   if (summary.judged == 0)
-    return {{"word", summary.failure.empty() ? "not judged" : "failed"},
-            {"mark", "○"},
-            {"class", "none"}};
-  if (summary.alarms == 0) return {{"word", "no alarm"}, {"mark", "✓"}, {"class", "good"}};
-  return {{"word", fmt::format("alarm in {} of {}", summary.alarms, summary.judged)},
-          {"mark", "!"},
-          {"class", "warn"}};
+    return {doc::State::none, summary.failure.empty() ? "not judged" : "failed"};
+  if (summary.alarms == 0) return {doc::State::good, "no alarm"};
+  return {doc::State::warn, fmt::format("alarm in {} of {}", summary.alarms, summary.judged)};
 }
 
 std::vector<double> in_millimetres(const std::vector<double>& metres) {
@@ -139,27 +138,28 @@ std::string check_sentence(const StoredFalseAlarmCheck& check) {
 
 }  // namespace
 
-Json parity_headline(const ParityFiles& stored) {
+doc::Verdict parity_headline(const ParityFiles& stored) {
   const StoredParity& parity = stored.result;
   const auto list = summaries(parity);
   const std::string sentence = sentence_of(parity, list);
   if (parity.status != LeakStatus::done)
-    return headline_without_result(parity.status, sentence, parity.reasons, "parity");
+    return verdict_without_result(parity.status, sentence, parity.reasons, "parity");
   const bool judged =
       std::any_of(list.begin(), list.end(), [](const Summary& each) { return each.judged > 0; });
   const bool alarm =
       std::any_of(list.begin(), list.end(), [](const Summary& each) { return each.alarms > 0; });
-  Json view = !judged ? make_headline("NOT JUDGED", "○", "none", sentence)
-              : alarm ? make_headline("ALARM", "!", "warn", sentence)
-                      : make_headline("NO ALARM", "✓", "good", sentence);
+  doc::Verdict verdict{!judged ? doc::Badge{doc::State::none, "NOT JUDGED"}
+                       : alarm ? doc::Badge{doc::State::warn, "ALARM"}
+                               : doc::Badge{doc::State::good, "NO ALARM"},
+                       {sentence}};
   for (const Summary& each : list) {
     if (each.alarms == 0) continue;
-    add_reason(view,
+    add_reason(verdict,
                fmt::format("{}: alarm in {} of {} records, after {:.3g} s", each.condition,
                            each.alarms, each.judged, *each.first_s),
                "parity");
   }
-  return view;
+  return verdict;
 }
 
 std::vector<Figure> parity_figures(const ParityFiles& stored) {
@@ -173,54 +173,91 @@ std::vector<Figure> parity_figures(const ParityFiles& stored) {
   return figures;
 }
 
-Json parity_view(const ParityFiles& stored) {
+namespace {
+
+Line millimetres(const std::optional<double>& metres) {
+  return {doc::in_unit(metres, 1.0 / kMillimetres, kLengthDigits)};
+}
+
+doc::Table alarm_table(const std::vector<Summary>& list) {
+  doc::Table table{"Alarms of each condition"};
+  table.caption = {table.label};
+  table.columns = {{"Condition"},
+                   {"Leak level"},
+                   {"Alarm"},
+                   {"Largest moving rms, mm", Kind::number},
+                   {"Threshold, mm", Kind::number},
+                   {"First alarm, s", Kind::number}};
+  for (const Summary& each : list) {
+    Line level{each.level};
+    if (each.healthy) level.emplace_back(doc::Soft{" healthy"});
+    doc::Row row{{each.condition,
+                  {std::move(level)},
+                  alarm_badge(each),
+                  {millimetres(each.largest_m)},
+                  {millimetres(each.signal != nullptr ? each.signal->threshold_m : std::nullopt)},
+                  doc::in_unit(each.first_s, 1.0, kLengthDigits)}};
+    if (!each.failure.empty()) row.notes = {each.failure};
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+doc::Table threshold_table(const std::vector<StoredParitySignal>& signals) {
+  doc::Table table{"Thresholds of each signal"};
+  table.caption = {"Thresholds of each signal, mm"};
+  table.columns = {{"Signal"},
+                   {"Window, s", Kind::number},
+                   {"Healthy records", Kind::number},
+                   {"Moving rms", Kind::number},
+                   {"Mean of |r|", Kind::number},
+                   {"rms", Kind::number},
+                   {"Standard deviation of |r|", Kind::number},
+                   {"Note"}};
+  for (const StoredParitySignal& signal : signals)
+    table.rows.push_back({{signal.signal,
+                           doc::in_unit(signal.window_s, 1.0, kLengthDigits),
+                           fmt::format("{}", signal.healthy_records),
+                           {millimetres(signal.threshold_m)},
+                           {millimetres(signal.feature_thresholds.mean_m)},
+                           {millimetres(signal.feature_thresholds.rms_m)},
+                           {millimetres(signal.feature_thresholds.std_m)},
+                           signal.reason.value_or("")}});
+  return table;
+}
+
+}  // namespace
+
+std::vector<doc::Section> parity_sections(const ParityFiles& stored) {
   const StoredParity& parity = stored.result;
   const auto list = summaries(parity);
-  const auto millimetres = [](const std::optional<double>& metres) {
-    return shown_in(metres, 1.0 / kMillimetres, kLengthDigits);
-  };
-  Json view;
-  view["sentence"] = sentence_of(parity, list);
-  view["done"] = parity.status == LeakStatus::done;
-  view["reasons"] = parity.reasons;
-  view["rate"] = fmt::format("{:g}", 100.0 * parity.false_alarm_probability);
-  view["conditions"] = Json::array();
-  view["pictures"] = Json::array();
+  doc::Section section{"parity", "Parity residual"};
+  doc::Blocks& blocks = section.blocks;
+  const bool done = parity.status == LeakStatus::done;
+  blocks.emplace_back(
+      doc::Paragraph{{sentence_of(parity, list)},
+                     done ? doc::Paragraph::Tone::reading : doc::Paragraph::Tone::problem});
+  if (!done) blocks.emplace_back(list_of(parity.reasons, doc::State::warn));
+  if (list.empty()) return {std::move(section)};
+  blocks.emplace_back(doc::reading(fmt::format(
+      "Position minus that of the healthy model under the same reference, less the mean of that "
+      "over healthy records. An alarm: its moving root mean square exceeds the threshold, which a "
+      "healthy record does with a probability of {:g} %. {}",
+      100.0 * parity.false_alarm_probability, check_sentence(parity.false_alarm_check))));
+  blocks.emplace_back(alarm_table(list));
+  blocks.emplace_back(threshold_table(parity.signals));
+  if (!parity.warnings.empty()) {
+    blocks.emplace_back(doc::Heading{{"Warnings"}});
+    blocks.emplace_back(list_of(parity.warnings, doc::State::warn));
+  }
   for (const Summary& each : list) {
-    view["conditions"].push_back(
-        {{"condition", each.condition},
-         {"level", each.level},
-         {"healthy", each.healthy},
-         {"badge", alarm_badge(each)},
-         {"largest", millimetres(each.largest_m)},
-         {"threshold",
-          millimetres(each.signal != nullptr ? each.signal->threshold_m : std::nullopt)},
-         {"first", shown_in(each.first_s, 1.0, kLengthDigits)},
-         {"failure", each.failure},
-         {"failed", !each.failure.empty()}});
     const auto series = stored.series.find(each.condition);
     if (series == stored.series.end()) continue;
-    view["pictures"].push_back({{"name", each.condition},
-                                {"badge", alarm_badge(each)},
-                                {"residual_html", svg(residual_plot(each, series->second))},
-                                {"alarm_html", svg(alarm_plot(each, series->second))}});
+    blocks.emplace_back(doc::Heading{{each.condition + " ", alarm_badge(each)}});
+    blocks.emplace_back(figure_of(residual_plot(each, series->second)));
+    blocks.emplace_back(figure_of(alarm_plot(each, series->second)));
   }
-  view["has_conditions"] = !view["conditions"].empty();
-  view["signals"] = Json::array();
-  for (const StoredParitySignal& signal : parity.signals) {
-    view["signals"].push_back({{"signal", signal.signal},
-                               {"window", shown_in(signal.window_s, 1.0, kLengthDigits)},
-                               {"healthy", fmt::format("{}", signal.healthy_records)},
-                               {"threshold", millimetres(signal.threshold_m)},
-                               {"mean", millimetres(signal.feature_thresholds.mean_m)},
-                               {"rms", millimetres(signal.feature_thresholds.rms_m)},
-                               {"std", millimetres(signal.feature_thresholds.std_m)},
-                               {"reason", signal.reason.value_or("")}});
-  }
-  view["check"] = check_sentence(parity.false_alarm_check);
-  view["warnings"] = parity.warnings;
-  view["has_warnings"] = !parity.warnings.empty();
-  return view;
+  return {std::move(section)};
 }
 
 }  // namespace rigcal::report

@@ -13,104 +13,54 @@
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
-namespace {
-
-/// A number with all its digits, and as people read it.
-Json exact_and(double value, std::string text) {
-  return {{"exact", fmt::format("{}", value)}, {"text", std::move(text)}};
-}
-
-}  // namespace
-
-Json shown_in(const Number& number, double si_per_unit, int digits) {
-  if (!number.value) return {{"exact", ""}, {"text", "–"}};
-  return exact_and(*number.value, significant(*number.value / si_per_unit, digits));
-}
-
-Json shown_interval(const Interval& interval, double si_per_unit) {
-  const auto& ends = interval.ends;
-  return shown_estimate(ends ? std::optional(0.5 * (ends->low + ends->high)) : std::nullopt,
-                        interval, si_per_unit)
-      .at("interval");
-}
-
-Json shown_estimate(const Number& number, const Interval& interval, double si_per_unit,
-                    const Range& bounds) {
-  const auto in_unit = [&](const Range& range) {
-    return Range{range.low / si_per_unit, range.high / si_per_unit};
-  };
-  const Json missing{{"exact", ""}, {"text", "–"}};
-  Json view{{"value", missing},
-            {"interval", {{"known", false}, {"low", missing}, {"high", missing}}}};
-  if (!number.value) return view;
-  const auto& ends = interval.ends;
-  const EstimateText text =
-      estimate_text(*number.value / si_per_unit,
-                    ends ? std::optional(in_unit(*ends)) : std::nullopt, in_unit(bounds));
-  view["value"] = exact_and(*number.value, text.value);
-  if (ends)
-    view["interval"] = {{"known", true},
-                        {"low", exact_and(ends->low, text.low)},
-                        {"high", exact_and(ends->high, text.high)}};
-  return view;
-}
-
-Json shown(const Number& number, std::string_view si_unit, int digits) {
-  if (!number.value) return shown_in(number, 1.0, digits);
-  return exact_and(*number.value, readable(*number.value, si_unit, digits));
-}
-
-Json shown_agreement(const Number& number) {
-  if (!number.value) return shown_in(number, 1.0);
-  return exact_and(*number.value, agreement_text(*number.value));
-}
-
-Json shown_score(const std::string& metric, const Number& number) {
-  if (metric == "absolute_error_percent" || !number.value) return shown_in(number, 1.0, 4);
-  const double v = *number.value;
-  const double missing = std::abs(1.0 - v);
-  const int decimals =
-      missing > 0.0 ? std::clamp(static_cast<int>(std::ceil(-std::log10(missing))) + 1, 3, 10) : 3;
-  return exact_and(v, fmt::format("{:.{}f}", v, decimals));
-}
-
 RowUnit row_unit(double value_si, std::string_view si_unit) {
   const ReadableUnit unit = readable_unit(value_si, si_unit);
   return {std::string(unit.name), unit.si};
 }
 
-Json make_headline(const std::string& word, const std::string& mark, const std::string& css,
-                   const std::string& sentence) {
-  return {{"word", word},
-          {"mark", mark},
-          {"class", css},
-          {"sentence", sentence},
-          {"reasons", Json::array()},
-          {"has_more", false},
-          {"more", 0}};
-}
-
-void add_reason(Json& headline, const std::string& text, const std::string& link) {
+void add_reason(doc::Verdict& verdict, const std::string& text, const std::string& link) {
   constexpr std::size_t kReasonsShown = 3;
-  if (headline["reasons"].size() < kReasonsShown) {
-    headline["reasons"].push_back({{"text", text}, {"link", link}, {"linked", !link.empty()}});
+  if (verdict.reasons.size() == kReasonsShown) {
+    ++verdict.more;
     return;
   }
-  headline["has_more"] = true;
-  headline["more"] = headline["more"].get<int>() + 1;
+  verdict.reasons.push_back(link.empty() ? doc::Line{text}
+                                         : doc::Line{doc::Link{"#" + link, text}});
 }
 
-Json headline_without_result(LeakStatus status, const std::string& sentence,
-                             const std::vector<std::string>& reasons, const std::string& link) {
-  Json view =
-      make_headline(status == LeakStatus::declined ? "DECLINED" : "FAILED", "✕", "bad", sentence);
-  for (const std::string& reason : reasons) add_reason(view, reason, link);
-  return view;
+doc::Verdict verdict_without_result(LeakStatus status, const std::string& sentence,
+                                    const std::vector<std::string>& reasons,
+                                    const std::string& link) {
+  doc::Verdict verdict{{doc::State::bad, status == LeakStatus::declined ? "DECLINED" : "FAILED"},
+                       {sentence}};
+  for (const std::string& reason : reasons) add_reason(verdict, reason, link);
+  return verdict;
 }
 
-std::string grade_words(const std::optional<calib::Identifiability>& grade) {
-  if (grade == calib::Identifiability::not_identifiable) return "not identifiable";
-  return grade ? std::string(to_string(*grade)) : std::string();
+doc::List list_of(const std::vector<std::string>& texts, std::optional<doc::State> state) {
+  doc::List list;
+  list.state = state;
+  for (const std::string& text : texts) list.items.push_back({text});
+  return list;
+}
+
+doc::Figure figure_of(Plot plot, std::string caption, std::string reading) {
+  doc::Figure figure{[plot = std::move(plot)] { return plot; }};
+  figure.caption = std::move(caption);
+  figure.reading = std::move(reading);
+  return figure;
+}
+
+std::string capitalised(std::string text) {
+  if (!text.empty() && text.front() >= 'a' && text.front() <= 'z')
+    text.front() = static_cast<char>(text.front() - 'a' + 'A');
+  return text;
+}
+
+bool searched_to_the_end(const StoredFit& fit) {
+  return fit.status == calib::FitStatus::converged ||
+         (fit.status == calib::FitStatus::stopped && fit.stopped_in &&
+          fit.stopped_in != calib::StoppedIn::starts);
 }
 
 bool is_doubtful(const std::optional<calib::Identifiability>& grade) {
@@ -123,20 +73,6 @@ std::string spaced(std::string key) {
 }
 
 std::string anchor(const std::string& condition) { return "condition-" + condition; }
-
-Json badge(const std::optional<calib::Verdict>& verdict) {
-  if (!verdict) return {{"word", "not judged"}, {"mark", "○"}, {"class", "none"}};
-  const std::string word(to_string(*verdict));
-  switch (*verdict) {
-    case calib::Verdict::pass:
-      return {{"word", word}, {"mark", "✓"}, {"class", "good"}};
-    case calib::Verdict::warn:
-      return {{"word", word}, {"mark", "!"}, {"class", "warn"}};
-    case calib::Verdict::fail:
-      break;
-  }
-  return {{"word", word}, {"mark", "✕"}, {"class", "bad"}};
-}
 
 Plot ranked_points(const std::string& title, const std::string& y_label,
                    const std::vector<double>& values) {

@@ -15,12 +15,21 @@ std::string percent_text(const std::optional<double>& sd, const std::optional<do
   return percent > 1000.0 ? std::string("> 1000") : fmt::format("{:.3g}", percent);
 }
 
-Json percent_row(const StoredPlan& plan, const std::string& label,
-                 const std::vector<std::optional<double>>& sd) {
-  Json cells = Json::array();
+doc::Row percent_row(const StoredPlan& plan, const std::string& label,
+                     const std::vector<std::optional<double>>& sd) {
+  doc::Row row{{label}};
   for (std::size_t j = 0; j < plan.parameters.size(); ++j)
-    cells.push_back(percent_text(sd[j], plan.parameters[j].value));
-  return {{"label", label}, {"cells", std::move(cells)}};
+    row.cells.push_back(percent_text(sd[j], plan.parameters[j].value));
+  return row;
+}
+
+/// A column for each parameter.
+doc::Table percent_table(const StoredPlan& plan, const char* label, const char* first) {
+  doc::Table table{label};
+  table.columns = {{first}};
+  for (const StoredPlannedParameter& parameter : plan.parameters)
+    table.columns.push_back({parameter.label(), doc::Column::Kind::number});
+  return table;
 }
 
 std::vector<std::optional<double>> of_all(const StoredPlan& plan,
@@ -67,65 +76,83 @@ std::vector<Figure> plan_figures(const StoredPlan& plan) {
   return figures;
 }
 
-Json plan_headline(const StoredPlan& plan) {
+doc::Verdict plan_headline(const StoredPlan& plan) {
   const auto recorded = std::count_if(plan.records.begin(), plan.records.end(),
                                       [](const auto& record) { return record.recorded; });
   const auto told =
       std::count_if(plan.parameters.begin(), plan.parameters.end(),
                     [](const auto& parameter) { return parameter.sd_all.has_value(); });
   const bool whole = static_cast<std::size_t>(told) == plan.parameters.size();
-  Json view = make_headline(
-      "PLAN", whole ? "✓" : "!", whole ? "good" : "warn",
-      fmt::format("{} of {} records exist; all together determine {} of {} parameters.", recorded,
-                  plan.records.size(), told, plan.parameters.size()));
+  doc::Verdict verdict{
+      {whole ? doc::State::good : doc::State::warn, "PLAN"},
+      {fmt::format("{} of {} records exist; all together determine {} of {} parameters.", recorded,
+                   plan.records.size(), told, plan.parameters.size())}};
   for (const StoredPlannedParameter& parameter : plan.parameters) {
     if (parameter.sd_all) continue;
-    add_reason(view,
+    add_reason(verdict,
                fmt::format("{} is not determined{}{}", parameter.label(),
                            parameter.remedy ? ": " : "", parameter.remedy.value_or("")),
                "plan");
   }
-  for (const std::string& message : plan.messages) add_reason(view, message, "plan");
-  return view;
+  for (const std::string& message : plan.messages) add_reason(verdict, message, "plan");
+  return verdict;
 }
 
-Json plan_view(const StoredPlan& plan) {
-  Json view;
-  view["parameters"] = Json::array();
-  view["totals"] = Json::array();
+std::vector<doc::Section> plan_sections(const StoredPlan& plan) {
+  using doc::Line;
+  using Kind = doc::Column::Kind;
+  doc::Table totals{"Parameters"};
+  totals.caption = {"Parameters, from all records together"};
+  totals.shape = doc::Table::Shape::cards;
+  totals.style = "totals";
+  totals.columns = {{"Parameter"},
+                    {"Value", Kind::number},
+                    {"Unit", Kind::unit},
+                    {"sd, recorded", Kind::number},
+                    {"sd, planned ones too", Kind::number},
+                    {"What would tell it"}};
   for (const StoredPlannedParameter& parameter : plan.parameters) {
     const RowUnit unit = row_unit(parameter.value.value_or(0.0), parameter.unit);
-    view["parameters"].push_back({{"name", parameter.label()}});
-    view["totals"].push_back({{"name", parameter.label()},
-                              {"unit", unit.name.empty() ? std::string("1") : unit.name},
-                              {"value", shown_in(parameter.value, unit.si, 5)},
-                              {"recorded", shown_in(parameter.sd_recorded, unit.si, 2)},
-                              {"all", shown_in(parameter.sd_all, unit.si, 2)},
-                              {"remedy", parameter.remedy.value_or("")}});
+    totals.rows.push_back(
+        {{parameter.label(), doc::in_unit(parameter.value, unit.si, 5),
+          unit.name.empty() ? std::string("1") : unit.name,
+          doc::in_unit(parameter.sd_recorded, unit.si, 2),
+          doc::in_unit(parameter.sd_all, unit.si, 2), parameter.remedy.value_or("")}});
   }
-  view["alone"] = Json::array();
-  view["without"] = Json::array();
-  view["problems"] = Json::array();
+  doc::Table alone = percent_table(plan, "Each record alone", "Record");
+  alone.caption = {"Standard deviation in % of the value, from each record alone"};
+  doc::Table without = percent_table(
+      plan, "Standard deviation in % of the value, from all records but one", "Without");
+  std::vector<std::string> problems;
   for (std::size_t i = 0; i < plan.records.size(); ++i) {
     const StoredPlannedRecord& record = plan.records[i];
     const std::string label =
         fmt::format("{} {}{}", i + 1, record.condition, record.recorded ? "" : " (planned)");
-    view["alone"].push_back(percent_row(plan, label, record.sd_alone));
-    view["without"].push_back(percent_row(plan, label, record.sd_without));
+    alone.rows.push_back(percent_row(plan, label, record.sd_alone));
+    without.rows.push_back(percent_row(plan, label, record.sd_without));
     if (record.problem)
-      view["problems"].push_back(fmt::format("{}: {}", record.condition, *record.problem));
+      problems.push_back(fmt::format("{}: {}", record.condition, *record.problem));
   }
-  view["alone"].push_back(percent_row(plan, "All that are recorded",
-                                      of_all(plan, &StoredPlannedParameter::sd_recorded)));
-  view["alone"].push_back(percent_row(plan, "All", of_all(plan, &StoredPlannedParameter::sd_all)));
-  view["record_count"] = fmt::format("{}", plan.records.size());
-  view["plots"] = Json::array();
-  for (const Figure& figure : plan_figures(plan))
-    view["plots"].push_back({{"svg_html", svg(figure.plot)}});
-  view["messages"] = plan.messages;
-  view["has_messages"] = !plan.messages.empty();
-  view["has_problems"] = !view["problems"].empty();
-  return view;
+  alone.rows.push_back(percent_row(plan, "All that are recorded",
+                                   of_all(plan, &StoredPlannedParameter::sd_recorded)));
+  alone.rows.push_back(percent_row(plan, "All", of_all(plan, &StoredPlannedParameter::sd_all)));
+  doc::Gallery gallery;
+  for (Figure& figure : plan_figures(plan))
+    gallery.figures.push_back(figure_of(std::move(figure.plot)));
+  return {{"plan",
+           "What the records tell",
+           {doc::reading("Standard deviations at best: white noise, the model right, every "
+                         "parameter free (Cramér and Rao). A fit reaches rather more. A dash: "
+                         "nothing determines the parameter."),
+            list_of(plan.messages), list_of(problems, doc::State::bad), std::move(totals),
+            doc::Heading{{"Share of each record"}},
+            doc::reading("How much of the precision (one over the variance) of all records each "
+                         "has by itself: blue recorded, orange planned. Numbers are those of the "
+                         "table."),
+            std::move(gallery), std::move(alone),
+            doc::Fold{fmt::format("From all records but one ({})", plan.records.size()),
+                      {std::move(without)}}},
+           "Plan"}};
 }
 
 }  // namespace rigcal::report

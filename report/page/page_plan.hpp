@@ -7,8 +7,8 @@
 namespace rigcal::report {
 
 /// plan.json: what each record tells, or would tell, of each parameter.
-Json plan_headline(const StoredPlan& plan);
-Json plan_view(const StoredPlan& plan);
+doc::Verdict plan_headline(const StoredPlan& plan);
+std::vector<doc::Section> plan_sections(const StoredPlan& plan);
 /// Per parameter: how much of the precision (one over the variance) of all records together each
 /// has by itself.
 std::vector<Figure> plan_figures(const StoredPlan& plan);

@@ -23,24 +23,26 @@ struct ResultFolder {
 struct Part {
   std::string link;  ///< id of its first section
   std::string name;  ///< "Calibration"
+  std::string file;  ///< that it is drawn from
   std::string campaign;
   bool synthetic = false;
-  Json headline;                       ///< as make_headline() makes it
-  Json view;                           ///< data of its template
-  Json identity = {{"there", false}};  ///< as identity_view() makes it
-  Json overview = {{"there", false}};  ///< as overview_view() makes it
-  Json provenance;
-  std::vector<std::pair<const char*, const char*>> nav;  ///< id and name of its sections
+  Identity identity;
+  doc::Verdict verdict;
+  doc::Blocks front;  ///< of page one, beneath the verdict
+  std::vector<doc::Section> sections;
+  doc::Blocks provenance;
+  std::string program;                                   ///< that made it
+  std::vector<std::pair<std::string, std::string>> nav;  ///< id and name of its sections
 };
 
 struct Section {
-  std::string name;                ///< "leak_table": of its template, leak_table.html
+  std::string name;                ///< "leak_table"
   std::vector<std::string> files;  ///< any of which a folder with such a result has
   std::function<Part(const ResultFolder&)> part;
   std::function<std::vector<Figure>(const ResultFolder&)> figures;
 };
 
-/// What a section is called: name of the template, id and name of its first part.
+/// What a section is called: id and name of its first part.
 struct SectionTitle {
   const char* file;
   const char* section;
@@ -58,27 +60,38 @@ const auto& result_of(const Files& files) {
   }
 }
 
+/// What a result says of itself, whatever kind it is.
+template <typename Result>
+Part part_of(const Result& result, const char* link, const char* name, const std::string& file) {
+  Part part;
+  part.link = link;
+  part.name = name;
+  part.file = file;
+  if constexpr (requires { result.campaign; }) part.campaign = result.campaign;
+  if constexpr (requires { result.synthetic; }) part.synthetic = result.synthetic;
+  if constexpr (requires { result.report; }) part.identity = identity_of(result.report);
+  part.program = program_of(result.provenance);
+  return part;
+}
+
 /// A row of sections(), from functions that all take what the first of them has read.
 ///
 /// @param more  what this result says of itself beyond that; null where that is all
 template <typename Files>
 Section section(const SectionTitle& title, Files (*load)(const ReadFile&, const std::string&),
-                Json (*headline)(const Files&), Json (*view)(const Files&),
+                doc::Verdict (*verdict)(const Files&),
+                std::vector<doc::Section> (*sections)(const Files&),
                 std::vector<Figure> (*figures)(const Files&),
                 void (*more)(const Files&, Part&) = nullptr) {
   const auto part = [=](const ResultFolder& folder) {
     const Files files = load(folder.read, folder.where);
     const auto& result = result_of(files);
-    Part made;
-    made.link = title.link;
-    made.name = title.name;
-    if constexpr (requires { result.campaign; }) made.campaign = result.campaign;
-    if constexpr (requires { result.synthetic; }) made.synthetic = result.synthetic;
-    if constexpr (requires { result.report; }) made.identity = identity_view(result.report);
-    made.headline = headline(files);
-    made.view[title.section] = view(files);
-    made.provenance = provenance_view(result.provenance, title.name, title.file);
-    made.nav = {{title.link, title.name}};
+    Part made = part_of(result, title.link, title.name, title.file);
+    made.verdict = verdict(files);
+    made.sections = sections(files);
+    for (const doc::Section& each : made.sections)
+      made.nav.emplace_back(each.id, each.short_title.empty() ? each.title : each.short_title);
+    made.provenance = provenance_blocks(result.provenance, title.name, title.file);
     if (more != nullptr) more(files, made);
     return made;
   };

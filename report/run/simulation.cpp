@@ -68,15 +68,19 @@ std::vector<model::Simulation> simulate(const std::vector<SimulationTask>& tasks
 }
 
 std::vector<double> reference_of(const SimulationTask& task) {
-  std::vector<double> reference_m;
+  std::vector<double> reference;
   if (task.rig.controller == model::ControllerKind::pid) {
-    for (const double t : task.time_s) reference_m.push_back(task.inputs.drive.value(t));
+    for (const double t : task.time_s) reference.push_back(task.inputs.drive.value(t));
   }
-  return reference_m;
+  return reference;
 }
 
 std::string simulation_file(const SimulationTask& task, const model::Simulation& simulation) {
-  return simulation_csv(task.time_s, reference_of(task), model::kAllOutputs, simulation);
+  std::span<const model::Output> outputs = model::kAllOutputs;
+  // The last one is that of the second mass.
+  if (!task.values.is_given("payload_mass")) outputs = outputs.first(outputs.size() - 1);
+  return simulation_csv(task.time_s, info(datasets::drive_channel(task.rig)).name,
+                        reference_of(task), outputs, simulation);
 }
 
 }  // namespace rigcal::report

@@ -35,7 +35,7 @@ model::SimulationOptions simulation_options(const datasets::Campaign& campaign);
 std::vector<model::Simulation> simulate(const std::vector<SimulationTask>& tasks,
                                         const model::SimulationOptions& options, int threads);
 
-/// The position reference at the samples [m]; empty where no controller follows one.
+/// The reference of the loop at the samples, SI; empty where no controller follows one.
 std::vector<double> reference_of(const SimulationTask& task);
 
 /// The file of `simulate`: <condition>.csv.

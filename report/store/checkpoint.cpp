@@ -108,7 +108,7 @@ calib::EvaluationCounters counters_from(const Json& json) {
     // [condition, status, count]
     const Json entry{{"condition", each.at(0)}, {"status", each.at(1)}, {"count", each.at(2)}};
     const auto status = static_cast<model::SimulationStatus>(
-        whole(entry, "status", 0, static_cast<int>(model::SimulationStatus::cancelled)));
+        whole(entry, "status", 0, static_cast<int>(model::SimulationStatus::no_equilibrium)));
     const auto condition = static_cast<std::size_t>(whole(entry, "condition", 0, kMostCounted));
     counters.kept[{condition, status}] = whole(entry, "count", 0, kMostCounted);
   }

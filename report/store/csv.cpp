@@ -54,17 +54,11 @@ std::span<const double> sd_of(const Result& result, const std::string& condition
 }  // namespace
 
 std::string scorecard_csv(const Result& result) {
-  const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
-  std::vector<std::string> titles{"condition",
-                                  "use",
-                                  "waveform",
-                                  "frequency_hz",
-                                  closed_loop ? "amplitude_m" : "amplitude_v",
-                                  "leak_level",
-                                  "samples",
-                                  "verdict",
-                                  "channel",
-                                  "unit"};
+  const datasets::ChannelInfo& drive = info(drive_channel(result.campaign));
+  const std::string_view unit = drive.name.substr(drive.key.size());  // "_m" of "reference_m"
+  std::vector<std::string> titles{
+      "condition",  "use",     "waveform", "frequency_hz", fmt::format("amplitude{}", unit),
+      "leak_level", "samples", "verdict",  "channel",      "unit"};
   for (const metrics::MetricSpec& metric : metrics::kMetrics) titles.emplace_back(metric.name);
   for (const char* title :
        {"noise_floor_rho2", "noise_floor_ccc", "noise_floor_absolute_error_percent", "gain_ratio",
@@ -139,8 +133,7 @@ Table residual_table(const Result& result, const calib::ConditionScore& score) {
   }
   add("in_window",
       [&](std::size_t i) { return score.in_window.empty() || score.in_window[i] ? 1.0 : 0.0; });
-  const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
-  add_values(closed_loop ? "reference_m" : "command_v", score.drive);
+  add_values(std::string(info(drive_channel(result.campaign)).name), score.drive);
   add_values("servo_flow_m3_per_s", score.servo_flow_m3_per_s);
   add_values("leakage_flow_m3_per_s", score.leakage_flow_m3_per_s);
   return table;
@@ -200,7 +193,8 @@ std::string repeatability_csv(const std::vector<datasets::Record>& records) {
   return text;
 }
 
-std::string simulation_csv(std::span<const double> time_s, std::span<const double> reference_m,
+std::string simulation_csv(std::span<const double> time_s, std::string_view reference_name,
+                           std::span<const double> reference,
                            std::span<const model::Output> outputs,
                            const model::Simulation& simulation) {
   std::string text;
@@ -212,13 +206,13 @@ std::string simulation_csv(std::span<const double> time_s, std::span<const doubl
                                     simulation.reason));
   }
   std::vector<std::string> titles{"time_s"};
-  if (!reference_m.empty()) titles.emplace_back("reference_m");
+  if (!reference.empty()) titles.emplace_back(reference_name);
   for (const model::Output output : outputs) titles.emplace_back(output_name(output));
   text += csv_row(titles);
   if (!simulation.ok()) return text;
   for (std::size_t i = 0; i < time_s.size(); ++i) {
     std::vector<std::string> fields{csv_number(time_s[i])};
-    if (!reference_m.empty()) fields.push_back(csv_number(reference_m[i]));
+    if (!reference.empty()) fields.push_back(csv_number(reference[i]));
     for (std::size_t k = 0; k < outputs.size(); ++k) {
       fields.push_back(csv_number(
           simulation.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k))));

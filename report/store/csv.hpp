@@ -37,9 +37,10 @@ std::string repeatability_csv(const std::vector<datasets::Record>& records);
 /// <condition>.csv of `simulate`: time_s, the reference (closed loop), every output. A simulation
 /// that failed has no rows, and its first line says why.
 ///
-/// @param reference_m  shape (samples), or empty in open loop
-/// @param outputs      of the columns of simulation.outputs
-std::string simulation_csv(std::span<const double> time_s, std::span<const double> reference_m,
+/// @param reference  shape (samples), or empty in open loop
+/// @param outputs    of the first columns of simulation.outputs
+std::string simulation_csv(std::span<const double> time_s, std::string_view reference_name,
+                           std::span<const double> reference,
                            std::span<const model::Output> outputs,
                            const model::Simulation& simulation);
 

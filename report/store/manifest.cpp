@@ -53,6 +53,7 @@ constexpr std::array kLooks{
     Look{"", "batch.csv", "rig,name,exit_code,status", ""},
     Look{"", "fitted.toml", "# Written by rigcal ", ""},
     Look{"", "report.html", "<!doctype html>\n<html lang=\"en\">", "<p class=\"kind\">Report "},
+    Look{"", "report.html", "<!doctype html>\n<html lang=\"en\">", "Program</th><td>rigcal "},
     Look{"", ".fmu", "PK", "modelDescription.xml"},
     Look{"", ".csv", "time_s,", ",work_flow_m3_per_s"},
     Look{"residuals", ".csv", "time_s,measured_", ""},

@@ -23,7 +23,12 @@ constexpr const char* kTruthSchema = "rigcal.truth/1";
 Validity validity_of(const StoredValidity& stored) {
   Validity validity;
   validity.frequency_hz = stored.frequency_hz;
-  validity.amplitude = stored.amplitude_m ? stored.amplitude_m : stored.amplitude_v;
+  for (const std::optional<Range>& amplitude :
+       {stored.amplitude_m, stored.amplitude_v, std::optional<Range>(stored.amplitude_n),
+        std::optional<Range>(stored.amplitude_pa),
+        std::optional<Range>(stored.amplitude_m_per_s2)}) {
+    if (amplitude) validity.amplitude = amplitude;
+  }
   validity.supply_pressure_pa = stored.supply_pressure_pa;
   validity.leakage_coefficient = stored.leakage_coefficient;
   validity.leak_levels = stored.leak_levels;

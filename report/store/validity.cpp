@@ -84,8 +84,7 @@ std::string in_words(const Range& range, std::string_view unit) {
 
 Validity coverage(const Campaign& campaign, const std::vector<Record>& records,
                   const calib::Fit& fit, const std::vector<datasets::Use>& uses) {
-  const Channel drive =
-      campaign.rig.controller == model::ControllerKind::pid ? Channel::reference : Channel::command;
+  const Channel drive = drive_channel(campaign);
   Validity result;
   result.amplitude_unit = info(drive).unit;
   for (const Condition& condition : campaign.conditions) {

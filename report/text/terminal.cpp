@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "calib/score/acceptance.hpp"
 #include "common/significant.hpp"
@@ -58,8 +59,40 @@ std::set<Channel> compared_channels(const calib::Fit& fit) {
 
 std::string percent(double value) { return fmt::format("{:.3f}", value); }
 
+/// How much a condition speaks against the model: those without a score, then by verdict, then by
+/// how much of a tolerance they use, or by their error where there are no limits.
+std::tuple<bool, Verdict, double> gravity_of(const calib::ConditionScore& score) {
+  const bool lost = !score.failure.empty() || !score.not_scored.empty();
+  double used = 0.0;
+  for (const calib::LimitCheck& check : score.checks) used = std::max(used, check.used);
+  if (score.checks.empty()) {
+    for (const calib::ChannelScore& channel : score.channels)
+      if (channel.agreement) used = std::max(used, channel.agreement->absolute_error_percent);
+  }
+  return {lost, score.verdict.value_or(Verdict::pass), used};
+}
+
+/// All conditions in their order, or the worst where there is no room for all.
+std::vector<const calib::ConditionScore*> shown_conditions(const calib::Fit& fit,
+                                                           std::size_t most) {
+  std::vector<const calib::ConditionScore*> shown;
+  for (const calib::ConditionScore& score : fit.conditions) shown.push_back(&score);
+  if (shown.size() <= most) return shown;
+  std::stable_sort(shown.begin(), shown.end(),
+                   [](const auto* a, const auto* b) { return gravity_of(*a) > gravity_of(*b); });
+  shown.resize(most);
+  return shown;
+}
+
+/// What a table that is cut leaves out; empty where that is nothing.
+std::string more_text(std::size_t all, std::size_t most, const char* what) {
+  if (all <= most) return {};
+  return fmt::format("  and {} {} (--verbose shows all)\n", all - most, what);
+}
+
 /// @param several  channels were compared, so that each row names its own
-TextTable condition_table(const Result& result, bool several, const Style& style) {
+TextTable condition_table(const Result& result, bool several, std::size_t most,
+                          const Style& style) {
   std::vector<TextTable::Column> columns{{"condition"},
                                          {"use", Align::left, 2},
                                          {"waveform", Align::left, 7},
@@ -73,7 +106,8 @@ TextTable condition_table(const Result& result, bool several, const Style& style
                                  {"floor %", Align::right, 3},
                                  {"verdict"}});
   TextTable table(columns);
-  for (const calib::ConditionScore& score : result.fit.conditions) {
+  for (const calib::ConditionScore* shown : shown_conditions(result.fit, most)) {
+    const calib::ConditionScore& score = *shown;
     const datasets::Condition* condition = result.campaign.find(score.id);
     std::vector<std::string> row{score.id, std::string(to_string(score.use)), "-", "-", "-"};
     if (condition != nullptr) {
@@ -100,7 +134,7 @@ TextTable condition_table(const Result& result, bool several, const Style& style
 }
 
 /// Of each group the channel with the lowest rho2.
-TextTable group_table(const Result& result, bool several) {
+TextTable group_table(const std::vector<Group>& gathered, bool several, std::size_t most) {
   std::vector<TextTable::Column> columns{{"by"}, {"group"}, {"conditions", Align::right, 2}};
   if (several) columns.push_back({"channel"});
   columns.insert(columns.end(), {{"rho2", Align::right},
@@ -110,7 +144,8 @@ TextTable group_table(const Result& result, bool several) {
                                  {"worst rho2", Align::right, 1},
                                  {"worst error %", Align::right, 3}});
   TextTable table(columns);
-  for (const Group& group : groups(result.campaign, result.fit)) {
+  for (const Group& group : gathered) {
+    if (table.rows() == most) break;
     const auto found = std::min_element(group.channels.begin(), group.channels.end(),
                                         [](const auto& one, const auto& other) {
                                           return one.second.worst.rho2 < other.second.worst.rho2;
@@ -172,13 +207,17 @@ double error_of(const calib::FittedParameter& p) {
 
 /// One line per reason, led by all that it holds for; "all" where that is more than one and every
 /// one.
+///
+/// @param most  lines
 std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& reasons,
-                       std::size_t parameters, std::size_t columns) {
+                       std::size_t parameters, std::size_t most, std::size_t columns) {
   std::string text;
-  for (std::size_t i = 0; i < reasons.size(); ++i) {
+  std::size_t told = 0;
+  for (std::size_t i = 0; i < reasons.size() && told < most; ++i) {
     const auto same = [&](const auto& other) { return other.second == reasons[i].second; };
     const auto here = reasons.begin() + static_cast<std::ptrdiff_t>(i);
     if (std::any_of(reasons.begin(), here, same)) continue;  // told already
+    ++told;
     std::vector<std::string> whose;
     for (const auto& reason : reasons) {
       if (same(reason)) whose.push_back(reason.first);
@@ -295,46 +334,50 @@ std::optional<std::string> without_reason(const calib::Fit& fit, const std::stri
 }
 
 /// State of an aspect; what speaks against it, the gravest first; then what speaks for it.
+///
+/// @param most  reasons of one state
 std::string aspect_text(std::string_view name, const calib::Aspect& aspect, const calib::Fit& fit,
-                        const Style& style) {
-  constexpr std::size_t kShown = 3;  // of one state; the files hold all
+                        std::size_t most, const Style& style) {
+  const std::size_t shown = std::min<std::size_t>(3, most);  // the files hold all
   std::string text = fmt::format("  {}: {}\n", name, state_text(aspect.state, style));
   std::map<AspectState, std::size_t> told;
   for (const calib::Reason& reason : aspect.reasons) {
-    if (++told[reason.state] > kShown) continue;
+    if (++told[reason.state] > shown) continue;
     const char* mark = mark_of(reason.state);
     const std::string words = without_reason(fit, reason.words).value_or(reason.words);
     text += wrapped(fmt::format("    {} {}", mark, words), style.columns, 6) + "\n";
   }
   for (const auto& [state, count] : told) {
-    if (count <= kShown) continue;
-    text += fmt::format("    {} and {} more\n", mark_of(state), count - kShown);
+    if (count <= shown) continue;
+    text += fmt::format("    {} and {} more\n", mark_of(state), count - shown);
   }
   return text;
 }
 
 }  // namespace
 
-std::string scorecard_text(const Result& result, const Style& style) {
+std::string scorecard_text(const Result& result, const Style& style, std::size_t most) {
   const std::set<Channel> channels = compared_channels(result.fit);
   if (channels.empty()) return "No channel was compared.\n";
   const bool several = channels.size() > 1;
-  const TextTable conditions = condition_table(result, several, style);
+  const TextTable conditions = condition_table(result, several, most, style);
   const std::string title = several ? "Agreement of the worst channel of each condition"
                                     : fmt::format("Agreement of {}", info(*channels.begin()).key);
   std::string text = coloured(title, "1", style) + "\n" + conditions.text(style.columns) +
+                     more_text(result.fit.conditions.size(), most, "better conditions") +
                      narrow_note(conditions, "scorecard.csv", style);
-  const TextTable gathered = group_table(result, several);
+  const std::vector<Group> all = groups(result.campaign, result.fit);
+  const TextTable gathered = group_table(all, several, most);
   if (!gathered.empty()) {
     text += "\n" + coloured("Summary by group (mean and worst)", "1", style) + "\n" +
-            gathered.text(style.columns) +
+            gathered.text(style.columns) + more_text(all.size(), most, "groups") +
             narrow_note(gathered, result.kind == ResultKind::fit ? "fit.json" : "validation.json",
                         style);
   }
   return text;
 }
 
-std::string parameters_text(const Result& result, const Style& style) {
+std::string parameters_text(const Result& result, const Style& style, std::size_t most) {
   const auto table = model::parameter_table(result.campaign.rig.plant);
   TextTable text({{"parameter"},
                   {"for"},
@@ -348,8 +391,18 @@ std::string parameters_text(const Result& result, const Style& style) {
   std::vector<std::pair<std::string, std::string>> reasons;  // whose, why
   // Errors and intervals are those of a minimum, at which a search that was stopped is not.
   const bool judged = result.fit.status != FitStatus::stopped || result.fit.has_converged();
-  for (const calib::FittedParameter& p : result.fit.parameters) {
-    if (!p.fitted) continue;
+  std::vector<const calib::FittedParameter*> fitted;
+  for (const calib::FittedParameter& p : result.fit.parameters)
+    if (p.fitted) fitted.push_back(&p);
+  if (fitted.size() > most) {
+    const auto doubtful = [](const calib::FittedParameter* p) {
+      return p->identifiability != calib::Identifiability::identified || p->at_bound;
+    };
+    std::stable_partition(fitted.begin(), fitted.end(), doubtful);
+  }
+  for (const calib::FittedParameter* each : fitted) {
+    if (text.rows() == most) break;
+    const calib::FittedParameter& p = *each;
     const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
     const ReadableUnit unit = readable_unit(p.value, spec.unit);
     const std::string whose = p.scope == datasets::Scope::rig ? "rig" : p.level;
@@ -369,7 +422,8 @@ std::string parameters_text(const Result& result, const Style& style) {
                                                  : "No parameter was estimated.\n";
   }
   return coloured("Parameters", "1", style) + "\n" + text.text(style.columns) +
-         foot_notes(reasons, text.rows(), style.columns);
+         more_text(fitted.size(), most, "parameters") +
+         foot_notes(reasons, text.rows(), most, style.columns);
 }
 
 std::string summary_text(const Result& result, const std::vector<std::string>& files,
@@ -396,7 +450,7 @@ std::string summary_text(const Result& result, const std::vector<std::string>& f
   return text;
 }
 
-std::string reasons_text(const Result& result, const Style& style) {
+std::string reasons_text(const Result& result, const Style& style, std::size_t most) {
   const calib::Fit& fit = result.fit;
   const FitStatus status = status_of(fit);
   const char* code = status == FitStatus::converged ? "32"
@@ -413,19 +467,30 @@ std::string reasons_text(const Result& result, const Style& style) {
   say(fit.message.empty() ? "status: " + word : fmt::format("status: {}: {}", word, fit.message),
       2);
   for (const auto& [name, aspect] : aspects_of(fit.assessment))
-    text += aspect_text(name, *aspect, fit, style);
+    text += aspect_text(name, *aspect, fit, most, style);
   if (!fit.agreement.empty()) say("starts: " + fit.agreement, 2);
   if (!fit.bootstrap_message.empty()) say("bootstrap: " + fit.bootstrap_message, 2);
   if (!fit.interval_advice.empty()) say("intervals: " + fit.interval_advice, 2);
-  for (const std::string& warning : fit.warnings)
-    if (!without_reason(fit, warning)) say("warning: " + warning, 2);
-  return text;
+  std::size_t warnings = 0;
+  for (const std::string& warning : fit.warnings) {
+    if (without_reason(fit, warning)) continue;
+    if (++warnings <= most) say("warning: " + warning, 2);
+  }
+  return text + more_text(warnings, most, "warnings");
 }
 
 std::string result_text(const Result& result, const std::vector<std::string>& files,
                         const Style& style) {
-  return summary_text(result, files, style) + "\n" + parameters_text(result, style) + "\n" +
-         scorecard_text(result, style) + "\n" + reasons_text(result, style);
+  std::string text;
+  for (const std::size_t most :
+       {kAll, std::size_t{24}, std::size_t{16}, std::size_t{12}, std::size_t{8}, std::size_t{5},
+        std::size_t{3}, std::size_t{2}, std::size_t{1}}) {
+    text = summary_text(result, files, style) + "\n" + parameters_text(result, style, most) + "\n" +
+           scorecard_text(result, style, most) + "\n" + reasons_text(result, style, most);
+    const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+    if (style.lines == 0 || lines <= style.lines) break;
+  }
+  return text;
 }
 
 std::string record_text(const datasets::Condition& condition, const datasets::Record& record) {

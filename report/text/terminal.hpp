@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,13 @@ namespace rigcal::report {
 struct Style {
   bool colour = false;
   std::size_t columns = 0;  ///< of the terminal; 0: tables as wide as they are
+  std::size_t lines = 0;    ///< that a result may take; 0: all that there is to say
 };
+
+/// Rows of a table that is not cut.
+inline constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+/// Lines of a result on a terminal, unless --verbose asks for all.
+inline constexpr std::size_t kTerminalLines = 60;
 
 /// Verdict with its four aspects, the three worst conditions, and where the files are: what is to
 /// be read first. Before these, where it was stopped or failed, that and why.
@@ -24,15 +31,22 @@ std::string summary_text(const Result& result, const std::vector<std::string>& f
 /// Agreement per condition, then gathered by use, frequency, waveform and leak level. Of several
 /// channels the worst is shown by name: that which breaks a limit, else that with the lowest rho2;
 /// every other is in scorecard.csv.
-std::string scorecard_text(const Result& result, const Style& style);
+///
+/// @param most  rows of each table: what is worst; the rest is counted
+std::string scorecard_text(const Result& result, const Style& style, std::size_t most = kAll);
 
 /// Fitted parameters in readable units with errors, bounds and what is to be thought of them.
-std::string parameters_text(const Result& result, const Style& style);
+///
+/// @param most  rows, of which those come first that are known least; the rest is counted
+std::string parameters_text(const Result& result, const Style& style, std::size_t most = kAll);
 
 /// Status, the reasons of each aspect, and the warnings.
-std::string reasons_text(const Result& result, const Style& style);
+///
+/// @param most  of each kind; the rest is counted
+std::string reasons_text(const Result& result, const Style& style, std::size_t most = kAll);
 
-/// All of these, as `fit` and `validate` print them.
+/// All of these, as `fit` and `validate` print them: where a terminal limits the lines, with as
+/// many rows as find room.
 ///
 /// @param files  paths
 std::string result_text(const Result& result, const std::vector<std::string>& files,

@@ -79,7 +79,7 @@ TEST_CASE("init: a draft that check accepts once its blanks are filled", "[apps]
 TEST_CASE("init: a folder stands for the recordings in it", "[apps]") {
   const CommandFolder folder;
   write_campaign(folder);
-  folder.write("records/notes.txt", "measured on a Monday");
+  folder.write("records/notes.md", "measured on a Monday");
   std::filesystem::create_symlink("loop.csv", folder.work() / "records/loop.csv");
   REQUIRE(folder.run({"init", "records", "--out", "new"}).exit_code == 0);
   REQUIRE(folder
@@ -151,7 +151,7 @@ TEST_CASE("init: a folder with a file that is no record", "[apps]") {
 TEST_CASE("init: what it refuses", "[apps]") {
   const CommandFolder folder;
   write_campaign(folder);
-  folder.write("empty/notes.txt", "none");
+  folder.write("empty/notes.md", "none");
   CHECK_THAT(folder.run({"init", "empty"}).err, Contains("empty: this folder holds no .csv"));
   CHECK(folder.run({"init"}).exit_code == 2);
   const Outcome missing = folder.run({"init", "records/none.csv"});
@@ -163,6 +163,11 @@ TEST_CASE("init: what it refuses", "[apps]") {
   CHECK_THAT(loop.err, Contains("loop.csv: cannot be opened"));
   folder.write("odd.csv", "a,b\n1,2\n");
   CHECK_THAT(folder.run({"init", "odd.csv"}).err, Contains("odd.csv: no column looks like a time"));
+  folder.write("tdms/run.tdms", std::string("TDSm\x0e\0\0\0", 8));
+  const Outcome tdms = folder.run({"init", "tdms"});
+  CHECK(tdms.exit_code == 2);
+  CHECK_THAT(tdms.err, Contains("run.tdms: is TDMS, of LabVIEW, which rigcal does not read") &&
+                           Contains("expected CSV"));
   CHECK_FALSE(folder.has("rigcal-out/campaign.toml"));
 
   REQUIRE(folder.run({"init", "records/sine_1.csv", "--out", "new", "--quiet"}).exit_code == 0);

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "report/document/render_html.hpp"
 #include "report/page/calibration/score_columns.hpp"
 #include "report/store/json.hpp"
 #include "report/store/stored/stored_fit.hpp"
@@ -13,9 +14,14 @@ int main() {
   std::vector<double> simulated = measured;
   for (double& value : simulated) value -= 1.0;
   rigcal::report::StoredAgreement scores{rigcal::metrics::agreement(measured, simulated)};
+  rigcal::report::Json titles = rigcal::report::Json::array();
+  for (const auto& column : rigcal::report::score_columns()) titles.push_back(column.title);
+  rigcal::report::Json cells = rigcal::report::Json::array();
+  for (const auto& cell : rigcal::report::score_cells(scores, nullptr, "m"))
+    cells.push_back(rigcal::report::doc::html(cell.line));
   const rigcal::report::Json json{{"scores", rigcal::report::json_of(scores)},
                                   {"schema", rigcal::report::schema_of<decltype(scores)>()},
-                                  {"titles", rigcal::report::score_titles()},
-                                  {"cells", rigcal::report::score_cells(scores, nullptr, "m")}};
+                                  {"titles", titles},
+                                  {"cells", cells}};
   std::fputs(rigcal::report::json_text(json).c_str(), stdout);
 }

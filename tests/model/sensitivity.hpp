@@ -24,12 +24,15 @@ struct Scenario {
   ControllerKind controller = ControllerKind::pid;
   InitialState initial = InitialState::rest;
   bool recorded_loads = false;
+  Feedback feedback = Feedback::position;
+  Before before = Before::hold;
 };
 
 inline Experiment experiment(const Scenario& s, const Experiment& rig = {}) {
   Experiment e = rig;
   e.rig.controller = s.controller;
   e.rig.initial = s.initial;
+  e.rig.feedback = s.feedback;
   e.inputs.drive = s.drive;
   e.set("kp", 900.0);
   for (const auto& [key, value] : s.values) e.set(key, value);
@@ -40,6 +43,8 @@ inline Experiment experiment(const Scenario& s, const Experiment& rig = {}) {
   e.times_s.clear();
   for (int i = 0; i < 50; ++i) e.times_s.push_back(0.00131 + 0.00253 * i);  // off every edge
   if (s.initial == InitialState::rest) e.times_s.insert(e.times_s.begin(), 0.0);
+  e.rig.before = s.before;
+  e.inputs.drive_begins_s = e.times_s.front();
   e.outputs.assign(kAllOutputs.begin(), kAllOutputs.end());
   e.options.tolerance = 1e-9;
   // One method: where two take turns, the errors of the runs of a difference are not alike.

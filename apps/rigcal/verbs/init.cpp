@@ -49,10 +49,14 @@ std::vector<std::filesystem::path> with_folders_opened(
       throw InputError(
           {path.string()},
           fmt::format("cannot be opened: {}; expected a folder of recordings", error.message()));
+    std::vector<std::filesystem::path> unread;
     for (const auto& entry : entries) {
-      if (entry.is_regular_file(error) && datasets::has_record_name(entry.path()))
-        files.push_back(entry.path());
+      if (!entry.is_regular_file(error)) continue;
+      if (datasets::may_be_recording(entry.path())) files.push_back(entry.path());
+      if (datasets::has_other_format_name(entry.path())) unread.push_back(entry.path());
     }
+    // Their reader says what to do with them.
+    if (files.size() == before) files.insert(files.end(), unread.begin(), unread.end());
     if (files.size() == before) {
       throw UsageError(fmt::format("{}: this folder holds no {} file; expected recordings",
                                    path.string(), datasets::record_extensions()));

@@ -90,6 +90,7 @@ std::string without_unit(std::string_view text) {
 
 bool CsvFields::next(CsvField& field) {
   if (done_) return false;
+  if (separator_ == ' ') return next_between_blanks(field);
   const std::size_t end = field_end(line_, position_, separator_);
   std::size_t begin = position_;
   while (begin < end && is_blank(line_[begin])) ++begin;
@@ -98,6 +99,16 @@ bool CsvFields::next(CsvField& field) {
   field = {line_.substr(begin, stop - begin), begin};
   done_ = end == line_.size();
   position_ = end + 1;
+  return true;
+}
+
+bool CsvFields::next_between_blanks(CsvField& field) {
+  constexpr std::string_view kBlanks = " \t";
+  const std::size_t begin = std::min(line_.find_first_not_of(kBlanks, position_), line_.size());
+  const std::size_t end = std::min(line_.find_first_of(kBlanks, begin), line_.size());
+  field = {line_.substr(begin, end - begin), begin};
+  done_ = line_.find_first_not_of(kBlanks, end) == std::string_view::npos;
+  position_ = end;
   return true;
 }
 
@@ -111,7 +122,13 @@ std::vector<CsvName> header_names(std::string_view header, char separator) {
   std::vector<CsvName> names;
   CsvFields fields(header, separator);
   for (CsvField field; fields.next(field);) {
-    const std::string full = as_utf8(unquoted(field.text));
+    std::string full = as_utf8(unquoted(field.text));
+    // Between blanks a unit in brackets is a word of its own.
+    const bool is_unit = separator == ' ' && !names.empty() && brackets_at_end(full) == 0;
+    if (is_unit) {
+      full = names.back().full + " " + full;
+      names.pop_back();
+    }
     names.push_back({full, without_unit(full)});
   }
   return names;

@@ -15,7 +15,7 @@ struct CsvField {
 };
 
 /// Walks over the fields of a line. A separator between double quotes separates nothing; the
-/// quotes stay part of the text.
+/// quotes stay part of the text. As separator a blank stands for any number of blanks and tabs.
 class CsvFields {
  public:
   CsvFields(std::string_view line, char separator) : line_(line), separator_(separator) {}
@@ -23,6 +23,8 @@ class CsvFields {
   bool next(CsvField& field);
 
  private:
+  bool next_between_blanks(CsvField& field);
+
   std::string_view line_;
   char separator_;
   std::size_t position_ = 0;

@@ -14,6 +14,7 @@
 #include "common/error.hpp"
 #include "common/parse_double.hpp"
 #include "common/suggest.hpp"
+#include "datasets/read/csv/csv_layout.hpp"
 #include "datasets/read/csv/csv_lines.hpp"
 #include "datasets/read/csv/csv_text.hpp"
 #include "datasets/read/limits.hpp"
@@ -23,11 +24,59 @@ namespace {
 
 constexpr std::size_t kMostColumns = 10'000;
 
+constexpr std::size_t kMostHeadLines = 500;  // looked through for the header
+constexpr std::size_t kMostHeadBytes = 4'000'000;
+
 struct Header {
   std::string file;
   long line = 0;
   char separator = ',';
   std::vector<CsvName> names;
+  std::vector<std::string> units{};  ///< of a row of their own, one per name; empty: none
+  long units_line = 0;
+  bool last_may_lack = false;  ///< rows may end before the last column, a comment
+};
+
+/// The lines of a file, of which the first may be looked at before they have their turn.
+class HeadedLines {
+ public:
+  explicit HeadedLines(CsvLines& lines) : lines_(lines) {}
+
+  /// Lines from the next one on, as far as they fit.
+  const std::vector<std::string>& look_ahead(std::size_t count) {
+    std::size_t bytes = 0;
+    for (const std::string& line : head_) bytes += line.size();
+    while (head_.size() < std::min(count, kMostHeadLines) && bytes < kMostHeadBytes && !ended_) {
+      const char* text = lines_.next();
+      ended_ = text == nullptr;
+      if (ended_) break;
+      head_.emplace_back(text);
+      bytes += head_.back().size();
+    }
+    return head_;
+  }
+  /// Whether what was looked at goes to the end of the file.
+  bool ended() const { return ended_; }
+
+  /// The next line; null after the last.
+  const char* next() {
+    if (taken_ < head_.size()) {
+      ++number_;
+      return head_[taken_++].c_str();
+    }
+    const char* text = ended_ ? nullptr : lines_.next();
+    if (text != nullptr) ++number_;
+    return text;
+  }
+  /// Of the line that next() gave last, from 1.
+  long number() const { return number_; }
+
+ private:
+  CsvLines& lines_;
+  std::vector<std::string> head_;
+  std::size_t taken_ = 0;
+  long number_ = 0;
+  bool ended_ = false;
 };
 
 bool is_blank(std::string_view line) {
@@ -40,16 +89,46 @@ bool is_comment(std::string_view line) {
 }
 
 std::string_view separator_name(char separator) {
-  return separator == '\t' ? "tab" : separator == ';' ? "';'" : "','";
+  return separator == '\t' ? "tab" : separator == ';' ? "';'" : separator == ' ' ? "blanks" : "','";
 }
 
 // ---- Header --------------------------------------------------------------------------------
 
-Header read_header(CsvLines& lines, const std::string& file, char separator) {
-  if (separator != 0 && separator != ',' && separator != ';' && separator != '\t')
-    throw InputError({file}, fmt::format("'{}' is no separator of columns; expected ',', ';' or "
-                                         "tab",
+/// Whether the first line is the header, as in most files: rows of as many numbers follow it.
+bool header_comes_first(const std::vector<std::string>& lines, char separator) {
+  const auto is_wanted = [](const std::string& line) { return !is_comment(line); };
+  const auto header = std::find_if(lines.begin(), lines.end(), is_wanted);
+  if (header == lines.end() || is_blank(*header)) return false;
+  const auto row =
+      std::find_if(header + 1, lines.end(), [](const auto& l) { return !is_blank(l); });
+  if (row == lines.end()) return false;
+  const char by = separator != 0 ? separator : find_separator(*header);
+  const std::size_t names = header_names(*header, by).size();
+  return is_row_of_numbers(*row, by, names) && !is_row_of_numbers(*header, by, names);
+}
+
+/// Below lines of text, between blanks, or above a row of units; nothing where it is none of that.
+std::optional<Header> unusual_header(HeadedLines& lines, const std::string& file, char separator) {
+  if (header_comes_first(lines.look_ahead(10), separator)) return std::nullopt;
+  const auto& head = lines.look_ahead(kMostHeadLines);
+  const auto layout = find_layout(head, lines.ended(), separator);
+  if (!layout || layout->names.size() > kMostColumns) return std::nullopt;
+  Header header{
+      file, static_cast<long>(layout->header) + 1, layout->separator, layout->names, layout->units,
+      0};
+  header.last_may_lack = layout->last_may_lack;
+  if (!header.units.empty()) header.units_line = static_cast<long>(layout->data);
+  while (lines.number() < static_cast<long>(layout->data)) lines.next();
+  return header;
+}
+
+Header read_header(HeadedLines& lines, const std::string& file, char separator) {
+  if (separator != 0 && separator != ',' && separator != ';' && separator != '\t' &&
+      separator != ' ')
+    throw InputError({file}, fmt::format("'{}' is no separator of columns; expected ',', ';', tab "
+                                         "or a blank",
                                          separator));
+  if (auto header = unusual_header(lines, file, separator)) return *header;
   const char* text = lines.next();
   while (text != nullptr && is_comment(text)) text = lines.next();
   if (text == nullptr)
@@ -79,6 +158,15 @@ Header read_header(CsvLines& lines, const std::string& file, char separator) {
   if (numbers_only)
     fail("holds numbers; expected the header with the names of the columns, without '#' in front");
   return header;
+}
+
+ColumnLabel label_of(const Header& header, std::size_t field) {
+  ColumnLabel label{header.names[field].full, {}, {}, header.line};
+  if (header.units.empty() || header.units[field].empty()) return label;
+  label.unit = header.units[field];
+  label.place = "row of units";
+  label.line = header.units_line;
+  return label;
 }
 
 /// Index of the column of this name, with its unit or without.
@@ -121,7 +209,7 @@ class RowReader {
     table_.columns.resize(request.columns.size());
     table_.labels.resize(request.columns.size());
     for (const Wanted& wanted : wanted_)
-      table_.labels[wanted.target] = {header.names[wanted.field].full, {}, {}, header.line};
+      table_.labels[wanted.target] = label_of(header, wanted.field);
   }
 
   void read(std::string_view line, long line_number) {
@@ -165,6 +253,7 @@ class RowReader {
   /// Takes a row as most loggers write it: numbers right between separators where they are wanted,
   /// and no quote where a field begins. Any other row it leaves as it is, right or wrong.
   bool read_plain(std::string_view line, long line_number) {
+    if (header_.separator == ' ') return false;
     const char* at = line.data();
     const char* const end = at + line.size();
     std::size_t length = 0;  // of the last wanted field
@@ -219,7 +308,8 @@ class RowReader {
           fail_on_time(line, line_number, field, *value, column.back());
         column.push_back(*value);
       }
-    if (count != header_.names.size()) fail_on_count(line, line_number, count);
+    const bool lacks_last = header_.last_may_lack && count + 1 == header_.names.size();
+    if (count != header_.names.size() && !lacks_last) fail_on_count(line, line_number, count);
     if (bad) fail_on_number(line, line_number, *bad, bad_index);
   }
 
@@ -338,7 +428,8 @@ CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) 
       std::find(names.begin(), names.end(), request.time_column) == names.end())
     throw std::invalid_argument("load_csv: time_column '" + request.time_column +
                                 "' is not among the columns");
-  CsvLines lines(path, request.max_bytes);
+  CsvLines file(path, request.max_bytes);
+  HeadedLines lines(file);
   const Header header = read_header(lines, path.string(), request.separator);
   RowReader reader(header, request);
   reader.reserve(most_rows(path, header));
@@ -359,26 +450,36 @@ CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request) 
   if (reader.rows() == 0)
     throw InputError({header.file, header.line},
                      "no rows after the header; expected at least one row of numbers");
-  if (lines.ends_without_newline()) reader.judge_end();
+  if (file.ends_without_newline()) reader.judge_end();
   return reader.take();
 }
 
+namespace {
+
+Header header_of(const std::filesystem::path& path, char separator) {
+  CsvLines file(path, CsvRequest{}.max_bytes);
+  HeadedLines lines(file);
+  return read_header(lines, path.string(), separator);
+}
+
+}  // namespace
+
 std::vector<std::string> csv_header(const std::filesystem::path& path, char separator) {
-  CsvLines lines(path, CsvRequest{}.max_bytes);
-  return short_names(read_header(lines, path.string(), separator).names);
+  return short_names(header_of(path, separator).names);
 }
 
 std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator) {
-  CsvLines lines(path, CsvRequest{}.max_bytes);
   std::vector<std::string> names;
-  for (const CsvName& name : read_header(lines, path.string(), separator).names)
-    names.push_back(name.full);
+  for (const CsvName& name : header_of(path, separator).names) names.push_back(name.full);
   return names;
 }
 
 std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path) {
+  const Header header = header_of(path, 0);
   std::vector<RecordColumn> columns;
-  for (std::string& name : csv_full_header(path)) columns.push_back({std::move(name), {}});
+  for (std::size_t i = 0; i < header.names.size(); ++i)
+    columns.push_back(
+        {header.names[i].full, header.units.empty() ? std::string() : header.units[i]});
   return columns;
 }
 

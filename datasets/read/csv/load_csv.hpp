@@ -28,8 +28,9 @@ struct CsvTable {
 
 /// Reads the wanted columns of a CSV file, strictly.
 ///
-/// Header in the first line that is not a comment ("#..."); a unit in the header may stand behind
-/// the name ("x [mm]", "x (mm)") and is not part of it. CRLF, a byte-order mark and a missing final
+/// Header in the first line that is not a comment ("#..."), or where find_layout() sees it: below
+/// lines of text, between blanks, above a row of units. A unit in the header may stand behind the
+/// name ("x [mm]", "x (mm)") and is not part of it. CRLF, a byte-order mark and a missing final
 /// newline are accepted; with ';' or tab as separator a decimal comma is accepted too. Everything
 /// else that is not a finite number in a wanted column is an error, as are a wrong count of
 /// columns, an empty field, time that does not increase, and a binary file. Columns that are not

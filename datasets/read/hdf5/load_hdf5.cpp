@@ -290,14 +290,22 @@ bool is_hdf5_file(const FileStart& start) {
 
 std::vector<RecordColumn> hdf5_record_columns(const std::filesystem::path& path) {
   require_regular_file(path, "an HDF5 file");
-  return list_confined(path, kHdf5Library, [&] { return Hdf5Columns(path).list(); });
+  return list_confined(path, kHdf5Library, [&] { return list_hdf5_here(path); });
+}
+
+std::vector<RecordColumn> list_hdf5_here(const std::filesystem::path& path) {
+  return Hdf5Columns(path).list();
+}
+
+RecordTable read_hdf5_here(const std::filesystem::path& path, const RecordRequest& request) {
+  return Hdf5Columns(path).read(request);
 }
 
 RecordTable load_hdf5_record(const std::filesystem::path& path, const RecordRequest& request) {
   require_time_column(request);
   require_regular_file(path, "an HDF5 file");
   return load_confined(path, kHdf5Library, request.columns.size(),
-                       [&] { return Hdf5Columns(path).read(request); });
+                       [&] { return read_hdf5_here(path, request); });
 }
 
 }  // namespace rigcal::datasets

@@ -10,6 +10,7 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "datasets/read/confined_read.hpp"
+#include "datasets/read/hdf5/load_hdf5.hpp"
 #include "datasets/read/mat/mat_columns.hpp"
 #include "datasets/read/mat/mat_hdf5.hpp"
 #include "datasets/read/mat/mat_level5.hpp"
@@ -64,6 +65,20 @@ Table read_columns(MatSource& source, const std::vector<std::string>& columns) {
   return table;
 }
 
+/// Whether a file of version 7.3 is one of plain HDF5 behind MATLAB's header, as Python's packages
+/// write it: matio knows none of its arrays, and MATLAB's own store of objects is not there.
+bool is_from_elsewhere(const MatSource& source, const std::filesystem::path& path) {
+  const auto& arrays = source.variables();
+  if (std::any_of(arrays.begin(), arrays.end(),
+                  [](const MatArray& array) { return array.kind != MatKind::object; }))
+    return false;
+  const auto columns = list_hdf5_here(path);
+  return !columns.empty() &&
+         std::none_of(columns.begin(), columns.end(), [](const RecordColumn& column) {
+           return column.name.starts_with("/#subsystem#");
+         });
+}
+
 Table read_table(const std::filesystem::path& path, const std::vector<std::string>& columns) {
   if (!is_hdf5(path)) {
     Level5Source source(path);
@@ -71,6 +86,7 @@ Table read_table(const std::filesystem::path& path, const std::vector<std::strin
   }
   const auto read = [&] {
     Hdf5Source source(path);
+    if (is_from_elsewhere(source, path)) return read_hdf5_here(path, {columns, {}});
     return RecordTable{read_columns(source, columns), {}};
   };
   return load_confined(path, kHdf5, columns.size(), read).columns;
@@ -79,7 +95,8 @@ Table read_table(const std::filesystem::path& path, const std::vector<std::strin
 }  // namespace
 
 bool is_mat_file(const FileStart& start) {
-  return start.extension == ".mat" || start.bytes.starts_with("MATLAB 5.0") ||
+  const bool is_plain_hdf5 = start.bytes.starts_with("\x89HDF");
+  return (start.extension == ".mat" && !is_plain_hdf5) || start.bytes.starts_with("MATLAB 5.0") ||
          start.bytes.starts_with("MATLAB 7.3");
 }
 
@@ -116,7 +133,10 @@ std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path) 
     return columns;
   };
   if (!is_hdf5(path)) return described(Level5Source(path));
-  return list_confined(path, kHdf5, [&] { return described(Hdf5Source(path)); });
+  return list_confined(path, kHdf5, [&] {
+    const Hdf5Source source(path);
+    return is_from_elsewhere(source, path) ? list_hdf5_here(path) : described(source);
+  });
 }
 
 RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request) {

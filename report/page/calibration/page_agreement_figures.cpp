@@ -27,7 +27,11 @@ struct Drive {
   const char* name;
   const char* unit;
 };
-constexpr Drive kDrives[] = {{"reference_m", "reference", "m"}, {"command_v", "command", "V"}};
+constexpr Drive kDrives[] = {{"reference_m", "reference", "m"},
+                             {"command_v", "command", "V"},
+                             {"force_reference_n", "force reference", "N"},
+                             {"load_pressure_reference_pa", "load pressure reference", "Pa"},
+                             {"acceleration_reference_m_per_s2", "acceleration reference", "m/s2"}};
 
 std::vector<double> counted(const std::vector<double>& values, const std::vector<double>* window) {
   if (window == nullptr) return values;
@@ -214,19 +218,18 @@ std::optional<double> periodic_frequency(const StoredCondition& condition) {
   return condition.frequency_hz;
 }
 
-Json agreement_view(const std::string& condition, std::optional<double> frequency_hz,
-                    const Table& series) {
-  Json view = Json::array();
-  for (const ChannelAgreement& channel : channel_agreements(condition, frequency_hz, series)) {
-    Json figures = Json::array();
-    for (const Figure& figure : channel.figures)
-      figures.push_back({{"svg_html", svg(figure.plot)}});
-    view.push_back({{"channel", spaced(channel.channel)},
-                    {"residual", channel.residual},
-                    {"response", channel.response},
-                    {"figures", std::move(figures)}});
+doc::Blocks agreement_blocks(const std::string& condition, std::optional<double> frequency_hz,
+                             const Table& series) {
+  doc::Blocks blocks;
+  for (ChannelAgreement& channel : channel_agreements(condition, frequency_hz, series)) {
+    blocks.emplace_back(doc::Heading{{spaced(channel.channel)}, 4});
+    doc::Gallery gallery;
+    for (Figure& figure : channel.figures)
+      gallery.figures.push_back(figure_of(std::move(figure.plot)));
+    blocks.emplace_back(std::move(gallery));
+    blocks.emplace_back(doc::reading(channel.residual + " " + channel.response));
   }
-  return view;
+  return blocks;
 }
 
 }  // namespace rigcal::report

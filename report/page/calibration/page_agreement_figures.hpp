@@ -28,8 +28,8 @@ std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
 /// Frequency of a condition's drive where it is periodic, from its entry in fit.json.
 std::optional<double> periodic_frequency(const StoredCondition& condition);
 
-/// For the template: an entry for each channel.
-Json agreement_view(const std::string& condition, std::optional<double> frequency_hz,
-                    const Table& series);
+/// The figures of every channel, with what they say.
+doc::Blocks agreement_blocks(const std::string& condition, std::optional<double> frequency_hz,
+                             const Table& series);
 
 }  // namespace rigcal::report

@@ -2,82 +2,64 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "common/parallel.hpp"
+#include "report/page/calibration/assessed.hpp"
+#include "report/page/calibration/certificate.hpp"
+#include "report/page/calibration/fit_sections.hpp"
+#include "report/text/stopped_sentence.hpp"
 
 namespace rigcal::report {
 namespace {
 
-/// All interactive series of a page together take about this many bytes.
-constexpr std::size_t kSeriesBytes = 3'600'000;
-constexpr double kBytesPerPoint = 2.0 * 4.0 / 3.0;
-constexpr std::size_t kLeastPoints = 2000;
-
-/// Points of one series, so that all of them together keep the size of the page.
-std::size_t points_of(const Calibration& stored) {
-  std::size_t columns = 0;
-  for (std::size_t i = 0; i < stored.result.conditions.size(); ++i)
-    columns += stored.series(i)->columns.size();
-  const auto points =
-      static_cast<std::size_t>(static_cast<double>(kSeriesBytes) / kBytesPerPoint /
-                               static_cast<double>(std::max<std::size_t>(1, columns)));
-  return std::max(points, kLeastPoints);
-}
-
-Json condition_views(const Calibration& stored, int threads) {
-  const std::vector<StoredCondition>& conditions = stored.result.conditions;
-  const std::size_t points = points_of(stored);
-  std::vector<Json> sections(conditions.size());
-  parallel_for(conditions.size(), threads, [&](std::size_t i) {
-    sections[i] = condition_view(conditions[i], *stored.series(i),
-                                 find(stored.curves.conditions, conditions[i].id), points);
-    sections[i]["open"] = i == 0 || conditions.size() <= kFew;
-  });
-  return sections;
+/// The verdict on a fit to published tables, which has no records.
+doc::Verdict tables_verdict(const StoredTablesFit& fit) {
+  using calib::FitStatus;
+  if (fit.status != FitStatus::converged) {
+    doc::Verdict verdict;
+    if (fit.status == FitStatus::failed)
+      verdict = {{doc::State::bad, "FAILED"}, {kNoUsableResult}};
+    else
+      verdict = {{doc::State::bad, "STOPPED"}, {stopped_sentence(calib::StoppedIn::starts)}};
+    add_reason(verdict, fit.message, {});
+    return verdict;
+  }
+  doc::Verdict verdict{
+      {doc::State::none, "FITTED"},
+      {fmt::format("Estimated from {} published numbers; their weighted logarithms are off by "
+                   "{:.1f} % rms.",
+                   fit.residual_count, 100.0 * fit.rms.value_or(0.0))}};
+  for (const StoredParameter& p : fit.parameters) {
+    if (!p.reason.empty())
+      add_reason(verdict, fmt::format("{}: {}", parameter_label(p), p.reason), "parameters");
+  }
+  return verdict;
 }
 
 Part tables_fit_part(const StoredTablesFit& fit) {
-  Part part;
-  part.link = "parameters";
-  part.name = "Calibration from published tables";
-  part.campaign = fit.campaign;
-  part.provenance = provenance_view(fit.provenance, "Calibration", "fit.json");
-  add_making(fit, part.provenance);
-  part.view["parameters"] =
-      parameters_view(fit.parameters, fit.correlation, fit.status != calib::FitStatus::stopped);
-  part.view["has_records"] = false;
-  part.headline = tables_headline(fit);
+  Part part = part_of(fit, "parameters", "Calibration from published tables", "fit.json");
+  part.verdict = tables_verdict(fit);
+  part.sections = {
+      parameters_section(fit.parameters, fit.correlation, fit.status != calib::FitStatus::stopped)};
+  part.provenance = provenance_blocks(fit.provenance, "Calibration", "fit.json", making_of(fit));
   part.nav = {{"parameters", "Parameters"}};
   return part;
 }
 
 Part fit_part(const Calibration& stored, int threads) {
   const StoredFit& fit = stored.result;
-  Part part;
-  part.link = "parameters";
-  part.name = fit.schema == kFitSchema ? "Calibration" : "Validation";
-  part.campaign = fit.campaign;
-  part.identity = identity_view(fit.report);
-  part.provenance = provenance_view(fit.provenance, part.name, stored.file);
-  add_making(fit, part.provenance);
-  part.synthetic = fit.synthetic;
-  part.headline = headline_view(fit);
-  part.overview = overview_view(stored);
+  Part part = part_of(fit, "parameters", fit.schema == kFitSchema ? "Calibration" : "Validation",
+                      stored.file);
   const bool unfinished = fit.status == calib::FitStatus::stopped && !searched_to_the_end(fit);
-  part.view["parameters"] = parameters_view(fit.parameters, fit.correlation, !unfinished);
-  part.view["has_records"] = true;
-  part.view["unfinished"] = unfinished;
-  part.view["matrix"] = matrix_view(fit);
-  part.view["has_matrix"] = !part.view["matrix"].empty();
-  part.view["groups"] = groups_view(fit);
-  part.view["group_count"] = fmt::format("{}", part.view["groups"].size());
-  part.view["has_conditions"] = !fit.conditions.empty();
-  part.view["conditions"] = condition_views(stored, threads);
-  part.view["identifiability"] = identifiability_view(fit);
-  part.view["trust"] = trust_view(fit);
-  part.view["starts"] = starts_view(fit);
-  part.view["ledger"] = ledger_view(fit);
+  part.verdict = fit_verdict(fit);
+  part.front = certificate(stored);
+  part.sections.push_back(assessment_section(fit));
+  if (auto overview = overview_section(stored)) part.sections.push_back(std::move(*overview));
+  part.sections.push_back(scores_section(fit, unfinished));
+  part.sections.push_back(parameters_section(fit.parameters, fit.correlation, !unfinished));
+  part.sections.push_back(conditions_section(stored, threads));
+  part.sections.push_back(identifiability_section(fit));
+  part.sections.push_back(starts_section(fit));
+  part.sections.push_back(warnings_section(fit));
+  part.provenance = provenance_blocks(fit.provenance, part.name, stored.file, making_of(fit));
   part.nav = {{"matrix", "Scores"},         {"parameters", "Parameters"},
               {"conditions", "Conditions"}, {"identifiability", "Identifiability"},
               {"starts", "Starts"},         {"warnings", "Warnings"}};

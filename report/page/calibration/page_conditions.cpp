@@ -2,7 +2,12 @@
 
 #include <algorithm>
 
+#include "common/parallel.hpp"
+#include "report/document/quantity.hpp"
+#include "report/document/render_html.hpp"
+#include "report/document/words.hpp"
 #include "report/figure/time_plots.hpp"
+#include "report/page/calibration/fit_sections.hpp"
 #include "report/page/calibration/page_agreement_figures.hpp"
 #include "report/page/calibration/score_columns.hpp"
 #include "report/page/page_parts.hpp"
@@ -19,32 +24,45 @@ const StoredAgreement* uncertainty_of(const StoredCondition& condition,
   return found != nullptr && found->has_value() ? &**found : nullptr;
 }
 
-/// Of a table of scores: channel, noise ceiling, gain, phase, delay.
-constexpr std::size_t kOtherColumns = 5;
-
-Json score_rows(const StoredCondition& condition) {
-  Json rows = Json::array();
+void add_scores(const StoredCondition& condition, doc::Blocks& blocks) {
+  if (condition.metrics.empty()) return;
+  const bool uncertain = std::any_of(
+      condition.metrics.begin(), condition.metrics.end(),
+      [&](const auto& each) { return uncertainty_of(condition, each.first) != nullptr; });
+  if (uncertain)
+    blocks.emplace_back(doc::reading(
+        "± expanded uncertainty of a score (95 %), by the scatter of the repeats and the stated "
+        "uncertainty of the sensors."));
+  using Kind = doc::Column::Kind;
+  doc::Table table{"Scores of " + condition.id};
+  table.columns = {{"Channel"}};
+  for (doc::Column& column : score_columns()) table.columns.push_back(std::move(column));
+  for (const char* title : {"Noise ceiling of rho2", "Gain ratio", "Phase °", "Delay"})
+    table.columns.push_back({title, Kind::number});
   for (const auto& [channel, scores] : condition.metrics) {
-    const std::string_view unit = channel_unit(channel);
+    const doc::Badge verdict = doc::badge(condition.verdict_of(channel));
     const auto* floor = find(condition.noise_floor, channel);
     const bool has_floor = floor != nullptr && floor->has_value();
-    rows.push_back(
-        {{"channel", channel},
-         {"badge", badge(condition.verdict_of(channel))},
-         {"cells", score_cells(scores, uncertainty_of(condition, channel), unit)},
-         {"floor", shown_agreement(has_floor ? std::optional((*floor)->rho2) : std::nullopt)},
-         {"gain", shown_in(scores.gain_ratio, 1.0, 5)},
-         {"phase", shown_in(scores.phase_deg, 1.0, 2)},
-         {"delay", shown(scores.delay_s, "s", 2)},
-         {"problem", scores.problem.value_or("")},
-         {"has_problem", scores.problem.has_value()}});
+    doc::Row row{{doc::Line{doc::Mark{verdict.state, verdict.words}, " " + channel}}};
+    for (doc::Cell& cell :
+         score_cells(scores, uncertainty_of(condition, channel), channel_unit(channel)))
+      row.cells.push_back(std::move(cell));
+    for (doc::Quantity quantity :
+         {doc::agreement(has_floor ? std::optional((*floor)->rho2) : std::nullopt),
+          doc::in_unit(scores.gain_ratio, 1.0, 5), doc::in_unit(scores.phase_deg, 1.0, 2),
+          doc::readable(scores.delay_s, "s", 2)})
+      row.cells.push_back({doc::Line{std::move(quantity)}});
+    if (scores.problem) row.notes = {*scores.problem};
+    table.rows.push_back(std::move(row));
   }
-  return rows;
+  blocks.emplace_back(std::move(table));
 }
 
-Json facts_of(const StoredCondition& condition) {
-  Json facts = Json::array();
-  const auto add = [&](const std::string& text) { facts.push_back({{"text", text}}); };
+doc::Line facts_of(const StoredCondition& condition) {
+  doc::Line facts;
+  const auto add = [&](const std::string& text) {
+    facts.emplace_back((facts.empty() ? "" : " · ") + text);
+  };
   if (condition.waveform) add(std::string(to_string(*condition.waveform)));
   const auto quantity = [&](const std::optional<double>& value, const char* unit,
                             const char* name) {
@@ -53,6 +71,9 @@ Json facts_of(const StoredCondition& condition) {
   quantity(condition.frequency_hz, "Hz", "");
   quantity(condition.amplitude_m, "m", "amplitude ");
   quantity(condition.amplitude_v.value_or(std::nullopt), "V", "amplitude ");
+  quantity(condition.amplitude_n, "N", "amplitude ");
+  quantity(condition.amplitude_pa, "Pa", "amplitude ");
+  quantity(condition.amplitude_m_per_s2, "m/s2", "amplitude ");
   if (condition.leak_level) add("leak " + *condition.leak_level);
   if (condition.temperature_k) add(fmt::format("{:.4g} °C", *condition.temperature_k - 273.15));
   if (condition.date) add(*condition.date);
@@ -61,10 +82,119 @@ Json facts_of(const StoredCondition& condition) {
   return facts;
 }
 
-Json texts_view(const std::vector<std::string>& texts) {
-  Json list = Json::array();
-  for (const std::string& text : texts) list.push_back({{"text", text}});
-  return list;
+/// A plot over time as the script of the page reads it.
+Json live_plot(const TimePlot& plot, SeriesData& data) {
+  Json lines = Json::array();
+  for (const TimeLine& line : plot.lines) {
+    lines.push_back(
+        {{"column", data.add(*line.values, plot.si)}, {"name", line.name}, {"style", line.style}});
+  }
+  Json entry{{"name", plot.name}, {"unit", plot.unit}, {"height", plot.height}};
+  entry["lines"] = std::move(lines);
+  entry["sd"] = plot.sd != nullptr ? Json(data.add(*plot.sd, *plot.lines.front().values, plot.si))
+                                   : Json(nullptr);
+  entry["prediction"] = nullptr;
+  if (plot.prediction_sd == nullptr) return entry;
+  const auto& middle =
+      plot.prediction_middle != nullptr ? *plot.prediction_middle : *plot.prediction_sd;
+  const auto line = std::find_if(plot.lines.begin(), plot.lines.end(), [&](const auto& each) {
+    return each.values == plot.prediction_middle;
+  });
+  entry["prediction"] = {
+      {"sd", data.add(*plot.prediction_sd, middle, plot.si)},
+      {"middle",
+       line == plot.lines.end()
+           ? Json(nullptr)
+           : entry["lines"][static_cast<std::size_t>(line - plot.lines.begin())]["column"]},
+      {"factor", kNormal95}};
+  return entry;
+}
+
+/// The plots over time, and the series that they zoom into.
+///
+/// @param points  of one series, about
+/// @return        how many plots there are
+std::size_t add_plots(const StoredCondition& condition, const Table& series, std::size_t points,
+                      doc::Blocks& blocks) {
+  if (series.columns.empty() || series.columns.front().empty()) return 0;
+  SeriesData data(series, points);
+  Json plots = Json::array();
+  for (const TimePlot& plot : time_plots(series)) {
+    blocks.emplace_back(
+        doc::LivePlot{plots.size(), anchor(condition.id) + "_" + plot.name,
+                      description(plot, series), fmt::format("{} [{}]", plot.title, plot.unit),
+                      [plot, &series, id = condition.id] { return picture(plot, series, id); }});
+    plots.push_back(live_plot(plot, data));
+  }
+  const std::size_t count = plots.size();
+  if (count == 0) return 0;
+  data.json()["plots"] = std::move(plots);
+  const auto each = data.json()["samples_per_point"].get<std::size_t>();
+  blocks.emplace_back(doc::Paragraph{
+      {fmt::format("From residuals/{}.csv{}.", condition.id,
+                   each > 1 ? fmt::format("; every {} samples are drawn as their least and "
+                                          "largest value",
+                                          each)
+                            : std::string())},
+      doc::Paragraph::Tone::source});
+  blocks.emplace_back(doc::LiveSeries{data.text()});
+  return count;
+}
+
+/// @param series  residuals/<condition>.csv
+/// @param curves  its entry in residual_tests.json, or null
+/// @param open    its curves are shown at once
+doc::Article article_of(const StoredCondition& condition, const Table& series,
+                        const StoredChannelCurves* curves, std::size_t points, bool open) {
+  const doc::Badge verdict = doc::badge(condition.verdict);
+  doc::Article article{anchor(condition.id), {verdict, " " + condition.id}, {}};
+  doc::Blocks& blocks = article.blocks;
+  blocks.emplace_back(doc::Paragraph{facts_of(condition)});
+  const auto problem = [&](const std::string& text) {
+    blocks.emplace_back(doc::Paragraph{{text}, doc::Paragraph::Tone::problem});
+  };
+  if (condition.not_scored) problem("Not scored: " + *condition.not_scored);
+  if (condition.failure) problem("Could not be simulated: " + *condition.failure);
+  blocks.emplace_back(list_of(condition.reasons, verdict.state));
+  doc::List doubts;
+  doubts.state = doc::State::warn;
+  for (const std::string& text : condition.warnings) doubts.items.push_back({"Recording: " + text});
+  blocks.emplace_back(std::move(doubts));
+  add_scores(condition, blocks);
+  doc::Fold curves_of{"", {}, open, "curves"};
+  const std::size_t plots = add_plots(condition, series, points, curves_of.blocks);
+  // A condition that was scored has a series; without it the page would only look complete.
+  if (!condition.metrics.empty() && plots == 0)
+    problem(fmt::format("residuals/{}.csv is missing or holds no rows: nothing can be drawn.",
+                        condition.id));
+  doc::Blocks agreement = agreement_blocks(condition.id, periodic_frequency(condition), series);
+  if (!agreement.empty()) {
+    doc::Fold fold{"Parity, histogram, gain and phase", std::move(agreement)};
+    fold.style = "agreement";
+    curves_of.blocks.emplace_back(std::move(fold));
+  }
+  add_residual_tests(condition, curves, curves_of.blocks);
+  if (curves_of.blocks.empty()) return article;
+  curves_of.summary =
+      fmt::format("Curves and residual tests ({} plot{} over time)", plots, plots == 1 ? "" : "s");
+  blocks.emplace_back(std::move(curves_of));
+  return article;
+}
+
+/// All interactive series of a page together take about this many bytes.
+constexpr std::size_t kSeriesBytes = 3'600'000;
+constexpr double kBytesPerPoint = 2.0 * 4.0 / 3.0;
+constexpr std::size_t kLeastPoints = 2000;
+
+/// Points of one series, so that all of them together keep the size of the page.
+std::size_t points_of(const Calibration& stored) {
+  std::size_t columns = 0;
+  for (std::size_t i = 0; i < stored.result.conditions.size(); ++i)
+    columns += stored.series(i)->columns.size();
+  const auto points =
+      static_cast<std::size_t>(static_cast<double>(kSeriesBytes) / kBytesPerPoint /
+                               static_cast<double>(std::max<std::size_t>(1, columns)));
+  return std::max(points, kLeastPoints);
 }
 
 }  // namespace
@@ -81,86 +211,29 @@ std::vector<Figure> condition_figures(const StoredCondition& condition, const Ta
   return figures;
 }
 
-Json condition_view(const StoredCondition& condition, const Table& series,
-                    const StoredChannelCurves* curves, std::size_t points) {
-  const std::string& id = condition.id;
-  Json view;
-  view["id"] = id;
-  view["not_scored"] = condition.not_scored.value_or("");
-  view["is_not_scored"] = condition.not_scored.has_value();
-  view["anchor"] = anchor(id);
-  view["badge"] = badge(condition.verdict);
-  view["failure"] = condition.failure.value_or("");
-  view["failed"] = condition.failure.has_value();
-  view["facts"] = facts_of(condition);
-  view["reasons"] = texts_view(condition.reasons);
-  view["has_reasons"] = !condition.reasons.empty();
-  view["doubts"] = texts_view(condition.warnings);
-  view["has_doubts"] = !condition.warnings.empty();
-  view["metrics"] = score_titles();
-  view["score_columns"] = fmt::format("{}", view["metrics"].size() + kOtherColumns);
-  view["scores"] = score_rows(condition);
-  view["has_scores"] = !view["scores"].empty();
-  view["has_uncertainty"] = std::any_of(
-      condition.metrics.begin(), condition.metrics.end(),
-      [&](const auto& each) { return uncertainty_of(condition, each.first) != nullptr; });
-  view["plots"] = Json::array();
-  view["has_plots"] = false;
-  if (!series.columns.empty() && !series.columns.front().empty()) {
-    SeriesData data(series, points);
-    Json& plots = data.json()["plots"] = Json::array();
-    for (const TimePlot& plot : time_plots(series)) {
-      Json lines = Json::array();
-      for (const TimeLine& line : plot.lines) {
-        lines.push_back({{"column", data.add(*line.values, plot.si)},
-                         {"name", line.name},
-                         {"style", line.style}});
-      }
-      Json entry{{"name", plot.name}, {"unit", plot.unit}, {"height", plot.height}};
-      entry["lines"] = std::move(lines);
-      entry["sd"] = plot.sd != nullptr
-                        ? Json(data.add(*plot.sd, *plot.lines.front().values, plot.si))
-                        : Json(nullptr);
-      entry["prediction"] = nullptr;
-      if (plot.prediction_sd != nullptr) {
-        const auto& middle =
-            plot.prediction_middle != nullptr ? *plot.prediction_middle : *plot.prediction_sd;
-        const auto line = std::find_if(plot.lines.begin(), plot.lines.end(), [&](const auto& each) {
-          return each.values == plot.prediction_middle;
-        });
-        entry["prediction"] = {
-            {"sd", data.add(*plot.prediction_sd, middle, plot.si)},
-            {"middle",
-             line == plot.lines.end()
-                 ? Json(nullptr)
-                 : entry["lines"][static_cast<std::size_t>(line - plot.lines.begin())]["column"]},
-            {"factor", kNormal95}};
-      }
-      plots.push_back(std::move(entry));
-      view["plots"].push_back({{"name", plot.name},
-                               {"title", plot.title},
-                               {"unit", plot.unit},
-                               {"number", fmt::format("{}", plots.size() - 1)},
-                               {"description", description(plot, series)},
-                               {"svg_html", svg(picture(plot, series, id))}});
-    }
-    view["has_plots"] = !view["plots"].empty();
-    view["thinned"] = data.json()["samples_per_point"].get<std::size_t>() > 1;
-    view["samples_per_point"] =
-        fmt::format("{}", data.json()["samples_per_point"].get<std::size_t>());
-    view["data_html"] = data.text();
+doc::Section conditions_section(const Calibration& stored, int threads) {
+  const std::vector<StoredCondition>& conditions = stored.result.conditions;
+  doc::Section section{"conditions", "Conditions"};
+  if (conditions.empty()) {
+    section.blocks.emplace_back(doc::reading("No condition was scored."));
+    return section;
   }
-  // A condition that was scored has a series; without it the page would only look complete.
-  view["lost"] = view["has_scores"].get<bool>() && !view["has_plots"].get<bool>();
-  view["agreement"] = agreement_view(id, periodic_frequency(condition), series);
-  view["has_agreement"] = !view["agreement"].empty();
-  view["tests"] = tests_view(condition, curves);
-  view["has_tests"] = !view["tests"].empty();
-  view["has_curves"] = view["has_plots"].get<bool>() || view["has_tests"].get<bool>();
-  const std::size_t plots = view["plots"].size();
-  view["curves"] =
-      fmt::format("Curves and residual tests ({} plot{} over time)", plots, plots == 1 ? "" : "s");
-  return view;
+  section.blocks.emplace_back(doc::Paragraph{
+      {"Drag across a plot to zoom in time; all plots of a condition move together. Double-click "
+       "or 0 shows all. Focus a plot for the keyboard: plus, minus, arrows."},
+      doc::Paragraph::Tone::screen});
+  const std::size_t points = points_of(stored);
+  std::vector<std::string> articles(conditions.size());
+  // Each is drawn at once: the series of all together would be the most memory that a page takes.
+  parallel_for(conditions.size(), threads, [&](std::size_t i) {
+    const std::shared_ptr<const Table> series = stored.series(i);
+    const bool open = i == 0 || conditions.size() <= kFew;
+    doc::render_html({article_of(conditions[i], *series,
+                                 find(stored.curves.conditions, conditions[i].id), points, open)},
+                     articles[i]);
+  });
+  for (std::string& article : articles) section.blocks.emplace_back(doc::Raw{std::move(article)});
+  return section;
 }
 
 }  // namespace rigcal::report

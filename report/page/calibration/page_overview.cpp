@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "common/significant.hpp"
+#include "report/document/words.hpp"
 #include "report/figure/decimate.hpp"
+#include "report/page/calibration/fit_sections.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
@@ -46,17 +48,6 @@ std::size_t first_shown(const StoredCondition& condition, const std::vector<doub
   const double from = time_s.back() - kPeriods / *frequency;
   return static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), from) -
                                   time_s.begin());
-}
-
-/// The parts of an id, between which a line may break: "square_", "10Hz_", "open".
-Json words_of(const std::string& id) {
-  Json words = Json::array();
-  for (std::size_t begin = 0; begin < id.size();) {
-    const std::size_t end = std::min(id.find('_', begin), id.size() - 1) + 1;
-    words.push_back(id.substr(begin, end - begin));
-    begin = end;
-  }
-  return words;
 }
 
 Plot small_plot(const StoredCondition& condition, const Table& series, const std::string& channel) {
@@ -134,11 +125,12 @@ const StoredParameter* least_certain(const std::vector<StoredParameter>& paramet
   return least;
 }
 
-Json three_numbers(const StoredFit& fit) {
+doc::Facts three_numbers(const StoredFit& fit) {
   using metrics::Agreement;
-  Json numbers = Json::array();
+  doc::Facts numbers{"Three numbers"};
+  numbers.shape = doc::Facts::Shape::grid;
   const auto add = [&](const char* name, const std::string& text, const std::string& of) {
-    numbers.push_back({{"name", name}, {"text", text}, {"of", of}});
+    numbers.rows.push_back({name, {doc::Strong{text}, " ", doc::Soft{of}}});
   };
   if (const auto least = extreme(fit.conditions, &Agreement::rho2, std::less<>()))
     add("Lowest rho2", agreement_text(least->value), whose(*least, "rho2", &Agreement::rho2));
@@ -158,22 +150,29 @@ Json three_numbers(const StoredFit& fit) {
 
 }  // namespace
 
-Json overview_view(const Calibration& stored) {
+std::optional<doc::Section> overview_section(const Calibration& stored) {
   const std::vector<StoredCondition>& conditions = stored.result.conditions;
   const std::string channel = shown_channel(conditions);
-  Json view{{"there", !channel.empty()}, {"channel", spaced(channel)}, {"cells", Json::array()}};
-  view["numbers"] = channel.empty() ? Json::array() : three_numbers(stored.result);
-  view["has_numbers"] = !view["numbers"].empty();
-  if (channel.empty()) return view;
+  if (channel.empty()) return std::nullopt;
+  doc::Section section{"overview", "All conditions"};
+  section.blocks.emplace_back(three_numbers(stored.result));
+  section.blocks.emplace_back(doc::reading(
+      fmt::format("The {} over the last two periods, or the whole record: measured dark and wide, "
+                  "model orange. Each leads to its condition.",
+                  spaced(channel))));
+  doc::Tiles tiles;
   for (std::size_t i = 0; i < conditions.size(); ++i) {
-    const Plot plot = small_plot(conditions[i], *stored.series(i), channel);
-    view["cells"].push_back({{"words", words_of(conditions[i].id)},
-                             {"anchor", anchor(conditions[i].id)},
-                             {"badge", badge(conditions[i].verdict)},
-                             {"drawn", !plot.traces.empty()},
-                             {"plot_html", plot.traces.empty() ? std::string() : svg(plot)}});
+    doc::Tile tile{doc::badge(conditions[i].verdict), {conditions[i].id}};
+    tile.to = "#" + anchor(conditions[i].id);
+    Plot plot = small_plot(conditions[i], *stored.series(i), channel);
+    if (plot.traces.empty())
+      tile.below = {{"not simulated"}};
+    else
+      tile.picture = std::move(plot);
+    tiles.tiles.push_back(std::move(tile));
   }
-  return view;
+  section.blocks.emplace_back(std::move(tiles));
+  return section;
 }
 
 }  // namespace rigcal::report

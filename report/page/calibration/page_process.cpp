@@ -3,10 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/document/quantity.hpp"
+#include "report/page/calibration/fit_sections.hpp"
 #include "report/page/page_parts.hpp"
 
 namespace rigcal::report {
 namespace {
+
+using doc::Line;
+using Kind = doc::Column::Kind;
+
+doc::Table start_table(const StoredFit& fit) {
+  doc::Table table{"Starts"};
+  table.columns = {{"Start", Kind::number},         {"Status"},
+                   {"Cost at start", Kind::number}, {"Cost at end", Kind::number},
+                   {"Iterations", Kind::number},    {"Why it ended", Kind::words}};
+  for (const StoredStart& start : fit.starts) {
+    const bool best = start.number == fit.best_start;
+    table.rows.push_back(
+        {{fmt::format("{}{}", start.number, best ? " ★ best" : ""),
+          std::string(to_string(start.status)), doc::in_unit(start.initial_cost, 1.0, 6),
+          doc::in_unit(start.final_cost, 1.0, 6), fmt::format("{}", start.iterations),
+          start.message}});
+  }
+  return table;
+}
 
 /// What a fit of one start says of further ones.
 std::string further_starts_of(const StoredFit& fit) {
@@ -18,133 +39,167 @@ std::string further_starts_of(const StoredFit& fit) {
   return "One start alone: whether another minimum lies lower was not looked for.";
 }
 
-}  // namespace
-
-Json starts_view(const StoredFit& fit) {
-  Json view;
-  view["known"] = !fit.starts.empty();
-  view["rows"] = Json::array();
-  std::vector<double> costs;
-  double least = HUGE_VAL;
-  for (const StoredStart& start : fit.starts) {
-    view["rows"].push_back({{"number", fmt::format("{}", start.number)},
-                            {"best", start.number == fit.best_start},
-                            {"status", to_string(start.status)},
-                            {"initial_cost", shown_in(start.initial_cost, 1.0, 6)},
-                            {"final_cost", shown_in(start.final_cost, 1.0, 6)},
-                            {"iterations", fmt::format("{}", start.iterations)},
-                            {"message", start.message}});
-    if (!start.final_cost || start.status == calib::FitStatus::failed) continue;
-    costs.push_back(*start.final_cost);
-    least = std::min(least, *start.final_cost);
-  }
-  std::sort(costs.begin(), costs.end());
-  view["count"] = fmt::format("{}", fit.starts.size());
-  view["few"] = fit.starts.size() <= kFew;
-  if (costs.empty()) {
-    view["reading"] = "No start ended with a cost: there is no answer.";
-  } else if (fit.starts.size() == 1) {
-    view["reading"] = further_starts_of(fit);
-  } else {
-    view["reading"] = fit.agreement + ".";
-  }
+/// What the starts say together.
+///
+/// @param costs  in which they ended, sorted
+std::string start_reading(const StoredFit& fit, const std::vector<double>& costs) {
+  if (costs.empty()) return "No start ended with a cost: there is no answer.";
+  std::string text =
+      fit.starts.size() == 1 ? further_starts_of(fit) : std::string(fit.agreement) + ".";
+  if (fit.starts.size() == 1 && !fit.agreement.empty())
+    text += " " + capitalised(fit.agreement) + ".";
   constexpr double kSameCost = 1e-3;
-  if (fit.cost && !costs.empty() && std::abs(*fit.cost - least) > kSameCost * least) {
-    view["reading"] = fmt::format(
-        "{} These costs are by the noise as it was taken before the last estimate of it; by that "
-        "of the result the cost is {:.6g}.",
-        text_of(view, "reading"), *fit.cost);
+  if (fit.cost && std::abs(*fit.cost - costs.front()) > kSameCost * costs.front()) {
+    text += fmt::format(
+        " These costs are by the noise as it was taken before the last estimate of it; by that of "
+        "the result the cost is {:.6g}.",
+        *fit.cost);
   }
-  view["waterfall"] = costs.size() > 1;
-  if (costs.size() > 1) {
-    Plot plot = ranked_points("Cost of every start, sorted", "final cost", costs);
-    plot.x_label = "start, best first";
-    view["plot_html"] = svg(plot);
-  }
-  return view;
+  return text;
 }
 
-Json ledger_view(const StoredFit& fit) {
-  Json view;
-  view["warnings"] = Json::array();
+}  // namespace
+
+doc::Section starts_section(const StoredFit& fit) {
+  doc::Section section{"starts", "Starts"};
+  doc::Blocks& blocks = section.blocks;
+  if (fit.starts.empty()) {
+    blocks.emplace_back(doc::reading("No start was made: nothing was estimated."));
+    return section;
+  }
+  std::vector<double> costs;
+  for (const StoredStart& start : fit.starts) {
+    if (start.final_cost && start.status != calib::FitStatus::failed)
+      costs.push_back(*start.final_cost);
+  }
+  std::sort(costs.begin(), costs.end());
+  blocks.emplace_back(doc::reading(start_reading(fit, costs)));
+  if (costs.size() > 1) {
+    blocks.emplace_back(doc::Figure{[costs] {
+                                      Plot plot = ranked_points("Cost of every start, sorted",
+                                                                "final cost", costs);
+                                      plot.x_label = "start, best first";
+                                      return plot;
+                                    },
+                                    "", true});
+  }
+  doc::Fold all{fmt::format("Every start ({})", fit.starts.size()), {start_table(fit)}};
+  all.open = fit.starts.size() <= kFew;
+  blocks.emplace_back(std::move(all));
+  if (fit.basins.size() < 2) return section;
+  doc::Table basins{"Where converged starts ended"};
+  basins.caption = {basins.label};
+  basins.columns = {{"Cost", Kind::number}, {"Starts", Kind::number}};
+  for (const StoredBasin& basin : fit.basins)
+    basins.rows.push_back(
+        {{doc::in_unit(basin.cost, 1.0, 8), fmt::format("{}", basin.starts.size())}});
+  blocks.emplace_back(std::move(basins));
+  return section;
+}
+
+doc::Section warnings_section(const StoredFit& fit) {
+  doc::Section section{"warnings", "Failures and warnings"};
+  doc::List warnings;
   for (const std::string& warning : fit.warnings) {
     // Beside its parameter it was told already.
     const bool told =
         std::any_of(fit.parameters.begin(), fit.parameters.end(), [&](const StoredParameter& p) {
           return p.fitted && !p.reason.empty() && warning.ends_with(": " + p.reason);
         });
-    if (!told) view["warnings"].push_back({{"text", warning}});
+    if (!told) warnings.items.push_back({warning});
   }
-  const std::size_t count = view["warnings"].size();
-  view["has_warnings"] = count > 0;
-  view["warning_count"] = fmt::format("{}", count);
-  view["few_warnings"] = count <= kFew;
-  view["failures"] = Json::array();
+  if (warnings.items.empty() && fit.failures.empty())
+    section.blocks.emplace_back(doc::reading("None."));
+  if (!warnings.items.empty()) {
+    doc::Fold fold{fmt::format("Warnings ({})", warnings.items.size()), {}};
+    fold.open = warnings.items.size() <= kFew;
+    fold.blocks = {std::move(warnings)};
+    section.blocks.emplace_back(std::move(fold));
+  }
+  if (fit.failures.empty()) return section;
+  doc::Table table{"Failed simulations"};
+  table.caption = {
+      fmt::format("{} simulations failed on the way; the first of each kind", fit.failure_count)};
+  table.columns = {{"Condition"},
+                   {"Start", Kind::number},
+                   {"At", Kind::number},
+                   {"Why", Kind::words},
+                   {"Values", Kind::words}};
   for (const StoredFailure& failure : fit.failures) {
     std::string values;
     for (const auto& [name, value] : failure.parameters) {
       values += fmt::format("{}{} = {}", values.empty() ? "" : ", ", name,
                             std::isnan(value) ? "–" : fmt::format("{:.6g}", value));
     }
-    view["failures"].push_back({{"condition", failure.condition},
-                                {"start", fmt::format("{}", failure.start)},
-                                {"time", shown(failure.time_s, "s", 5)},
-                                {"reason", failure.reason},
-                                {"values", values}});
+    table.rows.push_back({{failure.condition, fmt::format("{}", failure.start),
+                           doc::readable(failure.time_s, "s", 5), failure.reason, values}});
   }
-  view["has_failures"] = !fit.failures.empty();
-  view["failure_count"] = fmt::format("{}", fit.failure_count);
-  view["nothing"] = count == 0 && fit.failures.empty();
-  return view;
+  section.blocks.emplace_back(std::move(table));
+  return section;
 }
 
-Json provenance_view(const StoredProvenance& provenance, const std::string& name,
-                     const std::string& file) {
-  Json view;
-  view["name"] = name;
-  view["file"] = file;
-  view["command"] = provenance.command;
-  view["facts"] = Json::array();
+std::string program_of(const StoredProvenance& provenance) {
+  return fmt::format("rigcal {} ({})", provenance.version, provenance.revision.substr(0, 7));
+}
+
+doc::Blocks provenance_blocks(const StoredProvenance& provenance, const std::string& name,
+                              const std::string& file, const doc::Facts& making) {
+  doc::Facts facts{"Provenance of " + name};
   const auto add = [&](const std::string& fact, const std::string& value) {
-    if (!value.empty()) view["facts"].push_back({{"name", fact}, {"value", value}});
+    if (!value.empty()) facts.rows.push_back({fact, {value}});
   };
   add("Program", fmt::format("rigcal {}", provenance.version));
   add("Git revision", provenance.revision);
   add("Machine", provenance.machine);
   add("Seed", fmt::format("{}", provenance.seed));
   for (const auto& [option, value] : provenance.options) add("Option " + option, value);
-  view["inputs"] = json_of(provenance.inputs);
+  facts.rows.insert(facts.rows.end(), making.rows.begin(), making.rows.end());
+  doc::Table inputs{"Input files of " + name};
+  inputs.style = "hashes";
+  inputs.columns = {{"File"}, {"SHA-256"}};
+  for (const InputFile& input : provenance.inputs)
+    inputs.rows.push_back({{input.path, input.sha256}});
   const std::size_t count = provenance.inputs.size();
-  view["input_count"] = fmt::format("{} input file{}", count, count == 1 ? "" : "s");
-  return view;
+  const std::string summary =
+      fmt::format("{} input file{} with SHA-256", count, count == 1 ? "" : "s");
+  return {doc::Heading{{name}}, doc::Command{provenance.command}, std::move(facts),
+          doc::Fold{summary, {std::move(inputs)}},
+          doc::Paragraph{{fmt::format("Drawn from {} and the files beside it; ", file),
+                          doc::Code{"rigcal report"},
+                          " with their folder draws the same page again, byte for byte."},
+                         doc::Paragraph::Tone::source}};
 }
 
 namespace {
 
-void add_fact(Json& view, const char* fact, const std::optional<double>& value, int digits,
+void add_fact(doc::Facts& facts, const char* fact, const std::optional<double>& value, int digits,
               const char* unit = "") {
-  if (!value) return;
-  view["facts"].push_back(
-      {{"name", fact}, {"value", fmt::format("{:.{}g}{}", *value, digits, unit)}});
+  if (value) facts.rows.push_back({fact, {fmt::format("{:.{}g}{}", *value, digits, unit)}});
 }
 
-/// What a fit to records and one to published tables both tell.
+/// What a fit to records and one to published tables both have.
 template <typename Fit>
-void add_effort(const Fit& fit, Json& view) {
-  add_fact(view, "Residuals", static_cast<double>(fit.residual_count), 12);
-  add_fact(view, "Evaluations", static_cast<double>(fit.evaluations), 12);
-  add_fact(view, "Time", fit.wall_seconds, 3, " s");
-  add_fact(view, "Cost", fit.cost, 8);
+void add_effort(const Fit& fit, doc::Facts& facts) {
+  add_fact(facts, "Residuals", static_cast<double>(fit.residual_count), 12);
+  add_fact(facts, "Evaluations", static_cast<double>(fit.evaluations), 12);
+  add_fact(facts, "Time", fit.wall_seconds, 3, " s");
+  add_fact(facts, "Cost", fit.cost, 8);
 }
 
 }  // namespace
 
-void add_making(const StoredFit& fit, Json& view) {
-  add_fact(view, "Tolerance of the simulations", fit.simulation_tolerance, 3);
-  add_effort(fit, view);
-  add_fact(view, "Reduced chi-square", fit.reduced_chi_square, 5);
+doc::Facts making_of(const StoredFit& fit) {
+  doc::Facts facts;
+  add_fact(facts, "Tolerance of the simulations", fit.simulation_tolerance, 3);
+  add_effort(fit, facts);
+  add_fact(facts, "Reduced chi-square", fit.reduced_chi_square, 5);
+  return facts;
 }
 
-void add_making(const StoredTablesFit& fit, Json& view) { add_effort(fit, view); }
+doc::Facts making_of(const StoredTablesFit& fit) {
+  doc::Facts facts;
+  add_effort(fit, facts);
+  return facts;
+}
 
 }  // namespace rigcal::report

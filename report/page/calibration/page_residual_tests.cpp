@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/page/calibration/fit_sections.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
@@ -72,59 +73,52 @@ std::vector<Plot> test_plots(const StoredResidualCurves& curves,
   return plots;
 }
 
-struct TestMark {
-  const char* mark;
-  const char* style;
-  const char* word;  ///< for who does not see the mark
-};
-
-TestMark mark_of(metrics::TestOutcome outcome) {
+doc::Mark mark_of(metrics::TestOutcome outcome) {
   switch (outcome) {
     case metrics::TestOutcome::passed:
-      return {"✓", "good", "passed"};
+      return {doc::State::good, "passed"};
     case metrics::TestOutcome::failed:
-      return {"!", "warn", "failed"};
+      return {doc::State::warn, "failed"};
     case metrics::TestOutcome::not_judged:
-      break;
+      return {doc::State::none, "cannot be judged"};
   }
-  return {"○", "none", "cannot be judged"};
+  return {};
 }
 
-Json test_rows(const StoredResidualTests& tests) {
-  Json rows = Json::array();
+doc::Facts test_facts(const StoredResidualTests& tests, const std::string& channel) {
+  doc::Facts facts{"Residual tests of " + channel};
+  facts.caption = {channel};
   const auto add = [&](const char* name, const StoredTest& test) {
-    const TestMark mark = mark_of(test.outcome);
-    rows.push_back({{"name", name},
-                    {"mark", mark.mark},
-                    {"class", mark.style},
-                    {"word", mark.word},
-                    {"verdict", test.verdict}});
+    facts.rows.push_back({name, {mark_of(test.outcome), " " + test.verdict}});
   };
   add("Autocorrelation", tests.autocorrelation);
   if (tests.cross_correlation) add("Cross-correlation with the input", *tests.cross_correlation);
   add("Periodogram", tests.periodogram);
   add("Normality", tests.normality);
   add("Drift", tests.drift);
-  return rows;
+  return facts;
 }
 
 }  // namespace
 
-Json tests_view(const StoredCondition& condition, const StoredChannelCurves* curves) {
-  Json list = Json::array();
+void add_residual_tests(const StoredCondition& condition, const StoredChannelCurves* curves,
+                        doc::Blocks& blocks) {
+  if (condition.residual_tests.empty()) return;
+  blocks.emplace_back(doc::Heading{{"Residual tests"}, 4});
   for (const auto& [channel, tests] : condition.residual_tests) {
-    Json view{{"channel", channel},
-              {"rows", tests ? test_rows(*tests) : Json::array()},
-              {"plots", Json::array()},
-              {"known", tests.has_value()}};
-    const auto* found = curves == nullptr ? nullptr : find(*curves, channel);
-    if (tests && found != nullptr && *found) {
-      for (const Plot& plot : test_plots(**found, channel_unit(channel)))
-        view["plots"].push_back({{"svg_html", svg(plot)}});
+    if (!tests) {
+      blocks.emplace_back(
+          doc::reading(channel + ": too few samples, or a constant residual: nothing to test."));
+      continue;
     }
-    list.push_back(std::move(view));
+    blocks.emplace_back(test_facts(*tests, channel));
+    const auto* found = curves == nullptr ? nullptr : find(*curves, channel);
+    if (found == nullptr || !*found) continue;
+    doc::Gallery gallery;
+    for (Plot& plot : test_plots(**found, channel_unit(channel)))
+      gallery.figures.push_back(figure_of(std::move(plot)));
+    blocks.emplace_back(std::move(gallery));
   }
-  return list;
 }
 
 }  // namespace rigcal::report

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/document/quantity.hpp"
+#include "report/page/calibration/fit_sections.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
 namespace rigcal::report {
 namespace {
+
+using doc::Line;
+using Kind = doc::Column::Kind;
 
 constexpr double kHighestRise = 4.0;
 
@@ -25,7 +30,7 @@ std::string end_words(const StoredProfileEnd& end, const RowUnit& unit, const ch
 }
 
 /// How much worse the fit gets with a parameter held; 1 ends the 95 % interval.
-Json profile_view(const StoredParameter& parameter, const StoredProfile& profile) {
+Plot profile_plot(const StoredParameter& parameter, const StoredProfile& profile) {
   const RowUnit unit = unit_of(parameter);
   Plot plot;
   plot.title = fmt::format("Profile of {}", parameter_label(parameter));
@@ -48,55 +53,65 @@ Json profile_view(const StoredParameter& parameter, const StoredProfile& profile
   points.kind = Trace::Kind::points;
   points.style = "model";
   plot.traces = {std::move(trace), std::move(points)};
-  return {{"svg_html", svg(plot)},
-          {"reading", fmt::format("{}: {}, {}.", parameter_label(parameter),
-                                  end_words(profile.low, unit, "lower"),
-                                  end_words(profile.high, unit, "upper"))}};
+  return plot;
 }
 
-Json bootstrap_row(const StoredParameter& parameter, const StoredBootstrap& bootstrap) {
+std::string profile_reading(const StoredParameter& parameter, const StoredProfile& profile) {
+  const RowUnit unit = unit_of(parameter);
+  return fmt::format("{}: {}, {}.", parameter_label(parameter),
+                     end_words(profile.low, unit, "lower"), end_words(profile.high, unit, "upper"));
+}
+
+doc::Row bootstrap_row(const StoredParameter& parameter, const StoredBootstrap& bootstrap) {
   const RowUnit unit = unit_of(parameter);
   const auto& ci95 = bootstrap.ci95;
-  return {{"name", parameter_label(parameter)},
-          {"unit", unit.name},
-          {"value", shown_in(parameter.value, unit.si, 6)},
-          {"standard_error", shown_in(bootstrap.standard_error, unit.si, 3)},
-          {"bias", shown_in(bootstrap.bias, unit.si, 3)},
-          {"low", shown_in(ci95 ? std::optional(ci95->low) : std::nullopt, unit.si, 5)},
-          {"high", shown_in(ci95 ? std::optional(ci95->high) : std::nullopt, unit.si, 5)}};
+  return {{parameter_label(parameter), doc::in_unit(parameter.value, unit.si, 6), unit.name,
+           Line{doc::in_unit(ci95 ? std::optional(ci95->low) : std::nullopt, unit.si, 5), " … ",
+                doc::in_unit(ci95 ? std::optional(ci95->high) : std::nullopt, unit.si, 5)},
+           doc::in_unit(bootstrap.standard_error, unit.si, 3),
+           doc::in_unit(bootstrap.bias, unit.si, 3)}};
 }
 
-Json lack_of_fit_rows(const StoredLackOfFit& lack) {
-  Json rows = Json::array();
+doc::Table lack_of_fit_table(const StoredLackOfFit& lack) {
+  doc::Table table{"Lack of fit by condition"};
+  table.columns = {{"Condition"},
+                   {"Channel"},
+                   {"Against"},
+                   {"Ratio of variances", Kind::number},
+                   {"Degrees of freedom", Kind::number},
+                   {"p", Kind::number},
+                   {"Outcome, all together"}};
   for (const StoredLackOfFitTest& test : lack.tests) {
     const bool judged = test.outcome != metrics::TestOutcome::not_judged;
-    rows.push_back({{"condition", test.condition},
-                    {"channel", test.channel},
-                    {"against", test.against},
-                    {"ratio", shown_in(test.ratio, 1.0, 4)},
-                    {"freedom", shown_in(test.freedom, 1.0, 6)},
-                    {"p", std::isnan(test.p) ? std::string("–") : p_value_text(test.p)},
-                    {"outcome", judged ? std::string(to_string(test.outcome))
-                                       : "cannot be judged: " + test.reason.value_or("")}});
+    table.rows.push_back(
+        {{test.condition, test.channel, test.against, doc::in_unit(test.ratio, 1.0, 4),
+          doc::in_unit(test.freedom, 1.0, 6).text, std::isnan(test.p) ? "–" : p_value_text(test.p),
+          judged ? std::string(to_string(test.outcome))
+                 : "cannot be judged: " + test.reason.value_or("")}});
   }
-  return rows;
+  return table;
 }
 
-Json lack_of_fit_view(const StoredFit& fit) {
-  const StoredLackOfFit lack = fit.lack_of_fit.value_or(StoredLackOfFit());
-  Json view;
-  view["sentence"] = lack.misfit == true    ? "Significant lack of fit."
-                     : lack.misfit == false ? "No lack of fit detected."
-                     : !lack.tests.empty()
-                         ? "Lack of fit cannot be judged: the records have too few "
-                           "independent samples."
-                         : "Lack of fit cannot be judged: the noise is not known.";
-  view["class"] = lack.misfit == true ? "warn" : lack.misfit == false ? "good" : "none";
-  view["rows"] = lack_of_fit_rows(lack);
-  view["known"] = fit.lack_of_fit.has_value() && fit.status != calib::FitStatus::failed;
-  view["has_rows"] = !lack.tests.empty();
-  view["row_count"] = fmt::format("{}", lack.tests.size());
-  return view;
+doc::Badge lack_badge(const StoredLackOfFit& lack) {
+  if (lack.misfit == true) return {doc::State::warn, "Significant lack of fit."};
+  if (lack.misfit == false) return {doc::State::good, "No lack of fit detected."};
+  return {doc::State::none, lack.tests.empty()
+                                ? "Lack of fit cannot be judged: the noise is not known."
+                                : "Lack of fit cannot be judged: the records have too few "
+                                  "independent samples."};
+}
+
+void add_lack_of_fit(const StoredFit& fit, doc::Blocks& blocks) {
+  if (!fit.lack_of_fit || fit.status == calib::FitStatus::failed) return;
+  const StoredLackOfFit& lack = *fit.lack_of_fit;
+  blocks.emplace_back(doc::Heading{{"Lack of fit"}});
+  Line line{lack_badge(lack)};
+  if (fit.aic && fit.bic)
+    line.emplace_back(fmt::format(" AIC {:.6g}, BIC {:.6g}.", *fit.aic, *fit.bic));
+  blocks.emplace_back(doc::Paragraph{std::move(line), doc::Paragraph::Tone::plain});
+  if (lack.tests.empty()) return;
+  blocks.emplace_back(doc::Fold{fmt::format("Tests of each condition ({})", lack.tests.size()),
+                                {lack_of_fit_table(lack)}});
 }
 
 /// "27.05 um (27.01 um where it was fitted)" per channel.
@@ -113,55 +128,70 @@ std::string prediction_words(const StoredHeldOut& held) {
   return text;
 }
 
-Json cross_validation_rows(const StoredFit& fit) {
-  Json rows = Json::array();
-  if (!fit.cross_validation) return rows;
+void add_cross_validation(const StoredFit& fit, doc::Blocks& blocks) {
+  if (!fit.cross_validation || fit.cross_validation->empty()) return;
+  const char* const title = "Predictions of conditions that were left out";
+  blocks.emplace_back(doc::Heading{{title}});
+  doc::Table table{title};
+  table.columns = {{"Left out"},
+                   {"RMSE of its prediction"},
+                   {"Largest shift of"},
+                   {"Shift, standard errors", Kind::number}};
   for (const StoredHeldOut& held : *fit.cross_validation) {
     const auto& shift = held.largest_shift;
-    rows.push_back({{"condition", held.condition},
-                    {"prediction", held.problem ? *held.problem : prediction_words(held)},
-                    {"shifted", held.shifted.value_or("")},
-                    {"shift", shift ? fmt::format("{:.2g}", *shift) : std::string("–")}});
+    table.rows.push_back(
+        {{held.condition, held.problem ? *held.problem : prediction_words(held),
+          held.shifted.value_or(""), shift ? fmt::format("{:.2g}", *shift) : std::string("–")}});
   }
-  return rows;
+  blocks.emplace_back(std::move(table));
 }
 
-Json basin_rows(const std::vector<StoredBasin>& basins) {
-  Json rows = Json::array();
-  for (const StoredBasin& basin : basins)
-    rows.push_back({{"cost", shown_in(basin.cost, 1.0, 8)},
-                    {"starts", fmt::format("{}", basin.starts.size())}});
-  return rows;
+void add_profiles(const StoredFit& fit, doc::Blocks& blocks) {
+  doc::Gallery gallery;
+  for (const StoredParameter& p : fit.parameters) {
+    if (!p.profile) continue;
+    doc::Figure figure{[p] { return profile_plot(p, *p.profile); }};
+    figure.reading = profile_reading(p, *p.profile);
+    gallery.figures.push_back(std::move(figure));
+  }
+  if (gallery.figures.empty()) return;
+  blocks.emplace_back(doc::Heading{{"Profiles"}});
+  blocks.emplace_back(doc::reading(
+      "How much worse the fit becomes with one parameter held and all others fitted again; at 1 "
+      "the 95 % interval ends."));
+  blocks.emplace_back(std::move(gallery));
+}
+
+void add_bootstrap(const StoredFit& fit, doc::Blocks& blocks) {
+  doc::Table table{"Bootstrap"};
+  table.caption = {fit.bootstrap ? fit.bootstrap->message : std::string()};
+  table.columns = {{"Parameter"},
+                   {"Value", Kind::number},
+                   {"Unit"},
+                   {"95 % interval", Kind::number},
+                   {"Std. error", Kind::number},
+                   {"Bias", Kind::number}};
+  for (const StoredParameter& p : fit.parameters)
+    if (p.bootstrap) table.rows.push_back(bootstrap_row(p, *p.bootstrap));
+  if (table.rows.empty()) return;
+  blocks.emplace_back(doc::Heading{{"Bootstrap"}});
+  blocks.emplace_back(std::move(table));
 }
 
 }  // namespace
 
-Json trust_view(const StoredFit& fit) {
-  Json view;
-  view["profiles"] = Json::array();
-  view["bootstraps"] = Json::array();
-  for (const StoredParameter& p : fit.parameters) {
-    if (p.profile) view["profiles"].push_back(profile_view(p, *p.profile));
-    if (p.bootstrap) view["bootstraps"].push_back(bootstrap_row(p, *p.bootstrap));
-  }
-  view["has_profiles"] = !view["profiles"].empty();
-  view["has_bootstraps"] = !view["bootstraps"].empty();
-  view["bootstrap_message"] = fit.bootstrap ? fit.bootstrap->message : std::string();
-  view["advice"] = fit.interval_advice;
-  view["has_advice"] = !fit.interval_advice.empty();
-  view["combinations"] = json_of(fit.combinations);
-  view["has_combinations"] = !fit.combinations.empty();
-  view["lack"] = lack_of_fit_view(fit);
-  view["cross_validation"] = cross_validation_rows(fit);
-  view["has_cross_validation"] = !view["cross_validation"].empty();
-  view["agreement"] = fit.agreement;
-  view["has_agreement"] = !fit.agreement.empty();
-  view["basins"] = basin_rows(fit.basins);
-  view["has_basins"] = fit.basins.size() > 1;
-  view["has_criteria"] = fit.aic && fit.bic;
-  if (fit.aic && fit.bic)
-    view["criteria"] = fmt::format("AIC {:.6g}, BIC {:.6g}", *fit.aic, *fit.bic);
-  return view;
+doc::Section identifiability_section(const StoredFit& fit) {
+  doc::Section section{"identifiability", "Identifiability"};
+  doc::Blocks& blocks = section.blocks;
+  add_singular_values(fit, blocks);
+  if (!fit.interval_advice.empty())
+    blocks.emplace_back(doc::reading(capitalised(fit.interval_advice) + "."));
+  blocks.emplace_back(list_of(fit.combinations));
+  add_profiles(fit, blocks);
+  add_bootstrap(fit, blocks);
+  add_lack_of_fit(fit, blocks);
+  add_cross_validation(fit, blocks);
+  return section;
 }
 
 }  // namespace rigcal::report

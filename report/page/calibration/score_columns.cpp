@@ -1,6 +1,7 @@
 #include "report/page/calibration/score_columns.hpp"
 
 #include "metrics/metric_table.hpp"
+#include "report/document/quantity.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -8,33 +9,33 @@ namespace {
 constexpr int kDigits = 4;
 constexpr int kDigitsOfUncertainty = 2;
 
-Json score_cell(const metrics::MetricSpec& metric, double value, std::string_view unit) {
-  if (metric.unit == "channel") return shown(value, unit, kDigits);
-  // One that can reach 1 is told by what it lacks of it.
-  if (metric.unit == "1" && metric.highest == 1.0) return shown_agreement(value);
-  // So is one that can reach 100 %, by a digit more.
-  return shown_in(value, 1.0, metric.higher_is_better ? kDigits + 1 : kDigits);
+doc::Quantity score_of(const metrics::MetricSpec& metric, double value, std::string_view unit) {
+  if (metric.unit == "channel") return doc::readable(value, unit, kDigits);
+  // A score whose best value is 1 is shown by how far it is from 1.
+  if (metric.unit == "1" && metric.highest == 1.0) return doc::agreement(value);
+  // So is one whose best value is 100 %, by a digit more.
+  return doc::in_unit(value, 1.0, metric.higher_is_better ? kDigits + 1 : kDigits);
 }
 
 }  // namespace
 
-Json score_titles() {
-  Json titles = Json::array();
+std::vector<doc::Column> score_columns() {
+  std::vector<doc::Column> columns;
   for (const metrics::MetricSpec& metric : metrics::kMetrics)
-    titles.push_back({{"title", metric.title}});
-  return titles;
+    columns.push_back({std::string(metric.title), doc::Column::Kind::number});
+  return columns;
 }
 
-Json score_cells(const metrics::Agreement& scores, const metrics::Agreement* uncertainty,
-                 std::string_view unit) {
-  Json cells = Json::array();
+std::vector<doc::Cell> score_cells(const metrics::Agreement& scores,
+                                   const metrics::Agreement* uncertainty, std::string_view unit) {
+  std::vector<doc::Cell> cells;
   for (const metrics::MetricSpec& metric : metrics::kMetrics) {
-    Json& cell = cells.emplace_back(score_cell(metric, scores.*metric.value, unit));
+    doc::Cell& cell = cells.emplace_back();
+    cell.line = {score_of(metric, scores.*metric.value, unit)};
     if (uncertainty == nullptr) continue;
     const double half = uncertainty->*metric.value;
-    cell["uncertain"] = {{"half", metric.unit == "channel"
-                                      ? shown(half, unit, kDigitsOfUncertainty)
-                                      : shown_in(half, 1.0, kDigitsOfUncertainty)}};
+    cell.below = {{"± ", metric.unit == "channel" ? doc::readable(half, unit, kDigitsOfUncertainty)
+                                                  : doc::in_unit(half, 1.0, kDigitsOfUncertainty)}};
   }
   return cells;
 }

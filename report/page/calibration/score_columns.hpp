@@ -1,21 +1,21 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "metrics/agreement.hpp"
-#include "report/page/page_parts.hpp"
-
-// The columns of a table of scores: one for each row of metrics/metric_table.hpp.
+#include "report/document/document.hpp"
 
 namespace rigcal::report {
 
-/// Their titles.
-Json score_titles();
-/// What stands in them for one channel.
+/// A column for each metric of metrics/metric_table.hpp.
+std::vector<doc::Column> score_columns();
+
+/// The scores of a channel in these columns, each with its expanded uncertainty below.
 ///
-/// @param uncertainty  expanded, of each; null: not known
-/// @param unit         of the channel, SI
-Json score_cells(const metrics::Agreement& scores, const metrics::Agreement* uncertainty,
-                 std::string_view unit);
+/// @param uncertainty  of each score; null where it is not known
+/// @param unit         SI unit of the channel
+std::vector<doc::Cell> score_cells(const metrics::Agreement& scores,
+                                   const metrics::Agreement* uncertainty, std::string_view unit);
 
 }  // namespace rigcal::report

@@ -142,16 +142,26 @@ std::vector<StoredWeight> weights(const Result& result) {
   return list;
 }
 
-StoredValidity validity(const Result& result, const std::vector<datasets::Use>& uses,
-                        bool closed_loop) {
+/// Puts an amplitude where those of its unit are: `amplitude_m`, `amplitude_v`, ...
+template <typename Stored, typename Value>
+void put_amplitude(std::string_view unit, const std::optional<Value>& amplitude, Stored& stored) {
+  if (unit == "m") stored.amplitude_m = amplitude;
+  if (unit == "V") stored.amplitude_v = amplitude;
+  if (!amplitude) return;
+  if (unit == "N") stored.amplitude_n = *amplitude;
+  if (unit == "Pa") stored.amplitude_pa = *amplitude;
+  if (unit == "m/s2") stored.amplitude_m_per_s2 = *amplitude;
+}
+
+StoredValidity validity(const Result& result, const std::vector<datasets::Use>& uses) {
   const Validity covered = coverage(result.campaign, result.records, result.fit, uses);
-  const std::optional<Range> none;
-  return {covered.frequency_hz,
-          closed_loop ? covered.amplitude : none,
-          closed_loop ? none : covered.amplitude,
-          covered.supply_pressure_pa,
-          covered.leakage_coefficient,
-          covered.leak_levels};
+  StoredValidity stored;
+  stored.frequency_hz = covered.frequency_hz;
+  put_amplitude(covered.amplitude_unit, covered.amplitude, stored);
+  stored.supply_pressure_pa = covered.supply_pressure_pa;
+  stored.leakage_coefficient = covered.leakage_coefficient;
+  stored.leak_levels = covered.leak_levels;
+  return stored;
 }
 
 std::vector<StoredLimit> stored(const std::vector<datasets::AcceptanceLimit>& limits) {
@@ -192,17 +202,12 @@ void add_checks(const calib::ConditionScore& score, StoredCondition& condition) 
     condition.channel_verdicts.emplace_back(key_of(channel), score.verdict_of(channel).value());
 }
 
-void add_stated(const Result& result, const calib::ConditionScore& score, bool closed_loop,
-                StoredCondition& stated) {
+void add_stated(const Result& result, const calib::ConditionScore& score, StoredCondition& stated) {
   const datasets::Condition* condition = result.campaign.find(score.id);
   if (condition == nullptr) return;
   stated.waveform = std::optional(condition->waveform);
   stated.frequency_hz = condition->frequency_hz;
-  if (closed_loop) {
-    stated.amplitude_m = condition->amplitude;
-  } else {
-    stated.amplitude_v = std::optional(condition->amplitude);
-  }
+  put_amplitude(info(drive_channel(result.campaign)).unit, condition->amplitude, stated);
   stated.leak_level = condition->leak_level;
   if (condition->temperature_k) stated.temperature_k = *condition->temperature_k;
   if (condition->date) stated.date = *condition->date;
@@ -223,10 +228,10 @@ std::vector<std::string> hashes_of(const Result& result, const datasets::Record&
   return hashes;
 }
 
-StoredCondition stored(const Result& result, const calib::ConditionScore& score, bool closed_loop) {
+StoredCondition stored(const Result& result, const calib::ConditionScore& score) {
   StoredCondition condition;
   condition.id = score.id;
-  add_stated(result, score, closed_loop, condition);
+  add_stated(result, score, condition);
   condition.use = score.use;
   condition.samples = score.samples;
   if (const datasets::Record* record = record_of(result, score.id)) {
@@ -391,7 +396,6 @@ const StoredCondition* StoredFit::find(const std::string& condition) const {
 
 StoredFit stored(const Result& result) {
   const calib::Fit& fit = result.fit;
-  const bool closed_loop = result.campaign.rig.controller == model::ControllerKind::pid;
   StoredFit json;
   json.status = status_of(fit);
   if (fit.stopped_in != calib::StoppedIn::nothing) json.stopped_in = std::optional(fit.stopped_in);
@@ -418,19 +422,17 @@ StoredFit stored(const Result& result) {
   if (result.kind == ResultKind::fit) json.weights = weights(result);
   using datasets::Use;
   json.validity =
-      validity(result,
-               result.kind == ResultKind::fit ? std::vector<Use>{Use::fit}
-                                              : std::vector<Use>{Use::fit, Use::validate},
-               closed_loop);
+      validity(result, result.kind == ResultKind::fit ? std::vector<Use>{Use::fit}
+                                                      : std::vector<Use>{Use::fit, Use::validate});
   const bool validated = std::any_of(fit.conditions.begin(), fit.conditions.end(),
                                      [](const auto& score) { return score.use == Use::validate; });
-  if (validated) json.validated = validity(result, {Use::validate}, closed_loop);
+  if (validated) json.validated = validity(result, {Use::validate});
   json.decision = result.campaign.acceptance_bounds.decision;
   json.acceptance = stored(result.campaign.acceptance);
   const auto& not_judged = result.campaign.acceptance_bounds.not_judged;
   if (!not_judged.empty()) json.not_judged = keys_of(not_judged);
   for (const calib::ConditionScore& score : fit.conditions)
-    json.conditions.push_back(stored(result, score, closed_loop));
+    json.conditions.push_back(stored(result, score));
   json.groups = gathered(result);
   add_search(fit, json);
   json.warnings = fit.warnings;

@@ -196,8 +196,9 @@ struct StoredValidity {
   std::optional<Range> frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa,
       leakage_coefficient;
   std::vector<std::string> leak_levels;
+  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< of other loops
   RIGCAL_DESCRIBE(frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa, leakage_coefficient,
-                  leak_levels)
+                  leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2)
 };
 
 struct StoredLimit {
@@ -242,7 +243,8 @@ struct StoredCondition {
   std::string id;
   Later<std::optional<datasets::Waveform>> waveform;
   Later<std::optional<double>> frequency_hz, amplitude_m;
-  Omittable<std::optional<double>> amplitude_v;  ///< in an open loop
+  Omittable<std::optional<double>> amplitude_v;                     ///< in an open loop
+  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in loops on these
   Later<std::optional<std::string>> leak_level;
   datasets::Use use = datasets::Use::fit;
   Omittable<double> temperature_k;
@@ -264,11 +266,11 @@ struct StoredCondition {
   Later<Keyed<calib::Verdict>> channel_verdicts;
   std::optional<calib::Verdict> verdict;
   std::vector<std::string> reasons;
-  RIGCAL_DESCRIBE(id, waveform, frequency_hz, amplitude_m, amplitude_v, leak_level, use,
-                  temperature_k, date, samples, record_sha256, windows_s, notes, acceptance,
-                  not_judged, warnings, not_scored, failure, metrics, noise_floor,
-                  expanded_uncertainty, residual_tests, limit_checks, channel_verdicts, verdict,
-                  reasons)
+  RIGCAL_DESCRIBE(id, waveform, frequency_hz, amplitude_m, amplitude_v, amplitude_n, amplitude_pa,
+                  amplitude_m_per_s2, leak_level, use, temperature_k, date, samples, record_sha256,
+                  windows_s, notes, acceptance, not_judged, warnings, not_scored, failure, metrics,
+                  noise_floor, expanded_uncertainty, residual_tests, limit_checks, channel_verdicts,
+                  verdict, reasons)
 
   /// Of one channel; nothing where it has no limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;

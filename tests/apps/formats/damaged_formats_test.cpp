@@ -150,8 +150,7 @@ TEST_CASE("init: a draft from HDF5 and from a workbook, with their units", "[app
                  "../book/sine_1.xlsx", "../h5/sine_1.h5") == from_h5);
   const Outcome none = folder.run({"init", "twin", "--out", "none"});
   CHECK(none.exit_code == 2);
-  CHECK_THAT(none.err,
-             Contains("this folder holds no .csv, .xlsx, .xlsm, .h5, .hdf5 or .mat file"));
+  CHECK_THAT(none.err, Contains("this folder holds no .csv, "));
 }
 
 }  // namespace rigcal::test

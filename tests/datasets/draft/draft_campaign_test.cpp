@@ -55,6 +55,31 @@ std::string filled(std::string text, model::PlantKind plant = model::PlantKind::
 
 }  // namespace
 
+TEST_CASE("draft_campaign: a reference in newtons makes a loop on force", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "t_s,ref_kN,F_kN,x_mm,acc_x\n";
+  for (int i = 0; i < 400; ++i) {
+    const double angle = 12.566370614359172 * 0.005 * i;
+    text += fmt::format("{},{},{},{},{}\n", 0.005 * i, 2.0 * std::sin(angle),
+                        1.9 * std::sin(angle - 0.1), 4.0 * std::sin(angle - 0.2), std::cos(angle));
+  }
+  const fs::path file = folder.write("bend.csv", text);
+  std::string draft = draft_campaign({file}, folder.path()).text;
+  CHECK_THAT(draft, Contains("feedback = \"force\""));
+  CHECK_THAT(draft, Contains("force_reference = { column = \"ref_kN\", unit = \"kN\" }"));
+  CHECK_THAT(draft, Contains("# payload_mass = "));  // an acceleration was recorded
+  CHECK_THAT(draft, Contains("amplitude = \"2 kN\""));
+  draft = filled(draft);
+  const auto fill = [&](const std::string& from, const std::string& to) {
+    draft = replaced(draft, from, to);
+  };
+  fill("force_kp = \"FILL IN V/N\"", "force_kp = \"1 V/kN\"");
+  fill("unit = \"FILL IN\"", "unit = \"m/s2\"");
+  const Campaign campaign = load_campaign(folder.write("draft.toml", draft));
+  CHECK(campaign.rig.feedback == model::Feedback::force);
+  CHECK(campaign.conditions.front().amplitude == Approx(2000.0));
+}
+
 TEST_CASE("draft_campaign: repeats, waveform and columns, and loads once it is filled",
           "[datasets]") {
   const TemporaryFolder folder;
@@ -166,6 +191,45 @@ TEST_CASE("draft_campaign: files that tell nothing", "[datasets]") {
   CHECK_THROWS_WITH(draft_campaign({folder.write("b.csv", "t,q\n1,2\n")}, folder.path()),
                     Contains("b.csv: no column looks like a channel"));
   CHECK_THROWS_AS(draft_campaign({folder.path() / "none.csv"}, folder.path()), InputError);
+}
+
+TEST_CASE("draft_campaign: from a text as a German logger writes it", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "Pruefstand 3;;\nDatum;12.3.2026;\n\nZeit;Sollwert;Weg;Kanal 7\ns;mm;mm;bar\n";
+  for (int i = 0; i < 400; ++i) {
+    const double angle = 12.566370614359172 * 0.005 * i;
+    std::string row = fmt::format("{};{};{};{}\n", 0.005 * i, 5.0 * std::sin(angle),
+                                  4.8 * std::sin(angle - 0.1), 3.5 + 0.5 * std::sin(angle));
+    std::replace(row.begin(), row.end(), '.', ',');
+    text += row;
+  }
+  const std::string draft = draft_campaign({folder.write("lauf_1.txt", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("time = { column = \"Zeit\", unit = \"s\" }"));
+  CHECK_THAT(draft, Contains("reference = { column = \"Sollwert\", unit = \"mm\" }"));
+  CHECK_THAT(draft, Contains("position = { column = \"Weg\", unit = \"mm\" }"));
+  CHECK_THAT(draft, Contains("# not used: Kanal 7 (3") && Contains("bar, perhaps pressure_a)"));
+  CHECK_THAT(draft, Contains("# transport_delay = ") && Contains("# external_force = ") &&
+                        Contains("# ki = ") && Contains("# before = \"rest\""));
+  const Campaign campaign = load_campaign(folder.write("campaign.toml", filled(draft)));
+  const Record record = load_record(campaign, campaign.conditions.at(0));
+  REQUIRE(record.time_s.size() == 400);
+  CHECK_THAT(record.time_s[7], Catch::WithinAbs(0.035, 1e-12));
+}
+
+TEST_CASE("draft_campaign: columns that nothing recognises, with their ranges", "[datasets]") {
+  const TemporaryFolder folder;
+  std::string text = "A1,Q [bar],note\n";
+  for (int i = 0; i < 20; ++i) text += fmt::format("{},{},ok\n", 0.5 * i, 3 + i % 4);
+  const std::string draft = draft_campaign({folder.write("a.csv", text)}, folder.path()).text;
+  CHECK_THAT(draft, Contains("time = { column = \"FILL IN\", unit = \"s\" }") &&
+                        Contains("position = { column = \"FILL IN\", unit = \"FILL IN\" }"));
+  CHECK_THAT(draft, Contains("A1 (0 to 9.5, perhaps time)") &&
+                        Contains("Q [bar] (3 to 6 bar, perhaps pressure_a), note\n"));
+  // Beside a recording it is none.
+  const Draft both = draft_campaign(
+      {folder.path() / "a.csv", folder.write("s_1.csv", sine_csv(0.1))}, folder.path());
+  REQUIRE(both.left_out.size() == 1);
+  CHECK_THAT(both.left_out[0], Contains("a.csv (no column looks like a time"));
 }
 
 TEST_CASE("draft_campaign: an array of Simulink's To File has its time in the first row",

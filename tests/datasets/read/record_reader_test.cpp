@@ -72,3 +72,40 @@ TEST_CASE("record_reader: CSV and MAT by the same calls", "[datasets]") {
   CHECK_THAT(record_reader(cut).load(cut, {{"t", "x"}, "t"}).warning,
              Catch::Contains("ends without a newline"));
 }
+
+TEST_CASE("record_reader: formats that are not read are named, with what to export instead",
+          "[datasets]") {
+  struct Row {
+    const char* file;
+    std::string bytes;
+    const char* says;
+  };
+  const TemporaryFolder folder;
+  for (const Row& row : {
+           Row{"a.bin", "TDSm....", "TDMS"},
+           Row{"a.mf4", "MDF     4.10", "asammdf"},
+           Row{"b.dat", "MDF     3.30", "MDF"},
+           Row{"a.rsp", "x", "RPC III"},
+           Row{"c.dat", std::string("FORMAT\0\0\0", 9), "RPC III"},
+           Row{"a.txt", "    -1\n    58b     1\n", "pyuff"},
+           Row{"a.npy", "\x93NUMPY..", "numpy.savetxt"},
+           Row{"a.csv.gz", "\x1f\x8b..", "gunzip"},
+       }) {
+    CAPTURE(row.file);
+    CHECK_THROWS_WITH(
+        record_reader(folder.write(row.file, row.bytes)),
+        Catch::Contains("which rigcal does not read; expected ") && Catch::Contains(row.says));
+  }
+  CHECK(record_reader(folder.write("minus.csv", "-1\n5\n")).name == "CSV");
+}
+
+TEST_CASE("record_reader: text files may be recordings, but their names do not say so",
+          "[datasets]") {
+  CHECK(may_be_recording("a.TXT"));
+  CHECK(may_be_recording("a.lvm"));
+  CHECK(may_be_recording("a.csv"));
+  CHECK_FALSE(may_be_recording("a.log"));
+  CHECK_FALSE(has_record_name("a.txt"));
+  CHECK(has_other_format_name("a.tdms"));
+  CHECK_FALSE(has_other_format_name("a.csv"));
+}

@@ -36,6 +36,18 @@ TEST_CASE("equations: every state has a name and a size", "[model]") {
     CHECK(state.nominal > 0.0);
 }
 
+TEST_CASE("equations: states of a second mass, and the filter of a loop on force", "[model]") {
+  ExportedRig rig = rig_with({"payload_mass", "payload_frequency", "payload_damping_ratio",
+                              "force_kp", "force_kd", "derivative_filter"});
+  rig.rig.feedback = Feedback::force;
+  CHECK(names(rig) == std::vector<std::string>{"position", "velocity", "load_pressure",
+                                               "payload_position", "payload_velocity",
+                                               "controller_filtered_error"});
+  const auto states = describe_states(rig, make_equations(rig)->layout());
+  CHECK(states.back().unit == "N");
+  CHECK(states[2].nominal == Approx(0.1 * rig.values["supply_pressure"]));
+}
+
 TEST_CASE("equations: an indicator is zero where the controller reaches its limit", "[model]") {
   ExportedRig rig = rig_with({});
   rig.values.set("kp", 100.0);

@@ -13,7 +13,8 @@ namespace {
 ExportedRig sampled_rig() {
   ExportedRig rig;
   rig.guid = "{1}";
-  rig.rig = {PlantKind::two_chamber, ControllerKind::pid, InitialState::given};
+  rig.rig = {PlantKind::two_chamber, ControllerKind::pid, InitialState::given, Feedback::force,
+             Before::steady};
   rig.values = ParameterValues::defaults(PlantKind::two_chamber);
   rig.tolerance = 1e-7;
   rig.values.set("mass", 0.1 + 0.2);  // no short decimal
@@ -46,6 +47,8 @@ TEST_CASE("exported_rig: a rig reads back to the same bits", "[model]") {
   CHECK(back.rig.plant == rig.rig.plant);
   CHECK(back.rig.controller == rig.rig.controller);
   CHECK(back.rig.initial == rig.rig.initial);
+  CHECK(back.rig.feedback == rig.rig.feedback);
+  CHECK(back.rig.before == rig.rig.before);
   CHECK(back.tolerance == rig.tolerance);
   CHECK(back.values.value == rig.values.value);
   CHECK(back.values.given == rig.values.given);

@@ -19,6 +19,7 @@ struct Gains {
   double derivative_filter_rad_per_s = 50.0;
   double output_limit_v = 10.0;
   double sample_time_s = 0.01;
+  double pressure_feedback_v_per_pa = 0.0;
 };
 
 Layout layout_with(int integral, int filter, int held) {
@@ -50,13 +51,14 @@ TEST_CASE("controller: u = K_p e + I + K_d N (e - e_f), then the limit", "[model
   const Gains gains{100.0, 30.0, 2.0, 50.0, 10.0, 0.01};
   const std::array<double, 2> state{0.7, 0.01};
   const Layout layout = layout_with(0, 1, -1);
-  const auto small = controller_output(0.02, state, gains, layout);
+  const auto small = controller_output(LoopError<double>{0.02}, state, gains, layout);
   CHECK_THAT(small.wanted, WithinRel(100.0 * 0.02 + 0.7 + 2.0 * 50.0 * (0.02 - 0.01), 1e-14));
   CHECK(small.limited == small.wanted);
-  const auto large = controller_output(-0.5, state, gains, layout);
+  const auto large = controller_output(LoopError<double>{-0.5}, state, gains, layout);
   CHECK(large.wanted < -10.0);
   CHECK(large.limited == -10.0);
-  CHECK(controller_output(0.02, state, gains, layout_with(-1, -1, -1)).wanted == 2.0);
+  CHECK(controller_output(LoopError<double>{0.02}, state, gains, layout_with(-1, -1, -1)).wanted ==
+        2.0);
 }
 
 TEST_CASE("controller: the integral is pulled back with the integral time", "[model]") {
@@ -77,7 +79,7 @@ TEST_CASE("controller: a sampled PID does what a loop written by hand does", "[m
   bool saturated = false;
   for (int k = 0; k < 200; ++k) {
     const double error = 0.05 * std::sin(0.1 * k) + 0.01;
-    controller_tick(error, state, gains, layout);
+    controller_tick(LoopError<double>{error}, state, gains, layout);
     // e_f by backward Euler; u; then the integral by forward Euler with tracking time K_p / K_i.
     filtered += 0.004 * 80.0 * (error - filtered) / (1.0 + 0.004 * 80.0);
     const double wanted = 100.0 * error + integral + 1.5 * 80.0 * (error - filtered);
@@ -98,7 +100,7 @@ TEST_CASE("controller: a slow sampled loop does not shake while it saturates", "
   const Layout layout = layout_with(0, -1, 1);
   std::array<double, 2> state{};
   for (int k = 0; k < 50; ++k) {
-    controller_tick(1.0, state, gains, layout);
+    controller_tick(LoopError<double>{1.0}, state, gains, layout);
     CHECK(state[1] <= 2.0);
     CHECK(state[0] >= 0.0);
     CHECK(state[0] <= 2.0 + 50.0 * 0.1);
@@ -117,7 +119,7 @@ TEST_CASE("controller: the integral is back at once after saturation", "[model]"
     double highest = 0.0;
     for (int k = 0; k < 20000; ++k) {
       const double error = 0.1 - x;
-      const auto u = controller_output(error, integral, gains, layout);
+      const auto u = controller_output(LoopError<double>{error}, integral, gains, layout);
       x += 0.001 * 0.05 * u.limited;
       integral[0] += 0.001 * (anti_windup ? integral_rate(error, u, gains) : 200.0 * error);
       highest = std::max(highest, x);
@@ -230,7 +232,7 @@ TEST_CASE("controller: one tick pulls the integral back to the limit at the most
   // K_i T_s / K_p = 1.5: the pull alone would go half as far again as the excess.
   const Gains gains{1.0, 15.0, 0.0, 50.0, 2.0, 0.1};
   std::array<double, 2> state{6.0, 0.0};
-  controller_tick(0.0, state, gains, layout_with(0, -1, 1));
+  controller_tick(LoopError<double>{0.0}, state, gains, layout_with(0, -1, 1));
   CHECK(state[1] == 2.0);
   CHECK_THAT(state[0], WithinRel(2.0, 1e-14));
 }

@@ -33,6 +33,17 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
                           {"pressure_b_lag", 5e-3},
                           {"load_pressure_lag", 3e-3},
                           {"force_lag", 6e-3},
+                          {"acceleration_gain", 1.05},
+                          {"acceleration_offset", 5.0},
+                          {"acceleration_lag", 4e-3},
+                          {"payload_acceleration_gain", 0.9},
+                          {"payload_acceleration_offset", -5.0},
+                          {"payload_acceleration_lag", 5e-3},
+                          {"payload_mass", 3.0},
+                          {"payload_frequency", 150.0},
+                          {"payload_damping_ratio", 0.2},
+                          {"load_gradient", -2e3},
+                          {"load_curvature", 2e5},
                           {"gravity", 3.0},
                           {"stiffness", 5e3},
                           {"external_force", 50.0},
@@ -77,6 +88,21 @@ std::vector<std::pair<Scenario, Experiment>> two_chamber_scenarios() {
       {{"PID, second-order valve, soft supply, friction", Signal::sine(0.006, 9.0), loop},
        single_rod_rig()});
   rows.push_back({{"into the stop", Signal::square(-3.0, 4.0), stop, none}, single_rod_rig()});
+  const NamedValues filter{{"derivative_filter", 300.0}, {"initial_position", 0.01}};
+  const auto loop_on = [&](Feedback feedback, const Signal& drive, double kp, double ki,
+                           double kd) {
+    const FeedbackRow& keys = gain_keys(feedback);
+    Scenario scenario{keys.name.data(), drive, filter, ControllerKind::pid, InitialState::given};
+    scenario.feedback = feedback;
+    for (const auto& [key, value] : {std::pair{keys.kp, kp}, {keys.ki, ki}, {keys.kd, kd}})
+      scenario.values.emplace_back(key.data(), value);
+    scenario.values.emplace_back("pressure_feedback", 2e-7);
+    scenario.values.emplace_back("initial_integral", 0.2);
+    rows.push_back({scenario, single_rod_rig()});
+  };
+  loop_on(Feedback::force, Signal::sine(150.0, 9.0), 1e-3, 2e-2, 4e-7);
+  loop_on(Feedback::load_pressure, Signal::sine(6e5, 9.0), 2e-7, 4e-6, 8e-11);
+  loop_on(Feedback::acceleration, Signal::sine(10.0, 9.0), 2e-3, 4e-2, 8e-6);
   // Into the other stop, its position half a stroke out.
   rows.push_back({{"short stroke",
                    Signal::square(3.0, 4.0),

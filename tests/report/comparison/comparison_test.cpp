@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/error.hpp"
+#include "report/document/render_html.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/text/text_table.hpp"
 #include "tests/report/stored_fixture.hpp"
@@ -32,8 +33,17 @@ std::string comparison_text(const Json& json, const rigcal::report::Style& style
   return rigcal::report::comparison_text(read_back(json), style);
 }
 
-Json comparison_headline(const Json& json) {
+rigcal::report::doc::Verdict comparison_headline(const Json& json) {
   return rigcal::report::comparison_headline(read_back(json));
+}
+
+/// The words of a reason that leads somewhere.
+std::string reason_of(const rigcal::report::doc::Verdict& verdict, std::size_t i) {
+  return std::get<rigcal::report::doc::Link>(verdict.reasons.at(i).front()).words;
+}
+
+std::string sentence_of(const rigcal::report::doc::Verdict& verdict) {
+  return rigcal::report::doc::html(verdict.sentence);
 }
 
 /// A fit with this mass and leak, of records of its own.
@@ -113,7 +123,7 @@ TEST_CASE("comparison: nothing is a percentage of what may be zero", "[report]")
   CHECK(leak["percent"].is_null());
   CHECK(leak["significant"] == true);
   CHECK_THAT(comparison_text(json, {}), Contains("+0.3 (p"));
-  CHECK_THAT(comparison_headline(json)["reasons"][0]["text"].get<std::string>(),
+  CHECK_THAT(reason_of(comparison_headline(json), 0),
              Contains("leakage_coefficient differs in after by +0.3 (p"));
   // Not zero, but its interval holds zero: 0.03 would be +200 %.
   ComparedJson other = compared_fit("after", 87.0, 0.03);
@@ -121,7 +131,7 @@ TEST_CASE("comparison: nothing is a percentage of what may be zero", "[report]")
   json = comparison_json({compared_fit("before", 85.0, 0.01), other}, {});
   CHECK(json["parameters"][2]["differences"][1]["percent"].is_null());
   // Two standard errors against 3.5: the mass comes first, though neither can be tested.
-  CHECK_THAT(comparison_headline(json)["reasons"][0]["text"].get<std::string>(),
+  CHECK_THAT(reason_of(comparison_headline(json), 0),
              Contains("mass differs in after by +2.35 %, not tested"));
 }
 
@@ -360,14 +370,14 @@ TEST_CASE("comparison: what was not tested is not called insignificant", "[repor
         "2 parameters compared, 0 tested; not tested: mass, leakage_coefficient, because estimated "
         "from the same data, so not independent of each other");
   CHECK_THAT(comparison_text(json, {}), Contains("-50 % (not tested)"));
-  const Json headline = comparison_headline(json);
-  CHECK(headline["word"] == "COMPARED");
-  CHECK(headline["sentence"] ==
+  const auto headline = comparison_headline(json);
+  CHECK(headline.badge.words == "COMPARED");
+  CHECK(sentence_of(headline) ==
         "2 results, 2 parameter differences; none could be tested for significance.");
   // The largest first
-  CHECK_THAT(headline["reasons"][0]["text"].get<std::string>(),
+  CHECK_THAT(reason_of(headline, 0),
              Contains("leakage_coefficient differs in other by -50 %, not tested: estimated from"));
-  CHECK_THAT(headline["reasons"][1]["text"].get<std::string>(), Contains("mass differs in other"));
+  CHECK_THAT(reason_of(headline, 1), Contains("mass differs in other"));
 }
 
 TEST_CASE("comparison: what was tested is counted", "[report]") {
@@ -376,20 +386,19 @@ TEST_CASE("comparison: what was tested is counted", "[report]") {
       comparison_json({compared_fit("before", 85.0, 0.3), compared_fit("after", 85.1, 0.3)}, {});
   CHECK(none["significance"][1]["text"] ==
         "2 parameters compared, 2 tested, no significant difference");
-  CHECK(comparison_headline(none)["reasons"].empty());
+  CHECK(comparison_headline(none).reasons.empty());
   after.result["parameters"][0]["standard_error"] = nullptr;
   after.result["parameters"][0]["robust_standard_error"] = nullptr;
   const Json json = comparison_json({compared_fit("before", 85.0, 0.3), after}, {});
   CHECK(json["significance"][1]["text"] ==
         "2 parameters compared, 1 tested, 1 significant difference; not tested: mass, because an "
         "estimate has no standard error");
-  const Json headline = comparison_headline(json);
-  CHECK(headline["word"] == "DIFFERENT");
-  CHECK(headline["sentence"] ==
+  const auto headline = comparison_headline(json);
+  CHECK(headline.badge.words == "DIFFERENT");
+  CHECK(sentence_of(headline) ==
         "2 results, 2 parameter differences: 1 tested, 1 significant, 1 not tested.");
-  CHECK_THAT(headline["reasons"][0]["text"].get<std::string>(),
-             Contains("leakage_coefficient differs in after by +100 % (p"));
-  CHECK_THAT(headline["reasons"][1]["text"].get<std::string>(), Contains("not tested"));
+  CHECK_THAT(reason_of(headline, 0), Contains("leakage_coefficient differs in after by +100 % (p"));
+  CHECK_THAT(reason_of(headline, 1), Contains("not tested"));
 }
 
 TEST_CASE("comparison: a trend of results that share records is not tested", "[report]") {

@@ -5,11 +5,9 @@
 #include <cmath>
 
 #include "report/page/assets.hpp"
-#include "report/page/render.hpp"
 
 using Catch::Contains;
 using rigcal::report::Plot;
-using rigcal::report::render;
 using rigcal::report::round_ticks;
 using rigcal::report::svg;
 using rigcal::report::Trace;
@@ -67,13 +65,6 @@ TEST_CASE("svg: what differs by rounding alone has an axis", "[report]") {
       CHECK_THAT(svg(plot), Contains("<circle") && !Contains("nan"));
     }
   }
-}
-
-TEST_CASE("render: escapes, repeats and asks", "[report]") {
-  const nlohmann::ordered_json data{{"name", "<b>\"'&"}, {"list", {{{"x", "1"}}, {{"x", "2"}}}}};
-  CHECK(render("{{name}}", data) == "&lt;b&gt;&quot;&apos;&amp;");
-  CHECK(render("{{#list}}[{{x}}]{{/list}}", data) == "[1][2]");
-  CHECK_THROWS_AS(render("{{#list}}", data), std::logic_error);
 }
 
 TEST_CASE("assets: page and library are built in", "[report]") {

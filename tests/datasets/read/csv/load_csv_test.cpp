@@ -218,7 +218,7 @@ TEST_CASE("load_csv: wrong count of columns", "[datasets]") {
 TEST_CASE("load_csv: missing column", "[datasets]") {
   const std::string message = refusal("# c\nt [s],x_mm,u\n0,1,2\n", request({"t", "xmm"}));
   CHECK(message == "a.csv:2: unknown column 'xmm'; did you mean 'x_mm'? (known: t, x_mm, u)");
-  CHECK_THAT(refusal("t x\n0 1\n"), Contains("(known: t x)") && Contains("separator"));
+  CHECK_THAT(refusal("t|x\n0|1\n"), Contains("(known: t|x)") && Contains("separator"));
 }
 
 TEST_CASE("load_csv: duplicate names matter where they are wanted", "[datasets]") {
@@ -227,16 +227,16 @@ TEST_CASE("load_csv: duplicate names matter where they are wanted", "[datasets]"
   CHECK(load(text, request({"t", "y"}, "t")).columns == Columns{{0}, {2}});
 }
 
-TEST_CASE("load_csv: a second header line of units", "[datasets]") {
-  CHECK_THAT(refusal("t,x\ns,mm\n0,1\n"),
-             StartsWith("a.csv:2:1: no numbers in the first row ('s' in column 't')") &&
+TEST_CASE("load_csv: a second header line that is none of units", "[datasets]") {
+  CHECK_THAT(refusal("t,x\ntime,travel\n0,a\n"),
+             StartsWith("a.csv:2:1: no numbers in the first row ('time' in column 't')") &&
                  Contains("x [mm]"));
-  CHECK_THAT(refusal("t,x\n[s],\n0,1\n"), StartsWith("a.csv:2:1: no numbers in the first row"));
+  CHECK(load("t,x\n[s],\n0,1\n").columns == Columns{{0}, {1}});
 }
 
 TEST_CASE("load_csv: numbers where the header should be", "[datasets]") {
   CHECK_THAT(refusal("0,1\n1,2\n"), StartsWith("a.csv:1:1: holds numbers; expected the header"));
-  CHECK_THAT(refusal("# t,x\n0,1\n"), StartsWith("a.csv:2:1: ") && Contains("'#'"));
+  CHECK_THAT(refusal("# a rig\n0,1\n"), StartsWith("a.csv:2:1: ") && Contains("'#'"));
 }
 
 TEST_CASE("load_csv: time that does not increase", "[datasets]") {
@@ -254,7 +254,7 @@ TEST_CASE("load_csv: a time column that is not wanted is a mistake of the caller
 TEST_CASE("load_csv: empty lines inside", "[datasets]") {
   CHECK_THAT(refusal("t,x\n0,1\n\n \n1,2\n"),
              StartsWith("a.csv:3:1: an empty line inside the data, which goes on in line 5"));
-  CHECK_THAT(refusal("\nt,x\n0,1\n"), StartsWith("a.csv:1:1: is an empty line"));
+  CHECK_THAT(refusal("\nt,x\n0,a\n"), StartsWith("a.csv:1:1: is an empty line"));
   CHECK_THAT(refusal("t,x\n\n0,1\n"), StartsWith("a.csv:2:1: an empty line inside the data"));
 }
 

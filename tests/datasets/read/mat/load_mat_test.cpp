@@ -205,7 +205,8 @@ TEST_CASE("load_mat: an object says how to save it", "[datasets]") {
 
   // In version 7.3 an object is a reference whose class is none of MATLAB's numbers.
   write_mat(path, MatFormat::v73,
-            {mat_array("ts", std::vector<std::uint16_t>{1, 2, 3, 4, 5, 6}, {1, 6})});
+            {mat_array("ts", std::vector<std::uint16_t>{1, 2, 3, 4, 5, 6}, {1, 6}),
+             mat_array("t", Numbers{0, 1, 2})});
   std::string content = content_of(path);
   const std::size_t at = content.find("uint16");
   REQUIRE(at != std::string::npos);

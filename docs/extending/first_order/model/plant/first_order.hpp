@@ -51,8 +51,7 @@ struct FirstOrderPlant {
   static constexpr const auto& fields() {
     return kFirstOrderFields<T>;
   }
-  /// Size below which a state counts as zero in the error control [m, m/s].
-  static constexpr std::array<double, kStates> kFloor{1e-6, 1e-5};
+  static constexpr std::array<StateRow, kStates> kStateRows{kPistonPosition, kPistonVelocity};
 
   static constexpr std::optional<int> state_of(Output output) {
     if (output == Output::position) return position;
@@ -71,10 +70,10 @@ struct FirstOrderPlant {
   }
 
   /// It tells nothing beside position and velocity.
-  template <typename C, std::size_t M>
-  static C output(Output /*output*/, const std::array<C, M>& /*x*/, const PlantInput<C>& /*in*/,
+  template <typename X, std::size_t M, typename C>
+  static X output(Output /*output*/, const std::array<X, M>& /*x*/, const PlantInput<X>& /*in*/,
                   const Coefficients<C>& /*p*/, const PresentTerms& /*terms*/) {
-    return C(0.0);
+    return X(0.0);
   }
 
   template <typename C>

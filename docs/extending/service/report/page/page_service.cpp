@@ -26,25 +26,20 @@ Service load_service(const ReadFile& read, const std::string& where) {
   return load<Service>(read, where, "service.json");
 }
 
-Json service_headline(const Service& service) {
+doc::Verdict service_headline(const Service& service) {
   if (service.entries.empty())
-    return make_headline("NO SERVICE", "!", "warn", "Nothing was ever done to the rig.");
+    return {{doc::State::warn, "NO SERVICE"}, {"Nothing was ever done to the rig."}};
   const ServiceEntry& last = service.entries.back();
-  return make_headline(
-      "SERVICED", "✓", "good",
-      fmt::format("Last on {}, at {:g} h: {}.", last.date, last.operating_hours, last.what));
+  return {{doc::State::good, "SERVICED"},
+          {fmt::format("Last on {}, at {:g} h: {}.", last.date, last.operating_hours, last.what)}};
 }
 
-Json service_view(const Service& service) {
-  Json view;
-  view["rows"] = Json::array();
-  for (const ServiceEntry& entry : service.entries) {
-    view["rows"].push_back({{"date", entry.date},
-                            {"hours", shown_in(entry.operating_hours, 1.0)},
-                            {"what", entry.what}});
-  }
-  view["plot_html"] = svg(hours_plot(service));
-  return view;
+std::vector<doc::Section> service_sections(const Service& service) {
+  doc::Table table{"What was done to the rig"};
+  table.columns = {{"Date"}, {"Hours of operation", doc::Column::Kind::number}, {"What"}};
+  for (const ServiceEntry& entry : service.entries)
+    table.rows.push_back({{entry.date, doc::in_unit(entry.operating_hours, 1.0), entry.what}});
+  return {{"service", "Service", {std::move(table), figure_of(hours_plot(service))}}};
 }
 
 std::vector<Figure> service_figures(const Service& service) {

@@ -25,8 +25,8 @@ struct Service {
 };
 
 Service load_service(const ReadFile& read, const std::string& where);
-Json service_headline(const Service& service);
-Json service_view(const Service& service);
+doc::Verdict service_headline(const Service& service);
+std::vector<doc::Section> service_sections(const Service& service);
 std::vector<Figure> service_figures(const Service& service);
 
 }  // namespace rigcal::report

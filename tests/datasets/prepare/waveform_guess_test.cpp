@@ -1,4 +1,4 @@
-#include "datasets/draft/waveform_guess.hpp"
+#include "datasets/prepare/waveform_guess.hpp"
 
 #include <catch2/catch.hpp>
 #include <cmath>

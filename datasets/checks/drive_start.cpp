@@ -1,0 +1,53 @@
+#include "datasets/checks/drive_start.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "datasets/campaign/campaign_sections.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr double kLeastJump = 0.1;         // of the range of the drive about its neutral
+constexpr double kSameStep = 0.05;         // of the step
+constexpr std::size_t kFewestAtFirst = 8;  // at the first value
+constexpr std::size_t kAStretch = 3;       // samples over which a speed is taken
+constexpr double kGetsGoing = 0.5;         // of the fastest stretch
+
+}  // namespace
+
+std::string drive_start_proposal(const Campaign& campaign, const Condition& condition,
+                                 const Record& record) {
+  if (campaign.before_stated || condition.waveform != Waveform::recorded) return {};
+  const Channel channel = drive_channel(campaign);
+  const auto drive = record.channels.find(channel);
+  const auto position = record.channels.find(Channel::position);
+  if (drive == record.channels.end() || position == record.channels.end()) return {};
+  const std::vector<double>& u = drive->second.mean;
+  const std::vector<double>& x = position->second.mean;
+  const bool is_loop = channel == Channel::reference;
+  const double neutral = is_loop ? x.front() : 0.0;
+  double farthest = 0.0;
+  for (const double value : u) farthest = std::max(farthest, std::abs(value - neutral));
+  const double step = u.front() - neutral;
+  if (!(std::abs(step) > kLeastJump * farthest)) return {};
+  std::size_t held = 1;
+  while (held < u.size() && std::abs(u[held] - u.front()) <= kSameStep * std::abs(step)) ++held;
+  if (held < kFewestAtFirst) return {};
+  const auto moved = [&x](std::size_t i) { return std::abs(x[i + kAStretch] - x[i]); };
+  double fastest = 0.0;
+  for (std::size_t i = 1; i + kAStretch < held; ++i) fastest = std::max(fastest, moved(i));
+  if (!(moved(0) < kGetsGoing * fastest)) return {};
+  return fmt::format(
+      "the record begins at a step: the first {} is {:.3g} {}{}, and the piston has yet to move; "
+      "before = \"rest\" in [recording] says that it was {} until then, so that a delay and a lag "
+      "of the valve have something to act on",
+      info(channel).key, u.front(), info(channel).unit,
+      is_loop ? fmt::format(", the position {:.3g} m", neutral) : std::string(),
+      is_loop ? "where the piston was" : "0 V");
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,283 @@
+#include "datasets/prepare/recognised_drive.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "datasets/campaign/campaign_sections.hpp"
+#include "datasets/prepare/equal_runs.hpp"
+#include "datasets/prepare/waveform_guess.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr double kTwoPi = 2.0 * std::numbers::pi;
+constexpr std::size_t kFewestToRecognise = 32;
+constexpr double kOfStep = 0.75;     // a rounded value is off by half a step at most
+constexpr double kMostStep = 0.02;   // of the amplitude: a coarser record shows no waveform
+constexpr double kExact = 1e-9;      // of the amplitude: rounding of its computation
+constexpr double kMostErrors = 5.0;  // standard deviations of the stated noise
+constexpr double kMostRms = 1.2;     // of the stated noise
+constexpr int kMostSteps = 30;       // of Gauss and Newton
+constexpr int kMostDigits = 12;
+
+/// Drive and time of a record, and how near a signal has to come.
+struct Recorded {
+  std::span<const double> time_s;
+  std::span<const double> drive;
+  double sd = 0.0;
+  double step = 0.0;  ///< of its converter or digits
+
+  std::size_t size() const { return drive.size(); }
+  double tolerance() const { return kOfStep * step + kMostErrors * sd; }
+};
+
+/// Farthest distance of a sample, if all are near enough.
+std::optional<double> farthest_from(const Recorded& record, const model::Signal& signal,
+                                    double amplitude) {
+  double farthest = 0.0;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < record.size(); ++i) {
+    const double e = std::abs(record.drive[i] - signal.value(record.time_s[i]));
+    farthest = std::max(farthest, e);
+    squares += e * e;
+  }
+  if (!(farthest <= record.tolerance() + kExact * amplitude)) return std::nullopt;
+  const double rms = std::sqrt(squares / static_cast<double>(record.size()));
+  const double stated = std::hypot(record.sd, record.step / std::sqrt(12.0));
+  if (record.sd > 0.0 && rms > kMostRms * stated) return std::nullopt;
+  return farthest;
+}
+
+double rounded(double value, int digits) {
+  return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
+}
+
+/// Gauss and Newton on a few parameters of a signal.
+///
+/// @param model  value of the signal at a time, and its derivatives by the parameters
+/// @return       false where it leads nowhere
+template <int N>
+bool solve(const Recorded& record, Eigen::Vector<double, N>& p,
+           const std::function<double(double, const Eigen::Vector<double, N>&,
+                                      Eigen::Vector<double, N>&)>& model) {
+  for (int step = 0; step < kMostSteps; ++step) {
+    Eigen::Matrix<double, N, N> normal = Eigen::Matrix<double, N, N>::Zero();
+    Eigen::Vector<double, N> right = Eigen::Vector<double, N>::Zero();
+    Eigen::Vector<double, N> slope;
+    for (std::size_t i = 0; i < record.size(); ++i) {
+      const double value = model(record.time_s[i], p, slope);
+      normal += slope * slope.transpose();
+      right += slope * (record.drive[i] - value);
+    }
+    // To the scale of each parameter: frequencies and amplitudes differ by magnitudes.
+    const Eigen::Vector<double, N> scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300);
+    const Eigen::Matrix<double, N, N> scaled =
+        scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
+    const Eigen::Vector<double, N> change =
+        scaled.ldlt().solve(right.cwiseQuotient(scale)).cwiseQuotient(scale);
+    if (!change.allFinite()) return false;
+    p += change;
+    if (change.cwiseProduct(scale).norm() <= 1e-13 * p.cwiseProduct(scale).norm()) return true;
+  }
+  return p.allFinite();
+}
+
+std::optional<RecognisedDrive> named(const Recorded& record, model::Signal signal, double amplitude,
+                                     std::string name) {
+  const auto farthest = farthest_from(record, signal, amplitude);
+  if (!farthest) return std::nullopt;
+  return RecognisedDrive{std::move(signal), std::move(name), *farthest, record.tolerance()};
+}
+
+std::optional<RecognisedDrive> as_sine(const Recorded& record, double frequency_hz,
+                                       const std::string& unit) {
+  using P = Eigen::Vector<double, 4>;  // offset, sine, cosine, frequency
+  P p(0.0, 0.0, 0.0, frequency_hz);
+  const auto model = [](double t, const P& at, P& slope) {
+    const double s = std::sin(kTwoPi * at(3) * t);
+    const double c = std::cos(kTwoPi * at(3) * t);
+    slope = P(1.0, s, c, kTwoPi * t * (at(1) * c - at(2) * s));
+    return at(0) + at(1) * s + at(2) * c;
+  };
+  if (!solve<4>(record, p, model) || !(p(3) > 0.0)) return std::nullopt;
+  const double amplitude = std::hypot(p(1), p(2));
+  // The simplest that will do: the frequency in few digits, so that samples repeat themselves.
+  for (int digits = 2; digits <= kMostDigits; ++digits) {
+    const double f = rounded(p(3), digits);
+    const double a = rounded(amplitude, digits);
+    if (auto found =
+            named(record, model::Signal::sine(a, f), a,
+                  fmt::format("a sine of {:.6g} Hz with an amplitude of {:.6g} {}", f, a, unit)))
+      return found;
+  }
+  for (int digits = 2; digits <= kMostDigits; ++digits) {
+    const double f = rounded(p(3), digits);
+    const double phase = std::atan2(p(2), p(1)) + kTwoPi * (p(3) - f) * record.time_s[0];
+    if (auto found = named(record, model::Signal::ripple(p(0), amplitude, f, phase), amplitude,
+                           fmt::format("a sine of {:.6g} Hz with an amplitude of {:.6g} {} about "
+                                       "{:.4g} {}",
+                                       f, amplitude, unit, p(0), unit)))
+      return found;
+  }
+  return std::nullopt;
+}
+
+/// The number in [low, high] of fewest digits.
+double roundest_between(double low, double high) {
+  for (int digits = 1; digits <= 17; ++digits) {
+    const double middle = rounded(0.5 * (low + high), digits);
+    if (middle >= low && middle <= high) return middle;
+  }
+  return 0.5 * (low + high);
+}
+
+std::optional<RecognisedDrive> as_square(const Recorded& record, double amplitude,
+                                         const std::string& unit) {
+  // Edge k of a square wave is at k / (2 f): after the sample before it, not after its own.
+  constexpr double kEdgeRounding = 1e-12;
+  double low_hz = 0.0;
+  double high_hz = std::numeric_limits<double>::infinity();
+  long edge = 0;
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    if (std::signbit(record.drive[i]) == std::signbit(record.drive[i - 1])) continue;
+    ++edge;
+    if (!(record.time_s[i] > 0.0)) return std::nullopt;
+    low_hz = std::max(low_hz, 0.5 * static_cast<double>(edge) / record.time_s[i]);
+    if (record.time_s[i - 1] > 0.0)
+      high_hz = std::min(high_hz, 0.5 * static_cast<double>(edge) / record.time_s[i - 1]);
+  }
+  if (edge < 2 || !(low_hz * (1.0 - kEdgeRounding) <= high_hz) || !std::isfinite(high_hz))
+    return std::nullopt;
+  const double f = roundest_between(low_hz * (1.0 - kEdgeRounding), std::max(high_hz, low_hz));
+  return named(
+      record, model::Signal::square(amplitude, f), amplitude,
+      fmt::format("a square wave of {:.6g} Hz with an amplitude of {:.6g} {}", f, amplitude, unit));
+}
+
+/// Zero crossings between samples: half a cycle each.
+std::vector<double> crossings_of(const Recorded& record) {
+  std::vector<double> crossings;
+  for (std::size_t i = 1; i < record.size(); ++i) {
+    const double before = record.drive[i - 1];
+    const double now = record.drive[i];
+    if (before == 0.0 || (before < 0.0) == (now < 0.0)) continue;
+    crossings.push_back(record.time_s[i - 1] +
+                        (record.time_s[i] - record.time_s[i - 1]) * before / (before - now));
+  }
+  return crossings;
+}
+
+/// Frequency and rate of a logarithmic chirp through its middle and its last crossing: (0, f,
+/// rate).
+Eigen::Vector<double, 3> logarithmic_start(const std::vector<double>& crossings) {
+  const std::size_t middle = crossings.size() / 2;
+  const double t1 = crossings[middle];
+  const double t2 = crossings.back();
+  const double ratio = static_cast<double>(crossings.size()) / static_cast<double>(middle + 1);
+  // expm1(rate t2) / expm1(rate t1) grows with the rate.
+  double low = -50.0 / t2;
+  double high = 49.0 / t2;  // so that no rate tried is zero
+  for (int i = 0; i < 200; ++i) {
+    const double rate = 0.5 * (low + high);
+    (std::expm1(rate * t2) / std::expm1(rate * t1) < ratio ? low : high) = rate;
+  }
+  const double rate = 0.5 * (low + high);
+  return {0.0, 0.5 * static_cast<double>(crossings.size()) * rate / std::expm1(rate * t2), rate};
+}
+
+/// From t = 0 on, over the whole record.
+std::optional<RecognisedDrive> as_chirp(const Recorded& record, double amplitude,
+                                        const std::string& unit) {
+  using P = Eigen::Vector<double, 3>;  // amplitude, frequency, rate
+  const auto crossings = crossings_of(record);
+  const double end_s = record.time_s.back();
+  if (crossings.size() < 8 || std::abs(record.time_s.front()) > 1e-9 * end_s) return std::nullopt;
+  // Cycles over time at each crossing are the mean frequency until there: a line, or nearly one.
+  double s = 0.0, st = 0.0, stt = 0.0, sy = 0.0, sty = 0.0;
+  for (std::size_t k = 0; k < crossings.size(); ++k) {
+    const double t = crossings[k];
+    const double y = 0.5 * static_cast<double>(k + 1) / t;
+    s += 1.0, st += t, stt += t * t, sy += y, sty += t * y;
+  }
+  const double slope = (s * sty - st * sy) / (s * stt - st * st);
+  const double first_hz = (sy - slope * st) / s;
+  for (const bool logarithmic : {false, true}) {
+    const auto cycles_of = [logarithmic](double t, double f, double rate) {
+      if (!logarithmic) return f * t + 0.5 * rate * t * t;
+      return std::abs(rate) < 1e-12 ? f * t : f * std::expm1(rate * t) / rate;
+    };
+    const auto model = [&](double t, const P& at, P& by) {
+      const double cycles = cycles_of(t, at(1), at(2));
+      const double sine = std::sin(kTwoPi * cycles);
+      const double cosine = kTwoPi * at(0) * std::cos(kTwoPi * cycles);
+      const double by_f = logarithmic ? cycles / at(1) : t;
+      const double by_rate =
+          logarithmic ? (at(1) * t * std::exp(at(2) * t) - cycles) / at(2) : 0.5 * t * t;
+      by = P(sine, cosine * by_f, cosine * by_rate);
+      return at(0) * sine;
+    };
+    P p(amplitude, first_hz, 2.0 * slope);
+    if (logarithmic) p = P(amplitude, 0.0, 0.0) + logarithmic_start(crossings);
+    if (crossings.front() > 0.0 && record.drive[1] < 0.0) p(0) = -p(0);
+    if (!solve<3>(record, p, model) || !(p(1) > 0.0)) continue;
+    const double f1 = logarithmic ? p(1) * std::exp(p(2) * end_s) : p(1) + p(2) * end_s;
+    if (!(f1 > 0.0)) continue;
+    if (auto found = named(
+            record, model::Signal::chirp(p(0), p(1), f1, end_s, logarithmic), std::abs(p(0)),
+            fmt::format("a {} chirp from {:.6g} Hz to {:.6g} Hz with an amplitude "
+                        "of {:.6g} {}",
+                        logarithmic ? "logarithmic" : "linear", p(1), f1, std::abs(p(0)), unit)))
+      return found;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<RecognisedDrive> recognised_drive(std::span<const double> time_s,
+                                                std::span<const double> drive,
+                                                const std::string& unit, double sd) {
+  if (drive.size() < kFewestToRecognise) return std::nullopt;
+  const auto [low, high] = std::minmax_element(drive.begin(), drive.end());
+  const double amplitude = 0.5 * (*high - *low);
+  if (!(amplitude > 0.0)) return std::nullopt;
+  Recorded record{time_s, drive, sd, 0.0};
+  const auto at_top = [&](double x) { return std::abs(std::abs(x) - *high) <= kMostErrors * sd; };
+  if (*low < 0.0 && std::all_of(drive.begin(), drive.end(), at_top))
+    return as_square(record, sd > 0.0 ? amplitude : *high, unit);
+  record.step = std::min(resolution(equal_runs(drive)), kMostStep * amplitude);
+  const WaveformGuess guess = guess_waveform(time_s, drive);
+  if (guess.waveform == Waveform::sine) return as_sine(record, *guess.frequency_hz, unit);
+  return as_chirp(record, amplitude, unit);
+}
+
+void recognise_drive(const Campaign& campaign, const Condition& condition, Record& record) {
+  if (condition.waveform != Waveform::recorded) return;
+  const Channel channel = drive_channel(campaign);
+  const auto setting = campaign.channels.find(channel);
+  const auto series = record.channels.find(channel);
+  if (setting == campaign.channels.end() || series == record.channels.end()) return;
+  if (!setting->second.recognise || setting->second.in_counts) return;
+  const auto found =
+      recognised_drive(record.time_s, series->second.mean, std::string(info(channel).unit),
+                       setting->second.sd.value_or(0.0));
+  if (!found) return;
+  record.generated_drive = found->signal;
+  record.notes.push_back(fmt::format(
+      "the recorded {} is {}: no sample is farther from it than {:.2g} {} (it is rounded, or its "
+      "noise stated, to {:.2g}); it is simulated as such, which recognise = false of the channel "
+      "prevents",
+      info(channel).key, found->name, found->farthest, info(channel).unit, found->tolerance));
+}
+
+}  // namespace rigcal::datasets

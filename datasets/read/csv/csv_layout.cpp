@@ -1,0 +1,147 @@
+#include "datasets/read/csv/csv_layout.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+
+#include "datasets/read/unit_in_name.hpp"
+
+namespace rigcal::datasets {
+namespace {
+
+constexpr std::array kSeparators{'\t', ';', ',', ' '};
+constexpr std::size_t kFewestColumns = 2;
+
+std::string_view trimmed_line(std::string_view text) {
+  constexpr std::string_view kBlanks = " \t";
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+bool is_plain_text(std::string_view line) {
+  return std::none_of(line.begin(), line.end(),
+                      [](char c) { return c >= 0 && c < ' ' && c != '\t'; });
+}
+
+std::vector<std::string_view> fields_of(std::string_view line, char separator) {
+  std::vector<std::string_view> fields;
+  CsvFields walk(line, separator);
+  for (CsvField field; walk.next(field);) fields.push_back(field.text);
+  return fields;
+}
+
+bool is_number(std::string_view text, char separator) {
+  return csv_number(text, separator != ',').has_value();
+}
+
+/// dSPACE writes "trace_values" before its first row, and nothing before the others.
+bool is_label(std::string_view text) { return text.empty() || text == "trace_values"; }
+
+/// Number of fields of a row of numbers; 0 if it is none. Its first may be a label; a last one that
+/// is empty, a comment that nobody wrote, does not count.
+std::size_t width_of_row(std::string_view line, char separator) {
+  if (!is_plain_text(line)) return 0;
+  const auto fields = fields_of(line, separator);
+  std::size_t begin = 0;
+  std::size_t end = fields.size();
+  if (end > 0 && is_label(fields.front())) ++begin;
+  if (end > begin && fields[end - 1].empty()) --end;
+  if (end < begin + kFewestColumns) return 0;
+  const bool numbers =
+      std::all_of(fields.begin() + static_cast<std::ptrdiff_t>(begin),
+                  fields.begin() + static_cast<std::ptrdiff_t>(end),
+                  [separator](std::string_view text) { return is_number(text, separator); });
+  return numbers ? end : 0;
+}
+
+bool is_unit_text(std::string_view text) {
+  if (text.size() > 1 && (text.front() == '[' || text.front() == '('))
+    text = text.substr(1, text.size() - 2);
+  return text.empty() || text == "-" || text == "%" || !unit_of_text(text).empty();
+}
+
+/// The names of a line, if there is one for each field of a row, and perhaps one of a comment.
+/// A line of names may be a comment itself.
+std::vector<CsvName> names_in(std::string_view line, char separator, std::size_t width) {
+  if (!is_plain_text(line)) return {};
+  line = trimmed_line(line);
+  while (line.starts_with('#') || line.starts_with('%')) line = line.substr(1);
+  if (separator == ' ' || line.empty()) line = trimmed_line(line);
+  std::vector<CsvName> names = header_names(line, separator);
+  const bool has_comment =
+      names.size() == width + 1 && (names.back().full == "Comment" || names.back().full.empty());
+  const bool any = std::any_of(names.begin(), names.end(),
+                               [](const CsvName& name) { return !name.full.empty(); });
+  const bool numbers = std::any_of(names.begin(), names.end(), [separator](const CsvName& name) {
+    return is_number(name.full, separator);
+  });
+  if ((names.size() != width && !has_comment) || !any || numbers) return {};
+  return names;
+}
+
+bool are_units(const std::vector<CsvName>& names) {
+  return std::all_of(names.begin(), names.end(),
+                     [](const CsvName& name) { return is_unit_text(name.full); });
+}
+
+/// The nearest line above that is not blank; as many as there are lines: none.
+std::size_t line_above(std::span<const std::string> lines, std::size_t line) {
+  while (line > 0)
+    if (!trimmed_line(lines[--line]).empty()) return line;
+  return lines.size();
+}
+
+/// Names and units above the first row of numbers.
+std::optional<CsvLayout> layout_above(std::span<const std::string> lines, std::size_t data,
+                                      char separator, std::size_t width) {
+  const std::size_t above = line_above(lines, data);
+  if (above == lines.size()) return std::nullopt;
+  CsvLayout layout{above, data, separator, names_in(lines[above], separator, width), false, {}};
+  if (layout.names.empty()) return std::nullopt;
+  layout.last_may_lack = layout.names.size() > width;
+  if (!are_units(layout.names)) return layout;
+  const std::size_t higher = line_above(lines, above);
+  if (higher == lines.size()) return layout;
+  std::vector<CsvName> names = names_in(lines[higher], separator, width);
+  if (names.size() != layout.names.size() || are_units(names)) return layout;
+  for (const CsvName& unit : layout.names) {
+    std::string_view text = unit.full;
+    if (text.size() > 1 && (text.front() == '[' || text.front() == '('))
+      text = text.substr(1, text.size() - 2);
+    layout.units.emplace_back(text);
+  }
+  layout.header = higher;
+  layout.names = std::move(names);
+  return layout;
+}
+
+}  // namespace
+
+bool is_row_of_numbers(std::string_view line, char separator, std::size_t names) {
+  const auto fields = fields_of(line, separator);
+  return fields.size() == names &&
+         std::all_of(fields.begin(), fields.end(),
+                     [separator](std::string_view text) { return is_number(text, separator); });
+}
+
+std::optional<CsvLayout> find_layout(std::span<const std::string> lines, bool is_whole,
+                                     char separator) {
+  for (const char each : kSeparators) {
+    if (separator != 0 && separator != each) continue;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      const std::size_t width = width_of_row(lines[i], each);
+      if (width == 0) continue;
+      std::size_t next = i + 1;
+      while (next < lines.size() && trimmed_line(lines[next]).empty()) ++next;
+      const bool goes_on =
+          next < lines.size() ? width_of_row(lines[next], each) == width : is_whole;
+      if (!goes_on) continue;
+      if (auto layout = layout_above(lines, i, each, width)) return layout;
+      break;  // numbers without names
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,624 @@
+#include "report/page/calibration/certificate.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/score/acceptance.hpp"
+#include "calib/score/assessment.hpp"
+#include "metrics/allowed_rms.hpp"
+#include "report/document/quantity.hpp"
+#include "report/document/words.hpp"
+#include "report/figure/decimate.hpp"
+#include "report/page/calibration/assessed.hpp"
+#include "report/page/page_parts.hpp"
+#include "report/store/validity.hpp"
+#include "report/text/readable.hpp"
+#include "report/text/stopped_sentence.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using calib::AspectState;
+using calib::FitStatus;
+using calib::Verdict;
+using doc::Line;
+using doc::State;
+
+/// Rows of page one; what is beyond them is counted.
+constexpr std::size_t kSignals = 8;
+constexpr std::size_t kValues = 12;
+constexpr std::size_t kDoubts = 9;
+
+std::string plural(std::size_t count, const std::string& noun) {
+  return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
+/// A score that has a limit.
+struct Judged {
+  const StoredCondition* condition = nullptr;
+  std::size_t number = 0;  ///< of the condition
+  std::string channel;
+  const StoredLimitCheck* check = nullptr;  ///< that which uses most of its tolerance
+
+  double used() const {
+    if (check == nullptr || !check->value || !check->tolerance_used) return HUGE_VAL;
+    return *check->tolerance_used;
+  }
+  bool held_back() const { return condition->use == datasets::Use::validate; }
+  Verdict verdict() const { return check != nullptr ? check->verdict : Verdict::fail; }
+};
+
+/// Every signal that is judged, those that the fit has not seen first, then the worst.
+std::vector<Judged> judged_signals(const StoredFit& fit) {
+  std::vector<Judged> signals;
+  for (std::size_t i = 0; i < fit.conditions.size(); ++i) {
+    const StoredCondition& condition = fit.conditions[i];
+    if (condition.failure || condition.not_scored) {
+      if (!fit.acceptance.empty()) signals.push_back({&condition, i, {}, nullptr});
+      continue;
+    }
+    for (const StoredLimitCheck& check : condition.limit_checks) {
+      const auto same = std::find_if(signals.begin(), signals.end(), [&](const Judged& each) {
+        return each.condition == &condition && each.channel == check.channel;
+      });
+      const Judged one{&condition, i, check.channel, &check};
+      if (same == signals.end()) {
+        signals.push_back(one);
+      } else if (std::pair(one.verdict(), one.used()) > std::pair(same->verdict(), same->used())) {
+        *same = one;
+      }
+    }
+  }
+  std::stable_sort(signals.begin(), signals.end(), [](const Judged& a, const Judged& b) {
+    return std::tuple(b.held_back(), b.verdict(), b.used()) <
+           std::tuple(a.held_back(), a.verdict(), a.used());
+  });
+  return signals;
+}
+
+/// Estimates that are signed for; nuisance parameters are not.
+std::vector<const StoredParameter*> signed_estimates(const StoredFit& fit) {
+  std::vector<const StoredParameter*> found;
+  for (const StoredParameter& p : fit.parameters)
+    if (p.fitted && !p.nuisance) found.push_back(&p);
+  return found;
+}
+
+/// "with at most 13 % of the permitted error"
+std::string tolerance_words(const std::vector<Judged>& signals) {
+  double used = 0.0;
+  for (const Judged& each : signals) used = std::max(used, each.used());
+  return fmt::format("with at most {} of the permitted error", calib::tolerance_used_text(used));
+}
+
+/// Adds how many signals the model reproduces, and how well its parameters are known.
+void add_numbers(const StoredFit& fit, Line& sentence) {
+  const std::vector<Judged> signals = judged_signals(fit);
+  if (!signals.empty()) {
+    std::vector<std::string> unseen;
+    for (const Judged& each : signals) {
+      const std::string& id = each.condition->id;
+      if (each.held_back() && (unseen.empty() || unseen.back() != id)) unseen.push_back(id);
+    }
+    sentence.emplace_back(
+        signals.size() == 1
+            ? std::string("The model reproduces the test signal")
+            : fmt::format("The model reproduces all {} test signals", signals.size()));
+    if (fit.schema == kFitSchema && !unseen.empty()) {
+      constexpr std::size_t kNamed = 2;
+      const auto of_these = std::count_if(signals.begin(), signals.end(),
+                                          [](const Judged& each) { return each.held_back(); });
+      sentence.emplace_back(", ");
+      sentence.emplace_back(doc::Strong{
+          unseen.size() > kNamed ? fmt::format("{} of them never seen by the fit", of_these)
+                                 : fmt::format("{} of them ({}) never seen by the fit", of_these,
+                                               fmt::join(unseen, ", "))});
+      sentence.emplace_back(",");
+    }
+    sentence.emplace_back(" " + tolerance_words(signals) + ".");
+  }
+  double widest = 0.0;
+  const auto found = signed_estimates(fit);
+  for (const StoredParameter* p : found) widest = std::max(widest, relative_half_width(*p));
+  if (!found.empty() && std::isfinite(widest)) {
+    sentence.emplace_back(
+        fmt::format(" {} determined to {}{}.",
+                    found.size() == 1 ? std::string("The one parameter is")
+                                      : fmt::format("All {} parameters are", found.size()),
+                    half_width_text(widest), found.size() == 1 ? "" : " or better"));
+  }
+}
+
+doc::Verdict failed_verdict(const StoredFit& fit) {
+  const auto failed = std::count_if(fit.conditions.begin(), fit.conditions.end(),
+                                    [](const auto& each) { return each.verdict == Verdict::fail; });
+  Line sentence;
+  if (failed == 0) {
+    sentence.emplace_back(
+        "A limit of the campaign could not be evaluated: the model is not validated.");
+  } else {
+    sentence.emplace_back(fmt::format(
+        "{} of {} conditions {} outside the campaign's limits: the model is not validated.", failed,
+        fit.conditions.size(), failed == 1 ? "is" : "are"));
+  }
+  const std::vector<Judged> signals = judged_signals(fit);
+  const auto worst =
+      std::max_element(signals.begin(), signals.end(), [](const Judged& a, const Judged& b) {
+        return std::pair(a.verdict(), a.used()) < std::pair(b.verdict(), b.used());
+      });
+  if (worst != signals.end() && worst->check != nullptr && worst->check->value &&
+      worst->check->limit) {
+    sentence.emplace_back(fmt::format(
+        " The worst, {} of {}, has {} {} (limit {:.6g}).", spaced(worst->channel),
+        worst->condition->id, spaced(worst->check->metric),
+        doc::score(worst->check->metric, worst->check->value).text, *worst->check->limit));
+  }
+  return {{State::bad, "FAIL"}, std::move(sentence)};
+}
+
+/// A reason with where its evidence is, and how many others are of its kind.
+Line doubt_line(const StoredFit& fit, const StoredReason& reason, const char* section,
+                std::size_t others) {
+  Line line{doc::Link{"#" + evidence_of(fit, reason, section), reason.words}};
+  if (others > 0) line.emplace_back(fmt::format(" (and {} more of this kind)", others));
+  return line;
+}
+
+/// Every kind of doubt, the gravest first: what the aspects say against the result or note, and
+/// what was warned of.
+doc::Doubts doubts_of(const StoredFit& fit) {
+  doc::Doubts doubts;
+  std::vector<std::pair<AspectState, Line>> found;
+  if (fit.assessment) {
+    for (const AspectName& aspect : kAspects) {
+      const std::vector<StoredReason>& reasons = ((*fit.assessment).*aspect.aspect).reasons;
+      for (std::size_t i = 0; i < reasons.size(); ++i) {
+        const StoredReason& reason = reasons[i];
+        // The values that count as exact stand beneath the table that rests on them.
+        if (reason.state == AspectState::pass || reason.code == "exact_values") continue;
+        const auto same = [&](const StoredReason& other) {
+          return other.code == reason.code && other.state == reason.state;
+        };
+        const auto here = reasons.begin() + static_cast<std::ptrdiff_t>(i);
+        if (std::any_of(reasons.begin(), here, same)) continue;
+        const auto others = static_cast<std::size_t>(std::count_if(here + 1, reasons.end(), same));
+        found.emplace_back(reason.state, doubt_line(fit, reason, aspect.link, others));
+      }
+    }
+  }
+  const auto gravity = [](AspectState state) {
+    switch (state) {
+      case AspectState::fail:
+        return 0;
+      case AspectState::not_assessed:
+      case AspectState::reservation:
+        return 1;
+      case AspectState::note:
+      case AspectState::pass:
+        return 2;
+    }
+    return 2;
+  };
+  std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) {
+    return gravity(a.first) < gravity(b.first);
+  });
+  for (auto& [state, line] : found) doubts.items.push_back(std::move(line));
+  if (doubts.items.size() > kDoubts) {
+    const std::size_t more = doubts.items.size() - kDoubts;
+    doubts.items.resize(kDoubts);
+    doubts.items.push_back({doc::Link{"#assessment", fmt::format("{} more points", more)}});
+  }
+  if (!fit.warnings.empty()) {
+    Line line{doc::Link{"#warnings", plural(fit.warnings.size(), "warning")}, ": "};
+    line.emplace_back(fit.warnings.front());
+    if (fit.warnings.size() > 1) line.emplace_back(" …");
+    doubts.items.push_back(std::move(line));
+  }
+  return doubts;
+}
+
+/// Half the interval, where it is as wide on both sides; nothing where it is not, or unknown.
+std::optional<double> expanded_uncertainty(const StoredParameter& p) {
+  constexpr double kSymmetric = 0.01;
+  const auto ends = doc::Interval(p.ci95).ends;
+  if (!ends || !p.value) return std::nullopt;
+  const double below = *p.value - ends->low;
+  const double above = ends->high - *p.value;
+  if (!(std::abs(above - below) <= kSymmetric * std::max(above, below))) return std::nullopt;
+  return 0.5 * (above + below);
+}
+
+/// U over the standard error that it rests on.
+std::optional<double> coverage_factor(const StoredParameter& p) {
+  const auto half = expanded_uncertainty(p);
+  const auto error = interval_error(p);
+  if (!half || !error || !(error->standard_error > 0.0)) return std::nullopt;
+  return *half / error->standard_error;
+}
+
+doc::Row value_row(const StoredParameter& p, bool judged) {
+  const RowUnit unit = unit_of(p);
+  const doc::Estimate estimate =
+      doc::estimate(p.value, judged ? p.ci95 : std::nullopt, unit.si,
+                    {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)});
+  Line name{capitalised(spaced(p.key)), " ", doc::Soft{p.symbol}};
+  if (p.level) name.emplace_back(", " + *p.level);
+  Line uncertainty{"–"};
+  if (const auto half = expanded_uncertainty(p); judged && half)
+    uncertainty = {"± ", doc::Quantity{half, matched(*half / unit.si, *half / unit.si)}};
+  else if (estimate.has_interval)
+    uncertainty = estimate.interval();
+  return {{{std::move(name)},
+           estimate.value,
+           {std::move(uncertainty)},
+           unit.name,
+           doc::badge(p.identifiability, p.at_bound, judged)}};
+}
+
+/// "k = 1.96", "k = 1.96 to 2.1"; empty where no U has one.
+std::string coverage_words(const std::vector<const StoredParameter*>& found) {
+  double least = HUGE_VAL;
+  double largest = 0.0;
+  for (const StoredParameter* p : found) {
+    const auto k = coverage_factor(*p);
+    if (!k) continue;
+    least = std::min(least, *k);
+    largest = std::max(largest, *k);
+  }
+  if (largest == 0.0) return {};
+  const std::string low = fmt::format("{:.3g}", least);
+  const std::string high = fmt::format("{:.3g}", largest);
+  return low == high ? fmt::format("k = {}, ", low) : fmt::format("k = {} to {}, ", low, high);
+}
+
+/// The calibrated values; a validation that estimated nothing has none.
+void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
+  std::vector<const StoredParameter*> found = signed_estimates(fit);
+  if (found.empty()) return;
+  const std::size_t more = found.size() > kValues ? found.size() - kValues : 0;
+  // The least certain are seen wherever the table ends.
+  if (more > 0)
+    std::stable_sort(found.begin(), found.end(), [](const auto* a, const auto* b) {
+      return relative_half_width(*a) > relative_half_width(*b);
+    });
+  found.resize(found.size() - more);
+  blocks.emplace_back(doc::Heading{
+      {judged
+           ? fmt::format("Result: calibrated values with expanded uncertainty U ({}coverage 95 %)",
+                         coverage_words(found))
+           : std::string("Best values so far: no uncertainty is known")},
+      2});
+  doc::Table table{"Calibrated values"};
+  table.shape = doc::Table::Shape::cards;
+  table.style = "values";
+  table.columns = {{"Quantity"},
+                   {"Value", doc::Column::Kind::number},
+                   {"U"},
+                   {"Unit", doc::Column::Kind::unit},
+                   {"Determined?"}};
+  for (const StoredParameter* p : found) table.rows.push_back(value_row(*p, judged));
+  blocks.emplace_back(std::move(table));
+  Line notes;
+  if (more > 0) {
+    notes.emplace_back(doc::Link{"#parameters", plural(more, "more value")});
+    notes.emplace_back(", each more certain than these. ");
+  }
+  if (fit.assessment) {
+    for (const StoredReason& reason : fit.assessment->parameters.reasons)
+      if (reason.code == "exact_values") notes.emplace_back(capitalised(reason.words) + ". ");
+  }
+  const std::string correlated = correlation_words(fit.correlation);
+  if (!correlated.empty()) notes.emplace_back(correlated);
+  if (!notes.empty())
+    blocks.emplace_back(doc::Paragraph{std::move(notes), doc::Paragraph::Tone::source});
+}
+
+/// What the model leaves of a record, against what its limit allows.
+Plot residual_strip(const Judged& signal, const std::vector<double>& residual, double allowed) {
+  constexpr std::size_t kColumns = 250;  // pixels
+  Plot plot;
+  plot.title = fmt::format("Measured minus model, {} of {}, whole record", spaced(signal.channel),
+                           signal.condition->id);
+  plot.width = static_cast<double>(kColumns);
+  plot.height = 40.0;
+  plot.bare = true;
+  Trace band = empty_trace(Trace::Kind::band, "allowed");
+  const auto last = static_cast<double>(residual.size());
+  if (allowed > 0.0) {
+    band.x = {0.0, last};
+    band.y = {-allowed, -allowed};
+    band.upper = {allowed, allowed};
+    plot.traces.push_back(std::move(band));
+  }
+  // From the least to the largest in each column: no peak is lost, and none is drawn that is not.
+  Trace bars = empty_trace(Trace::Kind::line, "residual");
+  for (std::size_t i = 0; i < kColumns; ++i) {
+    const std::size_t begin = i * residual.size() / kColumns;
+    const std::size_t end = std::max(begin + 1, (i + 1) * residual.size() / kColumns);
+    double low = HUGE_VAL;
+    double high = -HUGE_VAL;
+    for (std::size_t j = begin; j < std::min(end, residual.size()); ++j) {
+      if (!std::isfinite(residual[j])) continue;
+      low = std::min(low, residual[j]);
+      high = std::max(high, residual[j]);
+    }
+    if (!(low <= high)) continue;
+    const double middle = (static_cast<double>(i) + 0.5) * last / static_cast<double>(kColumns);
+    bars.x.insert(bars.x.end(), {middle, middle, middle});
+    bars.y.insert(bars.y.end(), {low, high, std::nan("")});
+  }
+  plot.traces.push_back(std::move(bars));
+  return plot;
+}
+
+/// Samples of a channel that count, of one column.
+std::vector<double> counted_samples(const Table& series, const std::string& column) {
+  const auto* values = series.find(column);
+  const auto* in_window = series.find("in_window");
+  std::vector<double> kept;
+  if (values == nullptr) return kept;
+  for (std::size_t i = 0; i < values->size(); ++i) {
+    const bool counts = in_window == nullptr || (*in_window)[i] != 0.0;
+    if (counts && std::isfinite((*values)[i])) kept.push_back((*values)[i]);
+  }
+  return kept;
+}
+
+std::string signal_words(const StoredCondition& condition) {
+  std::string text;
+  const auto add = [&](const std::string& word) {
+    if (!word.empty()) text += (text.empty() ? "" : ", ") + word;
+  };
+  if (condition.waveform) add(std::string(to_string(*condition.waveform)));
+  if (condition.frequency_hz) add(readable(*condition.frequency_hz, "Hz", 4));
+  if (condition.amplitude_m) add(readable(*condition.amplitude_m, "m", 4));
+  if (condition.leak_level) add("leak " + *condition.leak_level);
+  return text;
+}
+
+/// "rho2 0.9987 ± 0.0002, limit 0.99" of the check that decides.
+void add_score(const Judged& signal, doc::Cell& cell) {
+  const StoredLimitCheck& check = *signal.check;
+  cell.line = {spaced(check.metric) + " ", doc::score(check.metric, check.value)};
+  Line limit;
+  const auto& all = signal.condition->expanded_uncertainty;
+  const auto* known = all ? find(*all, signal.channel) : nullptr;
+  if (known != nullptr && *known) {
+    for (const metrics::MetricSpec& metric : metrics::kMetrics) {
+      const double half = (**known).*metric.value;
+      if (metric.name != check.metric || !std::isfinite(half)) continue;
+      limit = {"U ", doc::in_unit(half, 1.0, kErrorDigits), ", "};
+    }
+  }
+  if (check.limit) {
+    limit.emplace_back("limit ");
+    limit.emplace_back(doc::in_unit(check.limit, 1.0, 6));
+  }
+  cell.below = {std::move(limit)};
+}
+
+doc::Row signal_row(const Calibration& stored, const Judged& signal) {
+  const StoredCondition& condition = *signal.condition;
+  doc::Cell name{Line{doc::Link{"#" + anchor(condition.id), condition.id}}};
+  const std::string whose = signal_words(condition);
+  Line use{whose + (whose.empty() ? "" : " · ")};
+  if (!signal.channel.empty()) use.emplace_back(spaced(signal.channel) + " · ");
+  if (signal.held_back())
+    use.emplace_back(doc::Strong{"held back"});
+  else
+    use.emplace_back("used in the fit");
+  name.below = {std::move(use)};
+  doc::Cell strip, rms, score, used;
+  if (signal.check == nullptr) {
+    strip = {Line{doc::Badge{State::bad, condition.failure ? "not simulated" : "not scored"}}};
+    return {{std::move(name), std::move(strip), rms, score, used}};
+  }
+  const std::shared_ptr<const Table> series = stored.series(signal.number);
+  const auto known = datasets::channel_from_key(signal.channel);
+  const std::string column = known ? std::string(datasets::info(*known).name) : signal.channel;
+  const std::vector<double> residual = counted_samples(*series, "residual_" + column);
+  double allowed = 0.0;
+  for (const StoredLimitCheck& check : condition.limit_checks) {
+    if (check.channel == signal.channel && check.metric == "rho2" && check.limit)
+      allowed = metrics::allowed_rms(counted_samples(*series, "measured_" + column), *check.limit);
+  }
+  if (!residual.empty()) strip.picture = residual_strip(signal, residual, allowed);
+  if (const StoredScore* scores = find(condition.metrics, signal.channel); scores != nullptr) {
+    rms.line = {doc::readable(scores->rmse, channel_unit(signal.channel), 3)};
+    if (allowed > 0.0) rms.below = {{"limit ", readable(allowed, channel_unit(signal.channel), 2)}};
+  }
+  add_score(signal, score);
+  used.portion = signal.used();
+  used.below = {{calib::tolerance_used_text(signal.used()) + " of the tolerance"}};
+  if (signal.verdict() != Verdict::pass) used.line = {doc::badge(signal.verdict())};
+  return {{std::move(name), std::move(strip), std::move(rms), std::move(score), std::move(used)}};
+}
+
+/// "Not judged, no limit agreed: load pressure (lowest rho2 0.973, sine_3Hz)."
+std::string not_judged_words(const StoredFit& fit) {
+  std::vector<std::string> found;
+  std::vector<std::string> seen;
+  for (const StoredCondition& condition : fit.conditions) {
+    for (const auto& [channel, scores] : condition.metrics) {
+      if (condition.verdict_of(channel) ||
+          std::find(seen.begin(), seen.end(), channel) != seen.end())
+        continue;
+      seen.push_back(channel);
+      const StoredCondition* lowest = nullptr;
+      double least = HUGE_VAL;
+      for (const StoredCondition& other : fit.conditions) {
+        const StoredScore* score =
+            other.verdict_of(channel) ? nullptr : find(other.metrics, channel);
+        if (score == nullptr || !(score->rho2 < least)) continue;
+        least = score->rho2;
+        lowest = &other;
+      }
+      found.push_back(spaced(channel) + (lowest == nullptr
+                                             ? std::string()
+                                             : fmt::format(" (lowest rho2 {}, {})",
+                                                           agreement_text(least), lowest->id)));
+    }
+  }
+  if (found.empty()) return {};
+  return fmt::format("Recorded, but not judged, since no limit was agreed: {}.",
+                     fmt::join(found, "; "));
+}
+
+void add_signals(const Calibration& stored, doc::Blocks& blocks) {
+  const StoredFit& fit = stored.result;
+  std::vector<Judged> signals = judged_signals(fit);
+  const std::string not_judged = not_judged_words(fit);
+  if (!signals.empty()) {
+    blocks.emplace_back(doc::Heading{
+        {"Agreement: residual of each signal against its limit (grey: the rms that rho2 allows)"},
+        2});
+    const std::size_t more = signals.size() > kSignals ? signals.size() - kSignals : 0;
+    doc::Table table{"Agreement of each signal with its limit"};
+    table.style = "signals";
+    table.columns = {{"Signal"},
+                     {"Measured − model, whole record"},
+                     {"rms", doc::Column::Kind::number},
+                     {"Score", doc::Column::Kind::number},
+                     {"Used"}};
+    for (std::size_t i = 0; i + more < signals.size(); ++i)
+      table.rows.push_back(signal_row(stored, signals[i]));
+    blocks.emplace_back(std::move(table));
+    if (more > 0) {
+      const auto beyond = static_cast<std::size_t>(
+          std::count_if(signals.end() - static_cast<std::ptrdiff_t>(more), signals.end(),
+                        [](const Judged& each) { return each.verdict() == Verdict::fail; }));
+      blocks.emplace_back(
+          doc::Paragraph{{doc::Link{"#matrix", plural(more, "more signal")},
+                          beyond == 0 ? std::string(", all within their limits.")
+                                      : fmt::format(", {} of them outside their limits.", beyond)},
+                         doc::Paragraph::Tone::source});
+    }
+  }
+  if (!not_judged.empty())
+    blocks.emplace_back(doc::Paragraph{{not_judged}, doc::Paragraph::Tone::source});
+}
+
+void add_aspects(const StoredFit& fit, doc::Blocks& blocks) {
+  if (!fit.assessment) return;
+  blocks.emplace_back(doc::Heading{{"Why this verdict"}, 2});
+  doc::Aspects aspects;
+  for (const AspectName& aspect : kAspects) {
+    const StoredAspect& found = (*fit.assessment).*aspect.aspect;
+    doc::Aspects::Aspect one{doc::badge(found.state), aspect.short_name, {}};
+    const auto against = static_cast<std::size_t>(
+        std::count_if(found.reasons.begin(), found.reasons.end(),
+                      [](const StoredReason& each) { return calib::is_against(each.state); }));
+    const auto in_favour =
+        std::find_if(found.reasons.begin(), found.reasons.end(),
+                     [](const StoredReason& each) { return each.state == AspectState::pass; });
+    if (against > 0)
+      one.lines.push_back({doc::Link{"#assessment", fmt::format("{}: {} against", one.badge.words,
+                                                                plural(against, "reason"))}});
+    if (in_favour != found.reasons.end())
+      one.lines.push_back({in_favour->words});
+    else if (against == 0)
+      one.lines.push_back({one.badge.words});
+    aspects.aspects.push_back(std::move(one));
+  }
+  blocks.emplace_back(std::move(aspects));
+}
+
+/// What one quantity was, where the model was fitted and where it was validated.
+std::string coverage_text(const std::optional<Range>& fitted, const std::optional<Range>& validated,
+                          std::string_view unit) {
+  if (!validated || (fitted && fitted->low == validated->low && fitted->high == validated->high))
+    return in_words(*fitted, unit);
+  if (!fitted) return fmt::format("validated {}", in_words(*validated, unit));
+  return fmt::format("fitted {}, validated {}", in_words(*fitted, unit),
+                     in_words(*validated, unit));
+}
+
+/// By which rule, and where the model may be used: of one that is not validated, what was tried.
+void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
+  if (!fit.acceptance.empty()) {
+    const auto rule = fit.decision.value_or(datasets::DecisionRule::simple);
+    blocks.emplace_back(doc::Paragraph{{fmt::format("Decision rule: {} (ISO/IEC 17025, 7.8.6). {}",
+                                                    calib::words_of(rule), rule_words(rule))},
+                                       doc::Paragraph::Tone::source});
+  }
+  if (fit.status == FitStatus::failed) return;
+  std::vector<std::string> ranges;
+  const auto add = [&](std::optional<Range> StoredValidity::*range, const char* name,
+                       std::string_view unit) {
+    const std::optional<Range>& fitted = fit.validity.*range;
+    // A validation covers both at once.
+    const std::optional<Range> validated =
+        fit.schema == kFitSchema && fit.validated ? (*fit.validated).*range : std::nullopt;
+    if (fitted || validated)
+      ranges.push_back(fmt::format("{} {}", name, coverage_text(fitted, validated, unit)));
+  };
+  add(&StoredValidity::frequency_hz, "frequency", "Hz");
+  if (ranges.empty()) ranges.emplace_back("frequency not stated: the signals are recorded ones");
+  add(&StoredValidity::amplitude_m, "amplitude (half of peak to peak)", "m");
+  add(&StoredValidity::amplitude_v, "amplitude (half of peak to peak)", "V");
+  add(&StoredValidity::supply_pressure_pa, "supply pressure", "Pa");
+  add(&StoredValidity::leakage_coefficient, "leakage coefficient", "1");
+  if (!fit.validity.leak_levels.empty())
+    ranges.push_back(fmt::format("leak levels {}", fmt::join(fit.validity.leak_levels, ", ")));
+  const bool valid = fit.schema == kFitSchema && fit.assessment &&
+                     calib::has_range_of_validity(fit.assessment->agreement.state,
+                                                  fit.assessment->validation.state);
+  blocks.emplace_back(doc::Paragraph{
+      {doc::Strong{valid ? "Range of validity, outside it the model is not validated: "
+                         : "Conditions tested: "},
+       fmt::format("{}.", fmt::join(ranges, "; "))},
+      doc::Paragraph::Tone::source});
+}
+
+}  // namespace
+
+doc::Verdict fit_verdict(const StoredFit& fit) {
+  const auto unfinished = [&](doc::Badge badge, const std::string& sentence) {
+    doc::Verdict verdict{std::move(badge), {sentence}};
+    add_reason(verdict, fit.message, "starts");
+    return verdict;
+  };
+  if (fit.status == FitStatus::failed) return unfinished({State::bad, "FAILED"}, kNoUsableResult);
+  const bool stopped = fit.status == FitStatus::stopped;
+  if (stopped && !searched_to_the_end(fit))
+    return unfinished({State::bad, "STOPPED"}, stopped_sentence(calib::StoppedIn::starts));
+  if (fit.verdict == Verdict::fail) {
+    doc::Verdict verdict = failed_verdict(fit);
+    if (stopped) add_reason(verdict, fit.message, "starts");
+    return verdict;
+  }
+  // After FAIL: a limit that is broken stays broken, whatever else was not finished.
+  if (stopped) return unfinished({State::warn, "STOPPED"}, stopped_sentence(*fit.stopped_in));
+  if (fit.verdict) {
+    doc::Verdict verdict{doc::badge(*fit.verdict), {}};
+    if (fit.verdict == Verdict::warn)
+      verdict.sentence.emplace_back(
+          fmt::format("Passed with reservations ({}). ", open_aspects(fit)));
+    add_numbers(fit, verdict.sentence);
+    return verdict;
+  }
+  if (names_reason(fit, &StoredAssessment::agreement, "poor_agreement"))
+    return {{State::bad, "POOR"},
+            {"No limits were given, but the model does not describe the records."}};
+  return {{State::none, "NOT JUDGED"},
+          {fit.conditions.empty()
+               ? "No condition was scored."
+               : "The campaign gives no limits: whether this is good enough is for you to say."}};
+}
+
+doc::Blocks certificate(const Calibration& stored) {
+  const StoredFit& fit = stored.result;
+  const bool unfinished = fit.status == FitStatus::stopped && !searched_to_the_end(fit);
+  doc::Blocks blocks;
+  blocks.emplace_back(doubts_of(fit));
+  if (fit.status != FitStatus::failed) add_values(fit, !unfinished, blocks);
+  add_signals(stored, blocks);
+  add_aspects(fit, blocks);
+  add_scope(fit, blocks);
+  return blocks;
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,161 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/document/quantity.hpp"
+#include "report/document/words.hpp"
+#include "report/page/calibration/fit_sections.hpp"
+#include "report/page/page_parts.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using doc::Line;
+using Kind = doc::Column::Kind;
+
+/// Frequency to sort by, and "0.1 Hz sine".
+std::pair<double, std::string> signal_of(const StoredCondition& condition) {
+  const std::string waveform =
+      condition.waveform ? std::string(to_string(*condition.waveform)) : std::string();
+  const std::optional<double>& frequency = condition.frequency_hz;
+  if (!frequency) return {0.0, waveform};
+  return {*frequency, fmt::format("{:.6g} Hz {}", *frequency, waveform)};
+}
+
+std::string level_of(const StoredCondition& condition) { return condition.leak_level.value_or(""); }
+
+/// "rho2 0.99 (warning at 0.995), ccc 0.99"; empty where a channel has none.
+std::string limits_text(const std::vector<StoredLimit>& limits, const std::string& channel) {
+  std::string text;
+  for (const StoredLimit& limit : limits) {
+    if (limit.channel != channel) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", limit.metric,
+                        doc::in_unit(limit.limit, 1.0, 6).text);
+    if (limit.warn) text += fmt::format(" (warning at {})", doc::in_unit(limit.warn, 1.0, 6).text);
+  }
+  return text;
+}
+
+/// The channel, with its limits and those that conditions have of their own.
+Line caption_of(const StoredFit& fit, const std::string& channel) {
+  const std::string limits = limits_text(fit.acceptance, channel);
+  std::string rest =
+      limits.empty() ? std::string(" – no limits, not judged") : " – limits: " + limits;
+  for (const StoredCondition& condition : fit.conditions) {
+    if (!condition.acceptance) continue;
+    const std::string own = limits_text(*condition.acceptance, channel);
+    rest += fmt::format("; {}: {}", condition.id,
+                        own.empty() ? "not judged" : "limits of its own: " + own);
+  }
+  return {channel, doc::Soft{rest}};
+}
+
+/// A condition in its cell; nothing where it did not compare the channel.
+std::optional<doc::Tile> tile_of(const StoredCondition& condition, const std::string& channel) {
+  const StoredScore* scores = find(condition.metrics, channel);
+  if (scores == nullptr && !condition.failure) return std::nullopt;
+  doc::Tile tile{doc::badge(condition.verdict_of(channel)), {}};
+  tile.to = "#" + anchor(condition.id);
+  tile.title = condition.id;
+  if (condition.failure) {
+    tile.line = {"not simulated"};
+    return tile;
+  }
+  tile.line = {doc::agreement(scores->rho2)};
+  tile.below = {{doc::in_unit(scores->absolute_error_percent, 1.0, 3),
+                 fmt::format(" % · {}", to_string(condition.use))}};
+  return tile;
+}
+
+/// Per channel: signals by leak levels.
+std::vector<doc::Table> matrices(const StoredFit& fit) {
+  std::vector<std::string> channels;
+  std::vector<std::pair<double, std::string>> signals;
+  std::vector<std::string> levels;
+  const auto remember = [](auto& list, const auto& item) {
+    if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(item);
+  };
+  for (const StoredCondition& condition : fit.conditions) {
+    for (const auto& [channel, metrics] : condition.metrics) remember(channels, channel);
+    remember(signals, signal_of(condition));
+    remember(levels, level_of(condition));
+  }
+  std::stable_sort(signals.begin(), signals.end());
+  if (channels.empty() && !signals.empty()) channels.emplace_back("position");
+  std::vector<doc::Table> tables;
+  for (const std::string& channel : channels) {
+    doc::Table table{"Scores of " + channel};
+    table.caption = caption_of(fit, channel);
+    table.shape = doc::Table::Shape::matrix;
+    table.columns = {{"Signal"}};
+    for (const std::string& level : levels)
+      table.columns.push_back({level.empty() ? "no leak level" : "leak " + level});
+    for (const auto& signal : signals) {
+      doc::Row row{{signal.second}};
+      for (const std::string& level : levels) {
+        doc::Cell& cell = row.cells.emplace_back();
+        for (const StoredCondition& condition : fit.conditions) {
+          if (signal_of(condition) != signal || level_of(condition) != level) continue;
+          if (auto tile = tile_of(condition, channel)) cell.tiles.push_back(std::move(*tile));
+        }
+        if (cell.tiles.size() > 1)
+          for (doc::Tile& tile : cell.tiles) tile.below.push_back({tile.title});
+      }
+      table.rows.push_back(std::move(row));
+    }
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+doc::Table means_table(const StoredFit& fit) {
+  doc::Table table{"Means by group"};
+  table.heading = 1;
+  table.columns = {{"By"},
+                   {"Group"},
+                   {"Channel"},
+                   {"Conditions", Kind::number},
+                   {"Mean rho2", Kind::number},
+                   {"Mean ccc", Kind::number},
+                   {"Mean error %", Kind::number},
+                   {"Worst rho2", Kind::number},
+                   {"Worst error %", Kind::number}};
+  for (const StoredGroup& group : fit.groups) {
+    for (const auto& [channel, scores] : group.metrics) {
+      table.rows.push_back(
+          {{spaced(group.by), group.label, channel, fmt::format("{}", scores.conditions),
+            doc::agreement(scores.mean.rho2), doc::agreement(scores.mean.ccc),
+            doc::in_unit(scores.mean.absolute_error_percent, 1.0, 3),
+            doc::agreement(scores.worst.rho2),
+            doc::in_unit(scores.worst.absolute_error_percent, 1.0, 3)}});
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+doc::Section scores_section(const StoredFit& fit, bool unfinished) {
+  doc::Section section{"matrix", "Scores"};
+  if (unfinished)
+    section.blocks.emplace_back(doc::Paragraph{
+        {"Stopped before it converged: these are scores of the best values so far, not of a "
+         "calibration."},
+        doc::Paragraph::Tone::problem});
+  std::vector<doc::Table> tables = matrices(fit);
+  if (tables.empty()) {
+    section.blocks.emplace_back(doc::reading("Nothing was scored."));
+    return section;
+  }
+  section.blocks.emplace_back(doc::reading(
+      "Agreement of model and measured mean: rho2 (1 is perfect) and, below it, the mean absolute "
+      "error in percent of the range. Each cell leads to its condition."));
+  for (doc::Table& table : tables) section.blocks.emplace_back(std::move(table));
+  doc::Table groups = means_table(fit);
+  const std::string summary = fmt::format(
+      "Means by use, signal, frequency, waveform and leak level ({})", groups.rows.size());
+  section.blocks.emplace_back(doc::Fold{summary, {std::move(groups)}});
+  return section;
+}
+
+}  // namespace rigcal::report

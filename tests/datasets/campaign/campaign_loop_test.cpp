@@ -1,0 +1,109 @@
+// Loops on other quantities than position, and second masses: keys, channels and errors.
+
+#include <catch2/catch.hpp>
+
+#include "tests/datasets/campaign_fixture.hpp"
+
+using namespace rigcal;
+using namespace rigcal::datasets;
+using rigcal::test::kExample;
+using rigcal::test::load_text;
+using rigcal::test::replaced;
+
+namespace {
+
+const std::string kLoopGain = "kp = \"78.74 V/m\"";
+const std::string kKnownMass =
+    R"(mass = { start = "60 kg", lower = "10 kg", upper = "500 kg", fit = true })";
+
+/// The example with a loop on force, and its reference in N.
+std::string force_loop(const std::string& gains) {
+  std::string text = replaced(kExample, kLoopGain, "feedback = \"force\"\n" + gains);
+  for (std::size_t at = text.find("50.8 mm"); at != std::string::npos; at = text.find("50.8 mm"))
+    text.replace(at, 7, "2 kN");
+  return replaced(text, "reference = { column = \"ref_mm\", unit = \"mm\" }",
+                  "force_reference = { column = \"ref\", unit = \"kN\" }");
+}
+
+std::string loop_refusal_of(const std::string& text) {
+  try {
+    load_text(text);
+  } catch (const InputError& error) {
+    CHECK(error.code() == ExitCode::bad_input);
+    CHECK(error.where().line > 0);
+    return error.what();
+  }
+  return "(loaded)";
+}
+
+}  // namespace
+
+TEST_CASE("load_campaign: a loop on force has its gains, its reference and amplitudes in newtons",
+          "[datasets]") {
+  const Campaign campaign =
+      load_text(force_loop("force_kp = \"2 V/kN\"\nforce_ki = \"20 V/(kN s)\""));
+  CHECK(campaign.rig.feedback == model::Feedback::force);
+  CHECK(drive_channel(campaign) == Channel::force_reference);
+  CHECK(campaign.channels.at(Channel::force_reference).role == ChannelRole::input);
+  CHECK(campaign.conditions.front().amplitude == 2000.0);
+  const auto values = values_in(campaign, campaign.conditions.front());
+  CHECK(values["force_kp"] == Approx(2e-3));
+  CHECK(values["force_ki"] == Approx(2e-2));
+}
+
+TEST_CASE("load_campaign: a loop has no gains but its own", "[datasets]") {
+  CHECK_THAT(loop_refusal_of(force_loop(kLoopGain)),
+             Catch::Contains("kp is a gain of a loop on position, and this one is on force") &&
+                 Catch::Contains("expected force_kp"));
+  CHECK_THAT(
+      loop_refusal_of(replaced(kExample, kLoopGain, kLoopGain + "\nforce_ki = \"1 V/(N s)\"")),
+      Catch::Contains("force_ki") && Catch::Contains("expected ki"));
+  CHECK_THAT(loop_refusal_of(force_loop("")), Catch::Contains("no force_kp"));
+  CHECK_THAT(loop_refusal_of(force_loop("force_kp = \"2 V/kN\"\nforce_kd = \"1 V s/kN\"")),
+             Catch::Contains("derivative_filter"));
+  CHECK_THAT(loop_refusal_of(force_loop("force_kp = \"2 V/m\"")), Catch::Contains("force_kp"));
+}
+
+TEST_CASE("load_campaign: what a loop controls is one of a list", "[datasets]") {
+  CHECK_THAT(loop_refusal_of(replaced(kExample, kLoopGain, kLoopGain + "\nfeedback = \"forces\"")),
+             Catch::Contains("forces") && Catch::Contains("force"));
+  CHECK_THAT(loop_refusal_of(replaced(kExample, "type = \"pid\"\n" + kLoopGain,
+                                      "type = \"none\"\nfeedback = \"force\"")),
+             Catch::Contains("feedback") && Catch::Contains("type = \"pid\""));
+}
+
+TEST_CASE("load_campaign: all of a second mass or nothing", "[datasets]") {
+  const std::string payload = kKnownMass + "\npayload_mass = \"1 t\"";
+  CHECK_THAT(loop_refusal_of(replaced(kExample, kKnownMass, payload)),
+             Catch::Contains("payload_mass") && Catch::Contains("as well"));
+  const std::string all = payload + "\npayload_frequency = \"16 Hz\"\npayload_damping_ratio = 0.05";
+  const Campaign campaign = load_text(replaced(kExample, kKnownMass, all));
+  const auto values = values_in(campaign, campaign.conditions.front());
+  CHECK(values["payload_mass"] == Approx(1000.0));
+  CHECK(values["payload_frequency"] == Approx(2.0 * 3.14159265358979 * 16.0));
+}
+
+TEST_CASE("load_campaign: a load may fall along the travel, a spring may not", "[datasets]") {
+  const Campaign campaign =
+      load_text(replaced(kExample, kKnownMass, kKnownMass + "\nload_gradient = \"-9 kN/m\""));
+  CHECK(values_in(campaign, campaign.conditions.front())["load_gradient"] == Approx(-9000.0));
+  CHECK_THAT(
+      loop_refusal_of(replaced(kExample, "stiffness = \"0 N/m\"", "stiffness = \"-9 kN/m\"")),
+      Catch::Contains("makes no sense for stiffness"));
+}
+
+TEST_CASE("load_campaign: an integral at the start needs integral action", "[datasets]") {
+  const std::string start = kKnownMass + "\ninitial_integral = \"0.1 V\"";
+  std::string text = replaced(kExample, kKnownMass, start);
+  CHECK_THAT(loop_refusal_of(text),
+             Catch::Contains("initial_integral") || Catch::Contains("initial"));
+}
+
+TEST_CASE("load_campaign: accelerations are outputs", "[datasets]") {
+  const Campaign campaign = load_text(
+      replaced(kExample, "position = { column",
+               "acceleration = { column = \"a\", unit = \"gravity\" }\nposition = { column"));
+  const ChannelSetting& setting = campaign.channels.at(Channel::acceleration);
+  CHECK(setting.role == ChannelRole::output);
+  CHECK(setting.to_si.scale == Approx(9.80665));
+}

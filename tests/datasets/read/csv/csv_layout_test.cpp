@@ -1,0 +1,102 @@
+#include "datasets/read/csv/csv_layout.hpp"
+
+#include <catch2/catch.hpp>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "common/error.hpp"
+#include "datasets/read/csv/load_csv.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace rigcal;
+using namespace rigcal::datasets;
+using Catch::Contains;
+using rigcal::test::TemporaryFolder;
+
+namespace {
+
+/// Reads two columns of a text, and the names that it offers.
+struct ReadText {
+  TemporaryFolder folder;
+  std::filesystem::path path;
+  explicit ReadText(const std::string& text) : path(folder.write("a.txt", text)) {}
+  CsvTable table(const std::string& time, const std::string& x, char separator = 0) const {
+    CsvRequest request;
+    request.columns = {time, x};
+    request.time_column = time;
+    request.separator = separator;
+    return load_csv(path, request);
+  }
+};
+
+using Columns = std::vector<std::vector<double>>;
+const Columns kNumbers{{0.0, 0.1, 0.2}, {1.5, 2.5, 3.5}};
+
+}  // namespace
+
+TEST_CASE("csv_layout: lines of text above the header", "[datasets]") {
+  for (const std::string& text : {
+           std::string(
+               "Test rig 3\nOperator: Weber\n\nrun 7, 2026\nt,x\n0,1.5\n0.1,2.5\n0.2,3.5\n"),
+           std::string("Pruefstand;3\nDatum;12.3.2024\n\nt;x\n0;1,5\n0,1;2,5\n0,2;3,5\n"),
+           std::string("Rate,1000\nGain,3.5\nt,x\n\n0,1.5\n0.1,2.5\n0.2,3.5\n"),
+           std::string("# numpy\n# t,x\n0,1.5\n0.1,2.5\n0.2,3.5\n"),
+       }) {
+    CAPTURE(text);
+    CHECK(ReadText(text).table("t", "x").columns == kNumbers);
+  }
+}
+
+TEST_CASE("csv_layout: LabVIEW's .lvm", "[datasets]") {
+  const ReadText lvm(
+      "LabVIEW Measurement\t\nWriter_Version\t2\nReader_Version\t2\nSeparator\tTab\n"
+      "Decimal_Separator\t.\nX_Columns\tOne\n***End_of_Header***\t\n\t\nChannels\t1\t\n"
+      "Samples\t3\t\nY_Unit_Label\tVolts\t\nX0\t0.0000000000000000E+0\t\n"
+      "Delta_X\t0.1\t\n***End_of_Header***\t\t\nX_Value\tVoltage\tComment\n"
+      "0.0\t1.5\t\n0.1\t2.5\n0.2\t3.5\n");
+  CHECK(lvm.table("X_Value", "Voltage").columns == kNumbers);
+  CHECK(csv_full_header(lvm.path) == std::vector<std::string>{"X_Value", "Voltage", "Comment"});
+}
+
+TEST_CASE("csv_layout: columns between blanks", "[datasets]") {
+  const ReadText aligned("  t [s]    x [mm]\n  0.0      1.5\n  0.1      2.5\n  0.2\t3.5\n");
+  CHECK(aligned.table("t", "x").columns == kNumbers);
+  CHECK(csv_full_header(aligned.path) == std::vector<std::string>{"t [s]", "x [mm]"});
+  CHECK(ReadText("t x\n0,0 1,5\n0,1 2,5\n0,2 3,5\n").table("t", "x", ' ').columns == kNumbers);
+  CHECK_THROWS_WITH(ReadText("t x\n0.0 1.5\n0.1 a\n").table("t", "x", ' '),
+                    Contains("a.txt:3:5: 'a' in column 'x' is not a finite number"));
+}
+
+TEST_CASE("csv_layout: a row of units", "[datasets]") {
+  const ReadText units("Log of rig 3\nt,x\n[s],[mm]\n0,1.5\n0.1,2.5\n0.2,3.5\n");
+  const CsvTable table = units.table("t", "x");
+  CHECK(table.columns == kNumbers);
+  CHECK(table.first_data_line == 4);
+  CHECK(table.labels[1].unit == "mm");
+  CHECK(table.labels[1].line == 3);
+  CHECK(csv_record_columns(units.path) ==
+        std::vector<RecordColumn>{{"t", "s", false, false}, {"x", "mm", false, false}});
+  CHECK(ReadText("t;x;note\ns;mm;-\n0;1.5;0\n0.1;2.5;0\n0.2;3.5;1\n").table("t", "x").columns ==
+        kNumbers);
+}
+
+TEST_CASE("csv_layout: rows that dSPACE labels", "[datasets]") {
+  const ReadText dspace(
+      "descriptions,General,User\nversion,1.0,\npath,t,x\ntrace_values,0,1.5\n,0.1,2.5\n,0.2,3."
+      "5\n");
+  CHECK(dspace.table("t", "x").columns == kNumbers);
+}
+
+TEST_CASE("csv_layout: what is no header is none", "[datasets]") {
+  // A row with numbers is no header, too few names are none, and a state may be a number at times.
+  CHECK_FALSE(find_layout(std::vector<std::string>{"0,1,ok", "1,2,3", "2,3,4"}, true, 0));
+  CHECK_FALSE(find_layout(std::vector<std::string>{"t,x", "0,5,1,5", "1,5,2,5"}, true, 0));
+  CHECK_FALSE(find_layout(std::vector<std::string>{"text", "1,2", "more"}, true, 0));
+  CHECK_FALSE(find_layout(std::vector<std::string>{"a b", "1,2", "3,4"}, true, ';'));
+  const auto found = find_layout(std::vector<std::string>{"title", "a b", "1 2"}, true, 0);
+  REQUIRE(found);
+  CHECK(found->header == 1);
+  CHECK(found->separator == ' ');
+  CHECK_FALSE(find_layout(std::vector<std::string>{"title", "a b", "1 2"}, false, 0));
+}
