@@ -56,7 +56,7 @@ Part fit_part(const Calibration& stored, int threads) {
   const StoredFit& fit = stored.result;
   Part part;
   part.link = "parameters";
-  part.name = fit.schema == kFitSchema ? "Calibration" : "Validation";
+  part.name = is_fit_schema(fit.schema) ? "Calibration" : "Validation";
   part.campaign = fit.campaign;
   part.identity = identity_view(fit.report);
   part.provenance = provenance_view(fit.provenance, part.name, stored.file);

@@ -90,7 +90,7 @@ Json coverage_rows(const StoredFit& fit) {
     const std::optional<Range>& fitted = fit.validity.*range;
     // A validation covers both at once.
     const std::optional<Range> validated =
-        fit.schema == kFitSchema && fit.validated ? (*fit.validated).*range : std::nullopt;
+        is_fit_schema(fit.schema) && fit.validated ? (*fit.validated).*range : std::nullopt;
     if (!fitted && !validated) return;
     rows.push_back({{"name", name}, {"text", coverage_text(fitted, validated, unit)}});
   };
@@ -110,7 +110,7 @@ std::string coverage_title(const StoredFit& fit) {
   const bool valid =
       fit.assessment && calib::has_range_of_validity(fit.assessment->agreement.state,
                                                      fit.assessment->validation.state);
-  return valid && fit.schema == kFitSchema
+  return valid && is_fit_schema(fit.schema)
              ? "Range of validity: outside it the model is not validated"
              : "Conditions tested";
 }
