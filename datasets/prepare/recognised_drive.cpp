@@ -252,7 +252,9 @@ std::optional<RecognisedDrive> recognised_drive(std::span<const double> time_s,
   const double amplitude = 0.5 * (*high - *low);
   if (!(amplitude > 0.0)) return std::nullopt;
   Recorded record{time_s, drive, sd, 0.0};
-  const auto at_top = [&](double x) { return std::abs(std::abs(x) - *high) <= kMostErrors * sd; };
+  const auto at_top = [&, top = *high](double x) {
+    return std::abs(std::abs(x) - top) <= kMostErrors * sd;
+  };
   if (*low < 0.0 && std::all_of(drive.begin(), drive.end(), at_top))
     return as_square(record, sd > 0.0 ? amplitude : *high, unit);
   record.step = std::min(resolution(equal_runs(drive)), kMostStep * amplitude);

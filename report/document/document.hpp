@@ -211,7 +211,7 @@ using Blocks = std::vector<Block>;
 /// What is opened by whoever wants it; on paper it is open.
 struct Fold {
   std::string summary;
-  Blocks blocks = {};
+  Blocks blocks;  // an initialiser here would need to know Block
   bool open = false;
   std::string style = {};  ///< class of the style sheet
 };
@@ -219,7 +219,7 @@ struct Fold {
 struct Article {
   std::string id;
   Line title;
-  Blocks blocks = {};
+  Blocks blocks;
 };
 
 struct Section {

@@ -77,8 +77,10 @@ std::vector<double> reference_of(const SimulationTask& task) {
 
 std::string simulation_file(const SimulationTask& task, const model::Simulation& simulation) {
   std::span<const model::Output> outputs = model::kAllOutputs;
-  // The last one is that of the second mass.
-  if (!task.values.is_given("payload_mass")) outputs = outputs.first(outputs.size() - 1);
+  // The last one is that of the second mass, which not every plant knows.
+  const int payload = model::parameter_index(task.values.plant, "payload_mass");
+  if (payload < 0 || !task.values.given[static_cast<std::size_t>(payload)])
+    outputs = outputs.first(outputs.size() - 1);
   return simulation_csv(task.time_s, info(datasets::drive_channel(task.rig)).name,
                         reference_of(task), outputs, simulation);
 }

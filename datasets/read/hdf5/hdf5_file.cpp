@@ -414,7 +414,8 @@ std::vector<double> Hdf5File::unpacked(hid_t dataset, std::vector<double> values
   if (H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_size(type.get()) == sizeof(float)) {
     // -999.9 as the attribute has it is another number than what such a dataset keeps of it.
     for (double& each : packing.missing)
-      if (std::abs(each) <= std::numeric_limits<float>::max()) each = static_cast<float>(each);
+      if (std::abs(each) <= static_cast<double>(std::numeric_limits<float>::max()))
+        each = static_cast<double>(static_cast<float>(each));
   }
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (std::find(packing.missing.begin(), packing.missing.end(), values[i]) !=
