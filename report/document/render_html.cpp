@@ -15,6 +15,8 @@ template <typename... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;
 };
+template <typename... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;  // clang 14 does not deduce it
 
 std::string marked(const Badge& badge) {
   return fmt::format("<span aria-hidden=\"true\">{}</span> {}", mark(badge.state),

@@ -13,6 +13,8 @@
 namespace rigcal::report {
 namespace {
 
+using Kind = doc::Column::Kind;
+
 /// About one for each pixel of the width.
 constexpr std::size_t kAveragePoints = 600;
 
@@ -167,7 +169,6 @@ doc::Verdict average_headline(const AverageFiles& stored) {
 }
 
 std::vector<doc::Section> average_sections(const AverageFiles& stored) {
-  using Kind = doc::Column::Kind;
   doc::Table table{"Repeatability of every condition and channel"};
   table.shape = doc::Table::Shape::cards;
   table.style = "repeatability";

@@ -13,6 +13,8 @@
 namespace rigcal::report {
 namespace {
 
+using Kind = doc::Column::Kind;
+
 /// Warnings of a rig that the overview shows; its own report has all.
 constexpr std::size_t kShownWarnings = 3;
 
@@ -199,7 +201,6 @@ doc::Verdict batch_headline(const StoredBatch& batch) {
 }
 
 std::vector<doc::Section> batch_sections(const StoredBatch& batch) {
-  using Kind = doc::Column::Kind;
   doc::Table table{"One row for each rig"};
   table.style = "rigs";
   table.columns = {{"Rig"},

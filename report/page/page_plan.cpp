@@ -8,6 +8,8 @@
 namespace rigcal::report {
 namespace {
 
+using Kind = doc::Column::Kind;
+
 /// A standard deviation in percent of the value; a dash where there is none.
 std::string percent_text(const std::optional<double>& sd, const std::optional<double>& value) {
   if (!sd || !value || *value == 0.0) return "–";
@@ -100,7 +102,6 @@ doc::Verdict plan_headline(const StoredPlan& plan) {
 
 std::vector<doc::Section> plan_sections(const StoredPlan& plan) {
   using doc::Line;
-  using Kind = doc::Column::Kind;
   doc::Table totals{"Parameters"};
   totals.caption = {"Parameters, from all records together"};
   totals.shape = doc::Table::Shape::cards;
