@@ -16,6 +16,8 @@
 namespace rigcal::report {
 namespace {
 
+using Kind = doc::Column::Kind;
+
 /// Of the scores of a channel; null where it is not known.
 const StoredAgreement* uncertainty_of(const StoredCondition& condition,
                                       const std::string& channel) {
@@ -33,7 +35,6 @@ void add_scores(const StoredCondition& condition, doc::Blocks& blocks) {
     blocks.emplace_back(doc::reading(
         "± expanded uncertainty of a score (95 %), by the scatter of the repeats and the stated "
         "uncertainty of the sensors."));
-  using Kind = doc::Column::Kind;
   doc::Table table{"Scores of " + condition.id};
   table.columns = {{"Channel"}};
   for (doc::Column& column : score_columns()) table.columns.push_back(std::move(column));
