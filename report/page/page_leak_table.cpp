@@ -326,7 +326,7 @@ void add_features(const LeakTableFiles& stored, doc::Blocks& blocks) {
     blocks.emplace_back(figure_of(levels_plot(stored.levels)));
     blocks.emplace_back(doc::reading("What the motion loses at each level, and what flows:"));
     blocks.emplace_back(figure_of(positions_plot(stored.levels)));
-    doc::Fold flows{"Servo, work and leakage flow at each level"};
+    doc::Fold flows{"Servo, work and leakage flow at each level", {}};
     for (const auto& [level, series] : stored.levels)
       flows.blocks.emplace_back(
           figure_of(flows_plot(level, series), level_caption(table.features, level)));
