@@ -54,9 +54,6 @@ int hardware_threads() {
 void add_print_options(CLI::App& verb, PrintOptions& options) {
   verb.add_flag("--quiet", options.quiet, "Print nothing but errors");
   verb.add_flag("--json", options.json, "Print JSON instead of text");
-}
-
-void add_verbose_option(CLI::App& verb, PrintOptions& options) {
   verb.add_flag("-v,--verbose", options.verbose,
                 "Print every condition, parameter and warning on a terminal, too");
 }
@@ -130,6 +127,13 @@ report::Style terminal_style() {
   const char* no_colour = std::getenv("NO_COLOR");
   const bool wanted = no_colour == nullptr || std::strlen(no_colour) == 0;
   return {wanted && ::isatty(STDOUT_FILENO) == 1, output_columns()};
+}
+
+report::Style terminal_style(const PrintOptions& options) {
+  report::Style style = terminal_style();
+  // What goes elsewhere is for programs and logs.
+  if (style.columns > 0 && !options.verbose) style.lines = report::kTerminalLines;
+  return style;
 }
 
 void print(const PrintOptions& options, const std::string& text, const report::Json& json) {

@@ -38,8 +38,6 @@ CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 int hardware_threads();
 
 void add_print_options(CLI::App& verb, PrintOptions& options);
-/// -v: of verbs whose text is cut to what fits on a terminal
-void add_verbose_option(CLI::App& verb, PrintOptions& options);
 /// --force
 void add_force_option(CLI::App& verb, bool& force);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);
@@ -52,6 +50,8 @@ std::size_t terminal_columns(int stream);
 
 /// Colour on a terminal, unless NO_COLOR is set; tables as wide as it is.
 report::Style terminal_style();
+/// The same, with few lines unless all are asked for.
+report::Style terminal_style(const PrintOptions& options);
 
 /// Prints a result on stdout, as text or as JSON.
 ///

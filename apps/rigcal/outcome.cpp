@@ -16,10 +16,7 @@ std::string text_of(const CampaignOptions& options, const report::Result& result
   for (auto file = files.rbegin(); file != files.rend(); ++file)  // the page and the result first
     if (!file->has_parent_path()) paths.push_back((options.out / *file).string());
   paths.push_back((options.out / "residuals" / "").string());
-  report::Style style = terminal_style();
-  // What goes elsewhere is for programs and logs.
-  if (style.columns > 0 && !options.print.verbose) style.lines = report::kTerminalLines;
-  return report::result_text(result, paths, style);
+  return report::result_text(result, paths, terminal_style(options.print));
 }
 
 }  // namespace

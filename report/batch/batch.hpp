@@ -8,7 +8,6 @@
 #include "common/error.hpp"
 #include "report/comparison/comparison.hpp"
 #include "report/json/described.hpp"
-#include "report/text/terminal.hpp"
 
 // batch.json, as docs/command-line.md describes it: one row for each rig of `batch`.
 
@@ -101,9 +100,6 @@ StoredRig rig_row(const RigRun& run);
 
 /// batch.csv: a line for each rig; `parameter_ci95_low` and so on of every estimate that one has.
 std::string batch_csv(const StoredBatch& batch);
-
-/// The same for people: a line for each rig, then what failed.
-std::string batch_text(const StoredBatch& batch, const Style& style);
 
 inline std::string parameter_label(const StoredRigEstimate& each) {
   return parameter_label(each.key, each.scope, each.level);

@@ -5,8 +5,6 @@
 
 #include "report/batch/batch.hpp"
 #include "report/store/csv_fields.hpp"
-#include "report/text/readable.hpp"
-#include "report/text/text_table.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -21,14 +19,6 @@ std::string outcome_of(const StoredRig& rig) {
   if (!rig.status) return "no result";
   if (!has_converged(rig)) return std::string(to_string(*rig.status));
   return rig.verdict ? std::string(to_string(*rig.verdict)) : "not judged";
-}
-
-std::string worst_of(const StoredRig& rig) {
-  if (rig.worst_scores.empty()) return "-";
-  const StoredRigScore& worst = rig.worst_scores.front();
-  if (!worst.failure.empty()) return worst.condition + ": not simulated";
-  return fmt::format("{} {}: {}", worst.condition, worst.channel,
-                     worst.rho2 ? "rho2 " + agreement_text(*worst.rho2) : std::string("no rho2"));
 }
 
 /// Names of all estimates of any rig, in the order in which they come up.
@@ -80,37 +70,6 @@ std::string trend_sentence(const StoredRigTrend& trend) {
   return fmt::format("{}: {:+.3g} {}per day ({:.3g} to {:.3g}): {}.", trend_name(trend),
                      *along.slope, unit, along.ci95->low, along.ci95->high,
                      is_significant(trend) ? "significant trend" : "no significant trend");
-}
-
-std::string batch_text(const StoredBatch& batch, const Style& style) {
-  using Align = TextTable::Align;
-  TextTable table({{"rig"},
-                   {"verdict"},
-                   {"exit", Align::right},
-                   {"worst score", Align::left, 1},
-                   {"estimates", Align::right, 3},
-                   {"warnings", Align::right, 2},
-                   {"seconds", Align::right, 4}});
-  for (const StoredRig& rig : batch.rigs) {
-    table.add({rig.rig, outcome_of(rig) + (rig.unchanged ? ", unchanged" : ""),
-               fmt::format("{}", rig.exit_code), worst_of(rig),
-               fmt::format("{}", rig.parameters.size()), fmt::format("{}", rig.warnings.size()),
-               fmt::format("{:.1f}", rig.seconds)});
-  }
-  std::string text = batch_sentence(batch) + "\n\n" + table.text(style.columns);
-  text += "\n";
-  for (const StoredRig& rig : batch.rigs) {
-    const auto say = [&](const std::string& line) {
-      text += wrapped(fmt::format("{}: {}", rig.rig, line), style.columns, 2) + "\n";
-    };
-    std::vector<std::string> lines = rig.reasons;
-    if (!has_converged(rig) || rig.exit_code > 1) lines.insert(lines.begin(), rig.message);
-    for (const std::string& line : lines) say(line);
-    for (const StoredRigTrend& trend : rig.trends) {
-      if (is_significant(trend)) say(trend_sentence(trend));
-    }
-  }
-  return text;
 }
 
 std::string batch_csv(const StoredBatch& batch) {

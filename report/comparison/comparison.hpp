@@ -47,7 +47,4 @@ StoredComparison compared(const std::vector<Compared>& results, const Provenance
 /// @throws InputError  as load(); a list has not an entry per result
 StoredComparison load_comparison(const ReadFile& read, const std::string& where);
 
-/// The same for people.
-std::string comparison_text(const StoredComparison& comparison, const Style& style);
-
 }  // namespace rigcal::report

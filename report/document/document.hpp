@@ -70,7 +70,7 @@ struct Tile {
 struct Cell {
   Line line = {};
   Lines paragraphs = {};               ///< after it, one below the other
-  Lines below = {};                    ///< smaller, on the page alone
+  Lines below = {};                    ///< smaller
   std::vector<Tile> tiles = {};        ///< in place of a line
   std::optional<Plot> picture = {};    ///< in place of a line, on the page alone
   std::optional<double> shade = {};    ///< -1 to 1: colour of the cell

@@ -6,17 +6,11 @@
 #include <cassert>
 #include <cmath>
 
+#include "report/document/overloaded.hpp"
 #include "report/text/escape.hpp"
 
 namespace rigcal::report::doc {
 namespace {
-
-template <typename... Cases>
-struct Overloaded : Cases... {
-  using Cases::operator()...;
-};
-template <typename... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;  // clang 14 does not deduce it
 
 std::string marked(const Badge& badge) {
   return fmt::format("<span aria-hidden=\"true\">{}</span> {}", mark(badge.state),

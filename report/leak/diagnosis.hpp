@@ -6,7 +6,6 @@
 #include "diagnosis/diagnose.hpp"
 #include "report/leak/read_leak_table.hpp"
 #include "report/store/stored/stored_diagnosis.hpp"
-#include "report/text/terminal.hpp"
 
 namespace rigcal::report {
 
@@ -31,8 +30,5 @@ StoredDiagnosis stored(const DiagnosisResult& result);
 
 /// diagnosis.csv: one row per record.
 std::string diagnosis_csv(const DiagnosisResult& result);
-
-/// The averages, how often each method is right, the smallest leaks, warnings.
-std::string diagnosis_text(const DiagnosisResult& result, const Style& style);
 
 }  // namespace rigcal::report

@@ -7,7 +7,6 @@
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "report/store/provenance.hpp"
 #include "report/store/stored/stored_leak_table.hpp"
-#include "report/text/terminal.hpp"
 
 namespace rigcal::report {
 
@@ -38,8 +37,5 @@ std::string features_csv(const LeakTableResult& result);
 /// @param healthy  null for the rig without a leak itself
 std::string level_csv(const datasets::LeakSignal& signal, const calib::PeriodicSeries& series,
                       const calib::PeriodicSeries* healthy);
-
-/// The table for people: computed, published, error; then features, assumptions, what they fix.
-std::string leak_table_text(const LeakTableResult& result, const Style& style);
 
 }  // namespace rigcal::report

@@ -8,8 +8,6 @@
 
 #include "report/store/csv_fields.hpp"
 #include "report/store/identity.hpp"
-#include "report/text/readable.hpp"
-#include "report/text/text_table.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -17,9 +15,6 @@ namespace {
 using diagnosis::ParityCondition;
 using diagnosis::ParityRecord;
 using diagnosis::ParitySignal;
-using Align = TextTable::Align;
-
-constexpr int kTextDigits = 3;
 
 const ParitySignal* signal_of(const ParityResult& result, const ParityRecord& record) {
   for (const ParitySignal& signal : result.parity.signals)
@@ -104,59 +99,6 @@ std::string series_csv(const ParityCondition& condition) {
   return text;
 }
 
-std::string length_text(const std::optional<double>& value_m) {
-  return value_m ? readable(*value_m, "m", kTextDigits) : std::string("-");
-}
-
-std::string condition_table(const ParityResult& result, const Style& style) {
-  TextTable table({{"condition"},
-                   {"leak level", Align::left, 1},
-                   {"alarms", Align::right},
-                   {"largest", Align::right},
-                   {"threshold", Align::right},
-                   {"first alarm", Align::right}});
-  for (const ParityCondition& condition : result.parity.conditions) {
-    int alarms = 0;
-    int judged = 0;
-    int references = 0;
-    double largest = 0.0;
-    std::optional<double> first_s;
-    const ParitySignal* signal = nullptr;
-    for (const ParityRecord& record : condition.records) {
-      if (!record.failure.empty()) continue;
-      signal = signal_of(result, record);
-      ++(record.sets_threshold ? references : judged);
-      largest = std::max(largest, record.peak_m);
-      if (!record.alarm) continue;
-      ++alarms;
-      first_s = std::min(first_s.value_or(record.alarm_time_s), record.alarm_time_s);
-    }
-    const bool has_threshold = signal != nullptr && signal->threshold_m;
-    const auto& level = result.campaign.find(condition.condition)->leak_level;
-    table.add({condition.condition, level.value_or("-"),
-               judged + references == 0 ? "failed"
-               : !has_threshold         ? "not judged"
-               : judged == 0            ? "reference"
-                                        : fmt::format("{} of {}", alarms, judged),
-               judged + references == 0 ? "-" : length_text(largest),
-               has_threshold ? length_text(signal->threshold_m) : "-",
-               first_s ? readable(*first_s, "s", kTextDigits) : "-"});
-  }
-  return table.text(style.columns);
-}
-
-std::string check_text(const ParityResult& result) {
-  const diagnosis::FalseAlarmCheck& check = result.parity.check;
-  if (check.records == 0) {
-    return "false alarms: not checked: no healthy record but those that the thresholds rest on\n";
-  }
-  return fmt::format(
-      "false alarms: {} of {} healthy records that no threshold rests on; {:.3g} expected at {:g} "
-      "% ({})\n",
-      check.alarms, check.records, result.false_alarm * check.records, 100.0 * result.false_alarm,
-      p_value_text(check.p));
-}
-
 }  // namespace
 
 LeakStatus status_of(const ParityResult& result) {
@@ -227,29 +169,6 @@ std::vector<ResultFile> parity_series(const ParityResult& result) {
     files.push_back({series_file(condition.condition), series_csv(condition)});
   }
   return files;
-}
-
-std::string parity_text(const ParityResult& result, const Style& style) {
-  const LeakStatus status = status_of(result);
-  std::string text;
-  if (status == LeakStatus::declined) {
-    text = "declined: these records have no parity residual\n";
-    for (const std::string& reason : result.reasons) text += fmt::format("  - {}\n", reason);
-    return text;
-  }
-  text = "Moving root mean square of the parity residual, against its threshold\n" +
-         condition_table(result, style) + "\n" + check_text(result);
-  for (const ParitySignal& signal : result.parity.signals)
-    if (!signal.reason.empty()) text += fmt::format("{}: {}\n", signal.signal, signal.reason);
-  for (const ParityCondition& condition : result.parity.conditions)
-    for (const ParityRecord& record : condition.records)
-      if (!record.failure.empty())
-        text += fmt::format("{} {}: {}\n", record.condition, repeat_name(record), record.failure);
-  for (const std::string& warning : result.parity.warnings)
-    text += wrapped("warning: " + warning, style.columns, 2) + "\n";
-  text += fmt::format("status: {}\n", to_string(status));
-  if (result.campaign.synthetic) text += "note: the records of this campaign are synthetic\n";
-  return text;
 }
 
 }  // namespace rigcal::report

@@ -6,7 +6,6 @@
 #include "diagnosis/parity.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/stored/stored_parity.hpp"
-#include "report/text/terminal.hpp"
 
 namespace rigcal::report {
 
@@ -35,8 +34,5 @@ std::vector<ResultFile> parity_series(const ParityResult& result);
 
 /// parity.json, parity.csv and the series, and the page.
 PlannedFiles planned_parity(const datasets::Campaign& campaign);
-
-/// Alarms per condition, thresholds per signal, warnings.
-std::string parity_text(const ParityResult& result, const Style& style);
 
 }  // namespace rigcal::report

@@ -400,11 +400,8 @@ void add_repeats(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
 std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
   doc::Section section{"diagnosis", "Diagnosis"};
   doc::Blocks& blocks = section.blocks;
-  if (diagnosis.status != LeakStatus::done) {
-    blocks.emplace_back(
-        doc::Paragraph{{diagnosis_sentence(diagnosis)}, doc::Paragraph::Tone::problem});
+  if (diagnosis.status != LeakStatus::done)
     blocks.emplace_back(list_of(diagnosis.reasons, doc::State::warn));
-  }
   if (!diagnosis.states.empty()) blocks.emplace_back(state_table(diagnosis.states));
   if (!diagnosis.trends.empty()) {
     blocks.emplace_back(doc::Heading{{"Trend"}});
@@ -414,8 +411,9 @@ std::vector<doc::Section> diagnosis_sections(const StoredDiagnosis& diagnosis) {
   add_averages(diagnosis, blocks);
   add_methods(diagnosis.methods, blocks);
   if (!diagnosis.class_limits.empty())
-    blocks.emplace_back(
-        doc::Fold{"Limits of the classes, by the leak table", {limits_of_classes(diagnosis)}});
+    blocks.emplace_back(doc::Fold{"Limits of the classes, by the leak table",
+                                  {limits_of_classes(diagnosis)},
+                                  diagnosis.class_limits.size() <= kFew});
   add_smallest_leaks(diagnosis, blocks);
   const std::vector<std::string> warnings = diagnosis_warnings(diagnosis);
   if (!warnings.empty()) {

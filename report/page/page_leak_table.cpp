@@ -393,9 +393,9 @@ std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored) {
   doc::Section section{"leak-table", "Leak table"};
   doc::Blocks& blocks = section.blocks;
   blocks.emplace_back(doc::reading(fmt::format(
-      "{} The leakage coefficient at which a share of the servo flow leaks ({}).{} A tilde: the "
+      "The leakage coefficient at which a share of the servo flow leaks ({}).{} A tilde: the "
       "share hardly determines the coefficient.{}",
-      leak_sentence(table), table.share,
+      table.share,
       table.summary.published > 0
           ? " Below it the published one and how far the computed one is off."
           : "",

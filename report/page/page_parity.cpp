@@ -233,11 +233,8 @@ std::vector<doc::Section> parity_sections(const ParityFiles& stored) {
   const auto list = summaries(parity);
   doc::Section section{"parity", "Parity residual"};
   doc::Blocks& blocks = section.blocks;
-  const bool done = parity.status == LeakStatus::done;
-  blocks.emplace_back(
-      doc::Paragraph{{sentence_of(parity, list)},
-                     done ? doc::Paragraph::Tone::reading : doc::Paragraph::Tone::problem});
-  if (!done) blocks.emplace_back(list_of(parity.reasons, doc::State::warn));
+  if (parity.status != LeakStatus::done)
+    blocks.emplace_back(list_of(parity.reasons, doc::State::warn));
   if (list.empty()) return {std::move(section)};
   blocks.emplace_back(doc::reading(fmt::format(
       "Position minus that of the healthy model under the same reference, less the mean of that "

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <string>
-
 #include "calib/trust/plan.hpp"
 #include "report/store/stored/stored_plan.hpp"
 
@@ -9,11 +7,5 @@ namespace rigcal::report {
 
 StoredPlan stored(const datasets::Campaign& campaign, const calib::Plan& plan,
                   const Provenance& provenance);
-
-/// Table of relative standard deviations per record, and what is wanting, for the terminal.
-///
-/// @param columns  of the terminal; 0: as wide as it is
-std::string plan_text(const datasets::Campaign& campaign, const calib::Plan& plan,
-                      std::size_t columns);
 
 }  // namespace rigcal::report

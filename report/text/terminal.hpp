@@ -6,20 +6,12 @@
 
 #include "datasets/record.hpp"
 #include "report/store/result.hpp"
+#include "report/text/style.hpp"
 
 namespace rigcal::report {
 
-/// How text is shown.
-struct Style {
-  bool colour = false;
-  std::size_t columns = 0;  ///< of the terminal; 0: tables as wide as they are
-  std::size_t lines = 0;    ///< that a result may take; 0: all that there is to say
-};
-
 /// Rows of a table that is not cut.
 inline constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
-/// Lines of a result on a terminal, unless --verbose asks for all.
-inline constexpr std::size_t kTerminalLines = 60;
 
 /// Verdict with its four aspects, the three worst conditions, and where the files are: what is to
 /// be read first. Before these, where it was stopped or failed, that and why.

@@ -71,7 +71,14 @@ std::string wrapped_lines(std::string_view text, std::size_t columns) {
 }
 
 void TextTable::add(std::vector<std::string> row) {
-  for (std::string& text : row) text = on_one_line(text);
+  std::vector<std::vector<std::string>> cells;
+  for (std::string& text : row) cells.push_back({std::move(text)});
+  add_lines(std::move(cells));
+}
+
+void TextTable::add_lines(std::vector<std::vector<std::string>> row) {
+  for (auto& cell : row)
+    for (std::string& line : cell) line = on_one_line(std::move(line));
   rows_.push_back(std::move(row));
 }
 
@@ -80,7 +87,7 @@ std::vector<std::size_t> TextTable::widths() const {
   for (const Column& column : columns_) width.push_back(text_width(column.title));
   for (const auto& row : rows_) {
     for (std::size_t i = 0; i < width.size(); ++i)
-      width[i] = std::max(width[i], text_width(row[i]));
+      for (const std::string& line : row[i]) width[i] = std::max(width[i], text_width(line));
   }
   return width;
 }
@@ -156,9 +163,19 @@ std::string TextTable::text(std::size_t columns) const {
       line.erase(line.find_last_not_of(' ') + 1);
       result += line + "\n";
     };
-    add_line([&](std::size_t i) -> const std::string& { return columns_[i].title; });
-    for (const auto& row : rows_)
-      add_line([&](std::size_t i) -> const std::string& { return row[i]; });
+    const bool titled = std::any_of(columns_.begin(), columns_.end(),
+                                    [](const Column& column) { return !column.title.empty(); });
+    if (titled) add_line([&](std::size_t i) -> const std::string& { return columns_[i].title; });
+    for (const auto& row : rows_) {
+      std::size_t lines = 1;
+      for (const std::size_t i : block) lines = std::max(lines, row[i].size());
+      for (std::size_t line = 0; line < lines; ++line) {
+        add_line([&](std::size_t i) -> const std::string& {
+          static const std::string blank;
+          return line < row[i].size() ? row[i][line] : blank;
+        });
+      }
+    }
   }
   return result;
 }

@@ -31,9 +31,12 @@ class TextTable {
       : columns_(std::move(columns)), keys_(keys) {}
   /// @param row  shape (columns); line ends and other control characters become blanks
   void add(std::vector<std::string> row);
+  /// @param row  shape (columns), each cell as lines one below the other
+  void add_lines(std::vector<std::vector<std::string>> row);
   bool empty() const { return rows_.empty(); }
   std::size_t rows() const { return rows_.size(); }
-  /// Title line and rows, two blanks between columns, without blanks at line ends.
+  /// Title line, unless no column has a title, and rows; two blanks between columns, without blanks
+  /// at line ends.
   ///
   /// @param columns  of the terminal: what can be spared is left out until the lines fit; what is
   /// still
@@ -54,7 +57,7 @@ class TextTable {
 
   std::vector<Column> columns_;
   std::size_t keys_;
-  std::vector<std::vector<std::string>> rows_;
+  std::vector<std::vector<std::vector<std::string>>> rows_;  ///< lines of each cell
 };
 
 }  // namespace rigcal::report

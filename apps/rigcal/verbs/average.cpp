@@ -1,12 +1,11 @@
-#include <fmt/format.h>
-
 #include <memory>
 
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/print_document.hpp"
 #include "apps/rigcal/verb.hpp"
+#include "report/page/page_average.hpp"
 #include "report/run/averaging.hpp"
 #include "report/store/folder.hpp"
-#include "report/text/repeatability_text.hpp"
 
 namespace rigcal::app {
 namespace {
@@ -16,14 +15,14 @@ ExitCode run_average(const CampaignOptions& options, const Invocation& invocatio
   report::HeldFolder held(options.out, holding("average", options.force, options.print));
   held.plan(report::planned_average(campaign));
   const std::vector<datasets::Record> records = report::averaged_records(campaign);
-  const report::StoredAverage average = report::write_average(
-      held, options.threads, campaign, records, {invocation.command, 1, recorded(options), {}});
-  std::string text = report::repeatability_text(campaign, records, terminal_style());
-  text +=
-      fmt::format("files: {} {} {} {}\n", (options.out / "average.json").string(),
-                  (options.out / "repeatability.csv").string(),
-                  (options.out / "averaged" / "").string(), (options.out / "report.html").string());
-  print(options.print, text, report::json_of(average));
+  report::AverageFiles stored{report::write_average(held, options.threads, campaign, records,
+                                                    {invocation.command, 1, recorded(options), {}}),
+                              {}};
+  stored.series.resize(stored.result.records.size());
+  print(options.print,
+        {report::average_headline(stored), report::average_sections(stored), campaign.synthetic},
+        options.out, {"average.json", "repeatability.csv", "averaged/", "report.html"},
+        report::json_of(stored.result));
   return ExitCode::done;
 }
 

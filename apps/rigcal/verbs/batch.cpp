@@ -11,10 +11,12 @@
 #include "apps/rigcal/fit_choices.hpp"
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/print_document.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/printable.hpp"
+#include "report/page/page_batch.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/stored.hpp"
@@ -186,12 +188,8 @@ ExitCode run_batch(const BatchRequest& options, const Invocation& invocation) {
                                         {"batch.json", report::json_text(json)}};
   add_page(options.out, options.threads, files);
   report::write_results(held, files, provenance.inputs);
-  print(
-      options.print,
-      report::batch_text(batch, terminal_style()) +
-          fmt::format("files: {} {} {}\n", (options.out / "report.html").string(),
-                      (options.out / "batch.json").string(), (options.out / "batch.csv").string()),
-      json);
+  print(options.print, {report::batch_headline(batch), report::batch_sections(batch)}, options.out,
+        {"report.html", "batch.json", "batch.csv"}, json);
   return static_cast<ExitCode>(batch.exit_code);
 }
 

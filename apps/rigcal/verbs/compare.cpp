@@ -4,11 +4,13 @@
 #include <memory>
 
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/print_document.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "report/comparison/comparison.hpp"
 #include "report/comparison/comparison_curves.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
@@ -44,15 +46,13 @@ ExitCode run_compare(const CompareOptions& options, const Invocation& invocation
   report::StoredComparison comparison = report::compared(results, provenance);
   std::vector<report::ResultFile> files = report::comparison_curves(results);
   report::name_files(files, comparison.provenance);
-  const std::string text = report::comparison_text(comparison, terminal_style());
   const report::Json json = report::json_of(comparison);
   files.push_back({"comparison.json", report::json_text(json)});
   add_page(options.out, hardware_threads(), files);
   report::write_results(held, files, provenance.inputs);
   print(options.print,
-        text + fmt::format("files: {} {}\n", (options.out / "comparison.json").string(),
-                           (options.out / "report.html").string()),
-        json);
+        {report::comparison_headline(comparison), report::comparison_sections(comparison)},
+        options.out, {"comparison.json", "report.html"}, json);
   return comparison.status == "done" ? ExitCode::done : ExitCode::no_result;
 }
 

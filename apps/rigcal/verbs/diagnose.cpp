@@ -9,6 +9,7 @@
 
 #include "apps/rigcal/leak_records.hpp"
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/print_document.hpp"
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/campaign/reading_root.hpp"
@@ -16,6 +17,7 @@
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/obstacles.hpp"
 #include "report/leak/diagnosis.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
@@ -126,17 +128,15 @@ std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& c
 
 ExitCode write_diagnosis(report::HeldFolder& held, const DiagnoseRequest& options,
                          const report::DiagnosisResult& result) {
-  const report::Json json = report::json_of(report::stored(result));
+  const report::StoredDiagnosis stored = report::stored(result);
+  const report::Json json = report::json_of(stored);
   std::vector<report::ResultFile> files{{"diagnosis.csv", report::diagnosis_csv(result)},
                                         {"diagnosis.json", report::json_text(json)}};
   add_page(options.common.out, options.common.threads, files);
   report::write_results(held, files, result.provenance.inputs);
-  const std::string text =
-      report::diagnosis_text(result, terminal_style()) +
-      fmt::format("files: {} {} {}\n", (options.common.out / "diagnosis.json").string(),
-                  (options.common.out / "diagnosis.csv").string(),
-                  (options.common.out / "report.html").string());
-  print(options.common.print, text, json);
+  print(options.common.print,
+        {report::diagnosis_headline(stored), report::diagnosis_sections(stored), stored.synthetic},
+        options.common.out, {"diagnosis.json", "diagnosis.csv", "report.html"}, json);
   return report::status_of(result) == report::LeakStatus::done ? ExitCode::done
                                                                : ExitCode::no_result;
 }

@@ -130,7 +130,6 @@ Run add_fit(CLI::App& verb) {
   const auto options = std::make_shared<FitRequest>();
   add_campaign_options(verb, options->common);
   add_fit_choices(verb, options->choices);
-  add_verbose_option(verb, options->common.print);
   verb.add_flag("--resume", options->resume,
                 "Go on where a fit of the same inputs and options was stopped or killed");
   verb.add_flag("--if-changed", options->if_changed,

@@ -8,8 +8,10 @@
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/leak_table_files.hpp"
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/print_document.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "report/leak/fit_tables.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
@@ -43,7 +45,10 @@ ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invoca
     const calib::LeakTable table = calib::leak_table(input.campaign, fit.settings, settings);
     const report::LeakTableResult tables{input.campaign, fit.settings, table, provenance};
     files = leak_table_files(tables);
-    text = report::leak_table_text(tables, terminal_style()) + "\n" + text;
+    const report::LeakTableFiles stored{report::stored(tables), {}};
+    text = text_of({report::leak_table_headline(stored), report::leak_table_sections(stored)},
+                   options.print) +
+           "\n" + text;
     files.push_back(
         {"fitted.toml", fitted_leak_table_text(input.campaign, fit.settings, options.out)});
   }

@@ -9,8 +9,10 @@
 #include "apps/rigcal/fitted_rig.hpp"
 #include "apps/rigcal/leak_table_files.hpp"
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/print_document.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "report/leak/leak_table.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 
@@ -73,12 +75,11 @@ ExitCode run_leak_table(const LeakTableRequest& options, const Invocation& invoc
   auto files = leak_table_files(result);
   add_page(options.common.out, options.common.threads, files);
   report::write_results(held, files, provenance.inputs);
+  const report::LeakTableFiles stored{report::stored(result), {}};
   print(options.common.print,
-        report::leak_table_text(result, terminal_style()) +
-            fmt::format("files: {} {} {}\n", (options.common.out / "leak_table.csv").string(),
-                        (options.common.out / "leak_table.json").string(),
-                        (options.common.out / "report.html").string()),
-        json_of(report::stored(result)));
+        {report::leak_table_headline(stored), report::leak_table_sections(stored)},
+        options.common.out, {"leak_table.csv", "leak_table.json", "report.html"},
+        report::json_of(stored.result));
   return ExitCode::done;
 }
 

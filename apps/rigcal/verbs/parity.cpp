@@ -7,10 +7,12 @@
 
 #include "apps/rigcal/leak_records.hpp"
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/print_document.hpp"
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "diagnosis/obstacles.hpp"
 #include "report/leak/parity.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
@@ -36,13 +38,10 @@ ExitCode write_parity(report::HeldFolder& held, const ParityRequest& options,
   files.push_back({"parity.json", report::json_text(json)});
   add_page(options.common.out, options.common.threads, files);
   report::write_results(held, files, result.provenance.inputs);
-  const std::string text =
-      report::parity_text(result, terminal_style()) +
-      fmt::format("files: {} {} {} {}\n", (options.common.out / "parity.json").string(),
-                  (options.common.out / "parity.csv").string(),
-                  (options.common.out / "parity/").string(),
-                  (options.common.out / "report.html").string());
-  print(options.common.print, text, json);
+  const report::ParityFiles stored{std::move(parity), {}};
+  print(options.common.print,
+        {report::parity_headline(stored), report::parity_sections(stored), stored.result.synthetic},
+        options.common.out, {"parity.json", "parity.csv", "parity/", "report.html"}, json);
   return report::status_of(result) == report::LeakStatus::done ? ExitCode::done
                                                                : ExitCode::no_result;
 }

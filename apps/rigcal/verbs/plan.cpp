@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/print_document.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/prepare/time_holes.hpp"
+#include "report/page/page_plan.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/json.hpp"
@@ -45,15 +47,13 @@ ExitCode run_plan(const PlanRequest& options, const Invocation& invocation) {
                                       report::hash_inputs(campaign, records, more_inputs)};
   const calib::Plan plan =
       calib::plan(campaign, records, earlier ? &earlier->values : nullptr, options.common.threads);
-  const report::Json json = report::json_of(report::stored(campaign, plan, provenance));
+  const report::StoredPlan stored = report::stored(campaign, plan, provenance);
+  const report::Json json = report::json_of(stored);
   std::vector<report::ResultFile> files{{"plan.json", report::json_text(json)}};
   add_page(options.common.out, options.common.threads, files);
   report::write_results(held, files, provenance.inputs);
-  print(options.common.print,
-        report::plan_text(campaign, plan, terminal_style().columns) +
-            fmt::format("files: {} {}\n", (options.common.out / "plan.json").string(),
-                        (options.common.out / "report.html").string()),
-        json);
+  print(options.common.print, {report::plan_headline(stored), report::plan_sections(stored)},
+        options.common.out, {"plan.json", "report.html"}, json);
   return ExitCode::done;
 }
 

@@ -64,7 +64,6 @@ Run add_validate(CLI::App& verb) {
                   "fit.json of an earlier fit (default: the campaign's own values)")
       ->check(not_empty());
   add_strict_option(verb, options->strict);
-  add_verbose_option(verb, options->common.print);
   return [options](const Invocation& invocation) { return run_validate(*options, invocation); };
 }
 

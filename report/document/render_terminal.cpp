@@ -1,0 +1,279 @@
+#include "report/document/render_terminal.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "report/document/overloaded.hpp"
+#include "report/text/text_table.hpp"
+
+namespace rigcal::report::doc {
+namespace {
+
+/// Columns of prose in a table: about what is read at a glance.
+constexpr std::size_t kProseColumns = 48;
+
+const char* colour_of(State state) {
+  switch (state) {
+    case State::none:
+      return "";
+    case State::good:
+      return "32";
+    case State::warn:
+      return "33";
+    case State::bad:
+      return "31";
+  }
+  return "";
+}
+
+/// Writes blocks one after the other.
+class Terminal {
+ public:
+  /// @param most  rows of each table
+  Terminal(const Style& style, std::size_t most) : style_(style), most_(most) {}
+
+  void add(const Verdict& verdict) {
+    add_wrapped(text_of(verdict.badge) + ": " + text_of(verdict.sentence), 2);
+    for (const Line& reason : verdict.reasons) {
+      const bool leads_on = reason.size() == 1 && std::holds_alternative<Link>(reason.front());
+      if (!leads_on) add_wrapped("  - " + text_of(reason), 4);
+    }
+  }
+
+  void add(const Section& section) {
+    const Blocks& blocks = section.blocks;
+    if (std::none_of(blocks.begin(), blocks.end(), [](const Block& block) { return shows(block); }))
+      return;
+    text_ += "\n" + in_colour(section.title, "1") + "\n";
+    add(blocks);
+  }
+
+  std::string text() && { return std::move(text_); }
+
+ private:
+  static bool is_warning(const Block& block) {
+    const auto* list = std::get_if<List>(&block);
+    return list != nullptr && list->state && *list->state != State::none;
+  }
+
+  /// Whether anything of a block is for a terminal.
+  static bool shows(const Block& block) {
+    return std::visit(
+        Overloaded{
+            [](const Table& table) { return !table.rows.empty(); },
+            [](const List& list) { return !list.items.empty(); },
+            [](const Facts& facts) { return !facts.rows.empty(); },
+            [](const Paragraph& paragraph) {
+              return paragraph.tone != Paragraph::Tone::screen &&
+                     paragraph.tone != Paragraph::Tone::source;
+            },
+            [](const Figure& figure) { return !figure.reading.empty(); },
+            [](const Gallery& gallery) {
+              return std::any_of(gallery.figures.begin(), gallery.figures.end(),
+                                 [](const Figure& figure) { return !figure.reading.empty(); });
+            },
+            [](const Tiles& tiles) { return !tiles.tiles.empty(); },
+            [](const Fold& fold) {
+              return std::any_of(fold.blocks.begin(), fold.blocks.end(), [&](const Block& inner) {
+                return (fold.open || is_warning(inner)) && shows(inner);
+              });
+            },
+            [](const Article&) { return true; },
+            [](const auto&) { return false; },
+        },
+        block);
+  }
+
+  void add(const Blocks& blocks) {
+    const Heading* pending = nullptr;  // waits for what it is the heading of
+    for (const Block& block : blocks) {
+      if (const auto* heading = std::get_if<Heading>(&block)) {
+        pending = heading;
+        continue;
+      }
+      if (!shows(block)) continue;
+      if (pending != nullptr) text_ += "\n" + in_colour(text_of(pending->line), "1") + "\n";
+      pending = nullptr;
+      std::visit(
+          Overloaded{
+              [&](const Table& table) { add(table); },
+              [&](const List& list) {
+                const char* const start = is_warning(block) ? "warning: " : "- ";
+                for (const Line& item : list.items) add_wrapped(start + text_of(item), 2);
+              },
+              [&](const Facts& facts) { add(facts); },
+              [&](const Paragraph& paragraph) {
+                const std::string text = text_of(paragraph.line);
+                add_wrapped(
+                    paragraph.tone == Paragraph::Tone::problem ? in_colour(text, "31") : text, 0);
+              },
+              [&](const Figure& figure) { add_wrapped(figure.reading, 2); },
+              [&](const Gallery& gallery) {
+                for (const Figure& figure : gallery.figures)
+                  if (!figure.reading.empty()) add_wrapped(figure.reading, 2);
+              },
+              [&](const Tiles& tiles) {
+                for (const Tile& tile : tiles.tiles)
+                  add_wrapped(fmt::format("{}", fmt::join(lines_of(tile), ", ")), 2);
+              },
+              [&](const Fold& fold) {
+                text_ += "\n" + in_colour(fold.summary, "1") + "\n";
+                for (const Block& inner : fold.blocks)
+                  if (fold.open || is_warning(inner)) add(Blocks{inner});
+              },
+              [&](const Article& article) {
+                text_ += "\n" + in_colour(text_of(article.title), "1") + "\n";
+                add(article.blocks);
+              },
+              [](const auto&) {},
+          },
+          block);
+    }
+  }
+
+  void add(const Table& table) {
+    if (!table.caption.empty()) text_ += "\n" + in_colour(text_of(table.caption), "1") + "\n";
+    std::vector<std::size_t> used;  // columns with something for a terminal
+    for (std::size_t i = 0; i < table.columns.size(); ++i) {
+      const bool is_used = std::any_of(table.rows.begin(), table.rows.end(), [&](const Row& row) {
+        return !lines_of(row.cells[i]).empty();
+      });
+      if (is_used) used.push_back(i);
+    }
+    std::vector<TextTable::Column> columns;
+    for (const std::size_t i : used) {
+      const Column& column = table.columns[i];
+      columns.push_back(
+          {column.title,
+           column.kind == Column::Kind::number ? TextTable::Align::right : TextTable::Align::left,
+           column.spare});
+    }
+    TextTable shown(columns, table.keys);
+    const std::size_t count = std::min(most_, table.rows.size());
+    std::vector<std::string> notes;
+    for (std::size_t r = 0; r < count; ++r) {
+      const Row& row = table.rows[r];
+      std::vector<std::vector<std::string>> cells;
+      for (const std::size_t i : used) {
+        std::vector<std::string>& lines = cells.emplace_back(lines_of(row.cells[i]));
+        if (table.columns[i].kind == Column::Kind::words) lines = broken(lines);
+      }
+      shown.add_lines(std::move(cells));
+      for (const std::string& note : row.notes)
+        notes.push_back(
+            fmt::format("{}: {}", fmt::join(lines_of(row.cells[table.heading]), " "), note));
+    }
+    text_ += shown.text(style_.columns);
+    if (count < table.rows.size())
+      text_ += fmt::format("and {} more (-v for all)\n", table.rows.size() - count);
+    if (const auto left_out = shown.left_out(style_.columns); !left_out.empty())
+      add_wrapped(fmt::format("hidden on this narrow terminal: {}", fmt::join(left_out, ", ")), 2);
+    for (const std::string& note : notes) add_wrapped(note, 2);
+  }
+
+  void add(const Facts& facts) {
+    if (!facts.caption.empty()) text_ += "\n" + in_colour(text_of(facts.caption), "1") + "\n";
+    for (const auto& [name, line] : facts.rows) add_wrapped(name + ": " + text_of(line), 2);
+  }
+
+  std::string in_colour(const std::string& text, const char* code) const {
+    if (!style_.colour || *code == '\0') return text;
+    return fmt::format("\x1b[{}m{}\x1b[0m", code, text);
+  }
+
+  std::string text_of(const Badge& badge) const {
+    return in_colour(badge.words, colour_of(badge.state));
+  }
+
+  std::string text_of(const Line& line) const {
+    std::string text;
+    for (const Inline& part : line) {
+      text += std::visit(Overloaded{
+                             [](const std::string& words) { return words; },
+                             [](const Quantity& quantity) {
+                               return quantity.unit.empty() ? quantity.text
+                                                            : quantity.text + " " + quantity.unit;
+                             },
+                             [&](const Badge& badge) { return text_of(badge); },
+                             [&](const Mark& one) {
+                               return in_colour(std::string(mark(one.state)), colour_of(one.state));
+                             },
+                             [](const auto& other) { return other.words; },
+                         },
+                         part);
+    }
+    return text;
+  }
+
+  /// "✓ 0.250", then what is below it.
+  std::vector<std::string> lines_of(const Tile& tile) const {
+    std::string first = text_of(tile.line);
+    if (tile.badge.state != State::none)
+      first =
+          in_colour(std::string(mark(tile.badge.state)), colour_of(tile.badge.state)) + " " + first;
+    std::vector<std::string> lines{std::move(first)};
+    for (const Line& line : tile.below) lines.push_back(text_of(line));
+    return lines;
+  }
+
+  std::vector<std::string> lines_of(const Cell& cell) const {
+    std::vector<std::string> lines;
+    for (const Tile& tile : cell.tiles)
+      for (std::string& line : lines_of(tile)) lines.push_back(std::move(line));
+    if (!cell.line.empty()) lines.push_back(text_of(cell.line));
+    for (const Lines* more : {&cell.paragraphs, &cell.below})
+      for (const Line& line : *more) lines.push_back(text_of(line));
+    lines.erase(std::remove(lines.begin(), lines.end(), std::string()), lines.end());
+    return lines;
+  }
+
+  static std::vector<std::string> broken(const std::vector<std::string>& lines) {
+    std::vector<std::string> result;
+    for (const std::string& line : lines) {
+      std::string rest = wrapped(line, kProseColumns, 0);
+      for (std::size_t end = 0; (end = rest.find('\n')) != std::string::npos;) {
+        result.push_back(rest.substr(0, end));
+        rest.erase(0, end + 1);
+      }
+      result.push_back(std::move(rest));
+    }
+    return result;
+  }
+
+  void add_wrapped(const std::string& line, std::size_t indent) {
+    text_ += wrapped(line, style_.columns, indent) + "\n";
+  }
+
+  Style style_;
+  std::size_t most_;
+  std::string text_;
+};
+
+std::string rendered(const Verdict& verdict, const std::vector<Section>& sections,
+                     const Style& style, std::size_t most) {
+  Terminal terminal(style, most);
+  terminal.add(verdict);
+  for (const Section& section : sections) terminal.add(section);
+  return std::move(terminal).text();
+}
+
+std::size_t lines_in(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+}  // namespace
+
+std::string render_terminal(const Verdict& verdict, const std::vector<Section>& sections,
+                            const Style& style) {
+  constexpr std::size_t kFewestRows = 1;
+  std::string text = rendered(verdict, sections, style, std::numeric_limits<std::size_t>::max());
+  if (style.lines == 0) return text;
+  for (std::size_t most = style.lines; lines_in(text) > style.lines && most >= kFewestRows; --most)
+    text = rendered(verdict, sections, style, most);
+  return text;
+}
+
+}  // namespace rigcal::report::doc
