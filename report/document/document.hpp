@@ -114,11 +114,21 @@ struct Table {
 };
 
 struct Paragraph {
-  enum class Tone { plain, reading, source, problem, screen };
+  enum class Tone {
+    plain,
+    reading,
+    source,
+    problem,
+    screen,   ///< not in print
+    picture,  ///< how to read a picture, or where to click: on the page alone
+  };
   Line line;
   Tone tone = Tone::reading;
 };
 inline Paragraph reading(std::string text) { return {Line{std::move(text)}}; }
+inline Paragraph about_picture(std::string text) {
+  return {Line{std::move(text)}, Paragraph::Tone::picture};
+}
 
 struct Heading {
   Line line;

@@ -169,6 +169,7 @@ void add(const Paragraph& paragraph, std::string& page) {
       case Paragraph::Tone::plain:
         return "";
       case Paragraph::Tone::reading:
+      case Paragraph::Tone::picture:
         return "reading";
       case Paragraph::Tone::source:
         return "source";

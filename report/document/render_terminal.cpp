@@ -37,10 +37,8 @@ class Terminal {
 
   void add(const Verdict& verdict) {
     add_wrapped(text_of(verdict.badge) + ": " + text_of(verdict.sentence), 2);
-    for (const Line& reason : verdict.reasons) {
-      const bool leads_on = reason.size() == 1 && std::holds_alternative<Link>(reason.front());
-      if (!leads_on) add_wrapped("  - " + text_of(reason), 4);
-    }
+    for (const Line& reason : verdict.reasons) add_wrapped("  - " + text_of(reason), 4);
+    if (verdict.more > 0) text_ += fmt::format("  and {} more\n", verdict.more);
   }
 
   void add(const Section& section) {
@@ -67,8 +65,9 @@ class Terminal {
             [](const List& list) { return !list.items.empty(); },
             [](const Facts& facts) { return !facts.rows.empty(); },
             [](const Paragraph& paragraph) {
-              return paragraph.tone != Paragraph::Tone::screen &&
-                     paragraph.tone != Paragraph::Tone::source;
+              using Tone = Paragraph::Tone;
+              return paragraph.tone == Tone::plain || paragraph.tone == Tone::reading ||
+                     paragraph.tone == Tone::problem;
             },
             [](const Figure& figure) { return !figure.reading.empty(); },
             [](const Gallery& gallery) {
@@ -89,13 +88,17 @@ class Terminal {
 
   void add(const Blocks& blocks) {
     const Heading* pending = nullptr;  // waits for what it is the heading of
+    starts_section_ = true;
     for (const Block& block : blocks) {
       if (const auto* heading = std::get_if<Heading>(&block)) {
         pending = heading;
         continue;
       }
       if (!shows(block)) continue;
-      if (pending != nullptr) text_ += "\n" + in_colour(text_of(pending->line), "1") + "\n";
+      if (pending != nullptr) {
+        text_ += "\n" + in_colour(text_of(pending->line), "1") + "\n";
+        starts_section_ = true;
+      }
       pending = nullptr;
       std::visit(
           Overloaded{
@@ -131,11 +134,15 @@ class Terminal {
               [](const auto&) {},
           },
           block);
+      starts_section_ = false;
     }
   }
 
   void add(const Table& table) {
-    if (!table.caption.empty()) text_ += "\n" + in_colour(text_of(table.caption), "1") + "\n";
+    if (!table.caption.empty())
+      text_ += "\n" + in_colour(text_of(table.caption), "1") + "\n";
+    else if (!starts_section_)
+      text_ += "\n";
     std::vector<std::size_t> used;  // columns with something for a terminal
     for (std::size_t i = 0; i < table.columns.size(); ++i) {
       const bool is_used = std::any_of(table.rows.begin(), table.rows.end(), [&](const Row& row) {
@@ -250,6 +257,7 @@ class Terminal {
   Style style_;
   std::size_t most_;
   std::string text_;
+  bool starts_section_ = true;  ///< nothing is below the last title yet
 };
 
 std::string rendered(const Verdict& verdict, const std::vector<Section>& sections,

@@ -9,9 +9,8 @@
 namespace rigcal::report::doc {
 
 /// The verdict, then every section with its tables, facts, lists and sentences. Pictures stay on
-/// the page, and so do closed folds, but for their warnings, and the reasons of the verdict that
-/// lead to a section. Where the style limits the lines, every table is cut to as many rows as find
-/// room, and the rest is counted.
+/// the page, and so do closed folds but for their warnings. Where the style limits the lines, every
+/// table is cut to as many rows as find room, and the rest is counted.
 std::string render_terminal(const Verdict& verdict, const std::vector<Section>& sections,
                             const Style& style);
 

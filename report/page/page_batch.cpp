@@ -215,8 +215,8 @@ std::vector<doc::Section> batch_sections(const StoredBatch& batch) {
            "Rigs",
            {doc::reading("The three worst scores of each rig (rho2, mean absolute error in "
                          "percent), its estimates with 95 % intervals, why it is no PASS, and its "
-                         "first warnings. The name leads to its own report."),
-            std::move(table)}},
+                         "first warnings."),
+            doc::about_picture("The name leads to its own report."), std::move(table)}},
           trends_section(batch)};
 }
 

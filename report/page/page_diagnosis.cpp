@@ -341,7 +341,7 @@ void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
     if (record.is_average()) table.rows.push_back(average_row(record, table.rows.size() + 1));
   if (table.rows.empty()) return;
   blocks.emplace_back(figure_of(share_plot(diagnosis)));
-  blocks.emplace_back(doc::reading(
+  blocks.emplace_back(doc::about_picture(
       "Dashed: the limits of the classes. The class is that of the share; shaded: how probable "
       "each class is."));
   blocks.emplace_back(std::move(table));
@@ -356,8 +356,9 @@ void add_methods(const StoredMethods& methods, doc::Blocks& blocks) {
   if (tables.empty()) return;
   blocks.emplace_back(doc::Heading{{"Against the known classes"}});
   blocks.emplace_back(doc::reading(
-      "Undecided counts as wrong. Rows: known class; columns: found. Blue is right. Intervals: "
-      "Wilson, for as many trials as there are conditions."));
+      "Undecided counts as wrong. Rows: known class; columns: found. Intervals: Wilson, for as "
+      "many trials as there are conditions."));
+  blocks.emplace_back(doc::about_picture("Blue is right."));
   for (doc::Block& table : tables) blocks.push_back(std::move(table));
 }
 

@@ -147,9 +147,9 @@ std::vector<doc::Section> plan_sections(const StoredPlan& plan) {
                          "nothing determines the parameter."),
             list_of(plan.messages), list_of(problems, doc::State::bad), std::move(totals),
             doc::Heading{{"Share of each record"}},
-            doc::reading("How much of the precision (one over the variance) of all records each "
-                         "has by itself: blue recorded, orange planned. Numbers are those of the "
-                         "table."),
+            doc::about_picture(
+                "How much of the precision (one over the variance) of all records each has by "
+                "itself: blue recorded, orange planned. Numbers are those of the table."),
             std::move(gallery), std::move(alone),
             doc::Fold{fmt::format("From all records but one ({})", plan.records.size()),
                       {std::move(without)}}},

@@ -4,9 +4,11 @@
 
 #include "common/error.hpp"
 #include "report/comparison/comparison.hpp"
+#include "report/document/render_terminal.hpp"
 #include "report/json/read_json.hpp"
 #include "report/leak/read_leak_table.hpp"
 #include "report/page/page.hpp"
+#include "report/page/page_parts.hpp"
 #include "report/page/section.hpp"
 #include "report/store/json.hpp"
 #include "tests/fuzz/fuzz.hpp"
@@ -68,7 +70,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   read_or_refuse([&] {
     const auto results = load_compared({fuzz::scratch_folder(), fuzz::scratch_folder()});
-    comparison_text(compared(results, {}), {});
+    const StoredComparison comparison = compared(results, {});
+    doc::render_terminal(comparison_headline(comparison), comparison_sections(comparison), {});
   });
   return 0;
 }
