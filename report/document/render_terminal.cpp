@@ -12,8 +12,8 @@
 namespace rigcal::report::doc {
 namespace {
 
-/// Columns of prose in a table: about what is read at a glance.
-constexpr std::size_t kProseColumns = 48;
+/// Columns of a cell of a table, beyond which it is broken: about what is read at a glance.
+constexpr std::size_t kCellColumns = 48;
 
 const char* colour_of(State state) {
   switch (state) {
@@ -32,8 +32,10 @@ const char* colour_of(State state) {
 /// Writes blocks one after the other.
 class Terminal {
  public:
-  /// @param most  rows of each table
-  Terminal(const Style& style, std::size_t most) : style_(style), most_(most) {}
+  /// @param most        rows of each table
+  /// @param is_brief  without the sentences that say how to read a result
+  Terminal(const Style& style, std::size_t most, bool is_brief)
+      : style_(style), most_(most), is_brief_(is_brief) {}
 
   void add(const Verdict& verdict) {
     add_wrapped(text_of(verdict.badge) + ": " + text_of(verdict.sentence), 2);
@@ -43,7 +45,8 @@ class Terminal {
 
   void add(const Section& section) {
     const Blocks& blocks = section.blocks;
-    if (std::none_of(blocks.begin(), blocks.end(), [](const Block& block) { return shows(block); }))
+    if (std::none_of(blocks.begin(), blocks.end(),
+                     [&](const Block& block) { return shows(block); }))
       return;
     text_ += "\n" + in_colour(section.title, "1") + "\n";
     add(blocks);
@@ -58,16 +61,16 @@ class Terminal {
   }
 
   /// Whether anything of a block is for a terminal.
-  static bool shows(const Block& block) {
+  bool shows(const Block& block) const {
     return std::visit(
         Overloaded{
             [](const Table& table) { return !table.rows.empty(); },
             [](const List& list) { return !list.items.empty(); },
             [](const Facts& facts) { return !facts.rows.empty(); },
-            [](const Paragraph& paragraph) {
+            [&](const Paragraph& paragraph) {
               using Tone = Paragraph::Tone;
-              return paragraph.tone == Tone::plain || paragraph.tone == Tone::reading ||
-                     paragraph.tone == Tone::problem;
+              return paragraph.tone == Tone::plain || paragraph.tone == Tone::problem ||
+                     (paragraph.tone == Tone::reading && !is_brief_);
             },
             [](const Figure& figure) { return !figure.reading.empty(); },
             [](const Gallery& gallery) {
@@ -75,7 +78,7 @@ class Terminal {
                                  [](const Figure& figure) { return !figure.reading.empty(); });
             },
             [](const Tiles& tiles) { return !tiles.tiles.empty(); },
-            [](const Fold& fold) {
+            [&](const Fold& fold) {
               return std::any_of(fold.blocks.begin(), fold.blocks.end(), [&](const Block& inner) {
                 return (fold.open || is_warning(inner)) && shows(inner);
               });
@@ -165,8 +168,7 @@ class Terminal {
       const Row& row = table.rows[r];
       std::vector<std::vector<std::string>> cells;
       for (const std::size_t i : used) {
-        std::vector<std::string>& lines = cells.emplace_back(lines_of(row.cells[i]));
-        if (table.columns[i].kind == Column::Kind::words) lines = broken(lines);
+        cells.push_back(broken(lines_of(row.cells[i])));
       }
       shown.add_lines(std::move(cells));
       for (const std::string& note : row.notes)
@@ -240,7 +242,7 @@ class Terminal {
   static std::vector<std::string> broken(const std::vector<std::string>& lines) {
     std::vector<std::string> result;
     for (const std::string& line : lines) {
-      std::string rest = wrapped(line, kProseColumns, 0);
+      std::string rest = wrapped(line, kCellColumns, 0);
       for (std::size_t end = 0; (end = rest.find('\n')) != std::string::npos;) {
         result.push_back(rest.substr(0, end));
         rest.erase(0, end + 1);
@@ -256,13 +258,14 @@ class Terminal {
 
   Style style_;
   std::size_t most_;
+  bool is_brief_;
   std::string text_;
   bool starts_section_ = true;  ///< nothing is below the last title yet
 };
 
 std::string rendered(const Verdict& verdict, const std::vector<Section>& sections,
-                     const Style& style, std::size_t most) {
-  Terminal terminal(style, most);
+                     const Style& style, std::size_t most, bool is_brief) {
+  Terminal terminal(style, most, is_brief);
   terminal.add(verdict);
   for (const Section& section : sections) terminal.add(section);
   return std::move(terminal).text();
@@ -276,11 +279,12 @@ std::size_t lines_in(const std::string& text) {
 
 std::string render_terminal(const Verdict& verdict, const std::vector<Section>& sections,
                             const Style& style) {
-  constexpr std::size_t kFewestRows = 1;
-  std::string text = rendered(verdict, sections, style, std::numeric_limits<std::size_t>::max());
+  constexpr std::size_t kFewestRows = 3;  // beside the sentences that say how to read them
+  const std::size_t all = std::numeric_limits<std::size_t>::max();
+  std::string text = rendered(verdict, sections, style, all, false);
   if (style.lines == 0) return text;
-  for (std::size_t most = style.lines; lines_in(text) > style.lines && most >= kFewestRows; --most)
-    text = rendered(verdict, sections, style, most);
+  for (std::size_t most = style.lines; most > 0 && lines_in(text) > style.lines; --most)
+    text = rendered(verdict, sections, style, most, most < kFewestRows);
   return text;
 }
 

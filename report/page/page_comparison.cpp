@@ -26,7 +26,6 @@ std::optional<doc::Line> change_line(const std::optional<StoredDifference>& diff
   if (!p) {
     const bool known = difference->reason == kKnownInBoth;
     line.emplace_back(doc::Badge{doc::State::none, known ? "known in both" : "not tested"});
-    if (!known && difference->reason) line.emplace_back(" " + *difference->reason);
     return line;
   }
   const bool significant = difference->significant == true;

@@ -108,8 +108,8 @@ TEST_CASE("diagnose: classes end where the rows of a leak table of the same rig 
   const Outcome outcome = diagnosed({"--table", "table/leak_table.json"});
   CAPTURE(outcome.out, outcome.err);
   REQUIRE(outcome.exit_code == 0);
-  CHECK_THAT(outcome.out, Contains("Coefficient at which each class ends") &&
-                              Contains("slight to 3 %") && Contains("critical to 9 %"));
+  CHECK_THAT(outcome.out, Contains("Limits of the classes, by the leak table") &&
+                              Contains("       3  slight  ") && Contains("       9  critical  "));
   const json result = json::parse(folder.read("out/diagnosis.json"));
   CHECK(violations(result, "diagnosis") == "");
   CHECK_THAT(result["settings"]["limits_percent"]["critical"].get<double>(),
@@ -170,7 +170,7 @@ TEST_CASE("diagnose: --healthy names the level that the campaign does not know",
   REQUIRE(unknown.exit_code == 0);
   // Both conditions lack it, and one line says so, with the cure.
   CHECK(count_of(unknown.out, "what the model lacks is not in the interval") == 1);
-  CHECK_THAT(unknown.out, Contains("  sine, leaking: no healthy record of this signal") &&
+  CHECK_THAT(unknown.out, Contains("no healthy record of this signal") &&
                               Contains("--healthy LEVEL") && Contains("level_class"));
   const json without = json::parse(folder.read("out/diagnosis.json"));
   for (const json& record : without["records"]) {
