@@ -15,6 +15,9 @@ namespace {
 /// Columns of a cell of a table, beyond which it is broken: about what is read at a glance.
 constexpr std::size_t kCellColumns = 48;
 
+/// Rows that the first table keeps, however many lines are left: it has the result itself.
+constexpr std::size_t kFirstRows = 8;
+
 const char* colour_of(State state) {
   switch (state) {
     case State::none:
@@ -162,7 +165,9 @@ class Terminal {
            column.spare});
     }
     TextTable shown(columns, table.keys);
-    const std::size_t count = std::min(most_, table.rows.size());
+    const std::size_t most = is_first_table_ ? std::max(most_, kFirstRows) : most_;
+    const std::size_t count = std::min(most, table.rows.size());
+    is_first_table_ = false;
     std::vector<std::string> notes;
     for (std::size_t r = 0; r < count; ++r) {
       const Row& row = table.rows[r];
@@ -194,14 +199,14 @@ class Terminal {
   }
 
   std::string text_of(const Badge& badge) const {
-    return in_colour(badge.words, colour_of(badge.state));
+    return in_colour(on_one_line(badge.words), colour_of(badge.state));
   }
 
   std::string text_of(const Line& line) const {
     std::string text;
     for (const Inline& part : line) {
       text += std::visit(Overloaded{
-                             [](const std::string& words) { return words; },
+                             [](const std::string& words) { return on_one_line(words); },
                              [](const Quantity& quantity) {
                                return quantity.unit.empty() ? quantity.text
                                                             : quantity.text + " " + quantity.unit;
@@ -210,7 +215,7 @@ class Terminal {
                              [&](const Mark& one) {
                                return in_colour(std::string(mark(one.state)), colour_of(one.state));
                              },
-                             [](const auto& other) { return other.words; },
+                             [](const auto& other) { return on_one_line(other.words); },
                          },
                          part);
     }
@@ -260,6 +265,7 @@ class Terminal {
   std::size_t most_;
   bool is_brief_;
   std::string text_;
+  bool is_first_table_ = true;
   bool starts_section_ = true;  ///< nothing is below the last title yet
 };
 

@@ -129,22 +129,22 @@ constexpr std::array kMethods{
     MethodName{&StoredMethods::features_leave_one_signal_out,
                "Paper's features, learned without the signal"}};
 
-/// How often a method is right, and what it takes for what.
+/// How often a method is right.
+doc::Row accuracy_row(const StoredAccuracy& method, const char* name) {
+  const auto percent = [](double value) { return doc::in_unit(100.0 * value, 1.0, 4); };
+  doc::Cell accuracy;
+  if (method.accuracy) accuracy.line = {percent(*method.accuracy)};
+  if (const auto& ci = method.accuracy_ci95)
+    accuracy.below = {{percent(ci->low), " … ", percent(ci->high)}};
+  return {{name, fmt::format("{} of {}", method.right, method.records), std::move(accuracy),
+           fmt::format("{}", method.undecided), fmt::format("{}", method.off_by_two_or_more)}};
+}
+
+/// What a method takes for what.
 doc::Table confusion_table(const StoredAccuracy& method, const char* name) {
-  const auto percent = [](const std::optional<double>& value) {
-    return doc::in_unit(value ? std::optional(100.0 * *value) : std::nullopt, 1.0, 4);
-  };
-  const auto& ci = method.accuracy_ci95;
   doc::Table table{fmt::format("Confusion: {}", name)};
   table.style = "correlation confusion";
-  table.caption = {fmt::format("{}: {} of {} right, ", name, method.right, method.records),
-                   percent(method.accuracy),
-                   " % (",
-                   percent(ci ? std::optional(ci->low) : std::nullopt),
-                   " to ",
-                   percent(ci ? std::optional(ci->high) : std::nullopt),
-                   fmt::format(" %); {} undecided, {} off by two classes or more", method.undecided,
-                               method.off_by_two_or_more)};
+  table.caption = {name};
   table.columns = {{"Known"}};
   const StoredConfusion& confusion = method.confusion;
   for (const std::string& found : confusion.found) table.columns.push_back({found, Kind::number});
@@ -348,18 +348,27 @@ void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
 }
 
 void add_methods(const StoredMethods& methods, doc::Blocks& blocks) {
-  doc::Blocks tables;
+  doc::Table accuracies{"How often each method is right"};
+  accuracies.columns = {{"Method"},
+                        {"Right", Kind::number},
+                        {"Accuracy, %", Kind::number, 0, "95 % interval (Wilson)"},
+                        {"Undecided", Kind::number},
+                        {"Off by two classes or more", Kind::number}};
+  doc::Fold confusions{"Which classes each method confuses", {}};
   for (const MethodName& each : kMethods) {
     const StoredAccuracy& method = methods.*each.accuracy;
-    if (method.records > 0) tables.emplace_back(confusion_table(method, each.name));
+    if (method.records == 0) continue;
+    accuracies.rows.push_back(accuracy_row(method, each.name));
+    confusions.blocks.emplace_back(confusion_table(method, each.name));
   }
-  if (tables.empty()) return;
+  if (accuracies.rows.empty()) return;
   blocks.emplace_back(doc::Heading{{"Against the known classes"}});
   blocks.emplace_back(doc::reading(
-      "Undecided counts as wrong. Rows: known class; columns: found. Intervals: Wilson, for as "
-      "many trials as there are conditions."));
-  blocks.emplace_back(doc::about_picture("Blue is right."));
-  for (doc::Block& table : tables) blocks.push_back(std::move(table));
+      "Undecided counts as wrong. Intervals are for as many trials as there are conditions."));
+  blocks.emplace_back(std::move(accuracies));
+  confusions.blocks.insert(confusions.blocks.begin(),
+                           doc::about_picture("Rows: known class; columns: found. Blue is right."));
+  blocks.emplace_back(std::move(confusions));
 }
 
 void add_smallest_leaks(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {

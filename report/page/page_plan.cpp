@@ -96,7 +96,6 @@ doc::Verdict plan_headline(const StoredPlan& plan) {
                            parameter.remedy ? ": " : "", parameter.remedy.value_or("")),
                "plan");
   }
-  for (const std::string& message : plan.messages) add_reason(verdict, message, "plan");
   return verdict;
 }
 

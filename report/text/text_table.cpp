@@ -7,7 +7,8 @@ namespace {
 
 constexpr std::size_t kGap = 2;  ///< blanks between columns
 
-/// Control characters as blanks, but for sequences that colour: names of files may hold any.
+}  // namespace
+
 std::string on_one_line(std::string text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '\x1b') {
@@ -21,8 +22,6 @@ std::string on_one_line(std::string text) {
   }
   return text;
 }
-
-}  // namespace
 
 std::size_t text_width(std::string_view text) {
   std::size_t width = 0;

@@ -9,6 +9,9 @@ namespace rigcal::report {
 /// Number of characters that a terminal shows of a UTF-8 text: sequences that colour it take none.
 std::size_t text_width(std::string_view text);
 
+/// Control characters as blanks, but for sequences that colour: names of files may hold any.
+std::string on_one_line(std::string text);
+
 /// A line broken between words where it is wider than `columns`, every further line after `indent`
 /// blanks; a word that is wider alone stays whole. 0 columns: not broken.
 std::string wrapped(std::string_view line, std::size_t columns, std::size_t indent);

@@ -36,7 +36,7 @@ use = "fit"
   REQUIRE(json["parameters"].size() == 2);
   for (const auto& parameter : json["parameters"])
     CHECK(parameter["sd_all"].get<double>() < parameter["sd_recorded"].get<double>());
-  CHECK_THAT(outcome.out, Contains("planned_10Hz alone (planned)"));
+  CHECK_THAT(outcome.out, Contains("planned_10Hz (planned)"));
   const std::string page = folder.read("out/report.html");
   CHECK_THAT(page, Contains("id=\"plan\"") && Contains("planned_10Hz (planned)") &&
                        Contains("share of the precision of all records"));

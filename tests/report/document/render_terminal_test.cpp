@@ -97,6 +97,14 @@ TEST_CASE("render_terminal: as many rows as find room, and the rest is counted",
   CHECK_THAT(shown({table_of(5)}, style), !Contains("more"));
 }
 
+TEST_CASE("render_terminal: the first table, which has the result itself, keeps eight rows",
+          "[report]") {
+  Style style;
+  style.lines = 12;
+  const std::string text = shown({table_of(8), table_of(100)}, style);
+  CHECK_THAT(text, Contains("row 7") && Contains("and 99 more"));
+}
+
 TEST_CASE("render_terminal: prose is broken, in a table too", "[report]") {
   doc::Table table = table_of(1);
   std::string prose;
