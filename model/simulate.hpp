@@ -22,13 +22,13 @@ enum class Output {
   load_pressure,         ///< P_L = p_A - p_B [Pa]
   pressure_a,            ///< [Pa]
   pressure_b,            ///< [Pa]
-  force,                 ///< what a load cell in the rod reads [N] (docs/model.md)
+  force,                 ///< reading of a load cell in the rod [N] (docs/model.md)
   command,               ///< controller output after the limit, or the recorded command [V]
   spool,                 ///< valve spool travel [m]
   servo_flow,            ///< Q_L, flow of the servo valve to the load [m3/s]
   leakage_flow,          ///< internal leakage across the piston [m3/s]
   work_flow,             ///< A x', flow that moves the piston [m3/s]
-  acceleration,          ///< of the piston and what is fixed to it [m/s2]
+  acceleration,          ///< of the piston and the mass fixed to it [m/s2]
   payload_acceleration,  ///< of the second mass [m/s2]; zero where the rig has none
 };
 
@@ -50,13 +50,13 @@ inline constexpr std::array kAllOutputs{Output::position,
 
 enum class ControllerKind {
   none,  ///< the drive is the valve command [V]
-  pid,   ///< the drive is the reference of what the loop controls
+  pid,   ///< the drive is the reference of the controlled quantity
 };
 
-/// What a loop controls: its reference is of that quantity.
+/// Quantity that a loop controls; its reference has the same unit.
 enum class Feedback { position, force, load_pressure, acceleration };
 
-/// Gains, in the parameter table, of a loop that controls a quantity.
+/// Gains, in the parameter table, of a loop by its controlled quantity.
 struct FeedbackRow {
   std::string_view name;  ///< in campaign files
   std::string_view unit;  ///< SI
@@ -88,7 +88,8 @@ struct SimulationInputs {
   std::optional<Signal> external_force_n;    ///< added to the parameter `external_force`
   std::optional<Signal> supply_pressure_pa;  ///< in place of the parameter `supply_pressure`
   std::optional<Signal> tank_pressure_pa{};  ///< in place of the parameter `tank_pressure`
-  double drive_begins_s = 0.0;               ///< its first sample: what was before says Rig::before
+  double drive_begins_s =
+      0.0;  ///< time of its first sample; Rig::before describes the time before it
 };
 
 enum class Method {
@@ -135,8 +136,8 @@ struct Simulation {
   Eigen::MatrixXd outputs;   ///< shape (samples, outputs), SI
   /// d outputs / d parameter: one matrix of shape (samples, free) per output, SI.
   std::vector<Eigen::MatrixXd> sensitivities;
-  /// State at the last sample: of plant, hoses, supply, second mass, valve and controller, as in
-  /// Layout.
+  /// State at the last sample: plant, hoses, supply, second mass, valve and controller, in the
+  /// order of Layout.
   Eigen::VectorXd end_state;
   Eigen::MatrixXd end_sensitivities;  ///< shape (states, columns of `sensitivities`)
   Eigen::VectorXd state_floor;        ///< below it a state counts as zero in the error control
@@ -150,7 +151,7 @@ struct Rig {
   PlantKind plant = PlantKind::load_pressure;
   ControllerKind controller = ControllerKind::pid;
   InitialState initial = InitialState::rest;
-  Feedback feedback = Feedback::position;  ///< of the controller, if there is one
+  Feedback feedback = Feedback::position;  ///< controlled quantity, if there is a controller
   Before before = Before::hold;
 };
 

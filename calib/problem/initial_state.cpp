@@ -137,7 +137,7 @@ InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condit
   add_pressure("initial_load_pressure", load_pressure(record, values), 0.0);
   add_pressure("initial_pressure_a", recorded(record, Channel::pressure_a), 0.5 * supply_pa);
   add_pressure("initial_pressure_b", recorded(record, Channel::pressure_b), 0.5 * supply_pa);
-  // A rig that settles begins at the speed and the pressures that it settles to.
+  // A rig that settles starts from the speed and the pressures at which it settles.
   if (campaign.rig.before == model::Before::steady) guesses.resize(1);
   for (const Guess& guess : guesses) {
     const int index = model::parameter_index(campaign.rig.plant, guess.key);

@@ -83,8 +83,8 @@ ProblemChannel make_channel(const Campaign& campaign, const ProblemCondition& co
   return result;
 }
 
-/// A channel of unknown noise starts from a share of its largest peak-to-peak over all conditions:
-/// one value, as estimate_weights() will find one.
+/// The unknown noise of a channel starts at a fraction of its largest peak-to-peak over all
+/// conditions. It is one value per channel, as in estimate_weights().
 void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   std::map<Channel, double> largest;
   for (const ProblemCondition& condition : conditions) {

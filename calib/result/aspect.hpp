@@ -13,11 +13,11 @@ enum class AspectState {
   reservation,   ///< nothing failed, but whoever signs must know
   fail,          ///< a limit is broken, or cannot be evaluated
   not_assessed,  ///< there was nothing to judge by
-  note,          ///< of a reason alone: it is told, and changes nothing
+  note,          ///< for reasons only: shown, but does not change the state of the aspect
 };
 std::string_view to_string(AspectState state);
 
-/// Whether a reason of this state keeps its aspect from passing.
+/// Whether a reason of this state prevents its aspect from passing.
 bool is_against(AspectState state);
 
 /// One reason: a code for scripts, the numbers behind it, and the same in words for people.
@@ -38,8 +38,7 @@ struct Aspect {
   std::vector<Reason> reasons;  ///< the gravest first
 };
 
-/// The gravest reason makes the state, of which notes are none; reasons of one state stay in their
-/// order.
+/// The gravest reason that is not a note decides the state. Reasons of one state keep their order.
 Aspect aspect_of(std::vector<Reason> reasons);
 
 /// The four things that are judged apart. A verdict follows from them (verdict_of).

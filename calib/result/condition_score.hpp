@@ -73,8 +73,8 @@ struct ConditionScore {
   std::vector<double> servo_flow_m3_per_s, leakage_flow_m3_per_s;
   std::vector<bool> in_window;  ///< empty: all
 
-  /// Of one channel, the worst of its checks; that of the condition where this could not be
-  /// simulated. Nothing where no limit judges the channel.
+  /// Verdict on a channel: the worst of its checks, or the verdict of the condition if that could
+  /// not be simulated. Empty if no limit applies to the channel.
   std::optional<Verdict> verdict_of(datasets::Channel of) const;
 };
 

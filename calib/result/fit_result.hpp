@@ -39,10 +39,10 @@ struct Fit {
   std::vector<double> singular_values;
   std::vector<StartReport> starts;
   int best_start = 0;
-  std::optional<FurtherStarts> further_starts;  ///< absent where none were looked at
+  std::optional<FurtherStarts> further_starts;  ///< absent if no further starts were evaluated
   std::vector<Basin> basins;                    ///< by cost
-  int bootstrap_replicates = 0;                 ///< that converged
-  std::string bootstrap_message;                ///< how they were drawn, what went wrong
+  int bootstrap_replicates = 0;                 ///< replicates that converged
+  std::string bootstrap_message;                ///< how they were drawn, and what went wrong
   std::vector<HeldOut> cross_validation;
   std::string agreement;  ///< of the starts, in words; empty for a single one
   std::vector<SimulationFailure> failures;

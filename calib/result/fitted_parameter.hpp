@@ -66,8 +66,8 @@ struct FittedParameter {
   /// From the scatter of the residuals themselves: larger where they are correlated in time.
   std::optional<double> robust_standard_error;
   std::optional<std::pair<double, double>> ci95;
-  IntervalSource interval = IntervalSource::none;  ///< of ci95
-  /// With which the error that ci95 rests on is known; at most metrics::kManyDegrees.
+  IntervalSource interval = IntervalSource::none;  ///< how ci95 was found
+  /// Degrees of freedom of the error on which ci95 is based; at most metrics::kManyDegrees.
   std::optional<double> degrees_of_freedom;
   std::optional<BootstrapSpread> bootstrap;
   std::optional<Profile> profile;

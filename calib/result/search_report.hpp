@@ -34,11 +34,13 @@ struct StartReport {
   std::string message;
 };
 
-/// Further starts that a fit of one start looked at with coarse simulations alone.
+/// Further starts that a fit with one start evaluated with coarse simulations.
 struct FurtherStarts {
   int looked_at = 0;
-  int followed = 0;  ///< that led lower than the campaign's start, and were searched to their end
-  int as_low = 0;    ///< that ended as low as the result, as far as such simulations tell
+  int followed =
+      0;  ///< starts that led lower than the campaign's start and were searched to their end
+  int as_low =
+      0;  ///< starts that ended as low as the result, within the error of coarse simulations
 };
 
 /// Converged starts that ended at one point.

@@ -23,8 +23,8 @@ Assessment assess(const datasets::Campaign& campaign, const Fit& fit,
 /// campaign has no limits.
 std::optional<Verdict> verdict_of(const Assessment& assessment);
 
-/// Whether a result may state where its model is valid: it was validated on records of its own, and
-/// no limit is broken. Else what its conditions cover is what was tested.
+/// Whether a result may state a range of validity: it was validated on separate records and no
+/// limit is broken. Otherwise the report only states which conditions were tested.
 bool has_range_of_validity(AspectState agreement, AspectState validation);
 
 }  // namespace rigcal::calib

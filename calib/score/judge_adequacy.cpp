@@ -25,8 +25,8 @@ std::string signal_of(const std::string& condition, datasets::Channel channel) {
   return fmt::format("{} of {}", datasets::info(channel).key, condition);
 }
 
-/// The largest model error of signals that pass. An estimate may exceed the allowed error by chance
-/// alone; it is then told as not significant.
+/// Words for the largest model error of signals that pass. An estimate may exceed the allowed error
+/// by chance; it is then reported as not significant.
 std::string error_words(double largest, double largest_significant, double bound) {
   if (largest <= bound)
     return fmt::format("model error at most {:.2g} times the noise ({:.2g} allowed)", largest,

@@ -16,8 +16,8 @@ struct Checkpoint;  // checkpoint.hpp
 /// What a fit needs beside the campaign and its records.
 struct FitOptions {
   int starts = 1;  ///< 1: the campaign's start values; more: latin hypercube around them
-  /// Latin-hypercube starts beside a single one: looked at coarsely where that one converges, made
-  /// like it where it does not.
+  /// Latin-hypercube starts in addition to a single one. If that one converges they are only
+  /// evaluated coarsely; otherwise each is searched like the first.
   int further_starts = 0;
   std::uint64_t seed = 1;               ///< of the latin hypercube
   int threads = 1;                      ///< results are the same bits for any number
@@ -28,7 +28,7 @@ struct FitOptions {
   bool profiles = false;                ///< profile likelihood of every unknown that is no nuisance
   bool cross_validate = false;          ///< leave one condition out after the other
   const Checkpoint* resume = nullptr;   ///< goes on from there
-  std::function<void(const Checkpoint&)> checkpoint;  ///< told after every start that is finished
+  std::function<void(const Checkpoint&)> checkpoint;  ///< called after every finished start
   /// Makes starts (where it has several processes), replicates, profiles and folds; null: the
   /// threads of this process do.
   TaskFarm* farm = nullptr;

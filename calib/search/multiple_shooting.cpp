@@ -79,7 +79,7 @@ std::vector<std::size_t> cuts(const ProblemCondition& condition, double interval
                                  "fewer than {} samples of its record",
                                  condition.condition->id, interval_s, kLeastSamples));
   };
-  // Before anything is as long as that.
+  // Refuses before allocating anything of that length.
   if (wanted > 1.0 && wanted * kLeastSamples > static_cast<double>(times.size() - 1)) refuse();
   const auto pieces = static_cast<std::size_t>(wanted);
   std::vector<std::size_t> result{0};
@@ -134,7 +134,7 @@ class Pieces final : public ceres::EvaluationCallback {
         values.set(index, value);
       model::Rig rig = condition.rig;
       rig.initial = model::InitialState::given;
-      rig.before = model::Before::hold;  // the drive has long begun
+      rig.before = model::Before::hold;  // the drive began long before
       const auto found = model::simulate(rig, values, {}, condition.inputs, {&at_s, 1}, {});
       if (!found.ok()) return false;
       Node& node = nodes_[static_cast<std::size_t>(piece.node)];

@@ -18,8 +18,8 @@ BoundSide bound_side(double z);
 /// which the data do not determine: the derivatives themselves are no better (ErrorNorm).
 double rank_threshold(double simulation_tolerance);
 
-/// Fall of the cost, in variances of a residual, below which a point is a minimum: a single
-/// parameter is then 0.14 standard errors off at most.
+/// A point is a minimum if one more step would lower the cost by less than this many variances of a
+/// residual; a single parameter is then off by at most 0.14 standard errors.
 inline constexpr double kMinimumLeaves = 0.01;
 
 /// Unknowns at a bound where the cost falls only towards the outside.
@@ -35,11 +35,12 @@ struct OptimumCheck {
   /// hundredth of what the noise leaves uncertain.
   double relative_offset = 0.0;
   double reducible = 0.0;  ///< fraction of the cost that this step is predicted to take away
-  /// The same in variances of a residual, where 2 would be one parameter's 95 % interval.
+  /// The same in variances of a residual; 2 corresponds to one parameter at the end of its 95 %
+  /// interval.
   double fall_left = 0.0;
-  /// Where a search need go no further: a relative offset of 0.01, and a minimum.
+  /// Whether a search may end: a relative offset below 0.01, at a minimum.
   bool stationary() const;
-  /// Where it has converged: no more than kMinimumLeaves of the fall are left.
+  /// Whether the search has converged: at most kMinimumLeaves are left of the fall.
   bool is_minimum() const;
 };
 

@@ -13,9 +13,9 @@ constexpr double kFullStepOffset = 30.0;
 constexpr int kFullSteps = 4;
 /// Where they end: a third of what counts as stationary, since each is all but exact.
 constexpr double kFullStepEnd = 0.003;
-/// Growth of the cost beyond which a step from coarse to exact simulations led astray: where
-/// residuals are large a Gauss-Newton step may overshoot, and errors of the coarse simulations are
-/// far smaller.
+/// A step from coarse to exact simulations went astray if the cost grew by more than this factor.
+/// With large residuals a Gauss-Newton step may overshoot; errors of the coarse simulations are far
+/// smaller.
 constexpr double kWorseStep = 1.5;
 /// Growth of the mean square residual beyond which the shorter horizon's estimate is discarded.
 constexpr double kForeseen = 4.0;

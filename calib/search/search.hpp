@@ -23,10 +23,10 @@ class Search {
   /// is stopped, the best point is that of the stages' ends with the least cost over whole records.
   SolveResult run(std::vector<double> z);
 
-  /// All stages but the last: the best point is that of the least cost over whole records, coarsely
-  /// simulated.
+  /// Runs all stages but the last. The best point is the one with the least cost over whole
+  /// records, by coarse simulations.
   ///
-  /// @return  false where there is none, or the budget ended it
+  /// @return  false if there is no such point, or the budget was spent
   bool approach(std::vector<double> z);
 
   /// The last stage alone, from a point near the optimum.

@@ -63,7 +63,8 @@ std::string partner(const Problem& problem, const Uncertainty& found, std::size_
                      problem.name(static_cast<std::size_t>(best)));
 }
 
-/// Half width over value; beyond what is identifiable where the value is zero.
+/// Half width relative to the value; for a value of zero a number above the limit of
+/// identifiability.
 double share_of_value(double value, double half_width) {
   return value != 0.0 ? half_width / std::abs(value) : kNotIdentifiable * 2.0;
 }
@@ -100,7 +101,8 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
                             partner(problem, found, unknown));
 }
 
-/// As student_t() takes it; known variances have no end of it.
+/// Degrees of freedom as student_t() accepts them; infinitely many, with known variances, are
+/// capped.
 double degrees(double freedom) { return std::clamp(freedom, 1.0, metrics::kManyDegrees); }
 
 /// Half width of the 95 % interval, and on which error it rests.

@@ -10,10 +10,10 @@
 
 namespace rigcal::calib {
 
-/// How well a value is known by the half width of its 95 % interval, as describe_unknowns() says.
+/// Grades a value by the half width of its 95 % interval (see describe_unknowns()).
 ///
-/// @param arbitrary_zero  zero lies within its range like any other value: offsets, initial
-///                           states, bounds of both signs
+/// @param arbitrary_zero  zero is a value like any other in its range: offsets, initial states,
+///                        bounds of both signs
 Identifiability grade_of(const model::ParameterSpec& spec, double value, double half_width,
                          bool arbitrary_zero);
 
@@ -31,13 +31,13 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
                                                const OptimumCheck& check,
                                                const Uncertainty& uncertainty);
 
-/// "half width of the 95 % interval is 37 % of the value".
+/// Returns, for example, "half width of the 95 % interval is 37 % of the value".
 ///
-/// @param share  half width over the value
+/// @param share  half width divided by value
 std::string half_width_words(double share);
 
-/// Of a search that was stopped before it converged: no estimate is graded by the derivatives at a
-/// point that is no minimum.
+/// Removes the grades after a search that was stopped before it converged: the derivatives at a
+/// point that is no minimum cannot grade an estimate.
 void withhold_grades(std::vector<FittedParameter>& parameters);
 
 /// Whether most of a standard error is what known values leave uncertain, not what the records do.

@@ -48,8 +48,8 @@ void plant_indicators(const TwoChamberPlant::Coefficients<double>& p, const Pres
 
 /// Limits of the controller's output and of the spool's rate.
 ///
-/// @param wanted_v   what the controller would give without its limit
-/// @param command_v  what the valve is told
+/// @param wanted_v   controller output before its limit
+/// @param command_v  command to the valve
 template <typename P, std::size_t N>
 void loop_indicators(const P& p, const Layout& layout, const std::array<double, N>& x,
                      double wanted_v, double command_v, std::vector<double>& indicators) {

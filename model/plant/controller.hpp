@@ -12,8 +12,9 @@ struct ControllerOutput {
   X limited{};
 };
 
-/// Puts the gains of a loop on another quantity where those of a loop on position are, since the
-/// controller computes the same with either: in V per unit of what it controls.
+/// Copies the gains of a force, pressure or acceleration loop to where the controller reads those
+/// of a position loop. The controller computes the same for all; the gains are in V per unit of the
+/// controlled quantity.
 template <typename P>
 void take_gains(Feedback feedback, P& p) {
   switch (feedback) {
@@ -37,15 +38,15 @@ void take_gains(Feedback feedback, P& p) {
   }
 }
 
-/// What the controller acts on.
+/// Error that the controller acts on.
 template <typename X>
 struct LoopError {
-  X error{};        ///< reference less what the loop controls, in the unit of that
+  X error{};        ///< reference minus controlled quantity, in the unit of that quantity
   X pressure_pa{};  ///< load pressure, where it is fed back
 };
 
 /// u = K_p e + I + K_d N (e - e_f) - K_dp P_L, then the limit.
-///
+/// @param state  the whole state vector; `layout` has the indices of integral and filter
 /// @param state    the whole state vector; `layout` says where integral and filter stand
 template <typename X, typename State, typename P>
 ControllerOutput<X> controller_output(const LoopError<X>& loop, const State& state, const P& p,

@@ -101,8 +101,8 @@ class System {
     }
   }
 
-  /// f and its derivatives for who looks for where the rig settles: a sampled controller, which
-  /// changes at its ticks alone, as if they never ended.
+  /// f and its derivatives for settle(). A sampled controller changes only at its ticks; its rates
+  /// are taken as the change of a tick over the sample time.
   Linearisation<N, P> linearise_settling(const Values<N>& x, double t) const {
     Linearisation<N, P> lin = linearise(x, t);
     if (!layout_.sampled()) return lin;
@@ -124,7 +124,7 @@ class System {
                     layout_);
   }
 
-  /// What a continuous controller wants and gives at x.
+  /// Output of a continuous controller at x, before and after its limit.
   ControllerOutput<double> control(const Values<N>& x, double t) const {
     const double drive = input_value(Plain{}, drive_, t, true);
     return controller_output(loop_error(Plain{}, x, drive, t), x, passive_, layout_);
@@ -165,7 +165,8 @@ class System {
     }
   }
 
-  /// State at the first sample, for Before::steady one to settle from; forget_hoses() is to follow.
+  /// State at the first sample. For Before::steady it is the point to settle from. Call
+  /// forget_hoses() afterwards.
   X initial(InitialState mode, Before before, double t) {
     const Coefficients<C>& p = parameters_of(ByParameters{});
     X states;
@@ -178,7 +179,7 @@ class System {
         given ? Plant::initial(in, p, layout_.terms) : Plant::rest(in, p, layout_.terms);
     for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
     while_it_waits_ = C(0.0);
-    // At rest a loop wants what it measures.
+    // At rest the reference equals the measured value.
     if (before == Before::rest && layout_.pid)
       while_it_waits_ = C(0.0) - loop_error(ByParameters{}, states, C(0.0), t).error;
     if (before == Before::steady) {
@@ -211,7 +212,7 @@ class System {
     return states;
   }
 
-  /// Puts the memory of hoses where they are when they came to their pressure in one go.
+  /// Sets the memory of the hoses to its value after an instantaneous rise to their pressure.
   void forget_hoses([[maybe_unused]] X& states, [[maybe_unused]] double t) const {
     [[maybe_unused]] const Coefficients<C>& p = parameters_of(ByParameters{});
     if constexpr (requires { p.hose_yield_pa; }) {
@@ -320,7 +321,7 @@ class System {
     }
   }
 
-  /// The drive before its first sample.
+  /// Value of the drive before its first sample.
   template <typename K>
   Number<K> drive_that_waits([[maybe_unused]] K by) const {
     if constexpr (std::is_same_v<K, ByParameters>) {
@@ -335,7 +336,7 @@ class System {
     }
   }
 
-  /// What a tick changes, per time from one to the next.
+  /// Change of the states at a tick, divided by the sample time.
   template <typename K>
   Numbers<K> tick_rates(K by, const Numbers<K>& x, double t) const {
     const auto& p = parameters_of(by);
@@ -405,7 +406,8 @@ class System {
     }
   }
 
-  /// What the controller acts on. The solver of the plant's states alone knows loops on position.
+  /// Error that the controller acts on. The solver that has only the plant's states supports
+  /// position loops alone.
   template <typename K>
   LoopError<Number<K>> loop_error(K by, const Numbers<K>& x, const Number<K>& drive,
                                   double t) const {
@@ -415,12 +417,13 @@ class System {
     return {drive - x[Plant::position], Number<K>(0.0)};
   }
 
-  /// By itself, so that loops on position stay as short as they are.
+  /// Not inlined, so that the code of position loops stays short.
   template <typename K>
   [[gnu::noinline]] LoopError<Number<K>> other_loop_error(K by, const Numbers<K>& x,
                                                           const Number<K>& drive, double t) const {
     const auto& p = parameters_of(by);
-    // Neither of these depends on the spool, so the command need not be known.
+    // Neither force nor load pressure nor acceleration depends on the spool, so the command is not
+    // needed.
     const PlantInput<Number<K>> in = plant_input(by, x, Number<K>(0.0), t);
     LoopError<Number<K>> loop{drive, Number<K>(0.0)};
     switch (layout_.feedback) {
@@ -582,7 +585,7 @@ class System {
   std::optional<InputTrack> supply_pressure_;
   std::optional<InputTrack> tank_pressure_;
   int delay_direction_ = -1;
-  C while_it_waits_{0.0};  ///< the drive before its first sample
+  C while_it_waits_{0.0};  ///< value of the drive before its first sample
 };
 
 }  // namespace rigcal::model

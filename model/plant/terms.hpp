@@ -67,7 +67,7 @@ X spring_and_damper(const X& travel_m, const X& rate_m_per_s, const C& frequency
          rate_m_per_s * (2.0 * damping_ratio * frequency_rad_per_s);
 }
 
-/// Load that varies with travel [N]: k_F x + c_F x^2.
+/// Load that varies with the travel [N]: k_F x + c_F x^2.
 template <typename X, typename C>
 X varying_load(const X& x, const C& gradient_n_per_m, const C& curvature_n_per_m2) {
   return (x * curvature_n_per_m2 + gradient_n_per_m) * x;

@@ -13,10 +13,11 @@ namespace rigcal::model {
 
 /// Piston and both chamber pressures of a cylinder behind a valve of four metering edges.
 ///
-///   m v'  = A_A p_A - A_B p_B - b v - k x - F_dry(v) + F_stops - (m + m_2) g - F_ext(x) - m_2
-///   x_2'' p_A'  = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) - A_A v),  V_A = V_A0 + A_A (x -
-///   x_R) p_B'  = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + A_B v),  V_B = V_B0 + A_B (x_R
-///   + H - x)
+///   m v'  = A_A p_A - A_B p_B - b v - k x - F_dry(v) + F_stops - (m + m_2) g - F_ext(x)
+///           - m_2 x_2''
+///   p_A'  = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) - A_A v)
+///   p_B'  = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + A_B v)
+///   V_A   = V_A0 + A_A (x - x_R),  V_B = V_B0 + A_B (x_R + H - x)
 ///
 /// Q_A flows from the valve into chamber A, Q_B from chamber B into the valve.
 struct TwoChamberPlant {

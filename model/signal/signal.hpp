@@ -13,11 +13,11 @@ struct SignalSample {
   double slope = 0.0;
 };
 
-/// What a drive was before its first sample.
+/// Drive before its first sample.
 enum class Before {
-  hold,    ///< its first value; the rig is in its initial state all the same
-  rest,    ///< neutral: no command, or a reference at which the piston stands
-  steady,  ///< its first value, and the rig had settled at it
+  hold,    ///< its first value; the rig starts from its initial state
+  rest,    ///< neutral: no command, or the reference at which the piston rests
+  steady,  ///< its first value, at which the rig had settled
 };
 
 /// One period of a signal of amplitude 1, in pieces of equal length within which it is smooth. To
