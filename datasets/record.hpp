@@ -25,7 +25,7 @@ enum class Channel {
   tank_pressure,            ///< [Pa]
   force,                    ///< [N]
   temperature,              ///< [K]
-  acceleration,             ///< of the piston and what is fixed to it [m/s2]
+  acceleration,             ///< of the piston and the mass fixed to it [m/s2]
   payload_acceleration,     ///< of the second mass [m/s2]
   force_reference,          ///< of a loop on force [N]
   load_pressure_reference,  ///< of a loop on load pressure [Pa]
@@ -45,12 +45,12 @@ const std::vector<ChannelInfo>& channel_table();
 const ChannelInfo& info(Channel channel);
 std::optional<Channel> channel_from_key(std::string_view key);
 
-/// Whether a channel tells the rig what to do: a command, or the reference of a loop.
+/// Whether a channel drives the rig: a command, or the reference of a loop.
 bool is_drive(Channel channel);
 
-/// A step of time so long that samples are missing there.
+/// Step of time in which samples are missing.
 struct TimeHole {
-  std::size_t row = 0;  ///< the sample behind it, from 1
+  std::size_t row = 0;  ///< number of the sample after it, from 1
   double from_s = 0.0;
   double to_s = 0.0;
 };
@@ -60,9 +60,9 @@ struct Repeat {
   std::string source;  ///< file, and the column set where one file holds several repeats
   std::vector<double> time_s;
   std::map<Channel, std::vector<double>> values;  ///< each of the shape of time_s
-  std::vector<std::string> warnings{};            ///< in words: what its files look like
-  std::vector<TimeHole> holes{};                  ///< in the times of its file, increasing
-  /// Which samples its file lacks, shape of time_s; empty: none. They count for nothing.
+  std::vector<std::string> warnings{};            ///< doubts about its files, in words
+  std::vector<TimeHole> holes{};                  ///< holes in the times of its file, increasing
+  /// Marks the samples that its file lacks, shape of time_s; empty: none. They are never compared.
   std::vector<bool> bridged{};
 };
 
@@ -108,13 +108,13 @@ struct Record {
   std::vector<RepeatReport> repeat_reports;
   /// What counts, in order: the campaign's windows, or those found; empty: all of it.
   std::vector<TimeWindow> windows;
-  /// What its recorded drive is, where the model generates the same.
+  /// Generated signal that equals its recorded drive.
   std::optional<model::Signal> generated_drive{};
   std::vector<std::string> notes;     ///< in words: what was done to it, such as decimation
   std::vector<std::string> warnings;  ///< in words: outliers, gaps, spikes, sensors
-  /// In words: where samples are missing in what counts, so that nothing can be compared with it.
+  /// In words: samples missing in the windows, so that nothing can be compared with the record.
   std::vector<std::string> holes;
-  std::vector<FileState> files;  ///< every file read for it, as it stood before
+  std::vector<FileState> files;  ///< every file that was read for it, with its state before reading
 };
 
 }  // namespace rigcal::datasets

@@ -88,8 +88,7 @@ struct SimulationInputs {
   std::optional<Signal> external_force_n;    ///< added to the parameter `external_force`
   std::optional<Signal> supply_pressure_pa;  ///< in place of the parameter `supply_pressure`
   std::optional<Signal> tank_pressure_pa{};  ///< in place of the parameter `tank_pressure`
-  double drive_begins_s =
-      0.0;  ///< time of its first sample; Rig::before describes the time before it
+  double drive_begins_s = 0.0;               ///< time of its first sample; see Rig::before
 };
 
 enum class Method {

@@ -37,10 +37,10 @@ struct StartReport {
 /// Further starts that a fit with one start evaluated with coarse simulations.
 struct FurtherStarts {
   int looked_at = 0;
-  int followed =
-      0;  ///< starts that led lower than the campaign's start and were searched to their end
-  int as_low =
-      0;  ///< starts that ended as low as the result, within the error of coarse simulations
+  /// Starts that led lower than the campaign's start and were searched to their end.
+  int followed = 0;
+  /// Starts that ended as low as the result, within the error of coarse simulations.
+  int as_low = 0;
 };
 
 /// Converged starts that ended at one point.

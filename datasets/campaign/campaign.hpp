@@ -58,9 +58,10 @@ using Overrides = std::vector<std::pair<int, double>>;
 enum class ChannelRole { input, output, ignore };
 enum class Interpolation { hold, linear };
 
-/// What the campaign says of the numbers of a column, to be held against what their file says.
+/// What the campaign states about the numbers of a column, to be compared with the labels in its
+/// file.
 struct StatedUnit {
-  std::string unit;            ///< "bar"; empty: numbers of a converter, which have none
+  std::string unit;            ///< "bar"; empty: raw numbers of a converter, which have no unit
   std::optional<double> gain;  ///< physical value in `unit` = gain * number
   bool has_offset = false;
   std::string
@@ -77,12 +78,12 @@ struct ChannelSetting {
   StatedUnit stated;
   std::optional<double> sd;               ///< of the samples in the file, SI, after `gain`
   double gain_sd = 0.0;                   ///< standard uncertainty of the sensor's gain, relative
-  std::optional<Location> gain_sd_where;  ///< of the channel's own `gain_sd`
-  double offset_sd = 0.0;                 ///< that of its offset, SI
+  std::optional<Location> gain_sd_where;  ///< where the channel states `gain_sd` itself
+  double offset_sd = 0.0;                 ///< standard uncertainty of its offset, SI
   ChannelRole role = ChannelRole::output;
   Interpolation interpolation = Interpolation::hold;
-  bool recognise = true;   ///< a recorded drive that the model generates is simulated as such
-  bool in_counts = false;  ///< raw numbers of a converter: nothing says what they measure
+  bool recognise = true;   ///< simulate a recorded drive as generated where it equals one
+  bool in_counts = false;  ///< raw numbers of a converter, in an unknown unit
 };
 
 enum class Use { fit, validate, diagnose, ignore };
@@ -118,7 +119,7 @@ struct AcceptanceBounds {
   double model_error_to_noise = 0.5;
   /// Parameters of which an estimate that cannot be told from zero does not matter up to here, SI.
   std::map<int, double> negligible;
-  std::vector<Channel> not_judged;  ///< output channels that are to have no limit
+  std::vector<Channel> not_judged;  ///< output channels that need no limit
 };
 
 struct Condition {
@@ -138,7 +139,7 @@ struct Condition {
   std::vector<TimeWindow> windows;  ///< empty: the whole record counts
   bool moving_windows = false;      ///< `windows = "moving"`: found from the record
   std::optional<std::vector<AcceptanceLimit>> acceptance;  ///< in place of the campaign's
-  std::vector<Channel> not_judged;                         ///< beside those of the campaign
+  std::vector<Channel> not_judged;                         ///< in addition to those of the campaign
   std::optional<double> duration_s;
   std::optional<double> sample_rate_hz;
   std::optional<double> temperature_k;
@@ -194,9 +195,9 @@ struct SimulationSettings {
 /// A campaign file, checked and in SI.
 struct Campaign {
   std::filesystem::path file;
-  FileState file_state;            ///< of it, before it was read
+  FileState file_state;            ///< taken before the file was read
   std::filesystem::path data_dir;  ///< where relative record paths start
-  std::filesystem::path root;      ///< outside of this folder nothing is read; empty: no limit
+  std::filesystem::path root;      ///< no file outside this folder is read; empty: no restriction
   std::string name;
   bool synthetic = false;  ///< its records were made by `rigcal synthesize`
   model::Rig rig;
@@ -204,11 +205,11 @@ struct Campaign {
   std::map<std::string, Overrides> leak_levels;
   InitialMode initial = InitialMode::rest;
   double initial_window_s = 0.1;
-  bool before_stated = false;  ///< the campaign says what Rig::before is
+  bool before_stated = false;  ///< the campaign sets Rig::before
   char separator = 0;
   std::optional<double> decimate_to_hz;
   SpikeTreatment spikes = SpikeTreatment::report;
-  std::optional<double> longest_bridge_s;  ///< of a hole that is bridged; none: all are refused
+  std::optional<double> longest_bridge_s;  ///< longest bridged hole; none: holes are refused
   std::string time_column;
   UnitConversion time_to_s;
   StatedUnit stated_time;
@@ -228,18 +229,18 @@ struct Campaign {
   const ParameterSetting* setting(int index) const;
   /// What a condition is judged by: its own limits, or the campaign's.
   const std::vector<AcceptanceLimit>& limits(const Condition& condition) const;
-  /// Whether `not_judged` says that a channel of a condition is to have no limit.
+  /// Whether `not_judged` allows an output channel of a condition to have no limit.
   bool may_lack_limits(const Condition& condition, Channel channel) const;
 };
 
-/// Channel of what drives the rig: the command, or the reference of what its loop controls.
+/// Channel of the drive: the command, or the reference of the loop.
 Channel drive_channel(const model::Rig& rig);
 inline Channel drive_channel(const Campaign& campaign) { return drive_channel(campaign.rig); }
 
 /// Reads and checks a campaign file.
 ///
 /// @param data_dir  where relative record paths start; the file's folder if empty
-/// @param root      outside of this folder nothing is read, wherever links lead; empty: no limit
+/// @param root      no file outside this folder is read, wherever links lead; empty: no restriction
 /// @throws InputError  file:line:column with the key, what was found and what was expected; an
 ///                     unknown key names the nearest known one; a file outside `root`
 Campaign load_campaign(const std::filesystem::path& file,
@@ -277,8 +278,8 @@ struct RepeatSource {
 };
 
 /// Files of a condition, patterns expanded and sorted by name.
-/// @throws InputError  a pattern that matches no file, with the folder that was searched; a file
-///                     outside the campaign's root
+/// @throws InputError  a pattern matches no file (names the searched folder); a file is outside the
+///                     campaign's root
 std::vector<RepeatSource> repeat_sources(const Campaign& campaign, const Condition& condition);
 
 /// What drives the model in a condition.

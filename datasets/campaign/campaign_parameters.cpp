@@ -220,7 +220,7 @@ std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValu
                   resistance ? "supply_capacity" : "supply_resistance")};
 }
 
-/// All of a second mass, or nothing of it.
+/// A second mass needs all of its parameters.
 std::optional<ParameterConflict> find_payload_conflict(const model::ParameterValues& values) {
   constexpr std::array kKeys{"payload_mass", "payload_frequency", "payload_damping_ratio"};
   const auto given = [&](std::string_view key) {
@@ -245,7 +245,7 @@ std::optional<ParameterConflict> find_payload_conflict(const model::ParameterVal
   return std::nullopt;
 }
 
-/// A loop has the gains of what it controls, and no others.
+/// A loop needs the gains of its controlled quantity, and takes no others.
 std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                                                     const model::ParameterValues& values) {
   const auto given = [&](std::string_view key) {

@@ -62,8 +62,8 @@ struct ParameterConflict {
 std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                                                const model::ParameterValues& values);
 
-/// A `gain_sd` of a channel whose sensor has a gain in [rig.parameters] that is estimated or has a
-/// prior: the same uncertainty would count twice.
+/// Conflict between the `gain_sd` of a channel and the gain of its sensor in [rig.parameters],
+/// which is estimated or has a prior: the same uncertainty would count twice.
 struct GainKnownTwice {
   Location where;  ///< of the channel's `gain_sd`
   std::string message;

@@ -149,7 +149,8 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
   }
 }
 
-/// In a loop that has settled the reference says where the piston is.
+/// Reads `before`. In a settled loop the reference fixes the initial position, so "steady" excludes
+/// `initial`.
 void read_before(const TomlNode& node, Campaign& campaign) {
   campaign.before_stated = true;
   campaign.rig.before = node.choice<model::Before>({{"hold", model::Before::hold},

@@ -16,7 +16,7 @@ void read_recording(const TomlNode& node, Campaign& campaign);
 /// The limits in an `acceptance` of a condition; needs the channels.
 std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& campaign);
 
-/// Channels in `not_judged` of an `acceptance` that has these limits.
+/// Reads the channels in `not_judged` of an `acceptance` section that has these limits.
 std::vector<Channel> read_not_judged(const TomlNode& node, const Campaign& campaign,
                                      const std::vector<AcceptanceLimit>& limits);
 
@@ -33,10 +33,10 @@ void check_duty(const TomlNode& node, const Campaign& campaign);
 
 /// [report]
 ReportSettings read_report(const TomlNode& node);
-/// What the sensors of [report] state of their uncertainty, into the channels.
+/// Copies the uncertainties that the sensors of [report] state into the channels.
 ///
 /// @param root  the whole file
-/// @throws InputError  two statements of one channel differ: both places
+/// @throws InputError  two statements about one channel differ (names both places)
 void apply_sensors(const TomlNode& root, Campaign& campaign);
 
 /// [simulation]

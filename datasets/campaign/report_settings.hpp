@@ -50,19 +50,19 @@ struct ReportSettings {
   bool empty() const { return fields.empty() && sensors.empty(); }
 };
 
-/// The text of a key; empty where it is not given.
+/// Text of a key; empty if it is not given.
 std::string text_of(const ReportSettings::Fields& fields, std::string_view key);
 
-/// What a text says of the standard uncertainty of a sensor.
+/// Standard uncertainty of a sensor, as read from a text.
 struct StatedUncertainty {
   std::optional<double> gain_sd;    ///< relative
   std::optional<double> offset_sd;  ///< SI
-  std::string problem;              ///< why it says nothing that counts, in words; empty: it does
+  std::string problem;  ///< why the text states no uncertainty, in words; empty if it does
 };
 
 /// Reads "0.02 mm (k = 2)", an expanded uncertainty of the offset, or "0.1 % (k = 2)", one of the
-/// gain: over k they are standard uncertainties (JCGM 100:2008, 6.2). Any other text counts
-/// nothing.
+/// gain. Divided by k they are standard uncertainties (JCGM 100:2008, 6.2). Any other text states
+/// none.
 ///
 /// @param unit  of the sensor's channel, SI
 StatedUncertainty stated_uncertainty(std::string_view text, std::string_view unit);

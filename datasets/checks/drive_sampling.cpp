@@ -7,7 +7,7 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kFewestPerPeriod = 4.0;    // a period
+constexpr double kFewestPerPeriod = 4.0;    // samples in a period
 constexpr double kShortestFraction = 0.01;  // of a period, or of the stated duration
 constexpr double kLongestRatio = 100.0;     // of the stated duration
 constexpr double kMilli = 1000.0;

@@ -18,9 +18,10 @@ struct ColumnGuess {
 /// in brackets or between underscores.
 ColumnGuess guess_column(const std::string& name);
 
-/// What a column of this unit may hold whose name tells nothing.
+/// Guesses the channel of a column from its unit, if its name means nothing.
 ///
-/// @param has_position  whether another column is the position: a further length drives it
+/// @param has_position  whether another column is the position; a second length is then its
+///                      reference
 std::optional<Channel> guess_by_unit(const std::string& unit, bool has_position);
 
 }  // namespace rigcal::datasets

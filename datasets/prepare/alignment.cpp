@@ -212,7 +212,7 @@ AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate) {
     result.shift.push_back(same ? 0.0 : (first.time_s.front() - repeat.time_s.front()) / dt);
   }
   if (!correlate || repeats.size() < 2) return result;
-  // An edge that fell into a hole stands where the hole ends, which would pass for an offset.
+  // A bridged hole moves an edge inside it to its end, which would look like an offset.
   if (std::any_of(repeats.begin(), repeats.end(),
                   [](const Repeat& repeat) { return !repeat.bridged.empty(); })) {
     result.warnings.emplace_back("holes are bridged: repeats are not aligned");

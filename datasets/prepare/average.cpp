@@ -46,7 +46,7 @@ std::map<Channel, Stack> stack_channels(const std::vector<Repeat>& repeats,
   return stacks;
 }
 
-/// Whether every channel has at least one repeat at a sample.
+/// Whether each channel has a value from at least one repeat at a sample.
 bool is_covered(const std::map<Channel, Stack>& stacks, std::size_t i) {
   return std::all_of(stacks.begin(), stacks.end(), [i](const auto& entry) {
     return std::any_of(entry.second.rows.begin(), entry.second.rows.end(),
@@ -54,7 +54,8 @@ bool is_covered(const std::map<Channel, Stack>& stacks, std::size_t i) {
   });
 }
 
-/// Drops the samples that some channel has of no repeat, where holes are bridged.
+/// Removes the samples at which some channel has no value from any repeat; this happens in bridged
+/// holes.
 void drop_uncovered(std::map<Channel, Stack>& stacks, std::vector<double>& time_s) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < time_s.size(); ++i)

@@ -75,7 +75,7 @@ void treat_spikes(const Campaign& campaign, std::vector<Repeat>& repeats, Condit
         "spikes excluded: {} samples replaced by lines between their neighbours", replaced));
 }
 
-/// A sample that stands for some of which one was marked is marked, too.
+/// Marks each decimated sample that was computed from a marked one.
 std::vector<bool> decimated_marks(const std::vector<bool>& marks, std::size_t factor) {
   std::vector<bool> result;
   for (std::size_t i = 0; i < marks.size(); i += factor) {

@@ -44,8 +44,9 @@ AverageOptions options_of(const Campaign& campaign, const Condition& condition) 
   throw InputError(condition.where, fmt::format("condition \"{}\": {}", condition.id, message));
 }
 
-/// A campaign may name any file. What stands in one that is no recording is shown only of files
-/// that whoever runs it points at, or that are named like one, wherever links lead.
+/// Whether error messages may quote a file. A campaign may name any file, so content is shown only
+/// of files in the folders that the user chose, or with the name of a recording after all links are
+/// resolved.
 bool may_be_shown(const Campaign& campaign, const std::filesystem::path& path) {
   std::error_code error;
   if (has_record_name(std::filesystem::weakly_canonical(path, error)) && !error) return true;
@@ -99,7 +100,7 @@ std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& 
   return result;
 }
 
-/// Whether the campaign has a term that takes what was before the first sample.
+/// Whether a term of the campaign depends on the drive before the first sample.
 bool delays_its_drive(const Campaign& campaign) {
   return std::any_of(
       campaign.parameters.begin(), campaign.parameters.end(), [&](const ParameterSetting& setting) {

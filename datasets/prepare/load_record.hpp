@@ -31,7 +31,7 @@ Record load_record(const Campaign& campaign, const Condition& condition,
 
 /// Records of all conditions whose use is among `uses`, in the campaign's order; files are read in
 /// parallel.
-/// @throws InputError  as load_record(); samples are missing in what counts of a record
+/// @throws InputError  as load_record(); samples are missing in the windows of a record
 std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use>& uses,
                                  int threads, bool keep_deviations = false);
 

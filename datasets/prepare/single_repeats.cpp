@@ -26,7 +26,7 @@ void fill_ends(std::vector<double>& x, std::size_t& first, std::size_t& last) {
 }
 
 /// @param base_s  the common time base
-/// @param kept    where the samples of the average are on it
+/// @param kept    indices in base_s of the samples of the average
 Record single_record(const Record& average, const Repeat& repeat, double shift,
                      const std::vector<double>& base_s, std::vector<std::size_t> kept,
                      TimeWindow& covered) {

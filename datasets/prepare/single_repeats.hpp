@@ -24,7 +24,7 @@ RepeatRecords repeat_records(const Campaign& campaign, const Condition& conditio
                              std::vector<Repeat> repeats);
 
 /// Those of the files of a condition.
-/// @throws InputError  as load_record(); samples are missing in what counts
+/// @throws InputError  as load_record(); samples are missing in the windows
 RepeatRecords load_repeats(const Campaign& campaign, const Condition& condition);
 
 }  // namespace rigcal::datasets

@@ -40,12 +40,12 @@ inline void require_time_column(const RecordRequest& request) {
                                 "' is not among the columns");
 }
 
-/// What a file says of a column that was asked for.
+/// Labels in a file for a column that was asked for.
 struct ColumnLabel {
-  std::string name;   ///< as it stands in the file, with its unit where that is part of it
-  std::string unit;   ///< as the file tells it apart from the name; empty if it does not
-  std::string place;  ///< where the file tells the unit: "Log!C2"; empty: in the name
-  long line = 0;      ///< of a text file, where the name stands; else 0
+  std::string name;   ///< name in the file, including the unit if that is part of it
+  std::string unit;   ///< unit that the file gives separately from the name; else empty
+  std::string place;  ///< where the file gives the unit: "Log!C2"; empty: in the name
+  long line = 0;      ///< line of the name in a text file; else 0
 };
 
 struct RecordTable {

@@ -9,7 +9,7 @@
 
 namespace rigcal::datasets {
 
-/// File of a repeat, relative to the campaign file.
+/// Path of a repeat's file, relative to the campaign file.
 ///
 /// @param repeat  from 1
 std::string synthetic_record_path(const std::string& condition, int repeat);

@@ -64,11 +64,11 @@ class TomlNode {
   int integer(int lowest, int highest) const;
   /// Text "number unit" in `unit` ("1": a plain number instead).
   double quantity(std::string_view unit) const;
-  /// The same, within a range.
+  /// Quantity within a range.
   double quantity(std::string_view unit, QuantityRange range) const;
   /// Like quantity(), of a difference: "2 degC" is 2 K.
   double difference(std::string_view unit) const;
-  /// The same, within a range: standard deviations, steps.
+  /// Difference within a range: standard deviations, steps.
   double difference(std::string_view unit, QuantityRange range) const;
   /// Plain number within a range.
   double number(QuantityRange range) const;

@@ -14,8 +14,8 @@ struct CsvField {
   std::size_t begin = 0;  ///< in bytes from the start of the line
 };
 
-/// Walks over the fields of a line. A separator between double quotes separates nothing; the
-/// quotes stay part of the text. As separator a blank stands for any number of blanks and tabs.
+/// Walks over the fields of a line. A separator between double quotes is text, and the quotes stay
+/// part of it. A blank as separator means any number of blanks and tabs.
 class CsvFields {
  public:
   CsvFields(std::string_view line, char separator) : line_(line), separator_(separator) {}

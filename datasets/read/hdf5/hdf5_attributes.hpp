@@ -15,7 +15,7 @@ std::vector<std::string> hdf5_texts(hid_t object, const char* attribute);
 /// A number of an attribute, of any real type; nothing if there is no such attribute.
 std::optional<double> hdf5_number(hid_t object, const char* attribute);
 
-/// The numbers of an attribute, at most 1000; none if it holds something else; nothing if there is
+/// Reads the numbers of an attribute, at most 1000. Empty if it has no numbers; nothing if there is
 /// no such attribute.
 std::optional<std::vector<double>> hdf5_numbers(hid_t object, const char* attribute);
 

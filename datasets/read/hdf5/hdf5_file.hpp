@@ -78,11 +78,12 @@ class Hdf5File {
   const std::vector<Hdf5Series>& series() const { return series_; }
   const std::vector<Hdf5Clock>& clocks() const { return clocks_; }
 
-  /// Numbers of a series whose kind is empty, unpacked by `scale_factor` and `add_offset` of its
-  /// dataset.
-  /// @throws InputError  damaged, never written or in part only, missing by `_FillValue`,
-  ///                     `missing_value` or the dataset's own fill value, compressed by an unknown
-  ///                     filter, stored in another file, or an integer that a double cannot hold
+  /// Returns the numbers of a series whose kind is empty, unpacked by `scale_factor` and
+  /// `add_offset` of its dataset.
+  /// @throws InputError  damaged; not or only partly written; missing by `_FillValue`,
+  ///                     `missing_value` or the dataset's own fill value; compressed by an unknown
+  ///                     filter; stored in another file; or an integer that a double cannot
+  ///                     represent
   std::vector<double> numbers(const Hdf5Series& series, const Hdf5Line& line,
                               const std::string& column) const;
 

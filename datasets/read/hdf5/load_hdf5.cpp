@@ -168,7 +168,7 @@ class Hdf5Columns {
     return values;
   }
 
-  /// As an attribute tells it: of all, or of this line of a matrix.
+  /// Unit from the attributes: one for the whole dataset, or the one of this line of a matrix.
   static std::string unit_of(const Hdf5Series& series, const Hdf5Line& line) {
     if (series.units.size() == 1) return series.units[0];
     if (series.dims.size() != 2) return {};

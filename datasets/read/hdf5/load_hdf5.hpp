@@ -38,7 +38,7 @@ RecordTable load_hdf5_record(const std::filesystem::path& path, const RecordRequ
 inline constexpr std::string_view kHowToSaveHdf5 =
     "expected datasets of integers or floating-point numbers, of one or two dimensions, or tables";
 
-/// Both in this process, for who is in a confined one already.
+/// Both functions without a new process, for callers that are already confined.
 std::vector<RecordColumn> list_hdf5_here(const std::filesystem::path& path);
 RecordTable read_hdf5_here(const std::filesystem::path& path, const RecordRequest& request);
 

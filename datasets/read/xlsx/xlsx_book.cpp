@@ -196,7 +196,7 @@ class SheetHandler : public XmlHandler {
     finish_cell();
   }
 
-  /// Rows or cells of another program would be missing from the record.
+  /// Refuses rows or cells of an unknown namespace, which would be missing from the record.
   void foreign() override {
     if (in_table_ && !in_extension_) fail("or a cell behind it is of no known kind");
   }
@@ -348,7 +348,7 @@ XlsxBook::XlsxBook(const std::filesystem::path& path) : archive_(path) {
     const auto found = parts.find(id);
     if (found == parts.end() || found->second.kind != "worksheet") continue;
     const std::string part = resolved(workbook, found->second.target);
-    // Each would be read as if it were one more.
+    // A part that is listed twice would be read as two sheets.
     const auto same = std::find_if(sheets_.begin(), sheets_.end(),
                                    [&](const Sheet& each) { return each.part == part; });
     if (same != sheets_.end())

@@ -10,9 +10,9 @@
 
 namespace rigcal::datasets {
 
-/// What a cell holds; a formula counts as its last result. It has none (no_result) where the
-/// program that wrote it computed nothing: no value, an empty one (openpyxl), or 0 in a workbook
-/// that is to be computed when it is opened (`fullCalcOnLoad`; XlsxWriter).
+/// Kind of a cell's content; a formula counts as its last result. There is no result (no_result) if
+/// the program that wrote the formula did not compute it: no value, an empty one (openpyxl), or 0
+/// in a workbook that is to be computed when it is opened (`fullCalcOnLoad`; XlsxWriter).
 enum class XlsxKind { number, date, text, truth, error, no_result };
 
 struct XlsxCell {

@@ -173,7 +173,7 @@ class SheetReader {
               const std::string& time_name)
       : book_(book), sheet_(sheet), names_(std::move(names)), time_name_(time_name) {}
 
-  /// One column per name, of the same length.
+  /// Returns one column per name, all of the same length.
   RecordTable read(std::size_t most_values) {
     most_values_ = most_values;
     HeaderFinder finder;
