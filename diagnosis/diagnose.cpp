@@ -222,7 +222,7 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
     record.estimate = estimate_leak(record.fit.coefficient, error, curve, share_rig_se,
                                     problem.campaign.diagnosis);
     if (!prepared.is_healthy) return;
-    // A record that is its own reference differs from it by nothing.
+    // A record that is its own reference has no deviation from it.
     const auto of_healthy =
         record.is_reference
             ? error_of_averages(record.fit, errors, record.repeats, record.reference_repeats)
@@ -243,7 +243,7 @@ SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& erro
   SignalDiagnosis result;
   result.signal = signal;
   result.errors = errors;
-  // Another healthy average tells more than one that is its own reference.
+  // Another healthy average is better evidence than one that is its own reference.
   const auto is_other = [](const RecordDiagnosis* each) {
     return !each->repeat && !each->is_reference && each->smallest_leak.has_value();
   };
@@ -300,7 +300,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
       tasks.push_back({&each, single});
   }
   result.records.resize(tasks.size());
-  // A record is done when its leak is found, and when it is told what that means.
+  // A record counts as done after two passes: its leak is found, and then judged.
   std::atomic<int> halves{0};
   const auto half_done = [&] {
     const int done = ++halves / 2;

@@ -37,11 +37,12 @@ struct RecordDiagnosis {
   bool corrects_others = false;
   /// It is itself that reference, so that its leak is zero by construction.
   bool is_reference = false;
-  LeakFit fit;                         ///< says why where nothing was found
-  metrics::ResidualFeatures features;  ///< of the parity residual, eq. 14, nothing taken off [m]
-  LeakEstimate estimate;               ///< means nothing unless fit.ok()
-  std::optional<DetectionLimit> smallest_leak;  ///< of a healthy record, where something tells it
-  /// A leak leaves more than a third of the difference from the healthy model: some other fault.
+  LeakFit fit;                                  ///< gives the reason if nothing was found
+  metrics::ResidualFeatures features;           ///< of the parity residual, eq. 14, uncorrected [m]
+  LeakEstimate estimate;                        ///< valid only if fit.ok()
+  std::optional<DetectionLimit> smallest_leak;  ///< for a healthy record, if its errors are known
+  /// The leak leaves more than a third of the difference from the healthy model unexplained: there
+  /// is another fault.
   bool unexplained = false;
   std::optional<LeakClass> leak_class;  ///< empty: undecided
   /// By the paper's features, clusters learned without this repeat, and without this signal; empty

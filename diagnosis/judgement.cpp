@@ -14,7 +14,7 @@ constexpr double kFlat = 0.1;
 constexpr double kNoticeable = 0.05;
 constexpr double kTooMuch = 1.0 / 3.0;
 
-/// A record that is the healthy reference is not judged by itself.
+/// Adds warnings to a record. A record that is the healthy reference gets only a note that it is.
 void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m) {
   if (record.is_reference) {
     record.warnings.emplace_back(

@@ -33,19 +33,19 @@ struct LeakTrend {
   std::optional<double> latest_day;
 };
 
-/// The trend of every machine that was diagnosed on three dates or more, in order of appearance:
-/// states of one leak level and specimen.
+/// Returns the trend of every machine that was diagnosed on three or more dates, in order of
+/// appearance. A machine is the states of one leak level and specimen.
 ///
-/// metrics::weighted_trend() through the coefficients: errors of their own, and that of the rig's
-/// parameters in common.
+/// The trend is metrics::weighted_trend() of the coefficients; each has its own error, and all have
+/// that of the rig's parameters in common.
 ///
 /// @param rig_covariance  of the rig's parameters, shape (rig_moves)^2
 std::vector<LeakTrend> leak_trends(const std::vector<MachineState>& states,
                                    const Eigen::MatrixXd& rig_covariance,
                                    const datasets::DiagnosisSettings& settings);
 
-/// Machines that were diagnosed on two dates, in words: nothing tells their difference from that of
-/// two days, so they have no trend.
+/// Lists, in words, machines that were diagnosed on two dates only. Their difference could be the
+/// usual one between two days, so they get no trend.
 std::vector<std::string> too_few_dates(const std::vector<MachineState>& states);
 
 }  // namespace rigcal::diagnosis

@@ -28,7 +28,7 @@ struct Prepared {
   /// Least half width of a curve of shares: where a record is its own reference there is no error,
   /// and any width will do that leaks at all.
   double least_reach() const { return 1e-2 * scan.largest_coefficient; }
-  /// Of this coefficient a part in ten thousand of the smallest share that is told apart leaks.
+  /// Coefficient with a share of a ten thousandth of the smallest share of interest.
   double negligible() const { return 1e-4 * least_reach(); }
 };
 

@@ -27,7 +27,7 @@ std::vector<BatchRig> find_rigs(const std::filesystem::path& folder,
 /// What is done with each rig.
 struct RigTask {
   std::filesystem::path out;
-  std::filesystem::path root;  ///< outside of this folder nothing is read; empty: no limit
+  std::filesystem::path root;  ///< no file outside this folder is read; empty: no restriction
   std::vector<std::string> fit_arguments;
   int threads = 1;
   bool resume = false;

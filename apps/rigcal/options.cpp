@@ -134,7 +134,7 @@ report::Style terminal_style() {
 
 void print(const PrintOptions& options, const std::string& text, const report::Json& json) {
   if (options.quiet) return;
-  // JSON reads the escapes of the few characters that its own writer leaves as they are.
+  // JSON understands the escapes of the few characters that its writer does not escape itself.
   const std::string shown =
       options.json
           ? printable(report::json_text(json))

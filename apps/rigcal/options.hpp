@@ -17,7 +17,7 @@ namespace rigcal::app {
 struct PrintOptions {
   bool quiet = false;
   bool json = false;
-  bool verbose = false;  ///< every row, however many lines that takes
+  bool verbose = false;  ///< print every row, however many lines it takes
 };
 
 /// What every verb that reads a campaign understands.
@@ -38,13 +38,13 @@ CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 int hardware_threads();
 
 void add_print_options(CLI::App& verb, PrintOptions& options);
-/// -v: of verbs whose text is cut to what fits on a terminal
+/// -v, for verbs that shorten their output to fit a terminal
 void add_verbose_option(CLI::App& verb, PrintOptions& options);
 /// --force
 void add_force_option(CLI::App& verb, bool& force);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);
 
-/// How a verb holds its folder of results.
+/// Terms on which a verb holds its folder of results.
 report::Holding holding(std::string verb, bool force, const PrintOptions& print);
 
 /// Columns of the terminal that a stream goes to; 0 where it goes elsewhere.

@@ -17,7 +17,7 @@ std::string text_of(const CampaignOptions& options, const report::Result& result
     if (!file->has_parent_path()) paths.push_back((options.out / *file).string());
   paths.push_back((options.out / "residuals" / "").string());
   report::Style style = terminal_style();
-  // What goes elsewhere is for programs and logs.
+  // Output that is redirected goes to programs and logs, so it is never shortened.
   if (style.columns > 0 && !options.print.verbose) style.lines = report::kTerminalLines;
   return report::result_text(result, paths, style);
 }

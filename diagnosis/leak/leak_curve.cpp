@@ -77,7 +77,8 @@ double LeakCurve::share_slope(double coefficient) const {
 
 LeakCurve curve_about(const LeakAt& leak_at, double coefficient, double reach) {
   const double low = coefficient - reach;
-  // So near to none it is proportional: records without a leak share what is simulated.
+  // Near zero the curve is a straight line through zero. Records without a leak then need the same
+  // simulation.
   const bool none = coefficient <= kProportional * reach;
   const double high = none ? reach : coefficient + reach;
   std::vector<LeakPoint> points{low > 0.0 ? leak_at(low) : without_leak(leak_at, high)};

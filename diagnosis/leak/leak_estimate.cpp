@@ -108,8 +108,8 @@ std::array<double, kClassCount> class_probabilities(const ShareDistribution& sha
   return probability;
 }
 
-/// Of a leak that is not detected the upper limit is that of a distribution which is cut at 0: it
-/// is never 0, however far below zero the coefficient lies.
+/// Sets the 95 % interval of the coefficient. Without a detected leak the upper limit comes from
+/// the distribution truncated at 0, so it is above 0 however negative the estimate is.
 void set_interval(double half_width, LeakEstimate& estimate) {
   const double coefficient = estimate.coefficient;
   if (estimate.leak_detected || estimate.incompatible || !(estimate.standard_error > 0.0)) {

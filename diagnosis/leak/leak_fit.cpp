@@ -364,7 +364,7 @@ double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
                        double share_slope, double negligible) {
   if (rig.indices.empty()) return 0.0;
   Eigen::VectorXd moves = share_slope * fit.rig_moves;
-  if (fit.coefficient > negligible) {  // else nothing leaks, whatever the rig
+  if (fit.coefficient > negligible) {  // else the share is zero for any rig
     const std::vector<Record> records{average};
     const calib::Problem problem =
         problem_of(leak_problem, own_condition(leak_problem, condition), records);

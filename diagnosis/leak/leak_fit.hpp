@@ -33,7 +33,7 @@ struct LeakProblem {
   datasets::Campaign campaign;
   std::vector<datasets::FittedValue> values;  ///< of the rig
   int leak = 0;                               ///< table row of the leakage coefficient
-  const std::atomic<bool>* cancel = nullptr;  ///< ends what is simulated when it becomes true
+  const std::atomic<bool>* cancel = nullptr;  ///< ends the simulations when it becomes true
 
   LeakProblem(const datasets::Campaign& original, const RigFit& rig);
   /// The same with another upper bound of the coefficient.
@@ -109,18 +109,18 @@ LeakScan leak_scan_of(const LeakProblem& leak_problem, const datasets::Condition
 
 /// Share over the coefficient in one condition of the rig, about an estimate.
 ///
-/// @param coefficient  of the record; may be negative
-/// @param reach        half the width of the interval that matters, above 0
-/// @param memo         of the condition
+/// @param coefficient  estimate for the record; may be negative
+/// @param reach        half the width of the interval of interest, above 0
+/// @param memo         simulated leaks of the condition
 /// @throws NoResultError  as steady_leak()
 LeakCurve leak_curve_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
                         const datasets::Record& average, double coefficient, double reach,
                         LeakMemo& memo);
 
-/// Standard error of the share from the rig's parameters, the coefficient being fitted again: their
-/// own effect on it, and that of the coefficient which moves with them.
+/// Standard error of the share from the rig's parameters, with the coefficient fitted again. It
+/// combines their direct effect on the share with their effect through the coefficient.
 ///
-/// @param negligible  a coefficient of which the share is not worth simulating
+/// @param negligible  below this coefficient the leak is not simulated
 double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
                        const datasets::Condition& condition, const datasets::Record& average,
                        const LeakFit& fit, double share_slope, double negligible = 0.0);

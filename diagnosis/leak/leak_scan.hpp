@@ -16,8 +16,9 @@ struct LeakScan {
 /// passes `share_above` and a larger leak fits worse, or no more flow can leak.
 ///
 /// @param condition    whose unknowns keep their start values
-/// @param cancel       ends what is simulated when it becomes true; may be null
-/// @throws NoResultError  a run fails or is ended, moves no oil, or has a single sample that counts
+/// @param cancel       ends the simulations when it becomes true; may be null
+/// @throws NoResultError  a run fails, is cancelled, moves no oil, or has a single sample in its
+///                        windows
 LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition& condition,
                     double share_above, const std::atomic<bool>* cancel = nullptr);
 

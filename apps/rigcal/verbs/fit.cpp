@@ -83,7 +83,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   }
   report::PlannedFiles planned = report::planned_result(report::ResultKind::fit, campaign);
   planned.files.emplace_back(report::kKeptTasksFile);
-  // With --resume the checkpoint is read, which refuses a foreign one with its reason.
+  // With --resume the checkpoint is read, and a foreign one is refused with the reason.
   if (!options.resume) planned.files.emplace_back(report::kCheckpointFile);
   held.plan(std::move(planned));
 
