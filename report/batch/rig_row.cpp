@@ -47,7 +47,7 @@ std::vector<StoredRigScore> worst_scores(const StoredFit& fit) {
   return scores;
 }
 
-/// What speaks against each aspect.
+/// Lists the reasons that keep each aspect from passing.
 std::vector<std::string> reasons_of(const StoredFit& fit) {
   std::vector<std::string> reasons;
   if (!fit.assessment) return reasons;

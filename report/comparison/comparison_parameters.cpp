@@ -57,7 +57,7 @@ std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate
   result.difference = difference;
   if (!may_be_zero(*first)) result.percent = 100.0 * (*other->value / *first->value - 1.0);
   if (!first->fitted && !other->fitted) return untested(kKnownInBoth);
-  // A known value has none.
+  // A known value has no error.
   const auto error = [](const StoredEstimate& estimate) {
     return metrics::EstimateError{estimate.standard_error.value_or(0.0),
                                   estimate.degrees_of_freedom.value_or(metrics::kManyDegrees)};

@@ -23,12 +23,12 @@ inline bool is_usable(const StoredFit& fit) { return fit.status != calib::FitSta
 
 /// Files by hash of what a result was made from, but for the campaign file and an earlier fit.
 std::map<std::string, std::string> record_hashes(const StoredFit& fit);
-/// Whether two results were made from the same files or published numbers, at least in part: scored
-/// by them, if not fitted to them.
+/// Whether two results used at least one common file or published table, for fitting or for
+/// scoring.
 bool share_records(const Compared& a, const Compared& b);
-/// Whether the estimates of two results rest on the same data, at least in part: published numbers,
-/// or samples of a file (by SHA-256) that lie within windows of both. A file of a version that does
-/// not tell which records were fitted counts with all it was made from.
+/// Whether the estimates of two results used common data: a published table, or samples of one file
+/// (by SHA-256) within windows of both. Files of earlier versions do not name the fitted records;
+/// all inputs of such a file count as fitted.
 bool share_fitted_records(const Compared& a, const Compared& b);
 
 /// Estimates side by side, differences from the first.

@@ -64,7 +64,7 @@ void find_trend(const std::vector<StoredTrendPoint>& points,
   metrics::Trend trend;
   try {
     trend = metrics::weighted_trend(x, y, errors);
-  } catch (const std::domain_error&) {  // of files that somebody has changed
+  } catch (const std::domain_error&) {  // possible in files that somebody has edited
     result.reason = "the errors of the estimates are too far apart for a line";
     return;
   }

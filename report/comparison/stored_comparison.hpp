@@ -37,7 +37,7 @@ struct StoredEstimate {
   std::optional<double> value;
   bool fitted = false;
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of it
+  Later<std::optional<double>> degrees_of_freedom;  ///< of the standard error
   std::optional<Range> ci95;
   std::optional<calib::Identifiability> identifiability;
   bool at_bound = false;
@@ -50,9 +50,9 @@ struct StoredDifference {
   std::optional<double> difference;
   std::optional<double> percent;  ///< null where the first value may be zero
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of it (Welch and Satterthwaite)
-  std::optional<double> p_value;                    ///< of this one alone
-  std::optional<double> p_value_of_all;             ///< for all parameters together (Holm)
+  Later<std::optional<double>> degrees_of_freedom;  ///< of this error (Welch and Satterthwaite)
+  std::optional<double> p_value;                    ///< for this parameter alone
+  std::optional<double> p_value_of_all;             ///< adjusted for all parameters (Holm)
   std::optional<bool> significant;
   std::optional<std::string> reason;  ///< why it is not tested
   RIGCAL_DESCRIBE(difference, percent, standard_error, degrees_of_freedom, p_value, p_value_of_all,
@@ -149,7 +149,7 @@ struct StoredTrend {
   long points = 0;  ///< with an error, and a place
   std::optional<double> slope, intercept, standard_error;
   Later<std::optional<double>> degrees_of_freedom;  ///< of the error of the slope
-  Later<std::optional<double>> widened;             ///< factor of it by scatter about the line
+  Later<std::optional<double>> widened;  ///< factor on that error by scatter about the line
   std::optional<Range> ci95;
   std::optional<double> p_value, reduced_chi_square;
   std::optional<bool> significant;

@@ -20,13 +20,13 @@ struct JsonLimits {
   std::size_t depth = 64;
   /// Sum over all objects of the square of their number of keys: what looking them up costs.
   std::size_t key_comparisons = 400'000'000;
-  double number = 1e150;  ///< whose square is a number still
+  double number = 1e150;  ///< the square of such a number is still finite
 };
 
-/// A JSON text whose numbers are all within the limit.
+/// Parses a JSON text and checks it against the limits.
 ///
 /// @param file  for messages
-/// @throws InputError  file:line:column: no JSON, or beyond a limit
+/// @throws InputError  file:line:column: not JSON, or beyond a limit
 Json parse_json(std::string_view text, const std::string& file, const JsonLimits& limits = {});
 
 /// The JSON text of a file.

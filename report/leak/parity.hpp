@@ -33,7 +33,7 @@ std::string parity_csv(const ParityResult& result);
 /// fields where a sample does not count.
 std::vector<ResultFile> parity_series(const ParityResult& result);
 
-/// parity.json, parity.csv and the series, and the page.
+/// Files that parity and its page may write.
 PlannedFiles planned_parity(const datasets::Campaign& campaign);
 
 /// Alarms per condition, thresholds per signal, warnings.

@@ -15,7 +15,7 @@ namespace {
 
 using Kind = doc::Column::Kind;
 
-/// About one for each pixel of the width.
+/// About one point per pixel of the width.
 constexpr std::size_t kAveragePoints = 600;
 
 std::string offsets_text(const StoredRecord& record) {

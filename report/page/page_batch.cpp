@@ -115,7 +115,7 @@ std::optional<Plot> rig_trend_plot(const StoredRig& rig, const StoredRigTrend& t
   return plot;
 }
 
-/// Why it is no PASS, and its first warnings.
+/// Reasons why a rig is not PASS, and its first warnings.
 doc::Cell reason_lines(const StoredRig& rig) {
   doc::Cell cell;
   if (!has_converged(rig) || rig.exit_code > 1) cell.paragraphs.push_back({rig.message});

@@ -72,7 +72,7 @@ doc::Tile leak_tile(const StoredLeakEntry& entry) {
   return tile;
 }
 
-/// The share at the published coefficient, and what its rounding allows.
+/// Cell with the share at the published coefficient, and the range that its rounding allows.
 doc::Cell published_share_cell(const StoredLeakEntry& entry) {
   if (!entry.published_coefficient) return doc::Cell("–");
   doc::Cell cell{Line{doc::in_unit(entry.share_at_published_percent, 1.0, 3)}};
@@ -84,7 +84,7 @@ doc::Cell published_share_cell(const StoredLeakEntry& entry) {
 
 /// Signals by target shares, in the order of the file.
 ///
-/// @param cell_of  what is shown of an entry
+/// @param cell_of  makes the cell of an entry
 template <typename CellOf>
 void add_leak_rows(const std::vector<StoredLeakEntry>& entries, const std::vector<double>& targets,
                    CellOf cell_of, doc::Table& table) {
@@ -297,7 +297,7 @@ std::string noted(const StoredLeakEntry& entry) {
   return fmt::format("{} at {:g} %: {}", drive_name(entry), entry.target_percent, entry.note);
 }
 
-/// What the published coefficients say of the computed ones.
+/// Compares the published coefficients with the computed ones.
 void add_published(const StoredLeakTable& table, const std::vector<double>& targets,
                    doc::Blocks& blocks) {
   if (table.summary.published == 0) return;

@@ -125,7 +125,7 @@ std::vector<doc::Section> comparison_sections(const ComparisonFiles& files) {
     curves.blocks.emplace_back(
         doc::Fold{condition, {std::move(gallery)}, files.curves.size() <= kFew});
   }
-  // Before the records.
+  // The curves go before the records.
   if (curves.blocks.size() > 1) sections.insert(sections.end() - 1, std::move(curves));
   return sections;
 }

@@ -35,10 +35,10 @@ struct RowUnit {
 RowUnit row_unit(double value_si, std::string_view si_unit);
 inline RowUnit unit_of(const StoredParameter& p) { return row_unit(p.value.value_or(0.0), p.unit); }
 
-/// The farther end of the 95 % interval from the value, over the value: the end that no limit of
-/// the parameter has cut. Infinite where there is no interval, or the value is zero.
+/// Larger distance from the value to an end of the 95 % interval, divided by the value. The larger
+/// one is not cut by a bound. Infinite without an interval or for a value of zero.
 double relative_half_width(const StoredParameter& parameter);
-/// "± 2.1 %", "± 220 %"; "not determined" of what is more than ten times the value.
+/// "± 2.1 %", "± 220 %"; "not determined" beyond ten times the value.
 std::string half_width_text(double relative);
 
 /// Estimated, but not well.
@@ -66,40 +66,40 @@ void add_interval(Trace& intervals, double x, const Interval& interval, double s
 /// Adds a reason that leads to a section (`link` its id, or empty); only the first three are shown.
 void add_reason(doc::Verdict& verdict, const std::string& text, const std::string& link);
 
-/// The verdict on a result that looks for leaks and is not done, with the reasons that it gives.
+/// Verdict on an unfinished search for leaks, with its reasons.
 doc::Verdict verdict_without_result(LeakStatus status, const std::string& sentence,
                                     const std::vector<std::string>& reasons,
                                     const std::string& link);
 
-/// What the campaign states about the test and its report (`report` of a result).
+/// Statements of the campaign about the test and its report (`report` of a result).
 struct Identity {
   std::string number, issued, laboratory, customer, rig;  ///< empty where not stated
-  doc::Facts facts;  ///< the item and the method, then a row for each sensor
+  doc::Facts facts;  ///< item and method, then a row for each sensor
   doc::Signatures signatures;
 };
 Identity identity_of(const Json& report);
 
 /// Whether the search for the optimum came to its end, whatever was stopped after it.
 bool searched_to_the_end(const StoredFit& fit);
-/// Texts one below the other.
+/// Several texts as a list.
 ///
-/// @param state  of reasons and warnings: their colour
+/// @param state  colour, for reasons and warnings
 doc::List list_of(const std::vector<std::string>& texts, std::optional<doc::State> state = {});
-/// A plot that is already made, and what it says.
+/// A figure of an existing plot, with an explanation.
 doc::Figure figure_of(Plot plot, std::string caption = {}, std::string reading = {});
 /// "Mass" of "mass".
 std::string capitalised(std::string text);
 
-/// What made a result, under its name, and from which file it is drawn.
+/// Provenance of a result under its name, with the file that the page is made from.
 ///
-/// @param making  what a fit says of its own making
+/// @param making  details of a fit
 doc::Blocks provenance_blocks(const StoredProvenance& provenance, const std::string& name,
                               const std::string& file, const doc::Facts& making = {});
 doc::Facts making_of(const StoredFit& fit);
 doc::Facts making_of(const StoredTablesFit& fit);
 /// "rigcal 0.1.0 (17fc680)"
 std::string program_of(const StoredProvenance& provenance);
-/// How each number is computed.
+/// Section with the formula of each number.
 doc::Section formulas_section();
 
 /// The pictures of a condition, for the page and for files of their own.

@@ -23,26 +23,26 @@ struct ResultFolder {
 struct Part {
   std::string link;  ///< id of its first section
   std::string name;  ///< "Calibration"
-  std::string file;  ///< that it is drawn from
+  std::string file;  ///< file that the part is made from
   std::string campaign;
   bool synthetic = false;
   Identity identity;
   doc::Verdict verdict;
-  doc::Blocks front;  ///< of page one, beneath the verdict
+  doc::Blocks front;  ///< for page one, below the verdict
   std::vector<doc::Section> sections;
   doc::Blocks provenance;
-  std::string program;                                   ///< that made it
-  std::vector<std::pair<std::string, std::string>> nav;  ///< id and name of its sections
+  std::string program;                                   ///< program that made the result
+  std::vector<std::pair<std::string, std::string>> nav;  ///< id and title of each section
 };
 
 struct Section {
   std::string name;                ///< "leak_table"
-  std::vector<std::string> files;  ///< any of which a folder with such a result has
+  std::vector<std::string> files;  ///< a folder with such a result has at least one of them
   std::function<Part(const ResultFolder&)> part;
   std::function<std::vector<Figure>(const ResultFolder&)> figures;
 };
 
-/// What a section is called: id and name of its first part.
+/// Id and title of the first part of a section.
 struct SectionTitle {
   const char* file;
   const char* section;
@@ -60,7 +60,7 @@ const auto& result_of(const Files& files) {
   }
 }
 
-/// What a result says of itself, whatever kind it is.
+/// Common data of any kind of result.
 template <typename Result>
 Part part_of(const Result& result, const char* link, const char* name, const std::string& file) {
   Part part;

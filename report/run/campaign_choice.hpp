@@ -13,7 +13,7 @@ namespace rigcal::report {
 struct CampaignChoice {
   std::filesystem::path campaign;
   std::filesystem::path data;     ///< where relative record paths start; empty: the file's folder
-  std::filesystem::path root;     ///< outside of this folder nothing is read; empty: no limit
+  std::filesystem::path root;     ///< no file outside this folder is read; empty: no restriction
   std::vector<std::string> set;   ///< name="value unit"
   std::vector<std::string> free;  ///< exactly these are fitted; empty: the campaign's
 };

@@ -21,7 +21,7 @@ struct StoredCheck {
   bool synthetic = false;
   std::vector<StoredRecord> records;
   std::vector<std::string> without_record;
-  std::vector<std::string> warnings;  ///< of no single record
+  std::vector<std::string> warnings;  ///< warnings about the campaign as a whole
   RIGCAL_DESCRIBE(campaign, synthetic, records, without_record, warnings)
 };
 

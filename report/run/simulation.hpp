@@ -35,7 +35,7 @@ model::SimulationOptions simulation_options(const datasets::Campaign& campaign);
 std::vector<model::Simulation> simulate(const std::vector<SimulationTask>& tasks,
                                         const model::SimulationOptions& options, int threads);
 
-/// The reference of the loop at the samples, SI; empty where no controller follows one.
+/// Reference of the loop at the samples, SI; empty without a controller.
 std::vector<double> reference_of(const SimulationTask& task);
 
 /// The file of `simulate`: <condition>.csv.

@@ -162,7 +162,7 @@ bool is_checkpoint(const std::filesystem::path& file) {
 
 calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Provenance& provenance) {
   JsonLimits limits;
-  limits.number = std::numeric_limits<double>::max();  // a cost on the way may be anything
+  limits.number = std::numeric_limits<double>::max();  // an intermediate cost may be any number
   const Json json =
       read_json(file, "a checkpoint of rigcal fit, or a fit without --resume", limits);
   try {

@@ -17,7 +17,7 @@ std::string fit_identity(const Provenance& provenance);
 /// A checkpoint with what its fit was made from; numbers read back to the same bits.
 std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenance& provenance);
 
-/// Whether a file is one, whole or not, of whatever fit.
+/// Whether a file is a checkpoint of any fit, complete or not.
 bool is_checkpoint(const std::filesystem::path& file);
 
 /// @param provenance  of the fit that is to go on

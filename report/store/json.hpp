@@ -38,8 +38,8 @@ struct EarlierFit {
   calib::Aspect adequacy;
   calib::Aspect parameters;
   Validity validity;
-  std::optional<Validity> validated;            ///< what it was validated on
-  std::optional<calib::EstimateSpread> spread;  ///< of `values`; none where it did not converge
+  std::optional<Validity> validated;            ///< ranges of the validation
+  std::optional<calib::EstimateSpread> spread;  ///< of `values`; none if the fit did not converge
   std::vector<int> indices;  ///< table rows of the fitted values of scope rig that have an error
   /// Of these, SI, shape (indices)^2: the larger of standard and robust error, and the correlation.
   Eigen::MatrixXd covariance;

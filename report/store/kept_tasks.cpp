@@ -27,7 +27,7 @@ std::string entry_of(const std::string& job, std::size_t index, const std::strin
   return fmt::format("{:016x}{}", content.size(), sha256_of_text(content)) + content;
 }
 
-// Digits at the beginning of an entry.
+// Number of digits at the beginning of an entry.
 constexpr std::size_t kLength = 16;
 constexpr std::size_t kHash = 64;
 

@@ -14,7 +14,7 @@ namespace rigcal::report {
 /// processes.
 inline constexpr const char* kKeptTasksFile = "checkpoint.tasks";
 
-/// Whether a file is one of these, whole or cut short.
+/// Whether a file contains kept tasks, complete or truncated.
 bool is_kept_tasks(const std::filesystem::path& file);
 
 /// A farm that keeps every result in a file as soon as it is there, so that a run which is killed

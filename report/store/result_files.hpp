@@ -11,8 +11,8 @@
 
 namespace rigcal::report {
 
-/// `provenance.files`: path and SHA-256 of each of `files`, in their order. The files keep their
-/// hashes, too.
+/// Fills `provenance.files` with path and SHA-256 of each of `files`, in their order, and stores
+/// the hashes in `files`, too.
 void name_files(std::vector<ResultFile>& files, StoredProvenance& provenance);
 /// @param named  of files that are written already, which come first
 void name_files(std::vector<InputFile> named, std::vector<ResultFile>& files,

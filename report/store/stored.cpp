@@ -43,7 +43,7 @@ void require_length(std::size_t found, std::size_t expected, const char* list,
   throw InputError({file}, fmt::format("{}: found {} entries, expected {}", list, found, expected));
 }
 
-/// What a page draws over each other.
+/// Requires equal lengths of curves that a page draws over each other.
 void require_matching(const StoredCurves& curves, const std::string& file) {
   for (const auto& [condition, channels] : curves.conditions) {
     for (const auto& [channel, found] : channels) {

@@ -54,7 +54,7 @@ std::string csv_of(const Table& table) {
 
 Table parse_table(std::string_view text, const std::string& file) {
   Table table;
-  std::size_t time = 0;  // column of the instants, if there is one
+  std::size_t time = 0;  // index of the time column, if there is one
   double before_s = -std::numeric_limits<double>::infinity();
   long line_number = 0;
   while (!text.empty()) {

@@ -23,8 +23,8 @@ std::string csv_of(const Table& table);
 /// of names, then numbers.
 ///
 /// @param file  named in errors
-/// @throws InputError  file, line and column of a field that is no number, of an instant (time_s)
-///                     that does not come after the one before it, or of a row of other length
+/// @throws InputError  a field is no number, a time (time_s) does not increase, or a row has
+///                     another number of fields: names file, line and column
 Table parse_table(std::string_view text, const std::string& file);
 
 }  // namespace rigcal::report

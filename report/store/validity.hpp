@@ -34,10 +34,10 @@ struct Validity {
 Validity coverage(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
                   const calib::Fit& fit, const std::vector<datasets::Use>& uses);
 
-/// In words and in readable units, each way in which `asked` leaves `covered`, what was fitted, by
-/// more than 10 % of the bound.
+/// Lists, in words and readable units, each way in which `asked` exceeds `covered`, the fitted
+/// range, by more than 10 % of the bound.
 ///
-/// @param validated  what the fit was validated on, to be named beside; null: nothing
+/// @param validated  range of the validation, named in addition; null: none
 std::vector<std::string> outside(const Validity& asked, const Validity& covered,
                                  const Validity* validated = nullptr);
 

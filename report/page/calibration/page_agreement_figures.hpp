@@ -28,7 +28,7 @@ std::vector<ChannelAgreement> channel_agreements(const std::string& condition,
 /// Frequency of a condition's drive where it is periodic, from its entry in fit.json.
 std::optional<double> periodic_frequency(const StoredCondition& condition);
 
-/// The figures of every channel, with what they say.
+/// The figures of every channel with explanations.
 doc::Blocks agreement_blocks(const std::string& condition, std::optional<double> frequency_hz,
                              const Table& series);
 

@@ -108,7 +108,7 @@ struct StoredParameter {
   std::optional<double> standard_error, robust_standard_error;
   std::optional<Range> ci95;
   Later<std::optional<calib::IntervalSource>> ci95_from;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of the error that ci95 rests on
+  Later<std::optional<double>> degrees_of_freedom;  ///< of the error on which ci95 is based
   Omittable<StoredBootstrap> bootstrap;
   Omittable<StoredProfile> profile;
   bool at_bound = false;
@@ -119,8 +119,8 @@ struct StoredParameter {
                   degrees_of_freedom, bootstrap, profile, at_bound, identifiability, reason)
 };
 
-/// The error that ci95 rests on, and its degrees of freedom. A file of a version that does not tell
-/// these has them by the half width of ci95 in errors, else many.
+/// The error on which ci95 is based, with its degrees of freedom. For a file of a version that does
+/// not store them they are computed from ci95 and the error, or taken as infinite.
 std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter);
 /// The larger of standard and robust error.
 std::optional<double> error_of(const StoredParameter& parameter);
@@ -196,7 +196,7 @@ struct StoredValidity {
   std::optional<Range> frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa,
       leakage_coefficient;
   std::vector<std::string> leak_levels;
-  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< of other loops
+  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in other loops
   RIGCAL_DESCRIBE(frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa, leakage_coefficient,
                   leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2)
 };
@@ -244,17 +244,17 @@ struct StoredCondition {
   Later<std::optional<datasets::Waveform>> waveform;
   Later<std::optional<double>> frequency_hz, amplitude_m;
   Omittable<std::optional<double>> amplitude_v;                     ///< in an open loop
-  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in loops on these
+  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in other loops
   Later<std::optional<std::string>> leak_level;
   datasets::Use use = datasets::Use::fit;
   Omittable<double> temperature_k;
   Omittable<std::string> date;
   long samples = 0;
-  Later<std::vector<std::string>> record_sha256;  ///< of the files that its record is made from
+  Later<std::vector<std::string>> record_sha256;  ///< of the files that the record is made from
   Omittable<std::vector<Range>> windows_s;        ///< empty: the whole record
   Omittable<std::vector<std::string>> notes;
   Omittable<std::vector<StoredLimit>> acceptance;  ///< its own, in place of the campaign's
-  Omittable<std::vector<std::string>> not_judged;  ///< beside those of the campaign
+  Omittable<std::vector<std::string>> not_judged;  ///< in addition to those of the campaign
   Later<std::vector<std::string>> warnings;
   Later<std::optional<std::string>> not_scored;
   std::optional<std::string> failure;
@@ -340,10 +340,10 @@ struct StoredFit {
   Later<std::optional<double>> aic, bic;
   Omittable<std::vector<StoredWeight>> weights;
   StoredValidity validity;
-  Omittable<StoredValidity> validated;  ///< what the conditions cover that were not fitted
+  Omittable<StoredValidity> validated;  ///< ranges of the conditions that were not fitted
   Omittable<datasets::DecisionRule> decision;
   std::vector<StoredLimit> acceptance;
-  Omittable<std::vector<std::string>> not_judged;  ///< channels that are to have no limit
+  Omittable<std::vector<std::string>> not_judged;  ///< channels that need no limit
   std::vector<StoredCondition> conditions;
   std::vector<StoredGroup> groups;
   std::vector<StoredStart> starts;

@@ -49,7 +49,7 @@ struct StoredLeak {
   std::optional<double> leak_share_upper_limit_percent;
   std::optional<double> leak_flow_l_per_min;
   std::optional<bool> leak_detected;
-  /// False: the coefficient lies below zero by more than its error, so nothing is said of a leak.
+  /// False: the coefficient is negative beyond its error, so no leak is reported.
   Later<std::optional<bool>> compatible_with_model;
   std::optional<datasets::LeakClass> class_;  ///< nothing: undecided
   Keyed<std::optional<double>> class_probabilities;
