@@ -19,8 +19,8 @@ double normal_quantile(double probability);
 /// Probability that a standard normal variable lies below x; any x.
 double normal_cdf(double x);
 
-/// The same of Student's t with `freedom` degrees of freedom > 0, which need not be whole. A
-/// quantile above the largest double is infinity.
+/// Student's t with `freedom` degrees of freedom > 0, not necessarily whole. A quantile above the
+/// largest double is returned as infinity.
 ///
 /// @throws std::domain_error  no such probability or freedom
 double student_t_quantile(double probability, double freedom);
