@@ -100,8 +100,9 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
   REQUIRE(found.signals.front().smallest_leak);
   CHECK(found.signals.front().smallest_leak->share > 0.0);
   CHECK(found.signals.front().smallest_leak->share < 0.02);
-  // Of means of three the error is that of a repeat times sqrt(1/3 + 1/3) over sqrt(1 + 1/2): their
-  // limit is less than that of a repeat, but of its size. An average less itself has none.
+  // The error for a mean of three is that of one repeat times sqrt(1/3 + 1/3) / sqrt(1 + 1/2). Its
+  // limit is lower than that of a repeat, but of the same order. An average minus itself has no
+  // error.
   REQUIRE(found.signals.front().smallest_single_leak);
   const double of_average = found.signals.front().smallest_leak->coefficient;
   const double of_single = found.signals.front().smallest_single_leak->coefficient;

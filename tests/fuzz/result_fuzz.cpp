@@ -29,7 +29,7 @@ void read_or_refuse(Attempt attempt) {
   }
 }
 
-/// A fit whose residuals were tested, so that their curves are drawn.
+/// A fit with residual tests, so that their curves are drawn.
 std::string tested_fit() {
   auto fit = test::stored_result();
   fit["conditions"][0]["residual_tests"]["position"] = json_of(StoredResidualTests());
@@ -38,7 +38,7 @@ std::string tested_fit() {
 
 }  // namespace
 
-/// A fit.json, or another result in JSON or a table, is read by all that reads such, or is refused.
+/// Gives a fit.json, another result in JSON or a table to every reader; each reads or refuses it.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(fuzz::text_of_bytes(data, size));
   const auto file = fuzz::scratch_file("fit.json", text);

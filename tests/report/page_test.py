@@ -191,7 +191,7 @@ def check_printed(page, folder, words):
 
 
 def check_first_sheet(page, folder):
-    """What is signed is on the first sheet, and the foot of every sheet says whose it is."""
+    """Checks that the signed part is on the first page and that the foot of every page names the report."""
     if shutil.which("pdftotext") is None:
         return
     page.pdf(folder / "page.pdf")
@@ -299,7 +299,7 @@ def check_bad(binary, work):
             check(page.run("document.title").startswith(word + " "), f"{folder}: title")
             check(page.run("document.querySelector('.verdict .word').textContent").split()[-1] == word, folder)
             check(page.run("document.body.className") == "bad", f"{folder}: the page is marked")
-            # A failed fit has no condition to be seen.
+            # A failed fit has no conditions to show.
             check_sections(page, [s for s in SECTIONS if folder != "failed" or s != "overview"])
             check_printed(page, work, [word])
             check_widths(page)

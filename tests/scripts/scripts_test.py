@@ -131,7 +131,7 @@ class Scripts(unittest.TestCase):
         self.assertTrue(self.run_script("resume-study", "2", "3").endswith("killed 2 times: the same\n"))
 
     def test_setup(self):
-        # On a system that it does not know.
+        # On an unknown system.
         shutil.copy(ROOT / "scripts" / "setup", self.tree / "scripts" / "setup")
         system = self.tree / "os-release"
         system.write_text("ID=fedora\nVERSION_CODENAME=\n")

@@ -279,7 +279,7 @@ TEST_CASE("known values: a certificate of the sensor counts as the prior of its 
   twin.campaign.channels.at(datasets::Channel::position).*way.stated = way.sd;
   CHECK_THAT(error(twin), WithinRel(error(prior), 1e-6));
   CHECK(error(twin) > exact);
-  // An estimate of the gain or offset itself holds it already.
+  // An estimated gain or offset covers its uncertainty already.
   Twin open = twin;
   open.campaign.channels.at(datasets::Channel::position).*way.stated = 0.0;
   open.free(way.key, way.value, way.value - 0.01, way.value + 0.01);
@@ -310,7 +310,7 @@ TEST_CASE("known values: intervals hold the truth with a sensor off as its certi
     twin.campaign.channels.at(datasets::Channel::position).gain_sd = kGainSd;
     held += holds();
   }
-  // 95 % of 24 are 22.8, with a standard deviation of 1.1; 24 and 10 when this was written.
+  // 95 % of 24 is 22.8, with a standard deviation of 1.1. The first run gave 24 and 10.
   CHECK(held >= 20);
   CHECK(held_without <= 14);
 }

@@ -21,7 +21,7 @@ Experiment everything(model::PlantKind plant) {
   e.set("stiffness", 2e4).set("coulomb_friction", 200.0).set("stribeck_friction", 300.0);
   e.set("external_force", 150.0).set("laminar_leakage", 2e-12).set("valve_null_leakage", 1e-12);
   e.set("load_gradient", 1e4).set("load_curvature", 1e5);
-  // A second mass and hoses do not go together.
+  // A rig with hoses cannot have a second mass.
   if (!chambers)
     e.set("payload_mass", 20.0).set("payload_frequency", 300.0).set("payload_damping_ratio", 0.1);
   if (chambers) {

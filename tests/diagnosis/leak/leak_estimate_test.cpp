@@ -166,16 +166,16 @@ TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis
 
 TEST_CASE("estimate_leak: no interval ends at zero, however far below it the estimate lies",
           "[diagnosis]") {
-  // Where nothing leaks: of half a normal distribution 95 % lie below 1.959964.
+  // Without a leak: 95 % of half a normal distribution is below 1.959964.
   const auto none = estimated(fit_of(0.0, 0.1));
   CHECK(none.ci95.first == 0.0);
   CHECK_THAT(none.ci95.second, WithinRel(0.1959964, 1e-5));
-  // Two errors below zero: of what is left above zero, P(Z > 2) = 0.0227501, a twentieth lies
+  // Two errors below zero: P(Z > 2) = 0.0227501 remains above zero, and a twentieth of it lies
   // beyond 3.05176 errors.
   const auto below = estimated(fit_of(-0.2, 0.1));
   CHECK_FALSE(below.incompatible);
   CHECK_THAT(below.ci95.second, WithinAbs(0.1 * (3.05176 - 2.0), 1e-5));
-  // From 2.3263 errors on, the 1 % of false alarms, no leak makes such a record.
+  // Beyond 2.3263 errors (1 % false alarms) no leak explains such a record.
   CHECK_FALSE(estimated(fit_of(-0.232, 0.1)).incompatible);
   const auto beyond = estimated(fit_of(-0.233, 0.1));
   CHECK(beyond.incompatible);
@@ -185,7 +185,7 @@ TEST_CASE("estimate_leak: no interval ends at zero, however far below it the est
 }
 
 TEST_CASE("estimate_leak: a share is within 0 and 1, or none", "[diagnosis]") {
-  // share = C / 10: a coefficient of 9 with an error of 2 has shares beyond all of the flow.
+  // share = C / 10: the interval of a coefficient of 9 with an error of 2 includes shares above 1.
   const auto wide = estimated(fit_of(9.0, 2.0));
   CHECK(wide.has_share());
   CHECK(wide.share_ci95.second == 1.0);
@@ -201,10 +201,10 @@ TEST_CASE("detection_limit: Currie's sum of both quantiles", "[diagnosis]") {
 
 TEST_CASE("error_of_averages: from the spread between repeats, of both means", "[diagnosis]") {
   SignalErrors errors;
-  // A record that is its own reference has no residual, and so no error of its own.
+  // A record that is its own reference has no residual, and so no error.
   const LeakFit reference = fit_of(0.0, 0.0);
   CHECK_FALSE(error_of_averages(reference, errors, 5, 5));
-  errors.repeat_m = 0.12e-3;  // 0.12 of the coefficient
+  errors.repeat_m = 0.12e-3;  // in units of the coefficient: 0.12
   errors.repeat_freedom = 4;
   const auto error = error_of_averages(reference, errors, 5, 3);
   REQUIRE(error);
