@@ -77,7 +77,7 @@ int plant_states(PlantKind plant) {
   return with_plant(plant, []<typename Plant>() { return Plant::kStates; });
 }
 
-/// Whether reversed inputs reverse all that is asked for.
+/// Whether reversed inputs reverse all requested outputs.
 bool reversible(PlantKind plant, const PresentTerms& terms, std::span<const Output> outputs) {
   return with_plant(plant, [&]<typename Plant>() {
     return std::all_of(outputs.begin(), outputs.end(),
@@ -100,7 +100,7 @@ using Avx2Solvers = Solvers<RIGCAL_avx2_SOLVERS>;
 template <typename Plant, int... States>
 std::integer_sequence<int, States...> sizes_of(const Sized<Plant, States...>& solvers);
 
-/// By the first solver that has room for all states.
+/// Runs the first solver that has room for all states.
 template <typename Plant, InstructionSet Set, int N, int... Larger>
 void run(std::integer_sequence<int, N, Larger...>, const SizedRequest& request,
          Simulation& result) {
@@ -177,8 +177,8 @@ void SimulationOptions::validate() const {
 
 namespace {
 
-/// As Eigen's allFinite(), which looks at one number after the other, and faster than its sum(),
-/// which waits for each addition before the next.
+/// Like Eigen's allFinite(), but faster: that tests one number at a time. Eigen's sum() is slower,
+/// too, since each addition waits for the one before.
 bool all_finite(const Eigen::MatrixXd& values) {
   constexpr Eigen::Index kSums = 16;
   Eigen::Array<double, kSums, 1> sums = Eigen::Array<double, kSums, 1>::Zero();
@@ -248,7 +248,7 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   const std::optional<SensorTimes> at = sensor_times(outputs, parameters, times_s);
   const std::span<const double> at_s = at ? std::span<const double>(at->times_s) : times_s;
   const auto samples = static_cast<Eigen::Index>(at_s.size());
-  // Not set to zero: a simulation that ends well writes all of them.
+  // Not initialised: a successful simulation writes all elements.
   result.outputs.resize(samples, static_cast<Eigen::Index>(outputs.size()));
   result.sensitivities.resize(outputs.size());
   const Eigen::Index columns =

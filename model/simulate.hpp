@@ -15,7 +15,8 @@
 
 namespace rigcal::model {
 
-/// What a simulation can tell at each sample. The recorded kinds include their sensor's offset.
+/// Outputs of a simulation at each sample. Those that are recorded include the offset of their
+/// sensor.
 enum class Output {
   position,              ///< reading of the position sensor [m]
   velocity,              ///< [m/s]
@@ -82,7 +83,7 @@ enum class InitialState {
   given,  ///< from the initial_* parameters (free or fixed)
 };
 
-/// What acts on the rig. The drive is delayed by `transport_delay`, the others are not.
+/// Inputs of the rig. Only the drive is delayed by `transport_delay`.
 struct SimulationInputs {
   Signal drive = Signal::constant(0.0);      ///< reference of the loop, or command [V]
   std::optional<Signal> external_force_n;    ///< added to the parameter `external_force`
@@ -100,8 +101,8 @@ struct SimulationOptions {
   Method method = Method::rosenbrock;
   /// Local error per step over the running peak of each state, and of each sensitivity.
   double tolerance = 1e-6;
-  /// How many times that the local error of a sensitivity may be: a fit needs derivatives to a part
-  /// in a thousand.
+  /// Factor by which the local error of a sensitivity may be larger: a fit needs derivatives to one
+  /// part in a thousand.
   double sensitivity_looseness = 50.0;
   /// Whether the rest of a run is read from its last periods once it is in its periodic steady
   /// state, or comes nearer to it in a way that is known. Else every period is simulated.
@@ -118,7 +119,7 @@ enum class SimulationStatus {
   ok,
   bad_parameters,  ///< a value is not finite or outside its hard bounds
   not_finite,      ///< the state left the numbers
-  step_too_small,  ///< error control asked for a vanishing step
+  step_too_small,  ///< error control required a vanishing step
   too_many_steps,
   out_of_time,
   cancelled,
@@ -166,14 +167,14 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
                     const SimulationInputs& inputs, std::span<const double> times_s,
                     std::span<const Output> outputs, const SimulationOptions& options = {});
 
-/// The same from a state in the middle of a longer run, whatever the rig's initial one is: from the
-/// `end_state` of a run on times up to the first of these, it goes on as if it had never ended.
-/// Lags of sensors begin anew.
+/// The same from a state in the middle of a longer run, in place of the rig's initial one. Started
+/// from the `end_state` of a run that ended at the first of these times, it continues that run.
+/// Lags of sensors start anew.
 ///
-/// @param state  shape (states), at the first of `times_s`; behind the columns of `free`, all
-///               sensitivities have one per element of it
-/// @throws std::invalid_argument  also for a controller with `sample_time`, whose ticks it would
-///                                not know
+/// @param state  shape (states), at the first of `times_s`; all sensitivities have a column per
+///               state after those of `free`
+/// @throws std::invalid_argument  also for a controller with `sample_time`, since the phase of its
+///                                ticks is unknown
 Simulation simulate_from(const Eigen::VectorXd& state, const Rig& rig,
                          const ParameterValues& parameters, std::span<const int> free,
                          const SimulationInputs& inputs, std::span<const double> times_s,

@@ -21,10 +21,10 @@ struct DescentStep {
   double seconds = 0.0;          ///< since the descent began
 };
 
-/// What is minimised, and how far.
+/// Function to minimise, and the tolerances.
 struct DescentOptions {
-  /// Residuals and their derivatives at a point of the unit box; none where it cannot be evaluated.
-  /// Of the Jacobian only where it is asked for.
+  /// Residuals at a point of the unit box; none if it cannot be evaluated. The Jacobian is computed
+  /// only on request.
   std::function<std::optional<Linearisation>(std::span<const double> z, bool jacobian)> linearise;
   double trust_radius = 0.0;  ///< of the first step: 1 / damping of Levenberg and Marquardt
   int most_iterations = 0;
@@ -35,7 +35,7 @@ struct DescentOptions {
   std::function<bool(const DescentStep&)> enough;
 };
 
-/// How a descent ended.
+/// End of a descent.
 struct Descent {
   bool converged = false;  ///< within the tolerances
   int iterations = 0;      ///< steps tried, the start not counted

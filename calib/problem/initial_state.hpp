@@ -9,7 +9,7 @@
 
 namespace rigcal::calib {
 
-/// Where a simulation of one condition starts.
+/// Initial state of the simulation of one condition.
 struct InitialPlan {
   model::InitialState state = model::InitialState::rest;
   datasets::Overrides known;      ///< initial_* values read from the record
@@ -34,15 +34,15 @@ InitialPlan plan_initial_state(const datasets::Campaign& campaign,
                                const datasets::Condition& condition, const datasets::Record& record,
                                const model::ParameterValues& values);
 
-/// What is wrong with `initial = "record"` where the piston moves within the window, in words;
-/// empty if nothing is.
+/// Explains, in words, why `initial = "record"` is wrong if the piston moves within the window;
+/// empty if it does not move.
 std::string moving_start(const datasets::Campaign& campaign,
                          const std::vector<const datasets::Condition*>& conditions,
                          const std::vector<datasets::Record>& records);
 
-/// What the initial_* parameters would be for a run that begins in the middle of a record: position
-/// and velocity from a straight line through the samples within `half_width_s` of that instant,
-/// recorded pressures their means there. Of unrecorded position nothing is told.
+/// Values of the initial_* parameters for a run that begins in the middle of a record. Position and
+/// velocity come from a straight line through the samples within `half_width_s` of that instant,
+/// recorded pressures from their means there. Without a recorded position there are none.
 ///
 /// @param values  of the condition, for the sensors of both pressures
 datasets::Overrides recorded_state(const datasets::Campaign& campaign,

@@ -87,7 +87,7 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, model::PlantKind
   const Eigen::MatrixXd root = svd.root();
   const Eigen::MatrixXd covariance =
       root * root.transpose() * (optimum.residuals.squaredNorm() / freedom);
-  // Share in what the tables do not determine.
+  // Fraction in the directions that the tables do not determine.
   const Eigen::VectorXd open = svd.V().rightCols(n - svd.rank()).rowwise().squaredNorm();
   const double t = metrics::student_t_quantile(0.975, freedom);
   fit.correlation.setIdentity(n, n);

@@ -46,7 +46,7 @@ struct TablesFit {
   Eigen::MatrixXd correlation;  ///< shape (parameters)^2
   std::vector<TableResidual> residuals;
   std::vector<std::string> left_out;     ///< published numbers that do not count, and why
-  datasets::LeakTableSettings settings;  ///< with the estimated values in place
+  datasets::LeakTableSettings settings;  ///< with the estimated values filled in
 };
 
 /// Weight of the logarithm of a share at its published coefficient; of a flow or feature it is 1.

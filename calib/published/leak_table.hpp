@@ -12,7 +12,7 @@
 
 namespace rigcal::calib {
 
-/// How near a published coefficient the computed one comes.
+/// Agreement of the computed coefficient with the published one.
 enum class LeakGrade { within_10, within_16, outlier, not_published };
 std::string_view to_string(LeakGrade grade);
 
@@ -31,7 +31,7 @@ struct LeakRoot {
 struct LeakComparison {
   double published = 0.0;
   double share_percent = 0.0;      ///< at the published coefficient
-  double share_low_percent = 0.0;  ///< at the ends of what its rounding allows
+  double share_low_percent = 0.0;  ///< at the ends of the interval that its rounding allows
   double share_high_percent = 0.0;
   std::optional<double> relative_error_percent;  ///< of the nearest root; absent without a root
 };
@@ -74,11 +74,11 @@ struct FixedCombination {
   double value = 0.0;
 };
 
-/// How well the published numbers are met, over all entries that have one.
+/// Agreement with the published numbers, over all entries that have one.
 struct LeakSummary {
   int published = 0;
   int within_10 = 0;
-  int within_16 = 0;                        ///< those within 10 % included
+  int within_16 = 0;                        ///< including those within 10 %
   std::optional<double> share_rms_percent;  ///< rms of ln(share / target), in percent
 };
 
@@ -91,7 +91,7 @@ struct LeakTable {
   LeakSummary summary;
 };
 
-/// How well the rig's values are known: what a fit says of those that it estimated.
+/// Uncertainty of the rig's values, from a fit.
 struct RigUncertainty {
   std::vector<int> indices;    ///< rows of the parameter table
   Eigen::MatrixXd covariance;  ///< SI, shape (indices)^2

@@ -7,7 +7,7 @@
 
 #include "model/simulate.hpp"
 
-// How the search went.
+// Course of the search.
 
 namespace rigcal::calib {
 
@@ -18,7 +18,7 @@ enum class FitStatus {
 };
 std::string_view to_string(FitStatus status);
 
-/// What a job was at when it was stopped.
+/// Stage at which a job was stopped.
 enum class StoppedIn { nothing, starts, validation, bootstrap, profiles, cross_validation };
 std::string_view to_string(StoppedIn stage);
 

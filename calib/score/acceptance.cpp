@@ -20,7 +20,7 @@ const metrics::MetricSpec& metric(std::string_view name) {
   return *found;
 }
 
-/// What the noise of the record leaves of a metric to any model; empty where that is not known.
+/// Noise floor of a metric for any model; empty if it is unknown.
 std::optional<double> floor_of(const ChannelScore& score, std::string_view name) {
   if (!score.noise_floor) return std::nullopt;
   if (name == "rho2") return score.noise_floor->rho2;

@@ -19,7 +19,7 @@ using datasets::Campaign;
 /// the variance does not describe a record by anybody's standard.
 constexpr double kPoorRho2 = 0.9;
 
-/// Limits of the campaign that no scored condition could be held against.
+/// Reports limits of the campaign that apply to no scored condition.
 void judge_unused_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto by_campaign = [&](const ConditionScore& score) {
     const datasets::Condition* condition = campaign.find(score.id);

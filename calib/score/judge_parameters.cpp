@@ -15,8 +15,8 @@ namespace {
 
 using datasets::Campaign;
 
-/// An upper limit is negligible below this share of what the same parameter is elsewhere in the
-/// campaign: the share that makes an estimate weak.
+/// An upper limit is negligible below this fraction of the same parameter's value elsewhere in the
+/// campaign; it is the fraction that makes an estimate weak.
 constexpr double kNegligibleShare = 0.2;
 
 /// The largest size that a parameter has in the result at another level, condition or known value.
@@ -30,7 +30,7 @@ double elsewhere(const Fit& fit, const FittedParameter& parameter) {
   return largest;
 }
 
-/// The largest size that a parameter which cannot be told from zero may have (95 %).
+/// Largest possible size (95 %) of a parameter that is not distinguishable from zero.
 double upper_limit(const FittedParameter& parameter) {
   return parameter.ci95
              ? std::max(std::abs(parameter.ci95->first), std::abs(parameter.ci95->second))

@@ -13,7 +13,7 @@ namespace rigcal::calib {
 
 struct Checkpoint;  // checkpoint.hpp
 
-/// What a fit needs beside the campaign and its records.
+/// Options of a fit in addition to the campaign and its records.
 struct FitOptions {
   int starts = 1;  ///< 1: the campaign's start values; more: latin hypercube around them
   /// Latin-hypercube starts in addition to a single one. If that one converges they are only
@@ -27,16 +27,17 @@ struct FitOptions {
   int bootstrap = 0;                    ///< replicates, each fitted from the optimum; 0: none
   bool profiles = false;                ///< profile likelihood of every unknown that is no nuisance
   bool cross_validate = false;          ///< leave one condition out after the other
-  const Checkpoint* resume = nullptr;   ///< goes on from there
+  const Checkpoint* resume = nullptr;   ///< checkpoint to continue from
   std::function<void(const Checkpoint&)> checkpoint;  ///< called after every finished start
   /// Makes starts (where it has several processes), replicates, profiles and folds; null: the
   /// threads of this process do.
   TaskFarm* farm = nullptr;
   const std::atomic<bool>* cancel = nullptr;  ///< ends the fit with the best so far
-  /// Told of every iteration: start (from 1), iteration, cost, relative change of cost, seconds.
+  /// Called after every iteration: start (from 1), iteration, cost, relative change of cost,
+  /// seconds.
   std::function<void(int, int, double, double, double)> progress;
-  /// Told of what is made beside the fit: "replicates of the bootstrap", how many are done, of how
-  /// many. From any thread.
+  /// Called during bootstrap, profiles and cross-validation: their name ("replicates of the
+  /// bootstrap"), number done, total number. From any thread.
   std::function<void(const char*, int, int)> beside;
 
   void validate() const;

@@ -33,9 +33,9 @@ SolveResult minimise(const Problem& problem, Evaluator& evaluator, std::vector<d
 /// The result where not even the start could be simulated.
 SolveResult no_start(const Problem& problem, const Evaluator& evaluator, const Evaluation& first);
 
-/// Why a fit ended that did not come to an end by itself.
+/// Reason why a fit ended before it converged.
 ///
-/// @param most_iterations  that it was allowed
+/// @param most_iterations  limit of iterations
 std::string stop_reason(const Evaluator& evaluator, int most_iterations);
 
 SolveResult converged(const Iterations& iterations, const OptimumCheck& check);

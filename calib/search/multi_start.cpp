@@ -157,8 +157,8 @@ void make_in_turn(const Problem& problem, Evaluator& evaluator, const FitOptions
   }
 }
 
-/// Makes the starts side by side in the processes of a farm: to the same bits, since each begins
-/// with what the evaluator has before the first.
+/// Makes the starts in parallel in the processes of a farm. The bits are the same, since each
+/// begins with the evaluator's state before the first.
 void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                   const std::vector<std::vector<double>>& points, TaskFarm& farm,
                   MultiStart& found) {

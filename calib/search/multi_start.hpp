@@ -8,7 +8,7 @@
 
 namespace rigcal::calib {
 
-/// Latin hypercube: every dimension is cut into `points` strata and each stratum holds one point.
+/// Latin hypercube: every dimension is cut into `points` strata, and each stratum has one point.
 /// Portable: the same seed gives the same bits on any machine.
 ///
 /// @return  `points` vectors of shape (dimensions), in [0, 1)
@@ -43,7 +43,7 @@ bool search_on(const Problem& problem, Evaluator& evaluator, const FitOptions& o
 void go_on_with_best(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                      MultiStart& found);
 
-/// Takes over what the best start ended at into its report.
+/// Enters the end of the best start into its report.
 void report_best(const Problem& problem, MultiStart& found);
 
 }  // namespace rigcal::calib

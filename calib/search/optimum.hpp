@@ -9,7 +9,7 @@ namespace rigcal::calib {
 
 enum class BoundSide { inside, lower, upper };
 
-/// Within this of a face of the unit box a parameter is at its bound.
+/// Distance from a face of the unit box within which a parameter is at its bound.
 inline constexpr double kAtBound = 1e-6;
 
 BoundSide bound_side(double z);
@@ -28,11 +28,11 @@ std::vector<bool> active_bounds(const Linearisation& system, std::span<const dou
 /// Whether a point is a minimum in the box, judged by our own measure and not by the optimiser's.
 struct OptimumCheck {
   std::vector<BoundSide> side;     ///< per unknown
-  std::vector<bool> active_bound;  ///< as active_bounds()
+  std::vector<bool> active_bound;  ///< result of active_bounds()
   Eigen::VectorXd step;            ///< of Gauss and Newton, in the unit box; 0 at an active bound
   /// Length of the Gauss-Newton step in standard errors, root mean square over the free directions
-  /// (relative offset of Bates and Watts, Technometrics 23, 1981). 0.01: the step that is left is a
-  /// hundredth of what the noise leaves uncertain.
+  /// (relative offset of Bates and Watts, Technometrics 23, 1981). At 0.01 the remaining step is a
+  /// hundredth of the uncertainty from noise.
   double relative_offset = 0.0;
   double reducible = 0.0;  ///< fraction of the cost that this step is predicted to take away
   /// The same in variances of a residual; 2 corresponds to one parameter at the end of its 95 %

@@ -11,7 +11,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Where nothing has settled by then the fit says so in a warning.
+/// If the standard deviations have not settled by then, a warning says so.
 constexpr int kMaxRounds = 10;
 /// Reweighting stops when no standard deviation changes by more.
 constexpr double kSettled = 0.1;

@@ -8,7 +8,7 @@
 
 namespace rigcal::model {
 
-/// A rig as it is handed to other simulators: what an FMU reads from its resources.
+/// A rig for other simulators, as an FMU reads it from its resources.
 struct ExportedRig {
   std::string guid;  ///< of the model description that belongs to it
   Rig rig;
@@ -17,8 +17,8 @@ struct ExportedRig {
 };
 
 /// Table indices of the parameters that an importer may change, in the order of the table: those of
-/// the plant, and the terms and controller gains that the rig has. Not what are inputs of the FMU,
-/// nor sensors, which stand beside the rig.
+/// the plant, and the terms and controller gains of the rig. Inputs of the FMU and sensors, which
+/// are not part of the rig, are excluded.
 std::vector<int> exported_parameters(const ExportedRig& rig);
 
 /// Whether a parameter may be changed while the rig runs: not initial values, nor the sampling time

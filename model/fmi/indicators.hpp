@@ -41,7 +41,7 @@ void plant_indicators(const TwoChamberPlant::Coefficients<double>& p, const Pres
   const double extended_m = x[Plant::position] - Plant::retracted_stop(p, terms);
   indicators.push_back(extended_m);
   indicators.push_back(p.stroke_m - extended_m);
-  if (terms.hoses < 0) return;  // else each yields in the direction in which its pressure goes
+  if (terms.hoses < 0) return;  // else each hose yields in the direction of its pressure change
   indicators.push_back(dx[Plant::pressure_a]);
   indicators.push_back(dx[Plant::pressure_b]);
 }

@@ -46,8 +46,8 @@ struct LoopError {
 };
 
 /// u = K_p e + I + K_d N (e - e_f) - K_dp P_L, then the limit.
+///
 /// @param state  the whole state vector; `layout` has the indices of integral and filter
-/// @param state    the whole state vector; `layout` says where integral and filter stand
 template <typename X, typename State, typename P>
 ControllerOutput<X> controller_output(const LoopError<X>& loop, const State& state, const P& p,
                                       const Layout& layout) {
@@ -78,9 +78,9 @@ X integral_rate(const X& error, const ControllerOutput<X>& u, const P& p) {
   return error * p.ki_v_per_m_s + (u.limited - u.wanted) * anti_windup_rate(p);
 }
 
-/// One tick of the sampled controller: the filter by backward Euler, the output held until the next
-/// tick, the integral advanced by forward Euler with the same back-calculation, which reaches the
-/// limit within one period at the fastest and so cannot overshoot it.
+/// One tick of the sampled controller. The filter advances by backward Euler, the output is held
+/// until the next tick, and the integral advances by forward Euler with the same back-calculation.
+/// Back-calculation takes at least one period to reach the limit, so it cannot overshoot it.
 template <typename X, typename State, typename P>
 void controller_tick(const LoopError<X>& loop, State& state, const P& p, const Layout& layout) {
   const X& error = loop.error;

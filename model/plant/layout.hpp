@@ -11,7 +11,7 @@
 
 namespace rigcal::model {
 
-/// Optional terms that take part; an absent one costs nothing.
+/// Optional terms of a rig; an absent one costs nothing.
 struct PresentTerms {
   bool friction = false;        ///< Coulomb or breakaway friction was given
   bool stribeck = false;        ///< breakaway friction was given
@@ -77,7 +77,8 @@ inline constexpr std::array<StateRow, kFeedbackCount> kFilteredError{
     StateRow{"controller_filtered_error", "Pa", "filtered error", 100.0, 0.1},
     StateRow{"controller_filtered_error", "m/s2", "filtered error", 1e-3, 1.0}};
 
-/// Which states a rig has beside those of its plant, and where they stand in the state vector.
+/// The states that a rig has in addition to those of its plant, with their indices in the state
+/// vector.
 struct Layout {
   int plant_states = 0;
   int hoses = -1;       ///< strain memory of both hoses [1]

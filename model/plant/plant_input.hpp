@@ -9,7 +9,7 @@
 
 namespace rigcal::model {
 
-/// What acts on a plant at one instant; X carries time derivatives where they are wanted.
+/// Inputs of a plant at one instant; X carries time derivatives where they are needed.
 template <typename X>
 struct PlantInput {
   X spool_command_v;     ///< valve signal after its dynamics [V]

@@ -238,8 +238,8 @@ class System {
   }
 
  private:
-  // What a right-hand side is computed with: numbers alone, or numbers and their derivatives by the
-  // parameters, by a few of these, or by the states and time.
+  // Modes of computing a right-hand side: numbers alone, or numbers with their derivatives by all
+  // parameters, by a block of them, or by the states and time.
   struct Plain {
     using Number = double;
   };
@@ -374,7 +374,7 @@ class System {
     for (std::size_t k = 0; k < N; ++k) lin.jacobian[i][k] = f.derivative[k];
   }
 
-  /// By states and time, then by the parameters.
+  /// Linearises by the states and time first, then by the parameters.
   Linearisation<N, P> linearise_by_calls(const Values<N>& x, double t) const {
     const auto f = right_hand_side(ByStates{}, lifted(x), t);
     Linearisation<N, P> lin;
@@ -392,7 +392,7 @@ class System {
     return linearise_by_calls(x, t);
   }
 
-  /// What the valve is told: the held output, the controller's, or the recorded command.
+  /// Command to the valve: the held output, the controller's output, or the recorded command.
   template <typename K>
   Number<K> valve_command(K by, const Numbers<K>& x, const Number<K>& drive, double t) const {
     if (!layout_.pid) return drive;
@@ -504,9 +504,9 @@ class System {
     }
   }
 
-  /// The derivatives of controller and valve; the others are left as they are.
+  /// Writes the derivatives of controller and valve; the others stay unchanged.
   ///
-  /// @return  what the valve is told
+  /// @return  command to the valve
   template <typename K>
   Number<K> loop_rates(K by, const Numbers<K>& x, const Number<K>& drive, double t,
                        Numbers<K>& dx) const {

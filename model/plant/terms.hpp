@@ -86,11 +86,11 @@ X leaking_opening(const X& y, const C& c) {
   return c * c / (c - y);
 }
 
-/// Opening of the one orifice that passes what an edge and a fixed orifice in series with it pass:
-/// 1 / o^2 = 1 / y^2 + 1 / l^2.
+/// Opening of one orifice that passes the flow of an edge in series with a fixed orifice: 1 / o^2 =
+/// 1 / y^2 + 1 / l^2.
 ///
 /// @param y  opening of the edge, >= 0
-/// @param l  opening of an edge that throttles as bores and lines do, > 0, in the unit of y
+/// @param l  opening that represents bores and lines, > 0, in the unit of y
 template <typename X, typename C>
 X series_opening(const X& y, const C& l) {
   using std::sqrt;

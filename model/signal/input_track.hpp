@@ -7,9 +7,8 @@
 
 namespace rigcal::model {
 
-/// A signal as a simulation walks along it: the segment that holds now, and when it ends. Times
-/// count from the first sample, so that long time stamps cost no digits; the signal may be delayed
-/// by a dead time.
+/// A signal during a simulation: the current segment and its end. Times count from the first
+/// sample, so that long time stamps cost no digits. The signal may be delayed by a dead time.
 class InputTrack {
  public:
   /// @param before    unless it is `hold`, the track waits until the signal begins
