@@ -11,7 +11,7 @@
 namespace rigcal::metrics {
 namespace {
 
-/// How many repeats have each sample, shape (n).
+/// Number of repeats with a value at each sample, shape (n).
 std::vector<double> counts_of(const std::vector<std::vector<double>>& deviations, std::size_t n) {
   std::vector<double> counts(n, 0.0);
   for (const auto& own : deviations)

@@ -8,13 +8,13 @@
 
 namespace rigcal::metrics {
 
-/// What makes the measured side of a score uncertain.
+/// The measured side of a score, with its sources of uncertainty.
 struct MeasuredMean {
   std::span<const double> mean;  ///< shape (n)
   /// Each repeat minus the mean, NaN where it has no sample; shape (repeats, n)
   std::vector<std::vector<double>> deviations;
   double gain_sd = 0.0;    ///< standard uncertainty of the sensor's gain, relative
-  double offset_sd = 0.0;  ///< that of its offset, unit of the mean
+  double offset_sd = 0.0;  ///< standard uncertainty of its offset, unit of the mean
 };
 
 /// Expanded uncertainty of each score of a given model: with 95 % confidence the score differs by

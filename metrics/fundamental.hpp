@@ -25,11 +25,11 @@ struct Fundamental {
 Fundamental fundamental(std::span<const double> time_s, std::span<const double> signal,
                         double frequency_hz);
 
-/// How a simulated signal stands to a measured one at the fundamental.
+/// Gain and phase of a simulated signal relative to a measured one at the fundamental.
 struct FundamentalComparison {
   double gain_ratio = 0.0;  ///< simulated amplitude over measured amplitude
   double phase_deg = 0.0;   ///< simulated phase minus measured phase, in (-180, 180]
-  double delay_s = 0.0;     ///< by how much the simulation is late: -phase / (360 f)
+  double delay_s = 0.0;     ///< delay of the simulation: -phase / (360 f)
 };
 
 /// @throws std::invalid_argument  as fundamental()

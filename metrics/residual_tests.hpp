@@ -17,7 +17,7 @@ namespace rigcal::metrics {
 /// Correlation of the residual with itself: white noise has none.
 struct Autocorrelation : Judged {
   std::vector<double> values;  ///< shape (lags + 1), from lag 0; biased estimate, values[0] = 1
-  double band = 0.0;           ///< 95 % of the values of white noise lie within +-band
+  double band = 0.0;           ///< 95 % of the values of white noise are within +-band
   double ljung_box = 0.0;      ///< Ljung and Box, Biometrika 65, 1978, over `tested_lags`
   int tested_lags = 0;
   double p_value = 0.0;
@@ -34,11 +34,11 @@ struct CrossCorrelation : Judged {
   double peak_lag_s = 0.0;     ///< > 0: the residual follows the input
 };
 
-/// Where in frequency the residual has its power.
+/// Distribution of the residual's power over frequency.
 struct Periodogram : Judged {
   std::vector<double> frequency_hz;  ///< shape (bins), logarithmic bins of the periodogram
   std::vector<double> density;       ///< mean one-sided power density, [unit^2/Hz]
-  double median_frequency_hz = 0.0;  ///< half of the power lies below
+  double median_frequency_hz = 0.0;  ///< half of the power is below it
   double peak_frequency_hz = 0.0;    ///< of the largest single line
   double peak_share = 0.0;           ///< of the power in that line and its two neighbours
   double distance = 0.0;  ///< of the cumulative periodogram from a straight line (Bartlett)
@@ -75,10 +75,11 @@ struct ResidualTests {
   Drift drift;
 };
 
-/// Effective sample size: as many independent samples would tell the mean as well as n correlated
-/// ones do, n / (1 + 2 sum of rho) with the autocorrelations up to the first that is not positive
-/// (Geyer, Statistical Science 7, 1992, without his pairs). n where the first is within the 95 %
-/// band of white noise. Negative autocorrelations beyond do not raise it: it is on the safe side.
+/// Effective sample size: the number of independent samples that determine the mean as well as n
+/// correlated ones, n / (1 + 2 sum of rho) with the autocorrelations up to the first that is not
+/// positive (Geyer, Statistical Science 7, 1992, without his pairs). It is n if the first is within
+/// the 95 % band of white noise. Later negative autocorrelations do not raise it, which is on the
+/// safe side.
 ///
 /// @param rho  shape (n), n >= 1, from lag 0: rho[0] = 1
 /// @return     in [1, n]

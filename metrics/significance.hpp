@@ -35,8 +35,8 @@ EstimateError error_of_difference(const EstimateError& a, const EstimateError& b
 ///                                is not finite
 double difference_p_value(double difference, const EstimateError& error);
 
-/// p-values that hold for all of them together: of the k-th smallest of n, (n - k + 1) p, never
-/// below that of a smaller one (S. Holm, Scand. J. Statist. 6, 1979).
+/// p-values adjusted for all of them together: the k-th smallest of n becomes (n - k + 1) p, but
+/// never less than that of a smaller one (S. Holm, Scand. J. Statist. 6, 1979).
 ///
 /// @param p_values  shape (n), in [0, 1]
 /// @return shape (n), in the same order

@@ -116,7 +116,7 @@ void try_signals(const Problem& problem, std::span<const double> z, const Eigen:
     times.push_back(step_s * static_cast<double>(times.size()));
   const ProblemChannel& channel = condition.channels.front();
   for (const double frequency_hz : {0.1, 1.0, 10.0}) {
-    // No faster than what the rig was seen to do.
+    // Limits the speed to the largest observed one.
     const double amplitude = *c.amplitude * std::min(1.0, *c.frequency_hz / frequency_hz);
     for (const bool square : {false, true}) {
       model::SimulationInputs inputs = condition.inputs;
