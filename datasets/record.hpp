@@ -13,7 +13,7 @@
 
 namespace rigcal::datasets {
 
-/// What a column of a record holds.
+/// Quantity in a column of a record.
 enum class Channel {
   reference,                ///< of a loop on position [m]
   command,                  ///< valve command [V]
@@ -57,7 +57,7 @@ struct TimeHole {
 
 /// One recorded run as it came from a file, in SI.
 struct Repeat {
-  std::string source;  ///< file, and the column set where one file holds several repeats
+  std::string source;  ///< file, and the set of columns if one file has several repeats
   std::vector<double> time_s;
   std::map<Channel, std::vector<double>> values;  ///< each of the shape of time_s
   std::vector<std::string> warnings{};            ///< doubts about its files, in words
@@ -73,25 +73,25 @@ struct Series {
   /// sample; empty for a single repeat.
   std::vector<double> sd;
   std::vector<int> count;  ///< repeats that carry this sample
-  /// Standard deviation of one repeat, pooled over the samples: sqrt(mean of sd^2). NaN where
-  /// neither repeats nor the campaign's `sd` tell it.
+  /// Standard deviation of one repeat, pooled over the samples: sqrt(mean of sd^2). NaN without
+  /// both repeats and the campaign's `sd`.
   double pooled_sd = std::numeric_limits<double>::quiet_NaN();
-  /// Standard deviation of the mean: what a residual is divided by. NaN where unknown.
+  /// Standard deviation of the mean, by which residuals are divided. NaN if unknown.
   double sd_of_mean = std::numeric_limits<double>::quiet_NaN();
   int repeats = 1;  ///< repeats that carry this channel
-  /// Each repeat minus the mean, NaN where it has no sample, shape (repeats, samples); empty unless
-  /// asked for, and of a reference that all repeats share.
+  /// Each repeat minus the mean, NaN without a sample, shape (repeats, samples); empty unless
+  /// requested, and for a reference that all repeats share.
   std::vector<std::vector<double>> deviations;
 };
 
-/// What became of one repeat when it was averaged.
+/// Result of averaging for one repeat.
 struct RepeatReport {
   std::string source;
-  double offset_s = 0.0;  ///< by how much this repeat came later than their mean
+  double offset_s = 0.0;  ///< delay of this repeat against their mean
   /// rms distance from the mean of the others over the pooled sd; of its worst channel
   double deviation = 0.0;
   bool outlier = false;
-  double shifted_s = 0.0;  ///< offset_s where it was taken off to align the repeat, else 0
+  double shifted_s = 0.0;  ///< offset_s if it was subtracted to align the repeat, else 0
 };
 
 struct TimeWindow {
@@ -99,18 +99,18 @@ struct TimeWindow {
   double end_s = 0.0;
 };
 
-/// The averaged record of one condition: what the model is compared with.
+/// The averaged record of one condition, which the model is compared with.
 struct Record {
   std::string condition;
   std::vector<double> time_s;  ///< shape (samples), increasing
   std::map<Channel, Series> channels;
   int repeats = 1;
   std::vector<RepeatReport> repeat_reports;
-  /// What counts, in order: the campaign's windows, or those found; empty: all of it.
+  /// Windows in order: the campaign's, or those found; empty: the whole record.
   std::vector<TimeWindow> windows;
   /// Generated signal that equals its recorded drive.
   std::optional<model::Signal> generated_drive{};
-  std::vector<std::string> notes;     ///< in words: what was done to it, such as decimation
+  std::vector<std::string> notes;     ///< in words: changes to the record, such as decimation
   std::vector<std::string> warnings;  ///< in words: outliers, gaps, spikes, sensors
   /// In words: samples missing in the windows, so that nothing can be compared with the record.
   std::vector<std::string> holes;

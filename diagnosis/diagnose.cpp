@@ -191,7 +191,7 @@ void classify_by_features(std::vector<RecordDiagnosis>& records) {
 
 enum class Method { fitted_leak, features };
 
-/// Features that have nothing to be compared with are no judgement; a leak that was not found is.
+/// Features without a reference are no judgement; a search without a leak is one.
 template <typename Found>
 Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bool single,
                   Found found) {
@@ -204,8 +204,8 @@ Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bo
   return accuracy_of(judged);
 }
 
-/// What the share of each record is, and of the smallest leak in healthy ones. A share that cannot
-/// be simulated is a record that was not diagnosed.
+/// Estimates the share of each record, and the smallest detectable leak of healthy ones. A record
+/// whose share cannot be simulated counts as not diagnosed.
 void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& prepared,
               const SignalErrors& errors, RecordDiagnosis& record) {
   const CoefficientError error =
@@ -291,7 +291,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   std::vector<Prepared> prepared(records.size());
   parallel_for(prepared.size(), options.threads,
                [&](std::size_t i) { prepared[i] = prepare(problem, records[i], options); });
-  // The problem's own campaign has forgotten what was known of leaks.
+  // The problem's own campaign no longer has the known leaks.
   for (Prepared& each : prepared)
     each.is_healthy = is_healthy(campaign, *campaign.find(each.condition->id));
   std::vector<Task> tasks;

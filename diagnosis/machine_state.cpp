@@ -12,7 +12,7 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Of a limit: nearer than this a share is said to sit on it.
+/// A share within this fraction of a limit counts as being on it.
 constexpr double kOnLimit = 0.05;
 /// Disagreement of less probability widens the error.
 constexpr double kDisagree = 0.05;

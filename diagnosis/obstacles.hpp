@@ -7,10 +7,10 @@
 
 namespace rigcal::diagnosis {
 
-/// Conditions that a diagnosis looks at: all but those of use `ignore`.
+/// Conditions for a diagnosis: all except those of use `ignore`.
 std::vector<const datasets::Condition*> diagnosed_conditions(const datasets::Campaign& campaign);
 
-/// What a condition lacks to be diagnosed, in words; empty if nothing.
+/// What a condition lacks for a diagnosis, in words; empty if it lacks nothing.
 std::vector<std::string> lacks_for_diagnosis(const datasets::Campaign& campaign,
                                              const datasets::Condition& condition);
 

@@ -13,7 +13,7 @@
 
 namespace rigcal::diagnosis {
 
-/// A condition with its records and what a leak does in it.
+/// A condition with its records and the simulated effects of a leak.
 struct Prepared {
   const datasets::Condition* condition = nullptr;
   const datasets::RepeatRecords* records = nullptr;

@@ -18,7 +18,7 @@ bool is_in_counts(const TomlNode& node) {
   return unit && unit->is_string() && unit->string() == kCounts;
 }
 
-/// Numbers that nothing converts stay as they are.
+/// Counts have no unit, so they stay as they are.
 UnitConversion read_counts(const TomlNode& node) {
   for (const char* key : {"gain", "offset", "sd", "gain_sd", "offset_sd", "ignore_unit"}) {
     if (const auto entry = node.find(key))

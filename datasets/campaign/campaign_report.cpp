@@ -40,7 +40,7 @@ struct Statement {
   TomlNode node;
 };
 
-/// Merges what sensors and [recording.channels] state about the same number of a channel.
+/// Merges the statements of sensors and [recording.channels] about the same number of a channel.
 class Statements {
  public:
   explicit Statements(const TomlNode& root) : root_(root) {}

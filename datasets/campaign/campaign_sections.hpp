@@ -20,7 +20,7 @@ std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& c
 std::vector<Channel> read_not_judged(const TomlNode& node, const Campaign& campaign,
                                      const std::vector<AcceptanceLimit>& limits);
 
-/// [acceptance] into the campaign: limits, and what is asked beside them; needs rig and channels.
+/// Reads [acceptance] into the campaign: limits and further conditions; needs rig and channels.
 void read_acceptance(const TomlNode& node, Campaign& campaign);
 
 /// [fit]; needs the channels.
@@ -48,16 +48,16 @@ SyntheticSettings read_synthetic(const TomlNode& node, model::PlantKind plant);
 /// One [[condition]]; needs the rig and the channels.
 Condition read_condition(const TomlNode& node, const Campaign& campaign);
 
-/// Name of a channel as a key of a table, and what is known instead if it is none.
+/// Reads the name of a channel as a key of a table; an error names the known ones.
 Channel read_channel_key(const TomlNode& table, const std::string& key);
 
 /// Output channels of the records, in the order of the channel table.
 std::vector<Channel> output_channels(const Campaign& campaign);
 
-/// What no single section can tell: parameters without a value, contradictions, runs without
+/// Checks that need several sections: parameters without a value, contradictions, runs without
 /// records.
 ///
-/// @param start  where the file starts
+/// @param start  start of the file
 void check_campaign(const Campaign& campaign, const Location& start);
 
 }  // namespace rigcal::datasets

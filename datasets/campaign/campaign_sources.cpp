@@ -19,7 +19,7 @@ bool is_pattern(std::string_view text) {
   return text.find_first_of("*?") != std::string_view::npos;
 }
 
-/// Whether a file name fits a pattern; '*' stands for any text, '?' for one character. Linear in
+/// Whether a file name matches a pattern; '*' matches any text, '?' one character. Linear in
 /// memory, at most quadratic in time.
 bool fits(std::string_view name, std::string_view pattern) {
   std::size_t n = 0;

@@ -9,13 +9,13 @@
 
 namespace rigcal::datasets {
 
-/// A key of [report] and what it is called on the page.
+/// A key of [report] with its label on the page.
 struct ReportField {
   std::string_view key, label;
 };
 
-/// What a test report states beside its results (ISO/IEC 17025:2017, 7.8.2), in the order of the
-/// page.
+/// Statements of a test report in addition to its results (ISO/IEC 17025:2017, 7.8.2), in the order
+/// of the page.
 inline constexpr std::array kReportFields{
     ReportField{"number", "Report number"},
     ReportField{"issued", "Date of issue"},
@@ -44,8 +44,8 @@ inline constexpr std::array kSensorFields{
 /// [report]: texts as the campaign gives them, dates as ISO 8601.
 struct ReportSettings {
   using Fields = std::vector<std::pair<std::string, std::string>>;  ///< key, text
-  Fields fields;                ///< those that are given, in the order of kReportFields
-  std::vector<Fields> sensors;  ///< likewise
+  Fields fields;                ///< the given ones, in the order of kReportFields
+  std::vector<Fields> sensors;  ///< the given ones of each sensor
 
   bool empty() const { return fields.empty() && sensors.empty(); }
 };

@@ -7,7 +7,7 @@
 
 namespace rigcal::datasets {
 
-/// Which end of its range a signal does not leave.
+/// End of its range that a signal does not leave.
 enum class RangeEnd { lowest, highest };
 
 /// Runs of three or more exactly equal samples at the lowest or the highest value of a signal that

@@ -25,7 +25,7 @@ Signal signal_of(const Condition& condition) {
           condition.amplitude};
 }
 
-/// How long the records of a signal are meant to be, if most of them agree on it.
+/// Usual length of the records of a signal, if most of them agree on it.
 struct Usual {
   double seconds = 0.0;
   long as_long = 0;

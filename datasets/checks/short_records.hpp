@@ -8,7 +8,7 @@
 
 namespace rigcal::datasets {
 
-/// How long the record of a condition is.
+/// Length of a condition's record.
 struct RecordLength {
   const Condition* condition = nullptr;
   double seconds = 0.0;

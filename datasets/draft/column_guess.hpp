@@ -7,7 +7,7 @@
 
 namespace rigcal::datasets {
 
-/// What a column seems to hold, by its name alone.
+/// Guess of a column's meaning from its name alone.
 struct ColumnGuess {
   bool is_time = false;
   std::optional<Channel> channel;

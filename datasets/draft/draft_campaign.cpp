@@ -105,7 +105,7 @@ std::string names_text(const std::vector<RecordColumn>& columns) {
   return fmt::format("{}{}", fmt::join(names, ", "), more);
 }
 
-/// A file without names that tell a time: a matrix with a time, or why it is no recording.
+/// Handles a file without a column of times: a matrix with times, or no recording, with the reason.
 void without_time(const fs::path& file, const std::vector<RecordColumn>& columns,
                   FileColumns& found) {
   found.rows = timed_lines(file, columns);
@@ -131,7 +131,7 @@ void without_time(const fs::path& file, const std::vector<RecordColumn>& columns
 
 FileColumns columns_of(const fs::path& file) {
   const std::vector<RecordColumn> columns = record_reader(file).columns(file);
-  std::map<std::string, std::vector<std::string>> numbers;  // by stem
+  std::map<std::string, std::vector<std::string>> numbers;  // numbers by stem
   for (const RecordColumn& column : columns) {
     const Numbered numbered = split_number(column.name);
     if (!numbered.number.empty()) numbers[numbered.stem].push_back(numbered.number);
@@ -335,7 +335,7 @@ constexpr std::array<std::string_view, 13> kTwoChamberTerms{
     "external_force",     "load_gradient",      "coulomb_friction",    "air_fraction",
     "stop_stiffness"};
 
-/// And those that a servo-valve and a symmetric cylinder have.
+/// Terms of a servo valve with a symmetric cylinder.
 constexpr std::array<std::string_view, 8> kLoadPressureTerms{
     "valve_offset",       "valve_dead_band", "valve_time_constant", "transport_delay",
     "valve_null_leakage", "laminar_leakage", "external_force",      "coulomb_friction"};
@@ -497,7 +497,7 @@ std::optional<model::Feedback> loop_of(const FileColumns& columns) {
   return std::nullopt;
 }
 
-/// What drives the rig, as far as it is recorded.
+/// Drive of the rig, if it is recorded.
 const ChannelColumns* drive_of(const FileColumns& columns) {
   const auto loop = loop_of(columns);
   if (!loop) return find(columns, Channel::command);
@@ -522,7 +522,7 @@ std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
   return std::pair{std::move(data[0]), std::move(data[1])};
 }
 
-/// How runs start: as the record does, unless one of them begins in motion.
+/// Initial state of the runs: that of the record, unless one of them begins in motion.
 std::string initial_text(const std::vector<FileGroup>& groups) {
   const double window_s = Campaign().initial_window_s;
   for (const FileGroup& group : groups) {
@@ -646,9 +646,9 @@ std::vector<FileGroup> groups_of(std::vector<Recording> recordings) {
   return result;
 }
 
-/// Reads what a draft is made from: time and drive of the first file of each group. Where it cannot
-/// be read, as where several runs stand below each other and the time restarts, the file is named
-/// in `left_out` and the next one of its group takes its place.
+/// Reads the data for a draft: time and drive of the first file of each group. A file that cannot
+/// be read, for example because it has several runs one after the other and the time restarts, is
+/// listed in `left_out`, and the next one of its group is used.
 /// @throws InputError  of the first file that cannot be read, if no group remains
 std::vector<FileGroup> readable_among(std::vector<FileGroup> groups,
                                       std::vector<std::string>& left_out) {

@@ -8,11 +8,11 @@
 
 namespace rigcal::datasets {
 
-/// How the repeats of one condition lie in time.
+/// Relative timing of the repeats of one condition.
 struct AlignedRepeats {
-  std::vector<double> offset_s;   ///< by how much each repeat came later than the others
+  std::vector<double> offset_s;   ///< delay of each repeat against the others
   std::vector<double> shifted_s;  ///< the same where it is corrected, else 0
-  /// Where sample i of the common time base lies in each repeat: sample i + shift, fractional.
+  /// Position of the common time base in each repeat: sample i is at i + shift, fractional.
   std::vector<double> shift;
   std::vector<std::string> warnings;
 };

@@ -106,7 +106,8 @@ Series moments(const Stack& stack, Span span) {
   Series series;
   series.repeats = static_cast<int>(stack.rows.size());
   const bool several = stack.rows.size() > 1;
-  // At their size: what grows keeps up to twice as much, for as long as the record lives.
+  // Reserves the exact size: a growing vector would keep up to twice as much for the life of the
+  // record.
   series.mean.reserve(span.end - span.begin);
   series.count.reserve(span.end - span.begin);
   if (several) series.sd.reserve(span.end - span.begin);
@@ -120,8 +121,7 @@ Series moments(const Stack& stack, Span span) {
       sum += row[i];
       ++count;
     }
-    // Of equal values the sum rounds, and a command that all repeats share would seem to have
-    // noise.
+    // The sum of equal values rounds; a command that all repeats share would seem to have noise.
     const double mean = all_equal(stack, i) ? value_at(stack, i) : sum / count;
     series.mean.push_back(mean);
     series.count.push_back(count);
@@ -214,8 +214,8 @@ std::vector<double> distances_from_median(const Stack& stack, Span span) {
   return distances;
 }
 
-/// Standard deviation of the noise of one row, from its second differences: what is smooth at the
-/// scale of three samples cancels.
+/// Standard deviation of the noise of one row, from its second differences: parts that are smooth
+/// over three samples cancel.
 double noise_sd(const std::vector<double>& row, Span span) {
   if (span.end - span.begin < 3) return 0.0;
   const Span inner{span.begin + 1, span.end - 1};
@@ -223,7 +223,7 @@ double noise_sd(const std::vector<double>& row, Span span) {
          std::sqrt(6.0);
 }
 
-/// Two repeats cannot tell which of them is wrong, only that they differ by more than their noise.
+/// Of two repeats either may be wrong; they only show that they differ by more than their noise.
 void warn_of_pair(const Stack& stack, const Series& series, Channel channel, Span span,
                   const AverageOptions& options, const std::vector<Repeat>& repeats,
                   std::vector<std::string>& warnings) {
@@ -302,7 +302,7 @@ void judge_repeats(const Stack& stack, const Series& series, Channel channel, Sp
     warn_of_outliers(distinct, channel, span, options, record);
 }
 
-/// Names noise that the mean of the repeats and their scatter do not stand for.
+/// Warns of noise that neither the mean of the repeats nor their standard deviation shows.
 /// @param deviations  of each row from the mean
 void warn_of_noise(const std::vector<std::vector<double>>& deviations, const Series& series,
                    Channel channel, const AverageOptions& options,

@@ -29,7 +29,7 @@ struct Found {
   Spike spike;
 };
 
-/// How many there are in one channel, and the largest of them by name.
+/// Number of spikes in one channel, with the largest one.
 std::string spikes_text(Channel channel, std::vector<Found> found) {
   constexpr std::size_t kMostNamed = 3;
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {

@@ -30,10 +30,10 @@ double resolution(const std::vector<EqualRun>& runs);
 /// Median of the steps from one value to the next; 0 where all are equal.
 double typical_step(const std::vector<EqualRun>& runs);
 
-/// Whether the signal arrives at a run and leaves it with speed, as far as the record tells: three
-/// samples before it and after it lie at least so far from it.
+/// Whether the signal moves before and after a run, as far as the record shows: three samples
+/// before it and after it have at least this distance from it.
 ///
-/// @param x  shape (n), of which the run is
+/// @param x  shape (n), of which the run is a part
 bool cuts_a_motion(std::span<const double> x, const EqualRun& run, double least);
 
 /// Whether the signal has noise well above its resolution, so that no sensor that works gives the

@@ -28,7 +28,7 @@ struct Lag {
 std::optional<Lag> find_lag(const std::vector<double>& a, const std::vector<double>& b,
                             int max_lag);
 
-/// The same of several records against one, which is smoothed once for all of them.
+/// The same for several records against one, which is smoothed once for all of them.
 std::vector<std::optional<Lag>> find_lags(const std::vector<double>& a,
                                           const std::vector<const std::vector<double>*>& others,
                                           int max_lag);

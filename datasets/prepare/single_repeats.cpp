@@ -12,8 +12,8 @@
 namespace rigcal::datasets {
 namespace {
 
-/// A record of one repeat holds numbers only: at the ends that it does not cover, its nearest
-/// sample, which `covered` keeps from counting.
+/// A record of one repeat must have numbers everywhere. Ends that the repeat does not cover get its
+/// nearest sample, and `covered` excludes them.
 void fill_ends(std::vector<double>& x, std::size_t& first, std::size_t& last) {
   const auto finite = [](double value) { return std::isfinite(value); };
   const auto begin = std::find_if(x.begin(), x.end(), finite);

@@ -5,7 +5,7 @@
 
 namespace rigcal::datasets {
 
-/// A run of one or two samples that stands out of its neighbours on both sides.
+/// A run of one or two samples that differs from its neighbours on both sides.
 struct Spike {
   std::size_t sample = 0;  ///< first of the run, from 0
   std::size_t length = 1;

@@ -8,7 +8,7 @@
 
 namespace rigcal::datasets {
 
-/// What a recorded signal looks like.
+/// Apparent waveform of a recorded signal.
 struct WaveformGuess {
   Waveform waveform = Waveform::recorded;
   std::optional<double> frequency_hz;  ///< of a sine, square or chirp

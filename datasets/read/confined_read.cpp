@@ -89,7 +89,7 @@ RecordTable unpacked(std::string_view text, std::size_t columns) {
   return table;
 }
 
-/// Texts that end with a NUL each: name, unit, and what the format says of the column.
+/// Joins texts that end with a NUL each: name, unit, and the remark of the format about the column.
 std::string joined(const std::vector<RecordColumn>& columns) {
   std::string text;
   for (const RecordColumn& column : columns) {

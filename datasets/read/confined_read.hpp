@@ -10,11 +10,11 @@
 
 namespace rigcal::datasets {
 
-/// A library that reads files of a format in a process of its own (common/confined.hpp), in words.
+/// A library that reads files of a format in a separate process (common/confined.hpp), in words.
 struct ConfinedReader {
   std::string_view library;  ///< "HDF5"
   std::string_view format;   ///< "a MAT file"
-  std::string_view advice;   ///< what to do with a file that crashes it
+  std::string_view advice;   ///< advice for a file that crashes it
 };
 
 /// Calls `read` in a separate process with limits of memory and time. A crash, an endless loop or
@@ -26,7 +26,7 @@ struct ConfinedReader {
 RecordTable load_confined(const std::filesystem::path& path, const ConfinedReader& reader,
                           std::size_t columns, const std::function<RecordTable()>& read);
 
-/// Likewise a list of columns.
+/// The same for a list of columns.
 std::vector<RecordColumn> list_confined(const std::filesystem::path& path,
                                         const ConfinedReader& reader,
                                         const std::function<std::vector<RecordColumn>()>& list);

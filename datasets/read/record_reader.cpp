@@ -102,7 +102,7 @@ std::string lower_extension(const std::filesystem::path& path) {
   return extension;
 }
 
-/// What is no regular file has no start: a pipe would give its bytes only once.
+/// A file that is not regular has no start: a pipe would give its bytes only once.
 FileStart start_of(const std::filesystem::path& path) {
   FileStart start{lower_extension(path), {}};
   std::error_code error;

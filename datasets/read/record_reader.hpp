@@ -20,7 +20,7 @@ struct RecordReader {
   /// @throws InputError  file and place within it, what was found and what was expected
   /// @throws std::invalid_argument  the time column is not among the columns
   RecordTable (*load)(const std::filesystem::path& path, const RecordRequest& request);
-  std::string_view if_empty;  ///< what to do about a file that holds no columns
+  std::string_view if_empty;  ///< advice for a file without columns
 };
 
 /// Format of a file: the first of the table that accepts it. CSV accepts what no other does.

@@ -7,7 +7,7 @@
 
 namespace rigcal::datasets {
 
-/// How a file begins, by which its format is known.
+/// Beginning of a file, which identifies its format.
 struct FileStart {
   std::string extension;  ///< in lower case, with its dot
   std::string bytes;      ///< the first 4096; fewer of a shorter file
@@ -15,20 +15,20 @@ struct FileStart {
 
 /// A column that a file offers.
 struct RecordColumn {
-  std::string name;      ///< as a campaign file asks for it
-  std::string unit;      ///< as the file tells it apart from the name; empty if it does not
+  std::string name;      ///< as requested in a campaign file
+  std::string unit;      ///< unit that the file gives separately from the name; else empty
   bool is_time = false;  ///< the format itself says so
-  /// A row or column of a matrix, which has no name of its own; the first may be the time.
+  /// A row or column of a matrix, without a name of its own; the first may be the time.
   bool is_matrix_line = false;
 
   bool operator==(const RecordColumn&) const = default;
 };
 
-/// Which columns of a file are wanted.
+/// Wanted columns of a file.
 struct RecordRequest {
   std::vector<std::string> columns;  ///< in the order of the result
   std::string time_column;           ///< among `columns`; checked to increase; may be empty
-  char separator = 0;                ///< of the columns of a text; 0: found by itself
+  char separator = 0;                ///< separator of a text; 0: detected
 };
 
 /// @throws std::invalid_argument  the time column is not among the columns
@@ -50,7 +50,7 @@ struct ColumnLabel {
 
 struct RecordTable {
   std::vector<std::vector<double>> columns;  ///< one per wanted name, of the same length
-  std::string warning;                       ///< what is doubtful about the file; mostly empty
+  std::string warning;                       ///< doubts about the file; mostly empty
   std::vector<ColumnLabel> labels{};         ///< one per wanted name, or none
 };
 

@@ -13,7 +13,7 @@ namespace rigcal::datasets {
 
 using WriteText = std::function<void(const std::filesystem::path&, std::string_view)>;
 
-/// What `synthesize` wrote.
+/// Files that `synthesize` wrote.
 struct SynthesisReport {
   std::filesystem::path campaign_file;
   int files = 0;

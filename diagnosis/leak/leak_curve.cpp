@@ -29,7 +29,8 @@ ValueAt hermite(const std::vector<LeakPoint>& points, double LeakPoint::*member,
   const double width = b.coefficient - a.coefficient;
   const double t = (coefficient - a.coefficient) / width;
   const double secant = (b.*member - a.*member) / width;
-  // Newton's form: a, the slope at a, and what the secant and the slope at b add.
+  // Newton's form: the value at a, the slope at a, and the terms of the secant and of the slope at
+  // b.
   const double second = secant - a.*slope;
   const double third = a.*slope + b.*slope - 2.0 * secant;
   const double step = width * t;
@@ -37,8 +38,8 @@ ValueAt hermite(const std::vector<LeakPoint>& points, double LeakPoint::*member,
           a.*slope + t * (2.0 * second + (3.0 * t - 2.0) * third)};
 }
 
-/// Where nothing leaks the slope is that of a leak so small that it is proportional to its
-/// coefficient: |leakage flow| has no derivative there.
+/// At zero the slope is that of a leak so small that it is proportional to its coefficient:
+/// |leakage flow| has no derivative there.
 constexpr double kProportional = 0.02;
 
 LeakPoint without_leak(const LeakAt& leak_at, double next) {

@@ -14,7 +14,7 @@ namespace rigcal::diagnosis {
 using datasets::LeakClass;
 inline constexpr std::size_t kClassCount = datasets::kLeakClasses.size();
 
-/// What is known of the leak in one record.
+/// Estimate of the leak in one record.
 struct LeakEstimate {
   double coefficient = 0.0;     ///< signed, see LeakFit
   double standard_error = 0.0;  ///< of the coefficient, rig parameters included
@@ -45,10 +45,10 @@ struct LeakEstimate {
   bool has_class() const { return !incompatible && has_share(); }
 };
 
-/// Error of the coefficient of one record: four parts that are independent of each other, scatter
-/// of the residuals (by clusters where the signal has misfit and the record shows it), variation
-/// between repeats beyond their white noise (over the root of their number for an average), the
-/// leak that healthy records seem to have, and the rig's parameters.
+/// Error of the coefficient of one record, from four independent parts: the residuals (by clusters
+/// if the signal has a lack of fit and the record shows it), variation between repeats beyond their
+/// white noise (divided by the root of their number for an average), the apparent leak of healthy
+/// records, and the rig's parameters.
 struct CoefficientError {
   double own_se = 0.0;  ///< without the rig's parameters
   double rig_se = 0.0;
@@ -82,8 +82,8 @@ LeakEstimate estimate_leak(double coefficient, const CoefficientError& error,
                            const LeakCurve& curve, double share_rig_se,
                            const datasets::DiagnosisSettings& settings);
 
-/// The smallest leak that is told from none: found in the settings' share of cases (`detection`)
-/// where no leak is taken for one in no more than `false_alarms` of them (Currie's detection limit,
+/// The smallest detectable leak: it is found in the settings' fraction of cases (`detection`), with
+/// at most `false_alarms` of records without a leak taken for leaking (Currie's detection limit,
 /// Anal. Chem. 40, 1968).
 struct DetectionLimit {
   double coefficient = 0.0;

@@ -16,14 +16,14 @@
 
 namespace rigcal::diagnosis {
 
-/// What an earlier fit says of the rig.
+/// Rig parameters of an earlier fit.
 struct RigFit {
   std::vector<datasets::FittedValue> values;  ///< fitted ones, without nuisance
   std::vector<int> indices;    ///< table rows of fitted values of scope rig that have an error
-  Eigen::MatrixXd covariance;  ///< of these, SI, shape (indices)^2
+  Eigen::MatrixXd covariance;  ///< covariance of these, SI, shape (indices)^2
 };
 
-/// The same of a fit that has just been made.
+/// The same from a fit in this process.
 RigFit rig_fit_of(const calib::Fit& fit);
 
 /// The campaign as a diagnosis sees it: the leakage coefficient is unknown in every condition, with
@@ -38,18 +38,19 @@ struct LeakProblem {
   LeakProblem(const datasets::Campaign& original, const RigFit& rig);
   /// The same with another upper bound of the coefficient.
   LeakProblem up_to(double coefficient) const;
-  /// The same for records, each the mean of `repeats`, that the mean of `reference` healthy repeats
-  /// corrected: what differs between repeats (ParameterSetting::between_repeats) does so in both.
+  /// The same for records that are each the mean of `repeats` and were corrected by the mean of
+  /// `reference` healthy repeats: differences between repeats (ParameterSetting::between_repeats)
+  /// occur in both.
   LeakProblem corrected_by(int reference, int repeats) const;
 };
 
 /// The leak that explains one record best.
 struct LeakFit {
   std::string failure;  ///< why there is none, in words; empty if there is one
-  /// Least-squares estimate. Where a leak that is not negative fits best at 0, the linear
-  /// continuation below it, so that the scatter about 0 is not cut off.
+  /// Least-squares estimate. If a leak of 0 fits best, it is the linear continuation below zero, so
+  /// that the distribution about 0 is not cut off.
   double coefficient = 0.0;
-  /// Standard errors of it from the residuals, with their degrees of freedom (see fit_leak()): by
+  /// Its standard errors from the residuals, with their degrees of freedom (see fit_leak()): by
   /// clusters of samples, and as white noise.
   double cluster_se = 0.0;
   int cluster_freedom = 1;
@@ -57,7 +58,7 @@ struct LeakFit {
   int white_freedom = 1;
   double noise_se = 0.0;  ///< the part of white_se that is the record's own, not its reference's
   double rig_se = 0.0;    ///< from the uncertainty of the rig's parameters
-  /// How the coefficient moves per unit of each of the rig's parameters, shape (RigFit::indices).
+  /// Change of the coefficient per unit of each of the rig's parameters, shape (RigFit::indices).
   Eigen::VectorXd rig_moves;
   double effect_m = 0.0;      ///< rms change of position per unit of the coefficient [m]
   double parity_rms_m = 0.0;  ///< of record (corrected, if it was) minus healthy model

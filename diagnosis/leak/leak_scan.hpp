@@ -6,10 +6,10 @@
 
 namespace rigcal::diagnosis {
 
-/// Where the search for the leak of a record begins and ends.
+/// Range of the search for the leak of a record.
 struct LeakScan {
   double best_coefficient = 0.0;     ///< of least cost among the simulated ones
-  double largest_coefficient = 0.0;  ///< that was simulated
+  double largest_coefficient = 0.0;  ///< largest simulated one
 };
 
 /// Simulates a record without a leak and over a geometric range of coefficients, until the share

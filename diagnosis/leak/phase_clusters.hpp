@@ -8,8 +8,8 @@
 
 namespace rigcal::diagnosis {
 
-/// The score of each is taken for independent, so that more would be correlated, and fewer leave
-/// few degrees of freedom (fit_leak()).
+/// The scores of the clusters count as independent: more clusters would be correlated, and fewer
+/// leave few degrees of freedom (fit_leak()).
 inline constexpr int kClusters = 10;
 
 /// The cluster of each sample that counts, from 0: by its phase in the period of a sine or square,

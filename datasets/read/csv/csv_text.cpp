@@ -53,7 +53,7 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// The text in UTF-8; what is not, is taken for Latin-1, which loggers on Windows write.
+/// The text in UTF-8. Other text is taken for Latin-1, which loggers on Windows write.
 std::string as_utf8(std::string_view text) {
   if (is_utf8(text)) return std::string(text);
   std::string result;

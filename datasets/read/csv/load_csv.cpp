@@ -190,7 +190,7 @@ std::size_t find_column(const Header& header, const std::string& wanted) {
 
 // ---- Rows ----------------------------------------------------------------------------------
 
-/// A column of the file that goes to a column of the table.
+/// A column of the file and its column of the table.
 struct Wanted {
   std::size_t field;
   std::size_t target;
@@ -288,7 +288,7 @@ class RowReader {
     return true;
   }
 
-  /// Takes any row, or says what is wrong with it.
+  /// Reads any row, or reports what is wrong with it.
   void read_any(std::string_view line, long line_number) {
     std::size_t count = 0;
     auto next = wanted_.begin();

@@ -9,7 +9,7 @@
 
 namespace rigcal::datasets {
 
-/// Which columns of a file are wanted, and how its text is laid out.
+/// Wanted columns of a file, and the layout of its text.
 struct CsvRequest {
   std::vector<std::string> columns;  ///< header names, in the order of the result
   char separator = 0;                ///< 0: found from the header (',' ';' or tab)
@@ -42,18 +42,18 @@ struct CsvTable {
 /// @throws std::invalid_argument  time_column is not among the columns
 CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request);
 
-/// Header names of a CSV file, for messages: without units, except where only the
-/// unit tells two columns apart.
+/// Header names of a CSV file, for messages: without units, unless only the unit distinguishes two
+/// columns.
 ///
 /// @throws InputError  as load_csv
 std::vector<std::string> csv_header(const std::filesystem::path& path, char separator = 0);
 
-/// Header names as they stand in the file, with their units.
+/// Header names as in the file, with their units.
 ///
 /// @throws InputError  as load_csv
 std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator = 0);
 
-/// As the table of readers asks for them (record_reader.hpp).
+/// Functions with the signature of the table of readers (record_reader.hpp).
 std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path);
 RecordTable load_csv_record(const std::filesystem::path& path, const RecordRequest& request);
 

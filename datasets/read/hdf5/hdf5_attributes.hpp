@@ -9,7 +9,7 @@
 namespace rigcal::datasets {
 
 /// Texts of an attribute, trimmed: one, or those of a vector. None if there is no such attribute,
-/// if it is no text, or if a text is longer than 40 bytes or holds control characters.
+/// if it is no text, or if a text is longer than 40 bytes or has control characters.
 std::vector<std::string> hdf5_texts(hid_t object, const char* attribute);
 
 /// A number of an attribute, of any real type; nothing if there is no such attribute.

@@ -50,7 +50,7 @@ herr_t note_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void
   return 0;
 }
 
-/// What a type is instead of numeric, in words; empty if it is numeric.
+/// Kind of a type that is not numeric, in words; empty if it is numeric.
 std::string kind_of(hid_t type) {
   switch (H5Tget_class(type)) {
     case H5T_INTEGER:
@@ -108,7 +108,7 @@ std::vector<std::string> units_of(hid_t object) {
   return {};
 }
 
-/// A name that can stand in a campaign file and on a terminal.
+/// Whether a name can be used in a campaign file and on a terminal.
 bool is_printable(const std::string& name) {
   return std::all_of(name.begin(), name.end(),
                      [](char c) { return static_cast<unsigned char>(c) >= ' ' && c != '\x7f'; });
@@ -135,8 +135,8 @@ std::size_t dims_of_dataset(const Hdf5Series& series) {
   return series.dims.size() - series.cell_dims;
 }
 
-/// Which numbers of a selection are wanted: it consists of cells of `width` numbers each, of which
-/// numbers first, first + stride, ... count.
+/// Wanted numbers of a selection of cells with `width` numbers each: first, first + stride, ...
+/// count.
 struct CellChoice {
   std::size_t cells = 1;
   std::size_t width = 1;
@@ -191,8 +191,8 @@ Hdf5Id number_type(hid_t dataset, const Hdf5Series& series) {
   return type;
 }
 
-/// What a cell of the series is to be converted to: numbers of a native type, in an array or in a
-/// table of one member where they stand so in the file.
+/// Type in memory for a cell of the series: numbers of a native type, in an array or in a table of
+/// one member like those in the file.
 Hdf5Id type_in_memory(const Hdf5Series& series, hid_t native, std::size_t bytes) {
   const std::vector<hsize_t> shape(
       series.dims.begin() + static_cast<std::ptrdiff_t>(dims_of_dataset(series)),

@@ -42,7 +42,7 @@ struct Hdf5Series {
   /// Shape, in the order that h5dump and h5py print: that of the dataset, and behind it that of the
   /// arrays in its cells, if these are arrays.
   std::vector<std::size_t> dims;
-  std::size_t cell_dims = 0;       ///< how many of `dims` are those of the cells
+  std::size_t cell_dims = 0;       ///< number of `dims` that belong to the cells
   std::string kind;                ///< what it is, if no numbers: "a text"; else empty
   std::vector<std::string> units;  ///< one for all, one per line of the last dimension, or none
 
@@ -53,7 +53,7 @@ struct Hdf5Series {
 /// Equidistant samples, described by an attribute: "/run1/position@wf_increment".
 struct Hdf5Clock {
   std::string path;
-  std::string series;  ///< whose samples it counts; empty: the attribute is that of a group
+  std::string series;  ///< series whose samples it counts; empty: the attribute belongs to a group
   double start_s = 0.0;
   double step_s = 0.0;  ///< 0: `rate_hz` is given
   double rate_hz = 0.0;

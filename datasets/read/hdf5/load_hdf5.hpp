@@ -9,7 +9,7 @@
 namespace rigcal::datasets {
 
 /// Whether a file is to be read as an HDF5 file: by its name (.h5, .hdf5), or by the signature of
-/// the format, which stands at its beginning or behind a block of 512, 1024 or 2048 bytes.
+/// the format, at its beginning or after a block of 512, 1024 or 2048 bytes.
 bool is_hdf5_file(const FileStart& start);
 
 /// Every column that load_hdf5_record() can read, with units from attributes.
@@ -34,7 +34,7 @@ std::vector<RecordColumn> hdf5_record_columns(const std::filesystem::path& path)
 /// @throws std::invalid_argument  the time column is not among the columns
 RecordTable load_hdf5_record(const std::filesystem::path& path, const RecordRequest& request);
 
-/// What an HDF5 file without columns lacks.
+/// Advice for an HDF5 file without columns.
 inline constexpr std::string_view kHowToSaveHdf5 =
     "expected datasets of integers or floating-point numbers, of one or two dimensions, or tables";
 

@@ -11,9 +11,9 @@ namespace rigcal::datasets {
 /// Whether a file is to be read as a MAT file: by its name (.mat) or its first bytes.
 bool is_mat_file(const FileStart& start);
 
-/// Which columns of a MAT file are wanted.
+/// Wanted columns of a MAT file.
 struct MatRequest {
-  std::vector<std::string> columns;  ///< as MATLAB names them (mat_path.hpp), order of the result
+  std::vector<std::string> columns;  ///< MATLAB names (mat_path.hpp), in the order of the result
   std::string time_column;           ///< among `columns`; checked to increase; may be empty
 };
 
@@ -41,7 +41,7 @@ std::vector<std::vector<double>> load_mat(const std::filesystem::path& path,
 /// @throws InputError  as load_mat
 std::vector<std::string> mat_columns(const std::filesystem::path& path);
 
-/// As the table of readers asks for them (record_reader.hpp).
+/// Functions with the signature of the table of readers (record_reader.hpp).
 std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path);
 RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request);
 

@@ -33,7 +33,7 @@ std::vector<RecordColumn> xlsx_record_columns(const std::filesystem::path& path)
 /// @throws std::invalid_argument  the time column is not among the columns
 RecordTable load_xlsx_record(const std::filesystem::path& path, const RecordRequest& request);
 
-/// What a workbook without columns lacks.
+/// Advice for a workbook without columns.
 inline constexpr std::string_view kHowToSaveXlsx =
     "expected a sheet with names in its first row and numbers below them";
 

@@ -66,7 +66,7 @@ std::string kind_text(const XlsxCell& cell) {
 
 /// The header of a sheet, and the units below it.
 struct SheetHeader {
-  std::size_t row = 0;             ///< 0: the sheet holds nothing
+  std::size_t row = 0;             ///< 0: the sheet is empty
   std::vector<CsvName> names;      ///< by column; empty where the header has a gap
   std::vector<std::string> units;  ///< by column; empty: no row of units
   bool has_number = false;
@@ -142,7 +142,7 @@ struct SheetColumn {
   std::string name;  ///< in its header
 };
 
-/// "Sheet2!x", "'My sheet'!x"; what names no sheet is a column of the first.
+/// "Sheet2!x", "'My sheet'!x"; without a sheet it is a column of the first.
 SheetColumn place_of(const XlsxBook& book, const std::string& column) {
   for (std::size_t at = column.find('!'); at != std::string::npos; at = column.find('!', at + 1)) {
     std::string name = column.substr(0, at);

@@ -16,8 +16,8 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Of a tag or comment. With every block Expat reads one that is not closed again from its
-/// beginning, so that one of 64 MB would take 20 s.
+/// Limit for a tag or comment. With every block Expat reads an unfinished one again from its
+/// beginning, so one of 64 MB would take 20 s.
 constexpr std::int64_t kMostTagBytes = std::int64_t{1} << 20;
 
 // From Expat 2.9 on the functions with 64 bits are used; Expat 2.5 lacks them.
@@ -42,7 +42,7 @@ std::string_view namespace_of(std::string_view name) {
   return end == std::string_view::npos ? std::string_view() : name.substr(0, end);
 }
 
-/// What Expat calls. Exceptions wait here until it has returned.
+/// Callbacks of Expat. Exceptions are kept here until it has returned.
 struct Listener {
   XML_Parser parser = nullptr;
   XmlHandler* handler = nullptr;
