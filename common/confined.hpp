@@ -12,7 +12,7 @@ namespace rigcal {
 
 /// Limits of confined work.
 struct Confinement {
-  std::size_t bytes = std::size_t{512} << 20;  ///< of memory, above what the process has
+  std::size_t bytes = std::size_t{512} << 20;  ///< memory beyond the present size of the process
   int cpu_seconds = 20;
   int wall_seconds = 120;
 
@@ -24,7 +24,7 @@ struct Confinement {
   bool memory_is_short() const;
 };
 
-/// Confined work crashed or was stopped; what() says why.
+/// Confined work crashed or was stopped; what() gives the reason.
 class ConfinedFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -37,7 +37,7 @@ std::string reason(int error_number) { return std::generic_category().message(er
 class RegularFile {
  public:
   RegularFile(const fs::path& path, const std::string& expected) : where_{path.string()} {
-    // O_NONBLOCK: opening a pipe does not wait for its writer. It does nothing to regular files.
+    // O_NONBLOCK: opening a pipe does not wait for its writer. It has no effect on regular files.
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor_ < 0)
       throw InputError(where_,
@@ -82,8 +82,8 @@ class RegularFile {
   std::size_t bytes_ = 0;
 };
 
-/// SHA-256 as OpenSSL knows it. From a context of its own: in the default one, OpenSSL 3.0 does not
-/// look whether there was memory to make it.
+/// OpenSSL's SHA-256, from a separate context: in the default one OpenSSL 3.0 does not check its
+/// allocation.
 class Sha256Algorithm {
  public:
   Sha256Algorithm() : context_(OSSL_LIB_CTX_new()) {
@@ -245,7 +245,7 @@ void write_files_atomically(const std::vector<std::pair<fs::path, std::string_vi
 
 namespace {
 
-/// Those that live, newest first. A signal handler can reach nothing but a global.
+/// Living objects, newest first. A signal handler can access only globals.
 FilesInWriting* in_writing = nullptr;
 std::mutex change_in_writing;
 
@@ -276,7 +276,7 @@ void FilesInWriting::remove_all() {
 
 void FilesInWriting::remove_made_folders() const {
   for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder)
-    ::rmdir(folder->c_str());  // which leaves what holds something
+    ::rmdir(folder->c_str());  // fails if the folder is not empty
 }
 
 void FilesInWriting::make_folders(const fs::path& folder) {
@@ -319,7 +319,7 @@ std::string read_file(const fs::path& path, std::size_t most_bytes, const std::s
                                                     bytes, expected, most_bytes >> 20));
   };
   check(file.bytes());
-  // One byte more than there was, which tells whether it has grown.
+  // One byte more than the file has, to detect whether it has grown.
   std::string text(file.bytes() + 1, '\0');
   std::size_t count = 0;
   for (;;) {

@@ -24,7 +24,7 @@ struct BatchRig {
 std::vector<BatchRig> find_rigs(const std::filesystem::path& folder,
                                 const std::filesystem::path& out);
 
-/// What is done with each rig.
+/// Work on each rig.
 struct RigTask {
   std::filesystem::path out;
   std::filesystem::path root;  ///< no file outside this folder is read; empty: no restriction
@@ -35,7 +35,7 @@ struct RigTask {
   bool force = false;
 };
 
-/// How a rig ended.
+/// Result of the work on a rig.
 struct RigEnd {
   ExitCode code = ExitCode::internal;
   bool left_result = false;  ///< the fit.json in its folder is of this run
@@ -44,11 +44,11 @@ struct RigEnd {
   std::string error;
 };
 
-/// As bytes, for a TaskFarm, and back.
+/// To bytes for a TaskFarm, and back.
 std::string bytes_of(const RigEnd& end);
 RigEnd rig_end_of(const std::string& bytes);
 
-/// Fits a rig, and diagnoses its records where that is asked for, each in a process of its own.
+/// Fits a rig, and diagnoses its records if requested, each in a separate process.
 RigEnd run_rig(const BatchRig& rig, const RigTask& task, const std::atomic<bool>& cancel);
 
 }  // namespace rigcal::app

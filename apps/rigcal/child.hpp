@@ -8,7 +8,7 @@
 
 namespace rigcal::app {
 
-/// How a child process of this program ended.
+/// End of a child process of this program.
 struct ChildEnd {
   ExitCode code = ExitCode::internal;
   std::string error;  ///< its last error message, on one line; empty if there was none

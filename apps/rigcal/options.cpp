@@ -107,7 +107,7 @@ std::size_t terminal_columns(int stream) {
 
 namespace {
 
-/// What COLUMNS says, as other programs take it; else what the terminal says.
+/// The value of COLUMNS, as in other programs; else the width of the terminal.
 std::size_t output_columns() {
   constexpr std::size_t kFewest = 20;
   constexpr std::size_t kMost = 10'000;

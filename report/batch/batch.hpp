@@ -41,7 +41,7 @@ struct StoredRigEstimate {
   RIGCAL_DESCRIBE(key, name, unit, scope, level, value, ci95, identifiability)
 };
 
-/// How an estimate moved over the earlier results and this one.
+/// Course of an estimate over the earlier results and this one.
 struct StoredRigTrend {
   std::string key;
   std::string unit;
@@ -75,14 +75,14 @@ struct StoredRig {
 struct StoredBatch {
   std::string status = "done";  ///< or "stopped": rigs are left
   std::string schema = kBatchSchema;
-  std::string folder;  ///< whose rigs these are
+  std::string folder;  ///< folder of these rigs
   int exit_code = 0;   ///< the highest of the rigs
   std::vector<StoredRig> rigs;
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(status, schema, folder, exit_code, rigs, provenance)
 };
 
-/// How the run of one rig ended.
+/// End of the run of one rig.
 struct RigRun {
   std::string rig;
   std::filesystem::path campaign;
@@ -102,7 +102,7 @@ StoredRig rig_row(const RigRun& run);
 /// batch.csv: a line for each rig; `parameter_ci95_low` and so on of every estimate that one has.
 std::string batch_csv(const StoredBatch& batch);
 
-/// The same for people: a line for each rig, then what failed.
+/// Text for the terminal: a line for each rig, then the failures.
 std::string batch_text(const StoredBatch& batch, const Style& style);
 
 inline std::string parameter_label(const StoredRigEstimate& each) {
@@ -116,7 +116,7 @@ inline bool has_converged(const StoredRig& rig) {
 /// "leakage_coefficient: +0.000966 per day (0.000694 to 0.00124): significant trend."
 std::string trend_sentence(const StoredRigTrend& trend);
 bool is_significant(const StoredRigTrend& trend);
-/// "mass_kg of rig": what a series is of.
+/// Name of a series: "mass_kg of rig".
 std::string trend_name(const StoredRigTrend& trend);
 
 /// "3 of 4 rigs: PASS 1, WARN 1, FAIL 1; 1 without a result".

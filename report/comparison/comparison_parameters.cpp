@@ -34,15 +34,15 @@ std::optional<StoredEstimate> estimate_of(const StoredFit& fit,
   return estimate;
 }
 
-/// Whether a value is zero or not significantly different from it, so that nothing is a percentage
-/// of it.
+/// Whether a value is zero or not significantly different from it, so that percentages of it mean
+/// nothing.
 bool may_be_zero(const StoredEstimate& estimate) {
   if (estimate.value.value_or(0.0) == 0.0) return true;
   const Interval interval(estimate.ci95);
   return interval.ends && interval.ends->low <= 0.0 && interval.ends->high >= 0.0;
 }
 
-/// All but what is judged later, for all parameters together.
+/// The difference, except for the adjustment that needs all parameters together.
 std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate>& first,
                                               const std::optional<StoredEstimate>& other,
                                               bool same_records) {

@@ -18,7 +18,7 @@ std::string titled(const std::string& title, const std::string& body, const Styl
   return (style.colour ? fmt::format("\x1b[1m{}\x1b[0m\n", head) : head + "\n") + body + "\n";
 }
 
-/// What a narrow terminal does not show.
+/// Names what a narrow terminal omits.
 std::string narrow_note(const TextTable& table, std::size_t columns) {
   const std::vector<std::string> left_out = table.left_out(columns);
   if (left_out.empty()) return {};
@@ -112,7 +112,7 @@ std::string stacked_estimates(const StoredComparison& comparison) {
                  i > 0 ? difference_text(parameter.differences.at(i), unit) : std::string()});
     }
   }
-  // The title of a parameter goes above its lines; the line of the columns stays first.
+  // The title of a parameter is above its lines; the line of the columns stays first.
   std::string text;
   std::size_t line = 0;
   const std::string all = table.text();
@@ -131,7 +131,7 @@ std::string estimates_table(const StoredComparison& comparison, std::size_t colu
   return columns == 0 || wide.width() <= columns ? wide.text() : stacked_estimates(comparison);
 }
 
-/// As the scorecard calls them.
+/// Title of a metric as in the scorecard.
 std::string metric_title(const std::string& metric) {
   return metric == "absolute_error_percent" ? "error %" : metric;
 }

@@ -28,7 +28,7 @@ std::optional<double> mean_over(const StoredFit& fit, const StoredParameter& par
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// What an estimate is of: those of equal name are points of one trend.
+/// Series of an estimate: estimates of equal name are points of one trend.
 std::string series_of(const StoredFit& fit, const StoredParameter& parameter) {
   const std::string level = parameter.level.value_or("");
   if (parameter.scope == Scope::rig) return "rig";
@@ -82,7 +82,7 @@ void find_trend(const std::vector<StoredTrendPoint>& points,
 bool any_share_records(const std::vector<const Compared*>& results) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     for (std::size_t j = i + 1; j < results.size(); ++j) {
-      // Several levels of one fit are told apart by their own records.
+      // Levels of one fit have separate records.
       if (results[i] != results[j] && share_fitted_records(*results[i], *results[j])) return true;
     }
   }

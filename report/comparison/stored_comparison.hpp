@@ -68,7 +68,7 @@ struct StoredComparedParameter {
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, estimates, differences)
 };
 
-/// How many parameters were compared with the first result, and what became of them.
+/// Number of parameters that were compared with the first result, tested and changed.
 struct StoredSignificance {
   int compared = 0, tested = 0, significant = 0;
   std::string text;
@@ -132,7 +132,7 @@ struct StoredComparedRecord {
   RIGCAL_DESCRIBE(file, sha256, in)
 };
 
-/// An estimate of a series, and where it lies.
+/// An estimate of a series, with its position.
 struct StoredTrendPoint {
   std::string result;
   std::optional<std::string> level;
@@ -146,7 +146,7 @@ struct StoredTrendPoint {
 
 /// A line through the points, weighted by their errors.
 struct StoredTrend {
-  long points = 0;  ///< with an error, and a place
+  long points = 0;  ///< with an error and a position
   std::optional<double> slope, intercept, standard_error;
   Later<std::optional<double>> degrees_of_freedom;  ///< of the error of the slope
   Later<std::optional<double>> widened;  ///< factor on that error by scatter about the line

@@ -27,7 +27,7 @@ std::string_view css(State state);
 struct Quantity {
   std::optional<double> exact;
   std::string text = "–";
-  std::string unit = {};  ///< empty if there is none, or if a column of its own shows it
+  std::string unit = {};  ///< empty if there is none, or if another column shows it
 };
 struct Badge {
   State state = State::none;
@@ -57,7 +57,7 @@ using Inline = std::variant<std::string, Quantity, Badge, Mark, Link, Soft, Stro
 using Line = std::vector<Inline>;
 using Lines = std::vector<Line>;
 
-/// One of several results in a cell or a gallery, with a colour of its own.
+/// One of several results in a cell or a gallery, with its own colour.
 struct Tile {
   Badge badge;
   Line line;

@@ -7,8 +7,8 @@
 
 namespace rigcal::report {
 
-/// How a series is thinned for drawing: buckets of `size` samples, of which the least and the
-/// largest stay, so that no peak is lost.
+/// Thins a series for drawing: of each bucket of `size` samples the least and the largest are kept,
+/// so that no peak is lost.
 struct Buckets {
   std::size_t samples = 0;
   std::size_t size = 1;  ///< 1: every sample stays
@@ -28,12 +28,12 @@ std::vector<double> thinned_times(std::span<const double> time_s, const Buckets&
 std::vector<double> thinned_times(std::span<const double> time_s, std::span<const double> values,
                                   const Buckets& buckets);
 
-/// Least and largest value of each bucket in the order in which they occur; NaN where a bucket
-/// holds no number.
+/// Least and largest value of each bucket in the order in which they occur; NaN for a bucket
+/// without numbers.
 std::vector<double> thinned(std::span<const double> values, const Buckets& buckets);
 
-/// Values at the samples that thinned() keeps of `extremes`: what belongs to a series stays with
-/// it.
+/// Values at the samples that thinned() keeps of `extremes`, for columns that belong to that
+/// series.
 std::vector<double> thinned_where(std::span<const double> values, std::span<const double> extremes,
                                   const Buckets& buckets);
 

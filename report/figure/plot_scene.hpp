@@ -24,7 +24,7 @@ struct Shape {
   double side = 0.0;  ///< of cells: squares about the points
 };
 
-/// What a plot consists of, the lowest first: grid, ticks and labels, levels, traces, legend.
+/// The shapes of a plot from bottom to top: grid, ticks and labels, levels, traces, legend.
 std::vector<Shape> plot_scene(const Plot& plot);
 
 inline constexpr double kDotRadius = 2.2;

@@ -22,8 +22,8 @@ struct ResponseCurves {
 ResponseCurves coherent(const ResponseCurves& all);
 
 /// Gain (logarithmic) and phase over the logarithm of the frequency: the record as points with its
-/// 95 % intervals, the model as points joined by a line. Phases run on beyond 180 degrees where
-/// their neighbours lie there, so that a curve does not jump.
+/// 95 % intervals, the model as points joined by a line. Phases continue beyond 180 degrees like
+/// their neighbours, so that a curve does not jump.
 Plot gain_plot(const std::string& condition, const ResponseCurves& curves);
 Plot phase_plot(const std::string& condition, const ResponseCurves& curves);
 

@@ -8,7 +8,7 @@
 
 namespace rigcal::report {
 
-/// What an FMU is made from.
+/// Content of an FMU.
 struct FmuRequest {
   std::string name;        ///< of the rig, for people
   std::string identifier;  ///< for C: letters, digits and "_", no digit first
@@ -16,7 +16,7 @@ struct FmuRequest {
   double start_s = 0.0;    ///< of the default experiment
   double stop_s = 1.0;
   double step_s = 1e-3;
-  /// Where the values come from, for the documentation: label and words.
+  /// Origin of the values, for the documentation: label and words.
   std::vector<std::pair<std::string, std::string>> origin;
 };
 

@@ -189,7 +189,7 @@ std::string class_limit_table(const DiagnosisResult& result, const Style& style)
   return table.empty() ? std::string() : table.text(style.columns);
 }
 
-/// What failed, and the warnings of averages, of repeats that no leak explains, and of all.
+/// Failures, then the warnings of averages, of repeats that no leak explains, and of all.
 std::string warning_lines(const diagnosis::Diagnosis& found) {
   std::vector<std::pair<std::string, std::string>> told;
   for (const RecordDiagnosis& record : found.records) {

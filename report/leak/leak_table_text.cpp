@@ -59,7 +59,7 @@ std::string cell(const calib::LeakEntry& entry) {
   return text + (entry.grade == calib::LeakGrade::outlier ? " !" : "");
 }
 
-/// "10.0 (9.8-10.2)": share at the published coefficient, and what its rounding allows.
+/// "10.0 (9.8-10.2)": share at the published coefficient, and the range that its rounding allows.
 std::string share_cell(const calib::LeakEntry& entry) {
   if (!entry.comparison) return "-";
   const calib::LeakComparison& c = *entry.comparison;

@@ -29,8 +29,8 @@ StoredParity stored(const ParityResult& result);
 std::string parity_csv(const ParityResult& result);
 
 /// parity/<condition>.csv: time_s, the healthy model's position, and for each repeat the parity
-/// residual, the residual less what healthy records leave, and its moving root mean square. Empty
-/// fields where a sample does not count.
+/// residual, the residual minus that of healthy records, and its moving root mean square. Fields of
+/// samples outside the windows are empty.
 std::vector<ResultFile> parity_series(const ParityResult& result);
 
 /// Files that parity and its page may write.

@@ -39,7 +39,8 @@ struct Parts {
   std::vector<std::string> problems;  ///< results that exist but could not be drawn
 };
 
-/// What is there; what cannot be read is named on the page, unless it is all there is.
+/// Reads the results of a folder. Unreadable ones are named on the page; if there are no others, it
+/// is an error.
 Parts parts_of(const ResultFolder& folder) {
   Parts parts;
   std::exception_ptr first;

@@ -156,7 +156,7 @@ Plot trend_plot(const StoredSeries& series, const TrendAxis& axis) {
   return plot;
 }
 
-/// Whether the points lie at several places.
+/// Whether the points have different positions.
 bool differ(const StoredSeries& series, const TrendAxis& axis) {
   std::optional<double> first;
   for (const StoredTrendPoint& point : series.points) {
@@ -308,7 +308,7 @@ std::string change_sentence(const Change& change) {
                   : fmt::format("{}, not tested: {}", text, change.reason);
 }
 
-/// What the tests found, and how many parameters they left out.
+/// Results of the tests, and the number of parameters that were not tested.
 std::string significance_sentence(const StoredComparison& comparison) {
   long compared = 0;
   long tested = 0;

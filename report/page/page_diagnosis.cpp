@@ -164,7 +164,7 @@ doc::Table confusion_table(const StoredAccuracy& method, const char* name) {
   return table;
 }
 
-/// Those of all; then of the records, each once.
+/// General warnings, then those of the records, each once.
 std::vector<std::string> diagnosis_warnings(const StoredDiagnosis& diagnosis) {
   std::vector<std::pair<std::string, std::string>> told;
   for (const StoredDiagnosedRecord& record : diagnosis.records) {

@@ -63,7 +63,7 @@ Identity identity_of(const Json& report) {
         channel.empty() ? std::string("Sensor") : "Sensor: " + spaced(channel),
         sensor_line(sensor, tested));
   }
-  // Somebody is to put their name to it.
+  // The person who signs for the test.
   const std::string tester = text_of(report, "operator");
   const std::string approver = text_of(report, "approver");
   if (!tester.empty() || !approver.empty())

@@ -18,7 +18,7 @@ using Kind = doc::Column::Kind;
 constexpr std::size_t kLevelPoints = 1200;
 /// Half an interval in parts of its middle, from which on its two ends are shown.
 constexpr double kWideInterval = 0.1;
-/// Classes of the style sheet for levels side by side, told apart without colour by their order.
+/// Style classes of levels side by side; their order distinguishes them without colour.
 constexpr std::array kLevelStyles{"model", "residual", "servo", "leak", "reference"};
 
 /// "0.1 Hz sine, 50.8 mm" of an entry or of the rig without a fault.
@@ -114,7 +114,7 @@ std::vector<double> targets_of(const std::vector<StoredLeakEntry>& entries) {
   return targets;
 }
 
-/// Computed over published coefficients; what is met lies on the line.
+/// Computed over published coefficients; a perfect agreement is on the line.
 Plot agreement_plot(const std::vector<StoredLeakEntry>& entries) {
   Plot plot;
   plot.title = "Computed over published leakage coefficients";
@@ -202,7 +202,7 @@ Plot levels_plot(const std::vector<std::pair<std::string, Table>>& levels) {
     trace.x = thinned_times(*time_s, *residual, thin);
     trace.y = thinned(*residual, thin);
     for (double& y : trace.y) {
-      y = -y;  // the file holds leaking minus healthy
+      y = -y;  // the file has leaking minus healthy
       size = std::max(size, std::abs(y));
     }
     plot.traces.push_back(std::move(trace));
@@ -227,7 +227,7 @@ Trace level_trace(const Table& table, const char* column, double factor) {
   return trace;
 }
 
-/// What the cylinder does of its reference at each level; the source paper's figures 8 and 10.
+/// Response of the cylinder to its reference at each level; the source paper's figures 8 and 10.
 Plot positions_plot(const std::vector<std::pair<std::string, Table>>& levels) {
   Plot plot;
   plot.title = "Position in percent of the amplitude of the reference, over one period";

@@ -14,7 +14,7 @@
 namespace rigcal::report {
 namespace {
 
-/// In the order of the results; from the sixth on they come again.
+/// In the order of the results; repeated from the sixth on.
 constexpr std::array kResultStyles{"model", "residual", "servo", "leak", "reference"};
 
 Plot time_plot(const std::string& title, const std::string& y_label, double height) {

@@ -10,8 +10,8 @@
 
 namespace rigcal::report {
 
-/// Per channel of overlay/<condition>.csv: what was measured under the models of all results, and
-/// what each leaves of it.
+/// For each channel of overlay/<condition>.csv: the measurement with the models of all results, and
+/// the residual of each.
 ///
 /// @param names  of the results, in the order of their numbers
 std::vector<Figure> overlay_figures(const std::string& condition, const Table& curves,

@@ -22,7 +22,7 @@ const StoredParitySignal* signal_of(const StoredParity& parity, const std::strin
   return nullptr;
 }
 
-/// What is told of the repeats of one condition together.
+/// Summary of the repeats of one condition.
 struct Summary {
   std::string condition, level;
   const StoredParitySignal* signal = nullptr;

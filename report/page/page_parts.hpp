@@ -16,9 +16,7 @@
 #include "report/store/table.hpp"
 #include "report/text/estimate_text.hpp"
 
-// What the templates of report/page/ show, section by section, from the stored results alone.
-// Texts are plain: the template engine escapes them. A key that ends in _html holds markup made
-// here.
+// Parts that the pages of several kinds of result share, from the stored results alone.
 
 namespace rigcal::report {
 
@@ -31,7 +29,7 @@ struct RowUnit {
   std::string name;
   double si = 1.0;
 };
-/// That of a parameter's value and of others like it.
+/// Unit for a parameter's value and similar ones.
 RowUnit row_unit(double value_si, std::string_view si_unit);
 inline RowUnit unit_of(const StoredParameter& p) { return row_unit(p.value.value_or(0.0), p.unit); }
 
@@ -59,8 +57,8 @@ std::string_view channel_unit(std::string_view channel);
 Plot ranked_points(const std::string& title, const std::string& y_label,
                    const std::vector<double>& values);
 
-/// Adds [low, high] of an estimate to intervals that are drawn in a unit of so much SI; nothing
-/// where an end is unknown.
+/// Adds [low, high] of an estimate to intervals that are drawn in a unit of this size in SI;
+/// nothing if an end is unknown.
 void add_interval(Trace& intervals, double x, const Interval& interval, double si_per_unit = 1.0);
 
 /// Adds a reason that leads to a section (`link` its id, or empty); only the first three are shown.
@@ -108,14 +106,14 @@ struct Figure {
   Plot plot;
 };
 std::vector<Figure> condition_figures(const StoredCondition& condition, const Table& series);
-/// Those of the other results, likewise.
+/// Figures of the other results.
 std::vector<Figure> leak_table_figures(const LeakTableFiles& stored);
 std::vector<Figure> diagnosis_figures(const StoredDiagnosis& diagnosis);
 std::vector<Figure> parity_figures(const ParityFiles& stored);
 std::vector<Figure> comparison_figures(const StoredComparison& comparison);
 std::vector<Figure> batch_figures(const StoredBatch& batch);
 
-/// leak_table.json against what was published.
+/// Agreement of leak_table.json with the published numbers.
 doc::Verdict leak_table_headline(const LeakTableFiles& stored);
 std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored);
 

@@ -7,7 +7,7 @@
 
 #include "report/page/page_parts.hpp"
 
-// A kind of result on the page: what is drawn of it, and from which file of a folder.
+// Kinds of results on the page, with their files and their sections.
 
 namespace rigcal::report {
 
@@ -15,11 +15,11 @@ namespace rigcal::report {
 struct ResultFolder {
   const ReadFile& read;
   std::string where;    ///< for messages
-  int threads = 1;      ///< that read series and draw
+  int threads = 1;      ///< threads for reading series and drawing
   ReadTable made = {};  ///< tables that this run has made, which need not be read back
 };
 
-/// What a result puts on the page.
+/// Part of a page from one result.
 struct Part {
   std::string link;  ///< id of its first section
   std::string name;  ///< "Calibration"
@@ -50,7 +50,7 @@ struct SectionTitle {
   const char* name;
 };
 
-/// What a file holds, without the series beside it.
+/// Content of a file, without the series beside it.
 template <typename Files>
 const auto& result_of(const Files& files) {
   if constexpr (requires { files.result; }) {
@@ -74,9 +74,9 @@ Part part_of(const Result& result, const char* link, const char* name, const std
   return part;
 }
 
-/// A row of sections(), from functions that all take what the first of them has read.
+/// A row of sections(), from functions that all take the data that the first one has read.
 ///
-/// @param more  what this result says of itself beyond that; null where that is all
+/// @param more  further data of this kind of result; null if there are none
 template <typename Files>
 Section section(const SectionTitle& title, Files (*load)(const ReadFile&, const std::string&),
                 doc::Verdict (*verdict)(const Files&),

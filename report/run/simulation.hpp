@@ -20,15 +20,15 @@ struct SimulationTask {
   std::optional<datasets::Record> record;  ///< absent where the drive is made
 };
 
-/// @param values  that hold in the condition
-/// @throws InputError  its record cannot be read, or there is none where the waveform is recorded
+/// @param values  for the condition
+/// @throws InputError  its record cannot be read, or a recorded waveform has none
 SimulationTask simulation_task(const datasets::Campaign& campaign,
                                const datasets::Condition& condition, model::ParameterValues values);
-/// With the campaign's own values.
+/// The same with the campaign's own values.
 SimulationTask simulation_task(const datasets::Campaign& campaign,
                                const datasets::Condition& condition);
 
-/// How the campaign wants to be simulated.
+/// Simulation settings of the campaign.
 model::SimulationOptions simulation_options(const datasets::Campaign& campaign);
 
 /// Simulates each, every output of it; one that fails says so in its status.

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kSchema = "rigcal.checkpoint/1";
 
-/// What must be the same for a fit to go on.
+/// Data that must be equal for a fit to continue.
 Json identity(const Provenance& provenance) {
   Json json;
   json["version"] = std::string(version());
@@ -30,7 +30,7 @@ Json identity(const Provenance& provenance) {
   return json;
 }
 
-/// What a checkpoint cannot hold; what() says it in words.
+/// Invalid content of a checkpoint; what() describes it.
 class NoCheckpoint : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -25,7 +25,7 @@ std::string scorecard_csv(const Result& result);
 /// sample counts, the drive (reference_m or command_v) and the simulated flows.
 std::string residuals_csv(const Result& result, const calib::ConditionScore& score);
 
-/// The same as it is read back.
+/// The same as a table, as it would be read back.
 Table residual_table(const Result& result, const calib::ConditionScore& score);
 
 /// averaged/<condition>.csv: time_s, and mean, sd and count of every channel.

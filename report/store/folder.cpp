@@ -36,7 +36,7 @@ std::vector<fs::path> missing_folders(const fs::path& path) {
   return missing;
 }
 
-// A signal handler can reach nothing but a global.
+// A signal handler can access only globals.
 std::atomic<const std::vector<fs::path>*> made_now{nullptr};
 
 constexpr const char* kProbeFile = ".rigcal-probe";
@@ -126,7 +126,7 @@ HeldFolder::Made::~Made() {
 HeldFolder::HeldFolder(const fs::path& out, Holding holding)
     : out_(out), holding_(std::move(holding)) {
   const fs::path folder = fs::absolute(out).lexically_normal();
-  std::error_code unknown;  // the probe tells
+  std::error_code unknown;  // the probe reports an error
   if (fs::exists(folder, unknown) && !fs::is_directory(folder, unknown))
     throw WriteError(fmt::format("--out {}: is a file; expected a folder", out.string()));
   {

@@ -69,8 +69,8 @@ class HeldFolder {
   /// @throws WriteError  a folder has the name of a file
   void require_replaceable(const std::vector<ResultFile>& files);
 
-  /// Removes what the one that lives has made, if it is empty: for a handler of signals, which ends
-  /// the process before the destructor can. Safe within one.
+  /// Removes the folders that the living object has made, if they are empty. For a signal handler,
+  /// which ends the process before the destructor can run; safe within one.
   static void remove_if_empty();
 
  private:

@@ -10,9 +10,9 @@ namespace rigcal::report {
 StoredPlan stored(const datasets::Campaign& campaign, const calib::Plan& plan,
                   const Provenance& provenance);
 
-/// Table of relative standard deviations per record, and what is wanting, for the terminal.
+/// Table of relative standard deviations per record, and of missing information, for the terminal.
 ///
-/// @param columns  of the terminal; 0: as wide as it is
+/// @param columns  of the terminal; 0: no limit
 std::string plan_text(const datasets::Campaign& campaign, const calib::Plan& plan,
                       std::size_t columns);
 

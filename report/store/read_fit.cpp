@@ -35,8 +35,8 @@ Validity validity_of(const StoredValidity& stored) {
   return validity;
 }
 
-/// Of a parameter that the fit could not determine: its whole interval counts, or its bounds, else
-/// what it is unsure of would be left out.
+/// Error of a parameter that the fit could not determine, from its whole interval, or from its
+/// bounds; otherwise its uncertainty would be left out.
 double undetermined_error(const StoredParameter& p, const JsonNode& node) {
   std::optional<std::pair<double, double>> ci95;
   if (p.ci95) ci95.emplace(p.ci95->low, p.ci95->high);

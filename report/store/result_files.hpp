@@ -6,8 +6,8 @@
 #include "report/store/folder.hpp"
 #include "report/store/stored.hpp"
 
-// The files of one run belong together: the result in JSON names the others with their SHA-256, and
-// who reads them back refuses what another run has left in their place.
+// The files of one run belong together. The result in JSON lists the others with their SHA-256, and
+// readers refuse files of another run in their place.
 
 namespace rigcal::report {
 

@@ -15,8 +15,8 @@ struct Table {
   const std::vector<double>* find(std::string_view name) const;
 };
 
-/// A header and a row for each sample: numbers that read back to the same bits, nothing where there
-/// is none.
+/// A header and a row for each sample. Numbers read back to the same bits; a missing number is
+/// empty.
 std::string csv_of(const Table& table);
 
 /// Reads a CSV file as the result writers of this project make them: lines of comment (#), one line

@@ -23,7 +23,7 @@ void add_rows(const datasets::Record& record, TextTable& table) {
   const double offset_s = datasets::offset_range_s(record);
   for (const datasets::Repeatability& each : datasets::repeatability(record)) {
     const auto& about = info(each.channel);
-    if (!about.is_output) continue;  // a command is what it was told to be
+    if (!about.is_output) continue;  // a command has no measurement error
     const auto& floor = each.noise_floor;
     table.add({record.condition, std::string(about.key), fmt::format("{}", record.time_s.size()),
                fmt::format("{}", each.repeats),

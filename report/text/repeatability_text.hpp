@@ -8,8 +8,8 @@
 
 namespace rigcal::report {
 
-/// How well the repeats of each condition agree: their standard deviation, the noise floor that it
-/// leaves to any model, how far the repeats lie apart in time; then notes and warnings.
+/// Agreement of the repeats of each condition: their standard deviation, the resulting noise floor
+/// for any model, their relative delays; then notes and warnings.
 std::string repeatability_text(const datasets::Campaign& campaign,
                                const std::vector<datasets::Record>& records, const Style& style);
 

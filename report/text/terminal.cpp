@@ -163,7 +163,7 @@ TextTable group_table(const std::vector<Group>& gathered, bool several, std::siz
   return table;
 }
 
-/// What a narrow terminal does not show.
+/// Names what a narrow terminal omits.
 std::string narrow_note(const TextTable& table, const char* file, const Style& style) {
   const std::vector<std::string> left_out = table.left_out(style.columns);
   if (left_out.empty()) return {};
@@ -215,7 +215,7 @@ std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& r
   for (std::size_t i = 0; i < reasons.size() && told < most; ++i) {
     const auto same = [&](const auto& other) { return other.second == reasons[i].second; };
     const auto here = reasons.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::any_of(reasons.begin(), here, same)) continue;  // told already
+    if (std::any_of(reasons.begin(), here, same)) continue;  // shown already
     ++told;
     std::vector<std::string> whose;
     for (const auto& reason : reasons) {
@@ -253,8 +253,8 @@ std::string metric_text(const std::string& metric, double value) {
                                             : fmt::format("{} {}", metric, agreement_text(value));
 }
 
-/// The three conditions that are farthest from what is asked for: those without a score, then by
-/// the share of the tolerance that they use; where there are no limits, by their errors.
+/// The three worst conditions: those without a score, then by the used fraction of their tolerance,
+/// or by their errors if there are no limits.
 std::vector<std::string> worst_conditions(const calib::Fit& fit) {
   constexpr std::size_t kShown = 3;
   constexpr double kWithoutScore = std::numeric_limits<double>::infinity();
@@ -296,7 +296,7 @@ std::vector<std::string> worst_conditions(const calib::Fit& fit) {
   return worst;
 }
 
-/// By which rule scores were compared with limits; nothing where none were.
+/// Decision rule of the comparison with limits; empty if there was none.
 std::string rule_text(const Result& result) {
   const auto& scores = result.fit.conditions;
   const bool judged = std::any_of(scores.begin(), scores.end(),
@@ -459,7 +459,7 @@ std::string reasons_text(const Result& result, const Style& style, std::size_t m
   const auto say = [&](const std::string& line, std::size_t indent) {
     text += wrapped(line, style.columns, indent) + "\n";
   };
-  // Where nothing was estimated nothing converged.
+  // Without estimation there is no convergence.
   const bool only_scored = status == FitStatus::converged && fit.starts.empty();
   const std::string word =
       coloured(only_scored ? "done" : std::string(to_string(status)), code, style);

@@ -9,7 +9,7 @@
 
 namespace rigcal::report {
 
-/// How text is shown.
+/// Style of terminal text.
 struct Style {
   bool colour = false;
   std::size_t columns = 0;  ///< of the terminal; 0: tables as wide as they are

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kGap = 2;  ///< blanks between columns
 
-/// Control characters as blanks, but for sequences that colour: names of files may hold any.
+/// Replaces control characters by blanks, except colour sequences: names of files may contain any.
 std::string on_one_line(std::string text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (text[i] == '\x1b') {

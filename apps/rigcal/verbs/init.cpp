@@ -32,7 +32,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// A folder stands for the recordings in it, in the order of their names.
+/// A folder means the recordings in it, in the order of their names.
 std::vector<std::filesystem::path> with_folders_opened(
     const std::vector<std::filesystem::path>& paths) {
   std::vector<std::filesystem::path> files;

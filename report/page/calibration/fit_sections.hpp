@@ -20,7 +20,7 @@ doc::Section scores_section(const StoredFit& fit, bool unfinished);
 /// @param judged  whether a search converged, so that estimates have grades
 doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
                                 const StoredCorrelation& correlation, bool judged);
-/// One article for each condition: what it is, its scores, its plots and residual tests.
+/// One article for each condition: its description, scores, plots and residual tests.
 doc::Section conditions_section(const Calibration& stored, int threads);
 /// Evidence on the estimates: singular values, profiles, bootstrap, lack of fit, predictions.
 doc::Section identifiability_section(const StoredFit& fit);

@@ -18,7 +18,7 @@ namespace {
 
 using Kind = doc::Column::Kind;
 
-/// Of the scores of a channel; null where it is not known.
+/// Uncertainty of the scores of a channel; null if unknown.
 const StoredAgreement* uncertainty_of(const StoredCondition& condition,
                                       const std::string& channel) {
   if (!condition.expanded_uncertainty) return nullptr;

@@ -12,8 +12,7 @@
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
-// What the first screen shows beside the verdict: three numbers, and every condition as a small
-// picture.
+// First screen after the verdict: three numbers, and every condition as a small picture.
 
 namespace rigcal::report {
 namespace {

@@ -409,7 +409,7 @@ StoredFit stored(const Result& result) {
   json.synthetic = result.campaign.synthetic;
   json.report = identity_json(result.campaign);
   json.model = std::optional(result.campaign.rig.plant);
-  // Without a start nothing was estimated. A cost of zero would look like a perfect fit.
+  // Without a start nothing was estimated, and a cost of zero would look like a perfect fit.
   if (json.status != calib::FitStatus::failed && !fit.starts.empty()) json.cost = finite(fit.cost);
   json.residual_count = fit.residual_count;
   json.evaluations = fit.evaluations;

@@ -31,7 +31,7 @@ inline std::vector<datasets::DecisionRule> every() {
   return {datasets::DecisionRule::simple, datasets::DecisionRule::guard_band};
 }
 template <>
-inline std::vector<calib::StoppedIn> every() {  // but for `nothing`, which is null
+inline std::vector<calib::StoppedIn> every() {  // except `nothing`, which is null
   using calib::StoppedIn;
   return {StoppedIn::starts, StoppedIn::validation, StoppedIn::bootstrap, StoppedIn::profiles,
           StoppedIn::cross_validation};
@@ -98,7 +98,7 @@ struct StoredProfile {
 /// A parameter, fitted or known.
 struct StoredParameter {
   std::string name;  ///< that of results: "mass_kg"
-  std::string key;   ///< that of campaign files
+  std::string key;   ///< key in campaign files
   std::string symbol, unit;
   datasets::Scope scope = datasets::Scope::rig;
   std::optional<std::string> level;  ///< leak level or condition
@@ -184,7 +184,7 @@ struct StoredHeldOut {
   RIGCAL_DESCRIBE(condition, problem, rmse, fitted_rmse, largest_shift, shifted)
 };
 
-/// What the residuals of a channel are divided by.
+/// Divisor of the residuals of a channel.
 struct StoredWeight {
   std::string condition, channel;
   long samples = 0;
@@ -225,7 +225,7 @@ struct StoredAgreement : metrics::Agreement {
   }
 };
 
-/// The same of one channel of a condition, with what is at its fundamental.
+/// The same for one channel of a condition, with the response at its fundamental.
 struct StoredScore : StoredAgreement {
   std::optional<double> gain_ratio, phase_deg, delay_s;
   std::optional<std::string> problem;
@@ -258,7 +258,7 @@ struct StoredCondition {
   Later<std::vector<std::string>> warnings;
   Later<std::optional<std::string>> not_scored;
   std::optional<std::string> failure;
-  Keyed<StoredScore> metrics;  ///< by channel, as the three below
+  Keyed<StoredScore> metrics;  ///< by channel, like the three below
   Keyed<std::optional<StoredNoiseFloor>> noise_floor;
   Omittable<Keyed<std::optional<StoredAgreement>>> expanded_uncertainty;  ///< of each score
   Keyed<std::optional<StoredResidualTests>> residual_tests;
@@ -272,7 +272,7 @@ struct StoredCondition {
                   noise_floor, expanded_uncertainty, residual_tests, limit_checks, channel_verdicts,
                   verdict, reasons)
 
-  /// Of one channel; nothing where it has no limit.
+  /// Verdict on a channel; nothing without a limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;
 };
 
@@ -319,7 +319,7 @@ struct StoredFit {
   bool synthetic = false;
   Json report;  ///< identity_json()
   Later<std::optional<model::PlantKind>> model;
-  std::optional<double> cost;  ///< null where nothing was estimated, or the fit failed
+  std::optional<double> cost;  ///< null if nothing was estimated, or the fit failed
   long residual_count = 0;
   long evaluations = 0;
   std::optional<double> wall_seconds, simulation_tolerance;
@@ -363,7 +363,7 @@ struct StoredFit {
   const StoredCondition* find(const std::string& condition) const;
 };
 
-/// What a fit or validation leaves for its readers.
+/// Stored form of a fit or validation.
 StoredFit stored(const Result& result);
 
 }  // namespace rigcal::report

@@ -7,12 +7,12 @@
 #include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
 
-// What results that look for leaks in records have in common.
+// Parts that results of leak searches have in common.
 
 namespace rigcal::report {
 
-/// How such a result ended: `declined` where the records cannot tell, `failed` where nothing came
-/// of any of them.
+/// End of such a search: `declined` if the records cannot answer, `failed` if no record gave a
+/// result.
 enum class LeakStatus { done, declined, failed };
 
 inline std::string_view to_string(LeakStatus status) {
@@ -39,7 +39,7 @@ struct ByFeature {
   RIGCAL_DESCRIBE(mean_m, rms_m, std_m)
 };
 
-/// A leak and its class; nothing where it could not be estimated.
+/// A leak and its class; empty if it could not be estimated.
 struct StoredLeak {
   std::optional<double> leakage_coefficient;
   std::optional<Range> ci95;  ///< of the coefficient

@@ -9,7 +9,7 @@
 
 namespace rigcal::report {
 
-/// What a result was made from, as every result file holds it.
+/// Origin of a result, as in every result file.
 struct StoredProvenance {
   std::string version;
   std::string revision;
