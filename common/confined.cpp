@@ -68,8 +68,8 @@ bool write_all(int descriptor, const char* bytes, std::size_t count) {
 [[noreturn]] void work_in_child(const std::function<std::string()>& work,
                                 const Confinement& confinement, std::size_t addresses, pid_t parent,
                                 int out) noexcept {
-  std::set_new_handler(
-      nullptr);  // the parent's handler may remove its files; `work` gets bad_alloc
+  // The handler of the parent may remove its files; `work` gets std::bad_alloc.
+  std::set_new_handler(nullptr);
   // The parent handles signals from the terminal; this process ends with it.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
