@@ -1,4 +1,5 @@
-// How well leaks are told on synthetic campaigns of known truth: the numbers of docs/diagnosis.md.
+// Measures how well leaks are found in synthetic campaigns of known truth: the numbers of
+// docs/diagnosis.md.
 //   rigcal_diagnosis_study coverage RECORDS       intervals and classes at random leaks
 //   rigcal_diagnosis_study classes FIRST LAST     classes, seeds FIRST to LAST
 //   rigcal_diagnosis_study smallest FIRST LAST    smallest leak on a 0.1 Hz sine
@@ -165,7 +166,7 @@ diagnosis::RigFit healthy_fit(Campaign& campaign, const std::vector<RepeatRecord
   return diagnosis::rig_fit_of(again);
 }
 
-/// Frees what a real rig may have and its model has not, for the healthy records to tell.
+/// Frees terms that a real rig may have and its model lacks, to be estimated from healthy records.
 void free_friction_and_lag(Campaign& campaign) {
   const std::pair<const char*, double> most[] = {{"coulomb_friction", 1000.0},
                                                  {"valve_time_constant", 0.02}};

@@ -18,15 +18,15 @@ std::vector<std::string> lacks_for_diagnosis(const datasets::Campaign& campaign,
 /// coefficient of 0.
 bool is_healthy(const datasets::Campaign& campaign, const datasets::Condition& condition);
 
-/// Why no condition of a campaign can be diagnosed at all, in words; empty if one can. Each reason
-/// is found by a check that holds for any campaign:
-///   a condition lacks what a comparison with the model needs (datasets::lacks_for_model), or the
-///   position, whose residual the classes stand on;
-///   nothing tells what the rig was before: no fit;
-///   the leak level goes together with the specimen, the date or the temperature of the records, so
-///   that a difference between levels need not be a leak.
-/// Confounding alone does not forbid a diagnosis by a fitted model, but its judgement by labels: it
-/// is a reason only beside others, and else a warning (see confounded).
+/// Lists, in words, why no condition of a campaign can be diagnosed; empty if one can. The checks
+/// apply to any campaign:
+///   a condition lacks data for a comparison with the model (datasets::lacks_for_model), or the
+///   position, whose residual the classes are based on;
+///   there is no fit, so the healthy state of the rig is unknown;
+///   the leak level changes together with the specimen, the date or the temperature of the records,
+///   so a difference between levels need not be a leak.
+/// Confounding alone does not prevent a diagnosis by a fitted model, only its judgement by labels.
+/// It is a reason only beside others, and otherwise a warning (see confounded).
 ///
 /// @param has_fit  whether a fit of the rig is given
 std::vector<std::string> obstacles(const datasets::Campaign& campaign, bool has_fit);

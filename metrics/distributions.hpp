@@ -23,18 +23,18 @@ double normal_cdf(double x);
 /// Student's t with `freedom` degrees of freedom > 0, not necessarily whole. A quantile above the
 /// largest double is returned as infinity.
 ///
-/// @throws std::domain_error  no such probability or freedom
+/// @throws std::domain_error  invalid probability or degrees of freedom
 double student_t_quantile(double probability, double freedom);
 double student_t_cdf(double t, double freedom);
 
 /// Probability that chi-square with `freedom` degrees of freedom > 0 exceeds x >= 0.
 ///
-/// @throws std::domain_error  no such x or freedom
+/// @throws std::domain_error  invalid x or degrees of freedom
 double chi_squared_exceedance(double x, double freedom);
 
 /// Probability that Fisher's F with these degrees of freedom > 0 exceeds x >= 0.
 ///
-/// @throws std::domain_error  no such x or freedom
+/// @throws std::domain_error  invalid x or degrees of freedom
 double fisher_f_exceedance(double x, double numerator_freedom, double denominator_freedom);
 
 /// Probability of at most `successes` in `trials` >= 0 that each succeed with `probability`.

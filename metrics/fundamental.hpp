@@ -11,17 +11,17 @@ struct Fundamental {
 };
 
 /// Least-squares fit of a sin + b cos + c at `frequency_hz` over whole periods from the end of the
-/// record (the last n whole periods; the first is dropped as transient when there are three or
-/// more). Sample times need not be equidistant. A sample stands for the interval before it, so that
-/// n periods of m samples each are n periods, and a window never counts both of its ends.
+/// record (the last n whole periods; the first is dropped as transient if there are three or more).
+/// Sample times need not be equidistant. A sample represents the interval before it, so that n
+/// periods of m samples each are n periods, and a window never counts both of its ends.
 ///
 /// @param time_s        shape (n), increasing
 /// @param signal        shape (n), any unit
 /// @param frequency_hz  > 0
 /// @throws std::invalid_argument  less than one period, fewer than 4 samples (in the record or in
 ///                                the window), sizes differ, a value is not finite, times do not
-///                                increase, frequency not positive, or samples that cannot tell the
-///                                frequency from an offset (two per period, say)
+///                                increase, frequency not positive, or samples that cannot separate
+///                                the frequency from an offset (for example two per period)
 Fundamental fundamental(std::span<const double> time_s, std::span<const double> signal,
                         double frequency_hz);
 

@@ -16,17 +16,16 @@ struct InitialPlan {
   std::vector<Unknown> unknowns;  ///< initial_* values to be estimated; nuisance
 };
 
-/// What the campaign's `initial` means for one condition:
-///   rest    all states zero;
-///   record  position, and load pressure where pressures are recorded, are their means over the
-///           `initial_window`; the velocity is zero, and an unrecorded load pressure that of
+/// Applies the campaign's `initial` to one condition:
+///   rest    all states are zero;
+///   record  position, and load pressure if pressures are recorded, are their means over the
+///           `initial_window`; the velocity is zero, and an unrecorded load pressure is in
 ///           equilibrium with the load;
-///   fit     position, velocity and load pressure are estimated, between bounds from the record:
-///   one
-///           peak-to-peak about the mean of the window, the fastest change between two samples, the
-///           supply pressure (or one peak-to-peak of the recorded load pressure).
-/// Values that the campaign gives or fits itself stay as they are. A load pressure that comes from
-/// both chamber pressures is told without the offsets of their sensors, as `values` has them.
+///   fit     position, velocity and load pressure are estimated, with bounds from the record: one
+///           peak-to-peak about the mean of the window, the fastest change between two samples, and
+///           the supply pressure (or one peak-to-peak of the recorded load pressure).
+/// Values that the campaign gives or fits itself stay unchanged. A load pressure from both chamber
+/// pressures is corrected by the offsets of their sensors in `values`.
 ///
 /// @param values  of the condition: known, fitted before, or the start of an estimate
 /// @throws InputError  record or fit without a recorded position

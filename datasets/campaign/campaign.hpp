@@ -64,8 +64,7 @@ struct StatedUnit {
   std::string unit;            ///< "bar"; empty: raw numbers of a converter, which have no unit
   std::optional<double> gain;  ///< physical value in `unit` = gain * number
   bool has_offset = false;
-  std::string
-      ignored;  ///< `ignore_unit`: what the file names, and what does not hold; mostly empty
+  std::string ignored;  ///< `ignore_unit`: wrong unit in the file; mostly empty
   Location where;
 };
 

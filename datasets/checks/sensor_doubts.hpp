@@ -15,9 +15,9 @@ struct SensorDoubt {
 };
 
 /// Finds doubts about the sensors of [report]: a sensor was overdue for calibration on the day of a
-/// test (ISO/IEC 17025:2017, 6.4.13), was due before it was calibrated, or its uncertainty cannot be
-/// read as a number. A stated uncertainty of an input channel, which affects no result, is a doubt,
-/// too.
+/// test (ISO/IEC 17025:2017, 6.4.13), was due before it was calibrated, or its uncertainty cannot
+/// be read as a number. A stated uncertainty of an input channel, which affects no result, is a
+/// doubt, too.
 std::vector<SensorDoubt> sensor_doubts(const Campaign& campaign);
 
 }  // namespace rigcal::datasets

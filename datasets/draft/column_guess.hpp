@@ -11,7 +11,7 @@ namespace rigcal::datasets {
 struct ColumnGuess {
   bool is_time = false;
   std::optional<Channel> channel;
-  std::string unit;  ///< as the name tells it: "mm" of "x_mm", "x [mm]"; empty if it does not
+  std::string unit;  ///< unit in the name: "mm" of "x_mm", "x [mm]"; else empty
 };
 
 /// "t_s", "ref_mm", "x [mm]", "pA_bar_03", "log.time", "u_V": a known word, with a unit behind it

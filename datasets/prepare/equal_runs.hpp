@@ -36,12 +36,12 @@ double typical_step(const std::vector<EqualRun>& runs);
 /// @param x  shape (n), of which the run is a part
 bool cuts_a_motion(std::span<const double> x, const EqualRun& run, double least);
 
-/// Whether the signal has noise well above its resolution, so that no sensor that works gives the
-/// same value many times. The steps from one value to the next then go up and down: at least 5 % of
-/// them, and 30, are larger than both their neighbours, or smaller than both, by four steps of the
-/// resolution and by 1e-6 of the range (the rounding of simulations is less). Of white noise half
-/// and more are, whatever slow motion it lies on; of a smooth signal few. The rounding of a
-/// converter alone makes a difference of two steps.
+/// Whether the noise of the signal is well above its resolution, so that a working sensor never
+/// gives the same value many times. The steps between values then go up and down: at least 5 % of
+/// the values, and 30 of them, are larger or smaller than both their neighbours, by four steps of
+/// the resolution and by 1e-6 of the range (the rounding of simulations is less). In white noise
+/// this is half of them or more, whatever slow motion is below it; in a smooth signal only a few.
+/// The rounding of a converter alone causes a difference of two steps.
 ///
 /// @param low, high  runs at or beyond these values are left out
 bool shows_noise(const std::vector<EqualRun>& runs, double low, double high);

@@ -67,25 +67,24 @@ struct LeakFit {
   bool ok() const { return failure.empty(); }
 };
 
-/// Fits leak and nuisance parameters to one record, all else being known.
+/// Fits leak and nuisance parameters to one record; everything else is known.
 ///
-/// Standard error: residuals are correlated in time, and what a model lacks comes back in every
-/// period, so that it does not average out over them. The samples are put into ten classes by their
-/// phase in the period (into ten stretches where there is none), the scores of each are summed over
-/// the whole record, and these sums are taken for independent: a sandwich by clusters, which is
-/// right for white noise and honest for a misfit that repeats.
+/// Standard error: residuals are correlated in time, and model errors return in every period, so
+/// that they do not average out over the periods. The samples are put into ten classes by their
+/// phase in the period (into ten sections of a record without a period). The scores of each class
+/// are summed over the whole record, and these sums count as independent. The result is a sandwich
+/// by clusters, which is right for white noise and allows for a model error that repeats.
 ///
-/// Beside it stands the error that white noise of the residuals' own scatter from sample to sample
-/// makes: ten sums are a poor estimate, and where a square wave tells its leak in one or two of the
-/// classes alone they are next to nothing at the least squares.
+/// A second standard error takes the change of the residuals from sample to sample as white noise.
+/// It is needed because ten sums are a poor estimate: if a square wave shows its leak in only one
+/// or two of the classes, their sums nearly vanish at the least squares.
 ///
-/// Rig parameters: C moves by -(J^T J)^-1 J^T J_rig per unit of each.
+/// Rig parameters: C changes by -(J^T J)^-1 J^T J_rig per unit of each.
 ///
-/// @param reference  how many healthy repeats had what the healthy model lacks taken off the
-/// record:
-///                   then the rig's parameters act through the difference that a leak makes alone;
-///                   0: none
-/// @param scan  of the same condition: where to start; may be null
+/// @param reference  number of healthy repeats whose residual was subtracted from the record; the
+///                   rig's parameters then act only through the effect of the leak; 0: none
+/// @param scan  of the same condition, gives the start; may be null
+/// @param covered  times of the record that count, within the condition's windows
 /// @param covered  times of the record that count, within the condition's windows
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
                  const datasets::Condition& condition, const datasets::Record& record,

@@ -121,10 +121,10 @@ X absolute_pressure(const X& pressure_pa) {
 }
 
 /// Change of pressure after a turn over which a hose begins to yield [Pa]. The threads of a braid
-/// hold each other by dry friction, which grows with the pressure that presses them together.
+/// are locked by dry friction, which grows with the pressure that presses them together.
 ///
-/// @param constant_pa  what does not grow
-/// @param ratio        of what grows to the absolute pressure
+/// @param constant_pa  constant part
+/// @param ratio        ratio of the other part to the absolute pressure
 /// @source   B. Tondu and P. Lopez, Modeling and control of McKibben artificial muscle robot
 ///           actuators, IEEE Control Systems Magazine 20 (2000) 2, 15-38: the thread's friction
 template <typename X, typename C>
@@ -132,12 +132,12 @@ X hose_yield(const X& pressure_pa, const C& constant_pa, const C& ratio) {
   return absolute_pressure(pressure_pa) * ratio + constant_pa;
 }
 
-/// Share of a braided hose that yields to a change of pressure: none where the pressure turns, all
-/// of it once it has gone on in one direction.
+/// Fraction of a braided hose that yields to a change of pressure: none when the pressure turns,
+/// all of it after a long change in one direction.
 ///
-/// @param memory  z, from -1 (has yielded to falling pressure) to 1 (to rising): it follows as
+/// @param memory  z, from -1 (has yielded to falling pressure) to 1 (to rising); it follows
 ///                z' = (1 - share) p' / hose_yield()
-/// @param rises   the direction in which the pressure goes now
+/// @param rises   whether the pressure rises now
 /// @source   an operator of the kind of Bouc and Wen: Y.-K. Wen, Method for random vibration of
 ///           hysteretic systems, J. Engineering Mechanics Division 102 (1976) 249-263; the
 ///           exponent 2 from the records of docs/festo.md

@@ -16,9 +16,9 @@
 
 #include "report/json/json_node.hpp"
 
-// One description of each struct that a result file holds, of which writer, reader and schema
-// follow. The members' names are the keys, in this order; a name that C++ keeps for itself has "_"
-// at its end.
+// Each struct of a result file is described once; writer, reader and schema follow from that. The
+// names of the members are the keys, in this order. A name that is reserved in C++ has "_" at its
+// end.
 //
 //   struct Leak {
 //     std::string level;

@@ -21,12 +21,13 @@ std::vector<RecordColumn> hdf5_record_columns(const std::filesystem::path& path)
 ///
 /// A column is a dataset "/run1/position", a line of one "/run1/data(:,2)", a member of a table
 /// "/run1/table.position" or a line of its arrays "/run1/table.values(:,2)"; indices count from 1
-/// and stand in the order of the dimensions in which h5dump and h5py print them. The times of
+/// and have the order of dimensions in which h5dump and h5py print them. The times of
 /// equidistant samples come from an attribute: "/run1/position@wf_increment". Integers and
 /// floating-point numbers of any size and byte order are accepted. Everything else is an error:
-/// texts, truth values, NaN and infinity, integers that a double cannot hold, datasets that were
-/// never written, are stored in another file or compressed by filters that are not built into HDF5,
-/// time that does not increase, columns of different lengths. At most 12 million numbers are read.
+/// texts, truth values, NaN and infinity, integers that a double cannot represent, datasets that
+/// were never written, are stored in another file or compressed by filters that are not built into
+/// HDF5, time that does not increase, columns of different lengths. At most 12 million numbers are
+/// read.
 ///
 /// HDF5 runs in a child process with limits on memory and time.
 ///

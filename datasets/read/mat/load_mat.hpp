@@ -23,11 +23,11 @@ struct MatRequest {
 /// "x", "log.time", "log.signals(2).values", "data(:,3)". Arrays of one element are vectors too;
 /// dimensions of length 1 do not count. Every real number class is accepted. Everything else is an
 /// error: complex, sparse, text, cells, objects (a timeseries is one), NaN and infinity, integers
-/// that a double cannot hold, time that does not increase, vectors of different lengths, files
+/// that a double cannot represent, time that does not increase, vectors of different lengths, files
 /// that end early or whose compressed data are damaged. At most 12 million numbers are read.
 ///
-/// Version 5 is read by a reader of our own. Version 7.3 is read by HDF5 in a process of its own,
-/// with limits of memory and time, because a damaged file can crash it or let it run for ever.
+/// Version 5 has its own reader here. HDF5 reads version 7.3 in a separate process with limits of
+/// memory and time, because a damaged file can crash it or keep it busy forever.
 ///
 /// @return             one vector per column, of the same length
 /// @throws InputError  file, column and element, what was found and what was expected
