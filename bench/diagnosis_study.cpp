@@ -413,14 +413,14 @@ struct Calibration {
 /// The leak of every condition is random in ln C between the coefficients of 0.1 and 60 %.
 /// What coverage is asked of, over all records.
 struct CoverageTally {
-  std::map<std::string, Coverage> by_signal;  ///< of shares that count, and of all smaller ones
-  Coverage all;                               ///< of shares that count
+  std::map<std::string, Coverage> by_signal;  ///< for shares that count, and for all smaller ones
+  Coverage all;                               ///< for shares that count
   Coverage small;
   std::vector<Calibration> calibration = std::vector<Calibration>(5);
   std::map<LeakClass, Total> by_class;
   int healthy_records = 0;
   int alarms = 0;
-  std::vector<double> limits;  ///< of the share of healthy repeats
+  std::vector<double> limits;  ///< upper limits of the share in healthy repeats
 };
 
 /// Conditions with leaks drawn at random, beside the healthy ones, and the values that make them.

@@ -59,7 +59,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
       fit.message = "no start could be simulated; of the first: " + fit.message;
     return {};
   }
-  give_freed_memory_back();  // of the simulations; the next steps need other sizes
+  give_freed_memory_back();  // memory of the simulations; the next steps need other sizes
   const bool awaited = found.result.status == FitStatus::stopped && evaluator.budget().cancelled();
   Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads,
                                    awaited ? Detail::plain : Detail::full);

@@ -15,7 +15,7 @@ namespace rigcal {
 struct FarmJob {
   std::string name;       ///< "profiles"; the same job is run once at most
   std::string state;      ///< serialised inputs of its tasks: another state, other results
-  std::size_t count = 0;  ///< of tasks
+  std::size_t count = 0;  ///< number of tasks
   int lanes = 1;          ///< tasks at a time in each process
   std::map<std::size_t, std::string> known = {};  ///< results that exist already
 };

@@ -15,7 +15,7 @@ namespace rigcal::datasets {
 
 /// Quantity in a column of a record.
 enum class Channel {
-  reference,                ///< of a loop on position [m]
+  reference,                ///< reference of a position loop [m]
   command,                  ///< valve command [V]
   position,                 ///< [m]
   load_pressure,            ///< [Pa]
@@ -25,11 +25,11 @@ enum class Channel {
   tank_pressure,            ///< [Pa]
   force,                    ///< [N]
   temperature,              ///< [K]
-  acceleration,             ///< of the piston and the mass fixed to it [m/s2]
-  payload_acceleration,     ///< of the second mass [m/s2]
-  force_reference,          ///< of a loop on force [N]
-  load_pressure_reference,  ///< of a loop on load pressure [Pa]
-  acceleration_reference,   ///< of a loop on acceleration [m/s2]
+  acceleration,             ///< acceleration of the piston and the mass fixed to it [m/s2]
+  payload_acceleration,     ///< acceleration of the second mass [m/s2]
+  force_reference,          ///< reference of a force loop [N]
+  load_pressure_reference,  ///< reference of a load pressure loop [Pa]
+  acceleration_reference,   ///< reference of an acceleration loop [m/s2]
 };
 
 struct ChannelInfo {

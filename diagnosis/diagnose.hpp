@@ -38,9 +38,9 @@ struct RecordDiagnosis {
   bool corrects_others = false;
   /// It is itself that reference, so that its leak is zero by construction.
   bool is_reference = false;
-  LeakFit fit;                                  ///< gives the reason if nothing was found
-  metrics::ResidualFeatures features;           ///< of the parity residual, eq. 14, uncorrected [m]
-  LeakEstimate estimate;                        ///< valid only if fit.ok()
+  LeakFit fit;                         ///< gives the reason if nothing was found
+  metrics::ResidualFeatures features;  ///< for the parity residual, eq. 14, uncorrected [m]
+  LeakEstimate estimate;               ///< valid only if fit.ok()
   std::optional<DetectionLimit> smallest_leak;  ///< for a healthy record, if its errors are known
   /// The leak leaves more than a third of the difference from the healthy model unexplained: there
   /// is another fault.
@@ -69,7 +69,7 @@ struct Diagnosis {
   std::vector<RecordDiagnosis> records;  ///< campaign order; the average, then its repeats
   std::vector<SignalDiagnosis> signals;  ///< in order of their first appearance
   std::vector<MachineState> states;      ///< in order of their first appearance
-  std::vector<LeakTrend> trends;         ///< of states that differ in their date alone
+  std::vector<LeakTrend> trends;         ///< trends over states that differ only in their date
   Accuracy single;                       ///< fitted leak, single repeats
   Accuracy averaged;                     ///< fitted leak, averages
   Accuracy features;                     ///< paper's features, without the repeat in question

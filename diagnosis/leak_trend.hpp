@@ -21,7 +21,7 @@ struct LeakTrend {
   std::pair<double, double> share_per_day_ci95{};
   double p = 1.0;            ///< p-value, two-sided, for no change
   bool significant = false;  ///< at 5 %
-  double chi_squared = 0.0;  ///< of the states about the line
+  double chi_squared = 0.0;  ///< scatter of the states about the line
   double freedom = 0.0;      ///< dates - 2
   double widened = 1.0;      ///< factor on the error; above 1 if the points scatter about the line
   /// If the leak rises significantly: the next limit above its share on the last date, and the day

@@ -33,10 +33,10 @@ struct StateMember {
 struct PooledLeak {
   double coefficient = 0.0;
   CoefficientError error;     ///< widened where members disagree
-  Eigen::VectorXd rig_moves;  ///< of the pooled coefficient
-  double chi_squared = 0.0;   ///< of the members about it
+  Eigen::VectorXd rig_moves;  ///< moves of the pooled coefficient
+  double chi_squared = 0.0;   ///< disagreement of the members
   double freedom = 0.0;       ///< members - 1
-  double p = 1.0;             ///< of as much disagreement by their errors alone
+  double p = 1.0;             ///< probability of as much disagreement by their errors alone
   bool disagree = false;      ///< at 5 %
   double widened = 1.0;       ///< factor of the error, at least 1
 };

@@ -39,7 +39,7 @@ struct ParityRecord {
   std::vector<double> parity_m;        ///< shape (samples), with nothing subtracted
   std::vector<double> residual_m;      ///< the same less the reference; NaN where it does not count
   std::vector<double> moving_rms_m;    ///< over the window of the signal
-  metrics::ResidualFeatures features;  ///< of residual_m
+  metrics::ResidualFeatures features;  ///< features of residual_m
   double peak_m = 0.0;                 ///< largest moving_rms_m
   bool alarm = false;                  ///< it exceeds the threshold of the signal
   double alarm_time_s = 0.0;           ///< from the first sample to the first that exceeds it
@@ -56,9 +56,9 @@ struct ParityCondition {
 /// Thresholds from the healthy records of one signal.
 struct ParitySignal {
   std::string signal;
-  double window_s = 0.0;  ///< of the moving root mean square: a period, else a tenth of the record
-  int healthy_records = 0;            ///< number of records behind the thresholds
-  std::optional<double> threshold_m;  ///< of peak_m
+  double window_s = 0.0;    ///< moving root mean square: a period, else a tenth of the record
+  int healthy_records = 0;  ///< number of records behind the thresholds
+  std::optional<double> threshold_m;  ///< threshold for peak_m
   FeatureThresholds features;
   std::string reason;  ///< why there is no threshold, in words
 };

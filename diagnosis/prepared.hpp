@@ -18,7 +18,7 @@ struct Prepared {
   const datasets::Condition* condition = nullptr;
   const datasets::RepeatRecords* records = nullptr;
   LeakScan scan;
-  Residuals residuals;  ///< of the average, then of each repeat
+  Residuals residuals;  ///< for the average, then for each repeat
   std::string failure;
   std::optional<double> true_share;
   bool is_healthy = false;

@@ -8,7 +8,7 @@ namespace rigcal::metrics {
 /// Autoregressive model of a series about zero: x[t] = sum_k phi[k] x[t - 1 - k] + u[t], u white.
 struct Autoregression {
   std::vector<double> phi;  ///< shape (order); always stationary
-  double variance = 0.0;    ///< of u, in the square of the series' unit
+  double variance = 0.0;    ///< variance of u, in the square of the series' unit
 
   /// Number of independent samples that determine the mean as well as `samples` of the series:
   /// samples * variance of a sample / long-run variance, from 1 to `samples`.

@@ -20,7 +20,7 @@ namespace {
 using Amplitude = std::complex<double>;
 
 constexpr int kLastHarmonic = 15;
-constexpr double kLeastHarmonic = 1e-2;  // of the fundamental
+constexpr double kLeastHarmonic = 1e-2;  // fraction of the fundamental
 constexpr std::size_t kLeastPerPeriod = 8;
 constexpr std::size_t kLeastSamplesOfRecord = 64;
 /// At either end. Bloomfield, Fourier Analysis of Time Series, 1976: a split cosine bell.

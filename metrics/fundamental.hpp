@@ -7,7 +7,7 @@ namespace rigcal::metrics {
 /// Complex amplitude of a signal at one frequency.
 struct Fundamental {
   double amplitude = 0.0;  ///< >= 0, in the unit of the signal
-  double phase_rad = 0.0;  ///< of A sin(2 pi f t + phase), in (-pi, pi]
+  double phase_rad = 0.0;  ///< phase in A sin(2 pi f t + phase), in (-pi, pi]
 };
 
 /// Least-squares fit of a sin + b cos + c at `frequency_hz` over whole periods from the end of the

@@ -15,7 +15,7 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 /// documentation are made from this row.
 struct MetricSpec {
   std::string_view name;     ///< name in the results
-  std::string_view title;    ///< of its column on the page
+  std::string_view title;    ///< title of its column on the page
   std::string_view formula;  ///< one line; y measured, s simulated, e = y - s
   std::string_view unit;     ///< "1", "%", or "channel": that of the compared channel
   double Agreement::*value = nullptr;

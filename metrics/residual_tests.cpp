@@ -174,7 +174,7 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
     result.peak_share += power[k] / total;
   // By Parseval's theorem all lines together give the mean square.
   const double density = mean_square(e) / (total * line_hz);
-  constexpr double kBinsPerDecade = 30.0;  // of a picture, as the points below
+  constexpr double kBinsPerDecade = 30.0;  // for pictures, like the points below
   for (std::size_t k = 0; k < power.size();) {
     const double upper = static_cast<double>(k + 1) * std::pow(10.0, 1.0 / kBinsPerDecade);
     double mean = 0.0;

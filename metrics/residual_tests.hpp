@@ -30,7 +30,7 @@ struct CrossCorrelation : Judged {
   std::vector<double> values;  ///< shape (2 lags + 1), from -lags: corr(e(t), u(t - lag))
   double band = 0.0;           ///< 95 % for one lag, by the effective sample size
   double band_of_peak = 0.0;   ///< 95 % for the largest of all lags (Bonferroni)
-  double peak = 0.0;           ///< of largest absolute value
+  double peak = 0.0;           ///< value of largest size
   double peak_lag_s = 0.0;     ///< > 0: the residual follows the input
 };
 
@@ -39,16 +39,16 @@ struct Periodogram : Judged {
   std::vector<double> frequency_hz;  ///< shape (bins), logarithmic bins of the periodogram
   std::vector<double> density;       ///< mean one-sided power density, [unit^2/Hz]
   double median_frequency_hz = 0.0;  ///< half of the power is below it
-  double peak_frequency_hz = 0.0;    ///< of the largest single line
-  double peak_share = 0.0;           ///< of the power in that line and its two neighbours
-  double distance = 0.0;  ///< of the cumulative periodogram from a straight line (Bartlett)
-  double limit = 0.0;     ///< 5 % critical distance of white noise
+  double peak_frequency_hz = 0.0;    ///< frequency of the largest single line
+  double peak_share = 0.0;           ///< fraction of the power in that line and its two neighbours
+  double distance = 0.0;             ///< cumulative periodogram to a straight line (Bartlett)
+  double limit = 0.0;                ///< 5 % critical distance of white noise
 };
 
 /// Distribution of the residual.
 struct Normality : Judged {
   std::vector<double> normal_quantile;    ///< shape (points), of the standard normal
-  std::vector<double> residual_quantile;  ///< of (e - mean) / std
+  std::vector<double> residual_quantile;  ///< quantiles of (e - mean) / std
   double skewness = 0.0;
   double excess_kurtosis = 0.0;
   double jarque_bera = 0.0;  ///< Jarque and Bera, Economics Letters 6, 1980
@@ -65,7 +65,7 @@ struct Drift : Judged {
 
 struct ResidualTests {
   long samples = 0;
-  double std = 0.0;                ///< of the residual
+  double std = 0.0;                ///< standard deviation of the residual
   double effective_samples = 0.0;  ///< effective_sample_size()
   double sample_interval_s = 0.0;
   Autocorrelation autocorrelation;

@@ -54,7 +54,7 @@ Trend weighted_trend(std::span<const double> x, std::span<const double> y,
   const Eigen::LLT<Eigen::MatrixXd> root(covariance);
   const Eigen::MatrixXd weighted = root.solve(design);
   const Eigen::Matrix2d of_line = (design.transpose() * weighted).inverse();
-  const Eigen::MatrixXd weights = of_line * weighted.transpose();  // of the points, shape (2, n)
+  const Eigen::MatrixXd weights = of_line * weighted.transpose();  // for each point, shape (2, n)
   const Eigen::Map<const Eigen::VectorXd> values(y.data(), n);
   const Eigen::Vector2d line = weights * values;
 

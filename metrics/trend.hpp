@@ -14,10 +14,10 @@ struct Trend {
   double intercept = 0.0;
   double slope_standard_error = 0.0;  ///< widened if the points scatter about the line
   double freedom = 0.0;               ///< degrees of freedom of that error
-  double ci95_low = 0.0;              ///< of the slope
+  double ci95_low = 0.0;              ///< ends of the slope's interval
   double ci95_high = 0.0;
   double p_value = 1.0;             ///< two-sided, for no slope
-  double chi_square = 0.0;          ///< of the points about the line
+  double chi_square = 0.0;          ///< scatter of the points about the line
   double reduced_chi_square = 0.0;  ///< chi-square divided by n - 2
   double widened = 1.0;             ///< factor on the error of the slope, at least 1
 };

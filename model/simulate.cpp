@@ -193,7 +193,7 @@ bool all_finite(const Eigen::MatrixXd& values) {
 /// it.
 bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
   constexpr double kInstants = 4.0;
-  constexpr double kMostEdges = 16.0;  // of a waveform in one period
+  constexpr double kMostEdges = 16.0;  // edges of a waveform in one period
   const double least_s = kInstants * same_instant_s(times_s);
   const auto fast = [least_s](const std::optional<Signal>& signal) {
     if (!signal) return false;

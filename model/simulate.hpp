@@ -29,8 +29,8 @@ enum class Output {
   servo_flow,            ///< Q_L, flow of the servo valve to the load [m3/s]
   leakage_flow,          ///< internal leakage across the piston [m3/s]
   work_flow,             ///< A x', flow that moves the piston [m3/s]
-  acceleration,          ///< of the piston and the mass fixed to it [m/s2]
-  payload_acceleration,  ///< of the second mass [m/s2]; zero where the rig has none
+  acceleration,          ///< acceleration of the piston and the mass fixed to it [m/s2]
+  payload_acceleration,  ///< acceleration of the second mass [m/s2]; zero without one
 };
 
 /// "position_m", "servo_flow_m3_per_s": name with its SI unit.

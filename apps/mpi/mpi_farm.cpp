@@ -264,7 +264,7 @@ class MpiFarm final : public TaskFarm {
         led->waiting.push_back(message.other);
       }
     } else if (led != nullptr) {
-      early_.push_back(message);  // of a job that this process has not come to
+      early_.push_back(message);  // belongs to a job that this process has not reached
     } else {
       send({message.other, Kind::gone, message.job, 0, {}});
     }
@@ -298,7 +298,7 @@ class MpiFarm final : public TaskFarm {
   int rank_ = 0;
   int processes_ = 1;
   int gone_ = 0;                                         ///< processes that have said goodbye
-  std::map<std::string, std::vector<Slot>> finished_{};  ///< of the leader
+  std::map<std::string, std::vector<Slot>> finished_{};  ///< kept by the leader
   std::vector<Message> early_{};                         ///< to the leader
 };
 

@@ -14,7 +14,7 @@ namespace rigcal::app {
 struct BatchRig {
   std::string rig;                 ///< its folder, relative to that of the batch: "lab/bench_2"
   std::filesystem::path campaign;  ///< its campaign.toml
-  std::string folder;              ///< of its results, relative to --out
+  std::string folder;              ///< folder for its results, relative to --out
 };
 
 /// Every campaign.toml beneath `folder`, sorted by the name of its folder; links are not followed,

@@ -17,7 +17,7 @@ constexpr int kMostRadiusIterations = 100;
 
 struct BallStep {
   Eigen::VectorXd step;
-  double multiplier = 0.0;  ///< of the constraint on the radius; 0 inside the ball
+  double multiplier = 0.0;  ///< multiplier of the constraint on the radius; 0 inside the ball
 };
 
 /// Minimises c' y + y' B y / 2 over |y| <= radius.

@@ -17,7 +17,7 @@ inline constexpr double kFunctionTolerance = 1e-10;
 struct DescentStep {
   int number = 0;
   double cost = 0.0;
-  double relative_change = 0.0;  ///< of the cost
+  double relative_change = 0.0;  ///< relative change of the cost
   double seconds = 0.0;          ///< since the descent began
 };
 
@@ -26,7 +26,7 @@ struct DescentOptions {
   /// Residuals at a point of the unit box; none if it cannot be evaluated. The Jacobian is computed
   /// only on request.
   std::function<std::optional<Linearisation>(std::span<const double> z, bool jacobian)> linearise;
-  double trust_radius = 0.0;  ///< of the first step: 1 / damping of Levenberg and Marquardt
+  double trust_radius = 0.0;  ///< radius of the first step: 1 / damping of Levenberg and Marquardt
   int most_iterations = 0;
   double function_tolerance = kFunctionTolerance;
   double parameter_tolerance = 1e-9;

@@ -85,10 +85,10 @@ ConditionEvaluation evaluate_run(const Problem& problem, std::size_t condition,
 struct Evaluation {
   std::vector<double> z;
   std::vector<ConditionEvaluation> conditions;
-  double cost = 0.0;                                 ///< half the sum of squares, priors included
-  bool ok = false;                                   ///< every condition could be simulated
-  double share = 1.0;                                ///< of the samples that count, those looked at
-  std::shared_ptr<std::vector<ConditionRows>> rows;  ///< of each condition, where they were kept
+  double cost = 0.0;   ///< half the sum of squares, priors included
+  bool ok = false;     ///< every condition could be simulated
+  double share = 1.0;  ///< fraction of the samples in windows that is evaluated
+  std::shared_ptr<std::vector<ConditionRows>> rows;  ///< rows of each condition, if they were kept
 };
 
 /// Options for evaluating a point.

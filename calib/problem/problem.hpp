@@ -40,7 +40,7 @@ struct ProblemChannel {
   std::vector<double> measured;  ///< SI, samples that count
   double sd = 0.0;               ///< divisor of the residuals, SI
   bool sd_known = false;         ///< false: estimated from the residual of the fit
-  double peak_to_peak = 0.0;     ///< of `measured`
+  double peak_to_peak = 0.0;     ///< peak-to-peak of `measured`
 };
 
 /// One condition with everything that its simulation needs. Borrows the campaign and the record.
@@ -51,7 +51,7 @@ struct ProblemCondition {
   model::ParameterValues values;  ///< values of everything that is not an unknown
   model::SimulationInputs inputs;
   std::vector<ProblemChannel> channels;
-  std::vector<model::Output> outputs;  ///< of the channels
+  std::vector<model::Output> outputs;  ///< outputs of the channels
   std::vector<std::size_t> rows;       ///< samples that count (inside the windows)
   std::vector<int> free;               ///< table indices of the acting unknowns
   std::size_t first_period_rows = 0;   ///< number of `rows` that are in the first period
@@ -70,7 +70,7 @@ struct Problem {
   const datasets::Campaign* campaign = nullptr;
   ParameterMap map;
   std::vector<ProblemCondition> conditions;
-  double tolerance = 0.0;        ///< of the simulations: the smallest that a condition requires
+  double tolerance = 0.0;  ///< tolerance of the simulations: the smallest that a condition requires
   bool tolerance_fixed = false;  ///< the campaign fixes it
 
   /// Tolerance of the simulations of a condition: as much above the least as its noise is, in

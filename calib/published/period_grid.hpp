@@ -13,7 +13,7 @@ namespace rigcal::calib {
 /// pieces of a square the samples are denser after the jump.
 struct PeriodGrid {
   std::vector<double> offset_s;  ///< from the start of the period, increasing
-  std::size_t pieces = 1;        ///< of equal number of samples, one after another
+  std::size_t pieces = 1;        ///< pieces with equal numbers of samples, one after another
 };
 
 /// @param intervals  per piece, even

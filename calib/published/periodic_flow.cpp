@@ -56,8 +56,8 @@ constexpr std::size_t kEarlyStride = 4;
 /// A run with three sampled periods: n/4 and n/2 coarsely, to observe the transient, and the last
 /// one finely.
 struct Run {
-  PeriodGrid grid;        ///< of the last period
-  PeriodGrid early_grid;  ///< of the two others
+  PeriodGrid grid;        ///< grid of the last period
+  PeriodGrid early_grid;  ///< grid of the two others
   model::Simulation simulation;
 
   std::span<const double> last(const Eigen::MatrixXd& matrix, Eigen::Index column) const {

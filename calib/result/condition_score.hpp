@@ -30,7 +30,7 @@ struct ChannelScore {
   /// Tests of measured minus simulated, over the longest window; absent if that is too short or the
   /// residual is constant.
   std::optional<metrics::ResidualTests> residual_tests;
-  std::optional<LackOfFit> lack_of_fit;  ///< of a prediction; absent where the noise is unknown
+  std::optional<LackOfFit> lack_of_fit;  ///< test of a prediction; absent if the noise is unknown
 };
 
 enum class Verdict { pass, warn, fail };
@@ -42,7 +42,7 @@ struct LimitCheck {
   std::string metric;
   std::optional<double> value;  ///< absent: it does not exist, see `words`
   std::optional<double> limit, warn;
-  std::optional<double> expanded_uncertainty;  ///< of the value; absent where not known
+  std::optional<double> expanded_uncertainty;  ///< uncertainty of the value; absent if unknown
   Verdict verdict = Verdict::pass;
   bool in_guard_band = false;  ///< WARN because the limit is not kept by more than that
   double used = 0.0;           ///< distance of the value from the ideal over that of the limit
@@ -56,7 +56,7 @@ struct ConditionScore {
   std::vector<ChannelScore> channels;
   std::vector<LimitCheck> checks;          ///< verdicts on all limits of its channels
   std::optional<Verdict> verdict;          ///< worst of the checks; absent without limits
-  std::vector<std::string> reasons;        ///< of WARN and FAIL, in words
+  std::vector<std::string> reasons;        ///< reasons for WARN and FAIL, in words
   std::vector<std::string> data_warnings;  ///< doubts about the recording, in words
   std::string failure;                     ///< why it could not be simulated; empty if it could
   std::string not_scored;  ///< why it was not scored although it might be; empty if it was

@@ -38,8 +38,8 @@ struct ProfileEnd {
 /// Profile likelihood of one unknown: least cost of all others at fixed values of this one.
 struct Profile {
   ProfileEnd low, high;
-  std::vector<double> values;     ///< SI, ascending
-  std::vector<double> rises;      ///< of 2 cost, in units of the threshold: 1 ends the interval
+  std::vector<double> values;  ///< SI, ascending
+  std::vector<double> rises;   ///< rises of 2 cost, in units of the threshold: 1 ends the interval
   bool lower_cost_found = false;  ///< the fit was not at the minimum
 };
 

@@ -13,7 +13,7 @@ namespace rigcal::calib {
 struct Origin {
   std::set<std::string> estimated_from;  ///< conditions whose records it was fitted to
   Aspect parameters;                     ///< as that fit judged them
-  std::optional<EstimateSpread> spread;  ///< of the values; none where it did not converge
+  std::optional<EstimateSpread> spread;  ///< for the values; none without convergence
 };
 
 }  // namespace rigcal::calib

@@ -14,8 +14,8 @@ namespace rigcal::calib {
 struct SolveResult {
   FitStatus status = FitStatus::failed;
   std::string message;  ///< in words
-  int iterations = 0;   ///< of its start, all stages together
-  OptimumCheck check;   ///< of the best point, if there is one
+  int iterations = 0;   ///< iterations of its start, all stages together
+  OptimumCheck check;   ///< check of the best point, if there is one
 };
 
 /// Trust-region minimisation by Ceres at the evaluator's fidelity: to a stationary point where the

@@ -19,7 +19,7 @@ std::vector<std::vector<double>> latin_hypercube(std::size_t points, std::size_t
 struct MultiStart {
   std::vector<StartReport> starts;
   int best = 0;  ///< number of the best start, from 1; 0 if none has a point that can be simulated
-  SolveResult result;                           ///< of the best start
+  SolveResult result;                           ///< result of the best start
   Evaluation optimum;                           ///< its end point; not ok if there is none
   std::optional<FurtherStarts> further_starts;  ///< absent if no further starts were evaluated
 };

@@ -29,7 +29,7 @@ std::vector<bool> active_bounds(const Linearisation& system, std::span<const dou
 struct OptimumCheck {
   std::vector<BoundSide> side;     ///< per unknown
   std::vector<bool> active_bound;  ///< result of active_bounds()
-  Eigen::VectorXd step;            ///< of Gauss and Newton, in the unit box; 0 at an active bound
+  Eigen::VectorXd step;            ///< Gauss-Newton step in the unit box; 0 at an active bound
   /// Length of the Gauss-Newton step in standard errors, root mean square over the free directions
   /// (relative offset of Bates and Watts, Technometrics 23, 1981). At 0.01 the remaining step is a
   /// hundredth of the uncertainty from noise.

@@ -46,11 +46,11 @@ class Search {
 
   std::vector<double> z_;                  ///< end of the stages so far
   std::vector<double> begin_;              ///< start of the stages
-  double begin_cost_ = 0.0;                ///< of whole records there
+  double begin_cost_ = 0.0;                ///< cost of whole records there
   std::vector<double> before_;             ///< start of the last horizon
   double foreseen_ = 0.0;                  ///< mean square that the last horizon ended with
   int horizons_until_ = 0;                 ///< iterations used, after which horizons end
-  std::vector<std::vector<double>> ends_;  ///< of stages
+  std::vector<std::vector<double>> ends_;  ///< ends of stages
 };
 
 }  // namespace rigcal::calib

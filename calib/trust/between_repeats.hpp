@@ -68,7 +68,7 @@ struct LikelyDifference {
   std::string cause;       ///< key of a parameter, or "start": when the run began
   double sd = 0.0;         ///< standard deviation between repeats: relative; in s for the start
   double explained = 0.0;  ///< share of the squared scores of the repeats, 0 to 1
-  double p = 1.0;          ///< of such a difference by noise alone, see difference_by_noise()
+  double p = 1.0;          ///< probability that noise alone causes it, see difference_by_noise()
 };
 
 /// The cause, of supply pressure, bulk modulus and start, whose scores explain most of those of the

@@ -35,7 +35,7 @@ class CauseEffects {
   std::span<const double> z_;
   std::vector<int> indices_;  ///< rows of the plant's table
   std::vector<std::string> causes_;
-  std::vector<std::optional<Eigen::MatrixXd>> effects_;  ///< of the conditions requested so far
+  std::vector<std::optional<Eigen::MatrixXd>> effects_;  ///< for the conditions requested so far
 };
 
 }  // namespace rigcal::calib

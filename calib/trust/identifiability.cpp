@@ -237,7 +237,7 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
 
 bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
                     const std::vector<double>& z, std::size_t unknown) {
-  constexpr double kMost = 0.7;  // of the error: half of the variance
+  constexpr double kMost = 0.7;  // fraction of the error: half of the variance
   const auto row = static_cast<Eigen::Index>(unknown);
   const auto& error = uncertainty.standard_error[unknown];
   if (!error || uncertainty.known.names.empty()) return false;

@@ -17,7 +17,7 @@ namespace {
 /// Part in an undetermined direction from which a parameter is lost with it, as in uncertainty().
 constexpr double kLost = 0.1;
 constexpr double kTriedPrior = 0.05;      // relative standard deviation of a prior that is tried
-constexpr double kPressureNoise = 0.003;  // of the supply pressure, that of a plain sensor
+constexpr double kPressureNoise = 0.003;  // fraction of the supply pressure; a plain sensor
 /// A record that is tried: half a period of the slowest signal, at 1 kHz or less.
 constexpr double kTriedSeconds = 5.0;
 constexpr std::size_t kMostSamples = 5000;

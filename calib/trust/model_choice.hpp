@@ -27,7 +27,7 @@ struct Candidate {
 /// and delta BIC with ln(n_e) in place of 2. A fraction n_e / n of its own for each model would
 /// favour the worse one, whose residuals are more correlated.
 struct InformationDifference {
-  double aic = 0.0;     ///< of `other` minus that of `first`
+  double aic = 0.0;     ///< AIC of `other` minus that of `first`
   double bic = 0.0;     ///< likewise, with ln(n_e)
   std::string message;  ///< which model to prefer, in words
 };

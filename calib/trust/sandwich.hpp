@@ -25,8 +25,8 @@ struct ScoreScatter {
   /// Contribution of the error of each combination to that variance if the error is one standard
   /// error, divided by the expected variance of all conditions; empty: none.
   Eigen::VectorXd own;
-  std::vector<metrics::Autoregression> noise;  ///< of the weighted residuals, per channel
-  double independent_residuals = 0.0;          ///< of all channels
+  std::vector<metrics::Autoregression> noise;  ///< models of the weighted residuals, per channel
+  double independent_residuals = 0.0;          ///< sum over all channels
 };
 
 /// Covariance of the score of every condition where residuals may be correlated in time and between

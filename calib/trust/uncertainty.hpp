@@ -40,7 +40,7 @@ struct Uncertainty {
   std::vector<std::string> reason;  ///< in words, where there is no standard error
   Eigen::MatrixXd correlation;      ///< shape (unknowns)^2; meaningful where there are errors
   int rank = 0;
-  std::vector<double> singular_values;  ///< of the Jacobian with columns of length 1, descending
+  std::vector<double> singular_values;  ///< Jacobian with columns of length 1, descending
   double reduced_chi_square = 0.0;      ///< 2 cost / (residuals - rank)
   double freedom = 1.0;                 ///< degrees of freedom of standard_error, at least 1
   /// S with S S^T the covariance in the unit box; directions that the data do not determine have
@@ -51,7 +51,7 @@ struct Uncertainty {
   Eigen::MatrixXd root;
   KnownUncertainty known;              ///< is in all errors
   std::vector<ScoreScatter> scatter;   ///< per condition; empty: no robust errors
-  double independent_residuals = 0.0;  ///< of all conditions and channels
+  double independent_residuals = 0.0;  ///< sum over all conditions and channels
 
   /// Whether repeats differ by more than the residuals predict, at 5 % for all unknowns together
   /// (Bonferroni).

@@ -75,7 +75,7 @@ struct ChannelSetting {
   std::string minus;     ///< second column that is subtracted from `column`; empty: none
   UnitConversion to_si;  ///< SI = conversion(gain * raw + offset), from the file's number
   StatedUnit stated;
-  std::optional<double> sd;               ///< of the samples in the file, SI, after `gain`
+  std::optional<double> sd;               ///< for samples in the file, SI, after `gain`
   double gain_sd = 0.0;                   ///< standard uncertainty of the sensor's gain, relative
   std::optional<Location> gain_sd_where;  ///< where the channel states `gain_sd` itself
   double offset_sd = 0.0;                 ///< standard uncertainty of its offset, SI
@@ -123,11 +123,11 @@ struct AcceptanceBounds {
 struct Condition {
   std::string id;
   Waveform waveform = Waveform::recorded;
-  std::optional<double> frequency_hz;      ///< of a chirp: at its start
-  std::optional<double> end_frequency_hz;  ///< of a chirp (`end_frequency`)
-  std::optional<double> sweep_s;           ///< of a chirp (`sweep_time`; the duration if left out)
+  std::optional<double> frequency_hz;      ///< for a chirp: at its start
+  std::optional<double> end_frequency_hz;  ///< for a chirp (`end_frequency`)
+  std::optional<double> sweep_s;           ///< for a chirp (`sweep_time`; default: the duration)
   bool logarithmic_sweep = false;          ///< `sweep = "logarithmic"`
-  std::optional<double> amplitude;         ///< of the drive, in the SI unit of its channel
+  std::optional<double> amplitude;  ///< amplitude of the drive, in the SI unit of its channel
   std::optional<std::string> leak_level;
   Use use = Use::fit;
   Overrides overrides;  ///< `parameters` and `controller` of this condition
@@ -160,7 +160,7 @@ struct FitSettings {
   double loss_scale = 3.0;  ///< in standard deviations of a residual
   int max_iterations = 200;
   int starts = 1;
-  std::optional<double> max_seconds;  ///< of the whole fit
+  std::optional<double> max_seconds;  ///< limit for the whole fit
   std::vector<Channel> outputs;       ///< compared with the model; empty: every output channel
   /// Length of the pieces of multiple shooting before a start; none: no multiple shooting.
   std::optional<double> shooting_interval_s;

@@ -65,7 +65,7 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
 /// Conflict between the `gain_sd` of a channel and the gain of its sensor in [rig.parameters],
 /// which is estimated or has a prior: the same uncertainty would count twice.
 struct GainKnownTwice {
-  Location where;  ///< of the channel's `gain_sd`
+  Location where;  ///< place of the channel's `gain_sd`
   std::string message;
 };
 std::optional<GainKnownTwice> gain_known_twice(const Campaign& campaign);

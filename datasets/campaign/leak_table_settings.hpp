@@ -26,7 +26,7 @@ struct LeakSignal {
   double frequency_hz = 0.0;
   double amplitude = 0.0;                        ///< [m], or [V] where no controller is in the loop
   std::map<double, PrintedCoefficient> printed;  ///< by target share [percent]
-  std::optional<PrintedCoefficient> normal;      ///< of the rig without a fault
+  std::optional<PrintedCoefficient> normal;      ///< coefficient of the rig without a fault
 
   /// "sine_0.1Hz"
   std::string name() const;
@@ -42,7 +42,7 @@ struct PrintedFeatures {
   double coefficient = 0.0;
   bool leaking = true;  ///< false: the rig without a fault
   std::map<Feature, double> printed;
-  std::vector<Feature> left_out;  ///< of a fit, because of `reason`
+  std::vector<Feature> left_out;  ///< left out of a fit, because of `reason`
   std::string reason;
 };
 
@@ -67,7 +67,7 @@ const model::ParameterSpec& assumption_spec(model::PlantKind plant, int index);
 
 /// [leak_table]: settings of `leak-table` and `fit-tables`, and the published numbers.
 struct LeakTableSettings {
-  std::vector<double> targets_percent{10.0, 20.0, 30.0, 50.0};  ///< of the servo flow
+  std::vector<double> targets_percent{10.0, 20.0, 30.0, 50.0};  ///< fractions of the servo flow
   double lowest_coefficient = 1e-3;                             ///< roots are searched from here
   double highest_coefficient = 100.0;                           ///< end of the range
   std::vector<LeakSignal> signals;

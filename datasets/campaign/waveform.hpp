@@ -19,7 +19,7 @@ struct WaveformSpec {
   /// A signal of this amplitude and frequency [Hz]; null unless that is all that describes it, in
   /// which case it is periodic.
   model::Signal (*periodic)(double amplitude, double frequency_hz) = nullptr;
-  int pieces = 1;  ///< of a period, equally long, at whose starts it jumps; 1: it does not jump
+  int pieces = 1;  ///< equal pieces of a period that begin with a jump; 1: it has no jump
 };
 const WaveformSpec& info(Waveform waveform);
 

@@ -12,8 +12,8 @@ namespace {
 // The row "hum of the mains" of docs/campaign-file.md in numbers; the frequency of a grid stays
 // within half a hertz.
 constexpr double kLineHalfWidthHz = 0.5;
-constexpr double kSideShare = 0.45;        ///< of the frequency: how far the neighbours reach
-constexpr double kSideLobes = 3.0;         ///< width of a smeared line, over the record's length
+constexpr double kSideShare = 0.45;  ///< range of the neighbours, as a fraction of the frequency
+constexpr double kSideLobes = 3.0;   ///< width of a smeared line, over the record's length
 constexpr double kAboveNeighbours = 10.0;  ///< in power
 constexpr double kLeastShareOfVariance = 0.2;
 
@@ -21,8 +21,8 @@ constexpr double kLeastShareOfVariance = 0.2;
 struct Spectrum {
   std::vector<double> power;  ///< sum of |X|^2 over the repeats
   double step_hz = 0.0;
-  double length = 0.0;   ///< of the transform
-  double samples = 0.0;  ///< of one repeat
+  double length = 0.0;   ///< length of the transform
+  double samples = 0.0;  ///< samples in one repeat
   double squares = 0.0;  ///< sum over all samples of all repeats
 };
 

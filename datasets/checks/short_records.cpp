@@ -12,7 +12,7 @@ namespace {
 
 // The row "a record that ends early" of docs/campaign-file.md in numbers.
 constexpr double kStatedShare = 0.95;
-constexpr double kEquallyLong = 0.95;  // of the longest
+constexpr double kEquallyLong = 0.95;  // fraction of the longest
 constexpr double kShareOfLongest = 0.75;
 constexpr long kFewestAsLong = 2;
 

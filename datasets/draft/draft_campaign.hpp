@@ -10,7 +10,7 @@ namespace rigcal::datasets {
 inline constexpr const char* kBlank = "FILL IN";
 
 struct Draft {
-  std::string text;                   ///< of a campaign file, with comments
+  std::string text;                   ///< text of a campaign file, with comments
   std::vector<std::string> left_out;  ///< files that it does not use, and why
 };
 

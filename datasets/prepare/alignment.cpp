@@ -19,7 +19,7 @@ namespace {
 constexpr double kFewestSamples = 0.02;  // shift that is not worth an interpolation
 constexpr double kSignificance = 3.0;    // standard deviations
 constexpr int kSearchSamples = 200;      // tried first, then ten times as many
-constexpr double kDisproportion = 10.0;  // of an offset, in median distances from the median
+constexpr double kDisproportion = 10.0;  // offset in median distances from the median
 
 double interval(const Repeat& repeat) {
   const auto n = repeat.time_s.size();

@@ -223,7 +223,8 @@ double noise_sd(const std::vector<double>& row, Span span) {
          std::sqrt(6.0);
 }
 
-/// Of two repeats either may be wrong; they only show that they differ by more than their noise.
+/// In a pair of repeats either may be wrong; they only show that they differ by more than their
+/// noise.
 void warn_of_pair(const Stack& stack, const Series& series, Channel channel, Span span,
                   const AverageOptions& options, const std::vector<Repeat>& repeats,
                   std::vector<std::string>& warnings) {

@@ -12,7 +12,7 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr double kRippleDb = 66.0;        // 0.05 %; 0.1 % including the error of the formula
-constexpr double kTransitionShare = 0.2;  // of the new sample rate, from 0.4 to 0.6 of it
+constexpr double kTransitionShare = 0.2;  // fraction of the new sample rate, from 0.4 to 0.6
 
 double value_beyond(const std::vector<double>& x, long index) {
   const long last = static_cast<long>(x.size()) - 1;

@@ -9,11 +9,11 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kHeldShare = 0.02;         // of the command's range
-constexpr double kStepShare = 0.05;         // of the command's range
+constexpr double kHeldShare = 0.02;         // fraction of the command's range
+constexpr double kStepShare = 0.05;         // fraction of the command's range
 constexpr double kLongestRise = 0.1;        // fraction of the time that the command is held
-constexpr double kLeastTravelShare = 0.05;  // of the range of positions
-constexpr double kArrivedShare = 0.01;      // of the travel
+constexpr double kLeastTravelShare = 0.05;  // fraction of the range of positions
+constexpr double kArrivedShare = 0.01;      // fraction of the travel
 constexpr double kNoiseFactor = 6.0;        // standard deviations
 constexpr double kSpreadFactor = 2.0;       // standard deviations over the repeats
 constexpr double kTailShare = 0.05;  // fraction of a held command that shows where the motion ends
@@ -53,7 +53,7 @@ double noise_sd(std::span<const double> x) {
   std::vector<double> differences;
   for (std::size_t i = 1; i + 1 < x.size(); ++i)
     differences.push_back(std::abs(x[i - 1] - 2.0 * x[i] + x[i + 1]));
-  constexpr double kMedianOfNormal = 0.6745;  // of |N(0, 1)|
+  constexpr double kMedianOfNormal = 0.6745;  // median of |N(0, 1)|
   return median(differences) / (kMedianOfNormal * std::sqrt(6.0));
 }
 

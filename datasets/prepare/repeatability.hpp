@@ -15,7 +15,7 @@ struct Repeatability {
   std::string condition;
   Channel channel = Channel::position;
   int repeats = 1;          ///< number of repeats with the channel
-  double pooled_sd = 0.0;   ///< of one repeat, SI unit of the channel; NaN if unknown
+  double pooled_sd = 0.0;   ///< for one repeat, SI unit of the channel; NaN if unknown
   double sd_of_mean = 0.0;  ///< standard deviation of their mean
   /// Empty where the sd is unknown or the channel constant: then there is no such number.
   std::optional<metrics::NoiseFloor> noise_floor;

@@ -13,9 +13,9 @@ namespace {
 constexpr std::size_t kFewestForSpikes = 16;
 constexpr std::size_t kLongestRun = 2;
 constexpr double kDeviations = 10.0;
-constexpr double kSteps = 4.0;              // of neighbours
+constexpr double kSteps = 4.0;              // differences of neighbours
 constexpr double kNeighbourFactor = 3.0;    // times the difference of the neighbours
-constexpr double kMedianOfNormal = 0.6745;  // of |N(0, 1)|
+constexpr double kMedianOfNormal = 0.6745;  // median of |N(0, 1)|
 
 /// Distance of samples [begin, begin + length) from the line between their neighbours, all on one
 /// side: the smallest of them, signed; 0 if they are on both sides.

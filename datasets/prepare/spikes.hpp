@@ -9,7 +9,7 @@ namespace rigcal::datasets {
 struct Spike {
   std::size_t sample = 0;  ///< first of the run, from 0
   std::size_t length = 1;
-  double height = 0.0;  ///< of the farthest sample, over the line between its neighbours; signed
+  double height = 0.0;  ///< farthest sample minus the line between its neighbours; signed
 };
 
 /// Finds the spikes of a signal: runs of up to two samples that are on one side of the line between

@@ -11,7 +11,7 @@ namespace rigcal::datasets {
 /// Apparent waveform of a recorded signal.
 struct WaveformGuess {
   Waveform waveform = Waveform::recorded;
-  std::optional<double> frequency_hz;  ///< of a sine, square or chirp
+  std::optional<double> frequency_hz;  ///< for a sine, square or chirp
   std::optional<double> amplitude;     ///< half of peak to peak, in the unit of the signal
   std::optional<double> end_frequency_hz;
   /// Whether rigcal generates the same signal: without offset, and with the phase 0 at t = 0.

@@ -12,7 +12,7 @@ namespace rigcal::datasets {
 /// Disturbances of one repeat of a synthetic condition, apart from the noise of its channels.
 struct RepeatFate {
   double late_s = 0.0;            ///< delay of the run's start after that of the record
-  double ripple_phase_rad = 0.0;  ///< of the supply pressure at time 0
+  double ripple_phase_rad = 0.0;  ///< phase of the supply pressure at time 0
   Overrides varied;               ///< values of this repeat alone
 };
 

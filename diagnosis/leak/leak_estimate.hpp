@@ -17,7 +17,7 @@ inline constexpr std::size_t kClassCount = datasets::kLeakClasses.size();
 /// Estimate of the leak in one record.
 struct LeakEstimate {
   double coefficient = 0.0;     ///< signed, see LeakFit
-  double standard_error = 0.0;  ///< of the coefficient, rig parameters included
+  double standard_error = 0.0;  ///< error of the coefficient, rig parameters included
   double freedom = 1.0;         ///< degrees of freedom of the standard error (Satterthwaite)
   /// 95 % interval of the coefficient, with its lower end at 0 or above. If no leak is detected it
   /// goes from 0 to the upper limit, given that a leak is not negative. It is not cut at 0 if the
@@ -34,7 +34,7 @@ struct LeakEstimate {
   std::optional<double> share_upper_limit;
   double share_slope = 0.0;  ///< d share / d coefficient
   double leak_flow_m3_per_s = 0.0;
-  std::array<double, kClassCount> probability{};  ///< of each class
+  std::array<double, kClassCount> probability{};  ///< probability of each class
   LeakClass most_probable = LeakClass::normal;
   double leak_score = 0.0;     ///< coefficient over its standard error
   bool leak_detected = false;  ///< at the settings' rate of false alarms

@@ -125,7 +125,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
               const model::ParameterValues& values, const std::atomic<bool>* cancel, LeakFit& fit) {
   const calib::ProblemCondition& condition = problem.conditions.front();
   std::vector<int> free = condition.free;
-  std::vector<int> rig_columns;  // of the covariance, for each rig parameter that is free here
+  std::vector<int> rig_columns;  // in the covariance, for each rig parameter that is free here
   for (std::size_t j = 0; j < rig.indices.size(); ++j) {
     if (column_of(condition.free, rig.indices[j]) >= 0) continue;
     free.push_back(rig.indices[j]);

@@ -31,7 +31,7 @@ RigFit rig_fit_of(const calib::Fit& fit);
 /// parameters (offsets) stay unknown.
 struct LeakProblem {
   datasets::Campaign campaign;
-  std::vector<datasets::FittedValue> values;  ///< of the rig
+  std::vector<datasets::FittedValue> values;  ///< values of the rig
   int leak = 0;                               ///< table row of the leakage coefficient
   const std::atomic<bool>* cancel = nullptr;  ///< ends the simulations when it becomes true
 
@@ -61,8 +61,8 @@ struct LeakFit {
   /// Change of the coefficient per unit of each of the rig's parameters, shape (RigFit::indices).
   Eigen::VectorXd rig_moves;
   double effect_m = 0.0;      ///< rms change of position per unit of the coefficient [m]
-  double parity_rms_m = 0.0;  ///< of record (corrected, if it was) minus healthy model
-  double misfit_rms_m = 0.0;  ///< of record minus leaking model
+  double parity_rms_m = 0.0;  ///< record (corrected, if it was) minus healthy model
+  double misfit_rms_m = 0.0;  ///< record minus leaking model
   double noise_rms_m = 0.0;   ///< part of it that is new in each sample
   bool ok() const { return failure.empty(); }
 };

@@ -8,7 +8,7 @@ namespace rigcal::diagnosis {
 
 /// Range of the search for the leak of a record.
 struct LeakScan {
-  double best_coefficient = 0.0;     ///< of least cost among the simulated ones
+  double best_coefficient = 0.0;     ///< simulated coefficient with the least cost
   double largest_coefficient = 0.0;  ///< largest simulated one
 };
 

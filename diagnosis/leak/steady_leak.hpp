@@ -22,7 +22,7 @@ struct SteadyLeak {
   double leak_flow_m3_per_s = 0.0;  ///< mean |leakage flow|
   Eigen::VectorXd share_slope;      ///< d share / d parameter, shape (free), SI
   Eigen::VectorXd flow_slope;       ///< d leakage flow / d parameter
-  bool is_periodic = false;         ///< of the periodic state, not of the record
+  bool is_periodic = false;         ///< for the periodic state, not the record
 };
 
 /// The one definition of a share. For a generated sine or square with constant other inputs it is

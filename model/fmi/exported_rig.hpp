@@ -10,10 +10,10 @@ namespace rigcal::model {
 
 /// A rig for other simulators, as an FMU reads it from its resources.
 struct ExportedRig {
-  std::string guid;  ///< of the model description that belongs to it
+  std::string guid;  ///< GUID of the model description
   Rig rig;
   ParameterValues values = ParameterValues::defaults(PlantKind::load_pressure);
-  double tolerance = 1e-6;  ///< of co-simulation, where the importer states none
+  double tolerance = 1e-6;  ///< for co-simulation, if the importer states none
 };
 
 /// Table indices of the parameters that an importer may change, in the order of the table: those of

@@ -15,9 +15,9 @@ namespace rigcal::model {
 enum class Phase {
   instantiated,
   initialization,
-  event,       ///< of model exchange
+  event,       ///< in model exchange
   continuous,  ///< likewise
-  stepping,    ///< of co-simulation
+  stepping,    ///< in co-simulation
   terminated,
 };
 
@@ -29,7 +29,7 @@ struct InstanceState {
   double tolerance = 1e-6;
   double start_s = 0.0;
   double time_s = 0.0;
-  long ticks = 0;  ///< of a sampled controller, so far
+  long ticks = 0;  ///< ticks of a sampled controller so far
   std::vector<double> x;
   StepMemory memory;
 };

@@ -26,7 +26,7 @@ struct PresentTerms {
   bool null_opening = false;    ///< covered edges leak through an orifice
   bool line_loss = false;       ///< the lines throttle, too
   bool air = false;             ///< the bulk modulus falls at low pressure
-  bool external_leak = false;   ///< of either chamber: not zero, or free
+  bool external_leak = false;   ///< for either chamber: not zero, or free
   int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
   int payload = -1;             ///< index of the first state of the second mass; -1: none
   bool valve_rate_limit = false;

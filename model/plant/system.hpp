@@ -256,7 +256,7 @@ class System {
   /// The derivatives by more parameters at a time do not stay in registers.
   struct ByBlock {
     using Number = Dual<kBlock>;
-    std::size_t block;  ///< of the parameters
+    std::size_t block;  ///< block of parameters
   };
   template <typename K>
   using Number = typename K::Number;

@@ -410,10 +410,10 @@ class Run {
   bool lin_known_ = false;
   X slope_{};  ///< derivative at the present point, if explicit and known
   bool slope_known_ = false;
-  Simulation* result_ = nullptr;  ///< of the caller, for the time of one run
+  Simulation* result_ = nullptr;  ///< owned by the caller, for the time of one run
   int first_column_ = 0;
   int columns_ = 0;
-  double period_s_ = 0.0;  ///< of the sampled controller; infinite if continuous
+  double period_s_ = 0.0;  ///< sample time of the controller; infinite if continuous
   long ticks_ = 0;
   double h_max_ = 0.0;
   double t_ = 0.0;

@@ -70,8 +70,8 @@ class SteadyState {
     for (long k = 0; k < periods; ++k) sum = ratio_ * (sum + 1.0);
     return sum;
   }
-  std::size_t samples() const { return samples_; }  ///< of one period
-  double sign() const { return sign_; }             ///< of one period to the next
+  std::size_t samples() const { return samples_; }  ///< samples in one period
+  double sign() const { return sign_; }             ///< sign from one period to the next
   /// State at the end of the run, once the rest of it is known.
   [[gnu::cold]] X at_end() const {
     // Counts from the last check at this phase of a period.
@@ -131,7 +131,7 @@ class SteadyState {
 
   std::array<X, static_cast<std::size_t>(kLooks)> seen_{};    ///< next() of each phase
   std::array<X, static_cast<std::size_t>(kLooks)> change_{};  ///< next() of that since a period ago
-  C ratio_{0.0};  ///< of the changes in the last complete period to those in the one before it
+  C ratio_{0.0};  ///< ratio of the changes in the last complete period to those in the one before
   C along_{0.0};  ///< sums of this period, for the next one
   C square_{0.0};
   bool follows_ = false;

@@ -52,14 +52,14 @@ struct StoredRigTrend {
 struct StoredRig {
   std::string rig;       ///< its folder, relative to that of the batch
   std::string campaign;  ///< the campaign file
-  std::string folder;    ///< of its results, relative to that of the batch's
+  std::string folder;    ///< folder of its results, relative to that of the batch's
   std::optional<std::string> name;
   int exit_code = 0;
   bool unchanged = false;  ///< its result was there already
   double seconds = 0.0;
   std::optional<calib::FitStatus> status;
   std::optional<calib::Verdict> verdict;
-  std::string message;  ///< of the fit; or the error that left no result
+  std::string message;  ///< message of the fit; or the error that left no result
   bool synthetic = false;
   bool has_report = false;
   std::vector<std::string> reasons;  ///< why it is no PASS, in words
@@ -92,7 +92,7 @@ struct RigRun {
   double seconds = 0.0;
   std::string error;
   std::optional<Compared> result;   ///< its fit.json; empty where this run left none
-  std::vector<Compared> earlier;    ///< of the same rig, in any order
+  std::vector<Compared> earlier;    ///< earlier results of the same rig, in any order
   std::vector<std::string> unread;  ///< why earlier ones are left out
 };
 

@@ -113,7 +113,7 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
 
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key) {
   std::vector<StoredSeries> list;
-  std::vector<std::vector<const Compared*>> sources;  // of each series
+  std::vector<std::vector<const Compared*>> sources;  // sources of each series
   for (const Compared& compared : results) {
     if (!is_usable(compared.result)) continue;
     for (const StoredParameter& parameter : compared.result.parameters) {

@@ -37,7 +37,7 @@ struct StoredEstimate {
   std::optional<double> value;
   bool fitted = false;
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of the standard error
+  Later<std::optional<double>> degrees_of_freedom;  ///< for the standard error
   std::optional<Range> ci95;
   std::optional<calib::Identifiability> identifiability;
   bool at_bound = false;
@@ -50,7 +50,7 @@ struct StoredDifference {
   std::optional<double> difference;
   std::optional<double> percent;  ///< null where the first value may be zero
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of this error (Welch and Satterthwaite)
+  Later<std::optional<double>> degrees_of_freedom;  ///< for this error (Welch and Satterthwaite)
   std::optional<double> p_value;                    ///< for this parameter alone
   std::optional<double> p_value_of_all;             ///< adjusted for all parameters (Holm)
   std::optional<bool> significant;
@@ -138,7 +138,7 @@ struct StoredTrendPoint {
   std::optional<std::string> level;
   std::optional<double> day, temperature_k;
   std::optional<double> value, standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of the error
+  Later<std::optional<double>> degrees_of_freedom;  ///< for the error
   std::optional<Range> ci95;
   RIGCAL_DESCRIBE(result, level, day, temperature_k, value, standard_error, degrees_of_freedom,
                   ci95)
@@ -148,7 +148,7 @@ struct StoredTrendPoint {
 struct StoredTrend {
   long points = 0;  ///< with an error and a position
   std::optional<double> slope, intercept, standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of the error of the slope
+  Later<std::optional<double>> degrees_of_freedom;  ///< for the slope's error
   Later<std::optional<double>> widened;  ///< factor on that error by scatter about the line
   std::optional<Range> ci95;
   std::optional<double> p_value, reduced_chi_square;

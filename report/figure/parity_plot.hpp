@@ -10,7 +10,7 @@ namespace rigcal::report {
 /// Mean and standard deviation of measured minus simulated, over the samples that have both.
 struct ResidualMoments {
   std::size_t samples = 0;
-  double mean = 0.0;  ///< of measured minus simulated
+  double mean = 0.0;  ///< mean of measured minus simulated
   double sd = 0.0;    ///< population
 };
 ResidualMoments residual_moments(std::span<const double> measured,

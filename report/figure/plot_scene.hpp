@@ -21,7 +21,7 @@ struct Shape {
   std::vector<Point> points;
   std::string text;  ///< at the first point
   Anchor anchor = Anchor::start;
-  double side = 0.0;  ///< of cells: squares about the points
+  double side = 0.0;  ///< side of cells: squares about the points
 };
 
 /// The shapes of a plot from bottom to top: grid, ticks and labels, levels, traces, legend.

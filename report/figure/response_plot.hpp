@@ -11,7 +11,7 @@ namespace rigcal::report {
 /// Gain and phase of record and model against the same drive.
 struct ResponseCurves {
   std::string of;    ///< "position over reference"
-  std::string unit;  ///< of the gain; "1" where it has none
+  std::string unit;  ///< unit of the gain; "1" without one
   double si_per_unit = 1.0;
   std::vector<metrics::ResponsePoint> record;
   std::vector<metrics::ResponsePoint> model;

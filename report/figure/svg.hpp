@@ -14,8 +14,8 @@ struct Trace {
   Kind kind = Kind::line;
   std::vector<double> x;
   std::vector<double> y;      ///< NaN: a gap
-  std::vector<double> upper;  ///< of a band or of intervals; `y` is the lower edge
-  double cell = 0.0;          ///< of cells: side of the squares about the points
+  std::vector<double> upper;  ///< for a band or intervals; `y` is the lower edge
+  double cell = 0.0;          ///< for cells: side of the squares about the points
 };
 
 /// A trace that has no points yet.

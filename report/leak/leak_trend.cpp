@@ -45,7 +45,7 @@ std::string next_limit_of(const LeakTrend& trend) {
 
 std::string trend_sentence(const LeakTrend& trend) {
   const auto [low, high] = trend.share_per_day_ci95;
-  const double points = kInPercent * kDays;  // of the servo flow, in these days
+  const double points = kInPercent * kDays;  // percent of the servo flow, in these days
   const double error = std::max(0.005, points * (high - low) / 4.0);
   const auto text = [&](double per_day) { return to_uncertainty(points * per_day, error); };
   const std::string over =

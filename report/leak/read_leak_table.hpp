@@ -18,7 +18,7 @@ struct TableLimit {
   double amplitude = 0.0;  ///< [m], or [V] where no controller is in the loop
   double target_percent = 0.0;
   std::vector<double> coefficients;             ///< all roots, increasing
-  std::vector<std::optional<Range>> ranges_95;  ///< of each
+  std::vector<std::optional<Range>> ranges_95;  ///< intervals of each
 };
 
 /// Data of leak_table.json for a diagnosis.

@@ -12,7 +12,7 @@ namespace rigcal::report {
 
 /// A condition with all that its simulation needs.
 struct SimulationTask {
-  const datasets::Condition* condition = nullptr;  ///< of the campaign
+  const datasets::Condition* condition = nullptr;  ///< owned by the campaign
   model::Rig rig;
   model::ParameterValues values;
   model::SimulationInputs inputs;

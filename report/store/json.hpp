@@ -30,8 +30,8 @@ Json parameters_json(model::PlantKind plant);
 struct EarlierFit {
   calib::FitStatus status = calib::FitStatus::failed;
   std::string message;
-  std::vector<datasets::FittedValue> values;  ///< of the fitted parameters, without nuisance
-  std::vector<datasets::FittedValue> known;   ///< of the others, scope rig
+  std::vector<datasets::FittedValue> values;  ///< fitted parameters, without nuisance
+  std::vector<datasets::FittedValue> known;   ///< the others, scope rig
   std::vector<std::pair<std::string, datasets::Use>> conditions;  ///< id and use of each scored
   std::vector<std::string> input_hashes;                          ///< SHA-256
   /// As the fit judged them; not assessed if its file says nothing.
@@ -39,7 +39,7 @@ struct EarlierFit {
   calib::Aspect parameters;
   Validity validity;
   std::optional<Validity> validated;            ///< ranges of the validation
-  std::optional<calib::EstimateSpread> spread;  ///< of `values`; none if the fit did not converge
+  std::optional<calib::EstimateSpread> spread;  ///< for `values`; none if the fit did not converge
   std::vector<int> indices;  ///< table rows of the fitted values of scope rig that have an error
   /// Covariance of these, SI, shape (indices)^2: the larger of standard and robust error, and the
   /// correlation.

@@ -12,7 +12,7 @@ namespace rigcal::report {
 /// Style of terminal text.
 struct Style {
   bool colour = false;
-  std::size_t columns = 0;  ///< of the terminal; 0: tables as wide as they are
+  std::size_t columns = 0;  ///< width of the terminal; 0: no limit
   std::size_t lines = 0;    ///< lines that a result may take; 0: no limit
 };
 

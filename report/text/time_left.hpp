@@ -25,7 +25,7 @@ class TimeLeft {
   double tolerance_;
   int first_ = 0;  ///< the first start reported; earlier ones were resumed
   int latest_ = 0;
-  double share_ = 0.0;  ///< of the latest start that is done
+  double share_ = 0.0;  ///< fraction of the latest start that is done
 };
 
 /// A duration as text: "12 s", "3.5 min", "1.2 h".

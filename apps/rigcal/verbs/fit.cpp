@@ -100,7 +100,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   if (settings.starts > 1)
     settings.checkpoint = [&](const calib::Checkpoint& reached) { checkpoint.keep(reached); };
 
-  give_freed_memory_back();  // of the single repeats
+  give_freed_memory_back();  // memory of the single repeats
   calib::Fit fit;
   {
     FitProgress progress(options.common.print.quiet,

@@ -22,7 +22,7 @@ inline constexpr QuantityRange kInstants_s{-1e10, 1e10};
 inline constexpr QuantityRange kJitters_s{0.0, 1e3};
 /// Amplitudes of a drive in m or V.
 inline constexpr QuantityRange kAmplitudes{1e-9, 1e6};
-inline constexpr QuantityRange kLoadAmplitudes{1e-6, 1e9};  ///< of forces and pressures
+inline constexpr QuantityRange kLoadAmplitudes{1e-6, 1e9};  ///< forces and pressures
 inline constexpr QuantityRange kFlows_m3_per_s{1e-15, 1e3};
 inline constexpr QuantityRange kTemperatures_k{0.0, 1e4};
 /// Standard deviations, steps and ripples in the unit of a channel; zero means none.

@@ -257,7 +257,7 @@ class RowReader {
     if (header_.separator == ' ') return false;
     const char* at = line.data();
     const char* const end = at + line.size();
-    std::size_t length = 0;  // of the last wanted field
+    std::size_t length = 0;  // length of the last wanted field
     auto next = wanted_.begin();
     auto value = values_.begin();
     for (std::size_t field = 0; field < header_.names.size(); ++field) {
@@ -404,7 +404,7 @@ class RowReader {
   const Header& header_;
   const CsvRequest& request_;
   std::vector<Wanted> wanted_;
-  std::vector<double> values_;  ///< of the row being read, in the order of wanted_
+  std::vector<double> values_;  ///< values of the row being read, in the order of wanted_
   CsvTable table_;
   std::size_t rows_ = 0;
   long comma_line_ = 0;  ///< line of the first decimal comma; 0: none

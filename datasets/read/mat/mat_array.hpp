@@ -16,8 +16,8 @@ struct MatArray {
   MatKind kind = MatKind::empty;
   bool is_complex = false;
   std::vector<std::size_t> dims;
-  std::vector<std::string> field_names;  ///< of a structure
-  /// Of a structure, shape (elements x field names); the fields of an element are adjacent.
+  std::vector<std::string> field_names;  ///< for a structure
+  /// For a structure, shape (elements x field names); the fields of an element are adjacent.
   std::vector<MatArray> fields;
 
   /// Place of the numbers, in terms of the reader.

@@ -309,7 +309,7 @@ std::vector<double> selected(ByteStream& stream, bool swapped, const MatSelectio
   std::vector<double> values;
   values.reserve(selection.count);
   std::size_t left = selection.count == 0 ? 0 : (selection.count - 1) * selection.stride + 1;
-  std::size_t next = 0;  // of the block, the number that is wanted next
+  std::size_t next = 0;  // index in the block of the next wanted number
   while (left > 0) {
     block.resize(std::min(left, kBlock));
     stream.read(block.data(), block.size() * sizeof(Number));

@@ -322,7 +322,7 @@ class SheetReader {
   std::size_t count_ = 0;
   std::map<std::string, std::size_t> columns_;         ///< by name
   std::map<std::size_t, std::vector<double>> values_;  ///< by column
-  std::size_t first_row_ = 0;                          ///< of numbers; 0: not known yet
+  std::size_t first_row_ = 0;                          ///< first row of numbers; 0: not known yet
   std::size_t next_row_ = 0;
   std::size_t row_ = 0;
   std::optional<std::pair<std::size_t, std::size_t>> gap_;  ///< the first cell that is missing

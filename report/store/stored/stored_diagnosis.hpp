@@ -26,7 +26,7 @@ struct StoredClassLimit {
   double share_percent = 0.0;
   std::optional<datasets::LeakClass> class_;  ///< class that ends there
   std::vector<double> coefficients;
-  std::vector<std::optional<Range>> coefficients_ci95;  ///< of each
+  std::vector<std::optional<Range>> coefficients_ci95;  ///< intervals of each
   RIGCAL_DESCRIBE(signal, share_percent, class_, coefficients, coefficients_ci95)
 };
 
@@ -165,7 +165,7 @@ struct StoredDiagnosis {
   std::vector<StoredState> states;
   std::vector<StoredLeakTrend> trends;
   std::vector<StoredDiagnosedRecord> records;
-  StoredConfusion confusion;  ///< of the fitted leak in single repeats, as the two below
+  StoredConfusion confusion;  ///< for the fitted leak in single repeats, like the two below
   std::optional<double> accuracy;
   std::optional<Range> accuracy_ci95;
   StoredMethods methods;

@@ -108,7 +108,7 @@ struct StoredParameter {
   std::optional<double> standard_error, robust_standard_error;
   std::optional<Range> ci95;
   Later<std::optional<calib::IntervalSource>> ci95_from;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of the error on which ci95 is based
+  Later<std::optional<double>> degrees_of_freedom;  ///< for the error on which ci95 is based
   Omittable<StoredBootstrap> bootstrap;
   Omittable<StoredProfile> profile;
   bool at_bound = false;
@@ -250,7 +250,7 @@ struct StoredCondition {
   Omittable<double> temperature_k;
   Omittable<std::string> date;
   long samples = 0;
-  Later<std::vector<std::string>> record_sha256;  ///< of the files that the record is made from
+  Later<std::vector<std::string>> record_sha256;  ///< files that the record is made from
   Omittable<std::vector<Range>> windows_s;        ///< empty: the whole record
   Omittable<std::vector<std::string>> notes;
   Omittable<std::vector<StoredLimit>> acceptance;  ///< its own, in place of the campaign's
@@ -260,7 +260,7 @@ struct StoredCondition {
   std::optional<std::string> failure;
   Keyed<StoredScore> metrics;  ///< by channel, like the three below
   Keyed<std::optional<StoredNoiseFloor>> noise_floor;
-  Omittable<Keyed<std::optional<StoredAgreement>>> expanded_uncertainty;  ///< of each score
+  Omittable<Keyed<std::optional<StoredAgreement>>> expanded_uncertainty;  ///< per score
   Keyed<std::optional<StoredResidualTests>> residual_tests;
   Later<std::vector<StoredLimitCheck>> limit_checks;
   Later<Keyed<calib::Verdict>> channel_verdicts;
@@ -334,7 +334,7 @@ struct StoredFit {
   Later<std::optional<StoredLackOfFit>> lack_of_fit;
   Later<std::optional<StoredBetweenRepeats>> between_repeats;
   Later<std::vector<StoredBasin>> basins;
-  Later<std::string> agreement;  ///< of the starts, in words
+  Later<std::string> agreement;  ///< agreement of the starts, in words
   Omittable<StoredBootstrapRun> bootstrap;
   Omittable<std::vector<StoredHeldOut>> cross_validation;
   Later<std::optional<double>> aic, bic;

@@ -42,9 +42,9 @@ struct ByFeature {
 /// A leak and its class; empty if it could not be estimated.
 struct StoredLeak {
   std::optional<double> leakage_coefficient;
-  std::optional<Range> ci95;  ///< of the coefficient
+  std::optional<Range> ci95;  ///< interval of the coefficient
   std::optional<double> standard_error;
-  std::optional<double> leak_share_percent;  ///< of the servo flow
+  std::optional<double> leak_share_percent;  ///< percentage of the servo flow
   std::optional<Range> leak_share_ci95_percent;
   std::optional<double> leak_share_upper_limit_percent;
   std::optional<double> leak_flow_l_per_min;
