@@ -410,8 +410,8 @@ struct Calibration {
   double probability = 0.0;
 };
 
-/// The leak of every condition is random in ln C between the coefficients of 0.1 and 60 %.
-/// What coverage is asked of, over all records.
+/// Leaks of random size for every condition, uniform in ln C between the coefficients of 0.1 and 60
+/// %. Coverage is evaluated over all records.
 struct CoverageTally {
   std::map<std::string, Coverage> by_signal;  ///< for shares that count, and for all smaller ones
   Coverage all;                               ///< for shares that count

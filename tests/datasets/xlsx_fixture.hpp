@@ -43,7 +43,7 @@ inline XlsxFixtureCell cell(const std::string& text) {
   return {fmt::format("<c r=\"@\" t=\"inlineStr\"><is><t>{}</t></is></c>", text)};
 }
 inline XlsxFixtureCell cell(const char* text) { return cell(std::string(text)); }
-/// "@" stands for the address.
+/// "@" is replaced by the address.
 inline XlsxFixtureCell raw_cell(const std::string& xml) { return {xml}; }
 inline XlsxFixtureCell no_cell() { return {}; }
 

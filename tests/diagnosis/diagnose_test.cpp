@@ -195,7 +195,7 @@ TEST_CASE("diagnose: another fault is not called a leak", "[diagnosis]") {
     REQUIRE_FALSE(record.warnings.empty());
     CHECK_THAT(record.warnings.front(), Catch::StartsWith("not explained by a leak"));
   }
-  // Dry friction loses motion much as a leak does: what it does otherwise is told of.
+  // Dry friction loses motion like a leak; its other effects cause a warning.
   for (const auto& record : found_with("coulomb_friction", 3000.0)) {
     CAPTURE(record.fit.parity_rms_m, record.fit.misfit_rms_m, record.estimate.share);
     REQUIRE_FALSE(record.warnings.empty());
@@ -243,7 +243,7 @@ TEST_CASE("diagnose: a record of one sample is told to be too short", "[diagnosi
     CHECK_FALSE(record.fit.ok());
     CHECK_THAT(record.fit.failure, Catch::Contains("one sample counts"));
   }
-  // Two tell a flow over a time.
+  // Two samples define a flow over a time.
   const Diagnosis two =
       diagnosis::diagnose(campaign, records_of(campaign, 1, 2), known_rig(campaign), {});
   for (const auto& record : two.records)

@@ -55,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const std::string& kind : kinds) {
     const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
       if (path == kind) return text;
-      // What lies beside what is read is whole.
+      // The files beside the tested one are undamaged.
       const bool of_fit = kind == "residual_tests.json" || kind == "residuals/sine.csv";
       if (path == "fit.json" && of_fit) return tested_fit();
       if (path == "residual_tests.json" &&

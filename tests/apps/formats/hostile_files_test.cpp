@@ -26,7 +26,7 @@ using Arguments = CommandFolder::Arguments;
 struct Damage {
   std::string name;
   std::function<void(const fs::path&)> put;
-  std::string word;  ///< of the message
+  std::string word;  ///< word in the message
 };
 
 const std::vector<Damage> kNoFiles{

@@ -40,7 +40,7 @@ TEST_CASE("basins: starts that ended at one point, and those that did not", "[ca
   beneath[3].final_cost = 0.0;
   beneath[3].end_values.clear();
   CHECK(agreement_of(beneath, found, 1.0) == words);
-  // Of one cost, but at two points: a tenth of the interval's width is 0.02.
+  // Equal cost at two points: a tenth of the interval's width is 0.02.
   const auto apart = [&](double distance) {
     return basins({start(1, 10.0, 1.0, FitStatus::converged),
                    start(2, 10.0, 1.0 + distance, FitStatus::converged)},

@@ -15,8 +15,7 @@ using Catch::WithinAbs;
 using Catch::WithinRel;
 using datasets::Waveform;
 
-/// Two conditions that ask for different valve gains, so that the estimate depends on how much each
-/// of them weighs.
+/// Two conditions with different valve gains, so that the estimate depends on their weights.
 Twin of_two_minds() {
   Twin twin;
   twin.free("valve_gain", 3e-5, 1e-5, 2e-4);

@@ -120,8 +120,8 @@ TEST_CASE("symmetry: a prior alone tells the scale, as well as it is stated", "[
 }
 
 TEST_CASE("symmetry: a known supply pressure leaves none", "[calib]") {
-  // Slow and short: mass and bulk modulus together are told no better than to 10 %, but a known
-  // supply pressure, valve gain and damping do hold the scale.
+  // Slow and short: mass and bulk modulus together are determined to 10 % at best, but a known
+  // supply pressure, valve gain and damping fix the scale.
   Twin twin;
   twin.free("mass", 70.0, 17.0, 425.0);
   twin.free("bulk_modulus", 800e6, 138e6, 3445e6);

@@ -176,7 +176,7 @@ TEST_CASE("draft_campaign: a file whose time restarts is left out", "[datasets]"
   const std::string draft = draft_campaign({cuts, run}, folder.path()).text;
   CHECK_THAT(draft, Contains("# left out: cuts.csv:4:1: time 't_s' does not increase"));
   CHECK_THAT(draft, !Contains("id = \"cuts\"") && Contains("\"sine_2.csv\""));
-  // The first of two repeats: the second stands for them.
+  // The first of two repeats is unreadable; the second one replaces it.
   const std::string rest =
       draft_campaign({folder.write("sine_1.csv", restarts), run}, folder.path()).text;
   CHECK_THAT(rest,

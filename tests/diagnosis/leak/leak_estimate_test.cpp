@@ -49,7 +49,7 @@ TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]
   CHECK_THAT(sure.ci95.second, WithinAbs(1.5 + 0.0392, 1e-5));
 
   const auto torn = estimated(fit_of(1.0, 0.1));
-  // Half the distribution lies below the limit, of which the prior makes the more probable half:
+  // Half the distribution is below the limit, and the prior makes this half more probable:
   // integrals of exp(-(s - 0.1)^2 / (2 0.01^2)) / (0.00125 + s).
   CHECK_THAT(probability(torn, LeakClass::slight), WithinAbs(0.5398, 2e-3));
   CHECK_THAT(probability(torn, LeakClass::medium), WithinAbs(0.4602, 2e-3));
@@ -59,7 +59,7 @@ TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]
 
 TEST_CASE("estimate_leak: beforehand normal is as probable as slight, without a step between them",
           "[diagnosis]") {
-  // A record that tells next to nothing of shares below 10 %: the prior alone.
+  // A record that hardly determines shares below 10 %: only the prior counts.
   const auto vague = estimated(fit_of(0.0, 50.0));
   CHECK_THAT(probability(vague, LeakClass::normal) / probability(vague, LeakClass::slight),
              WithinRel(1.0, 0.1));
@@ -130,7 +130,8 @@ TEST_CASE("estimate_leak: a reference adds its own scatter and takes the model's
   const auto corrected = estimated(fit, errors, 1, 3);
   CHECK_THAT(corrected.standard_error,
              WithinRel(std::sqrt(0.03 * 0.03 + 0.12 * 0.12 * (1.0 + 1.0 / 3.0)), 1e-9));
-  // Welch and Satterthwaite: what the repeats tell has 16 degrees of freedom, the scatter 1e6.
+  // Welch and Satterthwaite: the part of the repeats has 16 degrees of freedom, that of the
+  // residuals 1e6.
   const double repeats = 0.12 * 0.12 * (1.0 + 1.0 / 3.0);
   CHECK_THAT(corrected.freedom, WithinRel(std::pow(0.03 * 0.03 + repeats, 2) /
                                               (repeats * repeats / 16.0 + std::pow(0.03, 4) / 1e6),
@@ -153,7 +154,7 @@ TEST_CASE("estimate_leak: the rig's error blurs the share", "[diagnosis]") {
 }
 
 TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis]") {
-  // Half a normal distribution of sd 0.1, below 1.959964 of which 95 % lie; a tenth is the share's.
+  // Half a normal distribution with sd 0.1: 95 % are below 1.959964; the share is a tenth of it.
   const auto none = estimated(fit_of(0.0, 0.1));
   REQUIRE(none.share_upper_limit);
   CHECK_THAT(*none.share_upper_limit, WithinAbs(0.0196, 1e-4));
@@ -170,8 +171,8 @@ TEST_CASE("estimate_leak: no interval ends at zero, however far below it the est
   const auto none = estimated(fit_of(0.0, 0.1));
   CHECK(none.ci95.first == 0.0);
   CHECK_THAT(none.ci95.second, WithinRel(0.1959964, 1e-5));
-  // Two errors below zero: P(Z > 2) = 0.0227501 remains above zero, and a twentieth of it lies
-  // beyond 3.05176 errors.
+  // Two errors below zero: P(Z > 2) = 0.0227501 remains above zero, and a twentieth of it is beyond
+  // 3.05176 errors.
   const auto below = estimated(fit_of(-0.2, 0.1));
   CHECK_FALSE(below.incompatible);
   CHECK_THAT(below.ci95.second, WithinAbs(0.1 * (3.05176 - 2.0), 1e-5));

@@ -125,7 +125,7 @@ TEST_CASE("comparison: nothing is a percentage of what may be zero", "[report]")
   CHECK_THAT(comparison_text(json, {}), Contains("+0.3 (p"));
   CHECK_THAT(reason_of(comparison_headline(json), 0),
              Contains("leakage_coefficient differs in after by +0.3 (p"));
-  // Not zero, but its interval holds zero: 0.03 would be +200 %.
+  // Not zero, but its interval includes zero: 0.03 would be +200 %.
   ComparedJson other = compared_fit("after", 87.0, 0.03);
   other.result["provenance"]["inputs"][1]["sha256"] = "before";
   json = comparison_json({compared_fit("before", 85.0, 0.01), other}, {});
@@ -318,7 +318,7 @@ TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
   CHECK(rho2["worse"] == 1);
   CHECK(rho2["mean"] == 0.9);
   CHECK(rho2["mean_of_first"] == 0.99876543);
-  // One condition tells nothing by its sign.
+  // The sign of one condition proves nothing.
   CHECK(rho2["p_value"].is_null());
   CHECK(rho2["significant"].is_null());
   CHECK(rho2["reason"] == "not tested: 1 condition, and a sign test needs 6");

@@ -367,7 +367,7 @@ struct EndlessResult {
   long grown_megabytes = 0;  ///< peak of memory above that before
 };
 
-/// Loads, in a process of its own, a pipe that holds `head` and then `body` again and again.
+/// Loads, in a separate process, a pipe with `head` and then `body` again and again.
 EndlessResult load_endless(const std::string& head, const std::string& body,
                            const CsvRequest& wanted) {
   const File file("");
