@@ -1,4 +1,4 @@
-# Warnings as a private target, so that they never leak to whoever links the library.
+# Warnings as a private target, so that targets that link the library do not inherit them.
 add_library(rigcal_warnings INTERFACE)
 target_compile_options(rigcal_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
   -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wimplicit-fallthrough)

@@ -249,7 +249,7 @@ def is_assignment(text, i):
 
 
 def balanced(text, begin, end):
-    """The range, grown until it holds both of each pair of brackets."""
+    """Returns the range, extended until it contains both of each pair of brackets."""
     closed = opened = 0
     for c in text[begin:end]:
         if c in OPEN:
@@ -268,7 +268,7 @@ def balanced(text, begin, end):
 
 
 def expression_around(text, begin, end):
-    """The smallest complete expression that holds text[begin:end], or None where that takes a statement.
+    """Returns the smallest complete expression that contains text[begin:end], or None if that needs a statement.
 
     It ends at brackets, commas, assignments and the parts of ?:, unless the changed text has those itself.
     """
@@ -402,7 +402,7 @@ def rendered(code, places, begin, end):
 
 
 def without_constexpr(code, places):
-    """A constant whose value is mutated is one of run time: (begin, end, what stands there instead), the last first."""
+    """Turns a constant with a mutated value into one of run time: (begin, end, replacement), the last first."""
     edits = set()
     for place in places:
         match = re.search(r"\b(inline |static |)constexpr (?=[^;()]*$)", code[:place.begin])

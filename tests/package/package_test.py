@@ -1,4 +1,4 @@
-"""What `cmake --install` leaves is what a project finds and a user reads. usage: package_test.py BUILD COMPILER"""
+"""`cmake --install` installs everything for projects and readers. usage: package_test.py BUILD COMPILER"""
 import json
 import pathlib
 import re

@@ -44,7 +44,7 @@ class Pair:
 
 
 def files_in(folder: pathlib.Path) -> dict[str, str]:
-    """Texts of all files, without what two runs of the same thing differ in: the call, and the time that it took."""
+    """Returns the texts of all files without the call and the run time, in which two equal runs differ."""
     files = {str(file.relative_to(folder)): file.read_text() for file in folder.rglob("*") if file.is_file()}
     manifest = json.loads(files["rigcal-manifest.json"])  # its hashes differ for the same reasons
     files["rigcal-manifest.json"] = str([(each["path"], each["verb"]) for each in manifest["files"]])
@@ -149,7 +149,7 @@ def test_what_is_printed(pair: Pair) -> None:
 
 
 def same(ours: float | None, theirs: float | None) -> bool:
-    """Equal in every bit; JSON has null for what is no finite number."""
+    """Equal in every bit; JSON has null for a number that is not finite."""
     if theirs is None:
         return ours is None or not math.isfinite(ours)
     return ours == theirs

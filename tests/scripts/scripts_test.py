@@ -53,7 +53,7 @@ class Scripts(unittest.TestCase):
         self.programs.mkdir()
 
     def run_script(self, name, *arguments, fails=False):
-        """What it prints; where it is to fail, what it says on standard error."""
+        """Returns its output; if it has to fail, its standard error."""
         path = f"{self.programs}:{os.environ['PATH']}"
         environment = {key: value for key, value in os.environ.items() if key != "RIGCAL"} | {"PATH": path}
         done = subprocess.run([self.tree / "scripts" / name, *arguments], cwd=self.tree, capture_output=True, text=True,
