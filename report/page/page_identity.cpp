@@ -18,9 +18,9 @@ doc::Line sensor_line(const Json& sensor, const std::string& tested) {
       line.emplace_back(text);
       continue;
     }
-    std::string label(field.label);
-    label.front() = static_cast<char>(label.front() | 0x20);  // ASCII, to lower case
-    const std::string words = label + " " + text;
+    std::string words(field.label);
+    words.front() = static_cast<char>(words.front() | 0x20);  // ASCII, to lower case
+    words.append(" ").append(text);
     // ISO 8601 dates sort as text.
     const bool overdue = field.key == "due" && !tested.empty() && text.substr(0, 10) < tested;
     line.push_back(overdue ? doc::Inline(doc::Badge{doc::State::bad, words}) : doc::Inline(words));

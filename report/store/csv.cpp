@@ -55,9 +55,9 @@ std::span<const double> sd_of(const Result& result, const std::string& condition
 
 std::string scorecard_csv(const Result& result) {
   const datasets::ChannelInfo& drive = info(drive_channel(result.campaign));
-  const std::string_view unit = drive.name.substr(drive.key.size());  // "_m" of "reference_m"
+  const std::string_view suffix = drive.name.substr(drive.key.size());  // "_m" of "reference_m"
   std::vector<std::string> titles{
-      "condition",  "use",     "waveform", "frequency_hz", fmt::format("amplitude{}", unit),
+      "condition",  "use",     "waveform", "frequency_hz", fmt::format("amplitude{}", suffix),
       "leak_level", "samples", "verdict",  "channel",      "unit"};
   for (const metrics::MetricSpec& metric : metrics::kMetrics) titles.emplace_back(metric.name);
   for (const char* title :
