@@ -29,7 +29,7 @@ struct Rig {
   T mass, bulk_modulus, valve_gain, leakage;
   double reference_m = 0.0;
   double amplitude_m = 0.0;
-  double omega = 0.0;  ///< of a sine; 0: the reference is constant
+  double omega = 0.0;  ///< angular frequency of a sine; 0: the reference is constant
 
   T signed_root(const T& p) const { return p / sqrt(sqrt(p * p + 1e8)); }
 

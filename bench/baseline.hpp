@@ -25,7 +25,7 @@ std::vector<double> simulate_with_sensitivities(const Reference& signal, const V
                                                 double tolerance);
 
 struct Fit {
-  Values factors;  ///< of the true values
+  Values factors;  ///< multiples of the true values
   double cost = 0.0;
   int jacobians = 0;
   int residuals = 0;

@@ -1,6 +1,6 @@
-// How often 95 % intervals hold the truth: many short synthetic campaigns of the paper's rig, made,
-// aligned, averaged and fitted by the same code as `rigcal synthesize` and `rigcal fit` use, from
-// 10 % off. Prints the table of docs/uncertainty.md.
+// Measures how often 95 % intervals include the truth. Many short synthetic campaigns of the
+// paper's rig are made, aligned, averaged and fitted by the code of `rigcal synthesize` and `rigcal
+// fit`, with starts 10 % off. Prints the table of docs/uncertainty.md.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

@@ -1,4 +1,5 @@
-// How well leaks are told on synthetic campaigns of known truth: the numbers of docs/diagnosis.md.
+// Measures how well leaks are found in synthetic campaigns of known truth: the numbers of
+// docs/diagnosis.md.
 //   rigcal_diagnosis_study coverage RECORDS       intervals and classes at random leaks
 //   rigcal_diagnosis_study classes FIRST LAST     classes, seeds FIRST to LAST
 //   rigcal_diagnosis_study smallest FIRST LAST    smallest leak on a 0.1 Hz sine
@@ -165,7 +166,7 @@ diagnosis::RigFit healthy_fit(Campaign& campaign, const std::vector<RepeatRecord
   return diagnosis::rig_fit_of(again);
 }
 
-/// Frees what a real rig may have and its model has not, for the healthy records to tell.
+/// Frees terms that a real rig may have and its model lacks, to be estimated from healthy records.
 void free_friction_and_lag(Campaign& campaign) {
   const std::pair<const char*, double> most[] = {{"coulomb_friction", 1000.0},
                                                  {"valve_time_constant", 0.02}};
@@ -409,17 +410,17 @@ struct Calibration {
   double probability = 0.0;
 };
 
-/// The leak of every condition is random in ln C between the coefficients of 0.1 and 60 %.
-/// What coverage is asked of, over all records.
+/// Leaks of random size for every condition, uniform in ln C between the coefficients of 0.1 and 60
+/// %. Coverage is evaluated over all records.
 struct CoverageTally {
-  std::map<std::string, Coverage> by_signal;  ///< of shares that count, and of all smaller ones
-  Coverage all;                               ///< of shares that count
+  std::map<std::string, Coverage> by_signal;  ///< for shares that count, and for all smaller ones
+  Coverage all;                               ///< for shares that count
   Coverage small;
   std::vector<Calibration> calibration = std::vector<Calibration>(5);
   std::map<LeakClass, Total> by_class;
   int healthy_records = 0;
   int alarms = 0;
-  std::vector<double> limits;  ///< of the share of healthy repeats
+  std::vector<double> limits;  ///< upper limits of the share in healthy repeats
 };
 
 /// Conditions with leaks drawn at random, beside the healthy ones, and the values that make them.

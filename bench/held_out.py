@@ -1,17 +1,17 @@
 #!/usr/bin/python3
-"""Held-out scores of a fit beside those of models without physics, from the same records and the same split.
+"""Compares the held-out scores of a fit with those of models without physics, on the same records and split.
 
     bench/held_out.py RESULT_DIR [--taps N]     (a result folder of `rigcal fit`; needs python3-numpy)
 
-For every compared channel and every condition that was not fitted: rho2 = 1 - var(e) / var(y) of
+Prints rho2 = 1 - var(e) / var(y) for every compared channel of every condition that was not fitted. The models:
 
     rigcal     the calibrated model
     null       a + b drive, or a constant in an open loop
     black box  a finite impulse response of the drive with N taps (default 24) and a constant, for the channel or for its
-               rate, whichever is nearer on the fitted conditions; of a rate the channel's first value is taken as known
+               rate, whichever fits the fitted conditions better; a rate needs the channel's first value, taken as known
 
-both by least squares on the fitted conditions. Where a loop controls a channel, what its reference is ahead of it counts as
-another one, "tracking error": of the channel itself the reference alone tells nearly everything.
+The last two are fitted by least squares to the fitted conditions. A channel that a loop controls has a second score, "tracking
+error", for the reference minus the channel: the reference alone predicts the channel itself almost completely.
 """
 import argparse
 import pathlib
@@ -32,7 +32,7 @@ def drive_of(table):
 
 
 def lagged(drive, taps):
-    """Columns: the drive now and up to taps - 1 samples ago; before the first sample it has its first value."""
+    """Returns the drive delayed by 0 to taps - 1 samples as columns; before its first sample it has its first value."""
     padded = np.r_[np.full(taps - 1, drive[0]), drive]
     rows = [padded[taps - 1 - k:len(padded) - k] for k in range(taps)]
     return np.c_[np.array(rows).T, np.ones(len(drive))]
@@ -44,7 +44,7 @@ def rho2(measured, simulated, counts):
 
 
 class Linear:
-    """Least squares of a channel, or of its rate, on columns made of the drive."""
+    """Least-squares fit of a channel, or of its rate, to columns made from the drive."""
 
     def __init__(self, tables, channel, columns_of, rate):
         self.columns_of, self.rate = columns_of, rate
@@ -71,7 +71,7 @@ class Linear:
 
 
 def channels_of(table):
-    """(words, measured, simulated) of each compared channel, and of what a loop's reference is ahead of it."""
+    """Returns (words, measured, simulated) of each compared channel, and of the tracking error of a controlled one."""
     drive = drive_of(table)
     found = []
     for name, words in CHANNELS.items():

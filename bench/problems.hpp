@@ -40,7 +40,7 @@ inline constexpr double kNoiseSd = 0.05e-3 / 2.2360679774997896;
 struct Problem {
   datasets::Campaign campaign;
   std::vector<datasets::Record> records;
-  std::vector<model::ParameterValues> truth;  ///< of each condition
+  std::vector<model::ParameterValues> truth;  ///< true values of each condition
 };
 
 /// Mass, bulk modulus, valve gain and leakage free, started off the truth; noise from the seed.

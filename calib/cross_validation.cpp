@@ -27,7 +27,7 @@ using datasets::Use;
 /// A prediction this many times worse than the fit is worth a word, and a shift of so many errors.
 constexpr double kMuchWorse = 1.5;
 constexpr double kFarShift = 3.0;
-/// And one that is worse by less is none.
+/// A smaller change than this is no deterioration.
 constexpr double kNoWorse = 1.005;
 
 Campaign without(const Campaign& campaign, const std::string& id, const Fit& whole) {
@@ -96,7 +96,7 @@ HeldOut leave_out(const Campaign& campaign, const std::vector<datasets::Record>&
       held.rms = rms_of(*predicted);
       add_shift(whole, part, campaign, held);
     }
-  } catch (const InputError& error) {  // nothing else tells of one of its unknowns
+  } catch (const InputError& error) {  // no other record determines one of its unknowns
     held.problem = error.what();
   }
   return held;
@@ -156,7 +156,7 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
     result[i] = not_made(i);
     if (!made[i].bytes.empty()) from_bytes(made[i].bytes, taken[i], result[i]);
   }
-  // Which were made beyond the one that reached a limit depends on the threads.
+  // The number of threads decides which folds were made beyond the one that reached a limit.
   long sum = 0;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (allowed && sum >= *allowed) result[i] = not_made(i);

@@ -43,8 +43,8 @@ std::set<std::string> fitted_conditions(const Campaign& campaign) {
   return ids;
 }
 
-/// What was found doubtful about the recordings, on with the result that rests on them: once for
-/// all conditions of which the same is said.
+/// Copies the doubts about the recordings into the result, once for all conditions with the same
+/// text.
 void add_record_warnings(const std::vector<Record>& records, Fit& fit) {
   std::vector<const Record*> used;
   for (ConditionScore& score : fit.conditions) {

@@ -54,8 +54,8 @@ bool asks_for_more(const FitOptions& options) {
   return options.bootstrap > 0 || options.profiles || options.cross_validate;
 }
 
-/// What was asked for beside the fit: bootstrap, profiles, cross-validation.
-/// Where the budget ends it, what was made by then is kept.
+/// Runs what was requested in addition to the fit: bootstrap, profiles, cross-validation. If the
+/// budget ends it, the finished parts are kept.
 void look_again(const Problem& problem, const Campaign& campaign,
                 const std::vector<Record>& records, const Solved& solved, const FitOptions& options,
                 Budget& budget, Fit& fit) {
@@ -92,9 +92,9 @@ void warn_of_start(const Campaign& campaign, const std::vector<const Condition*>
   if (!text.empty()) fit.warnings.push_back(text);
 }
 
-/// Scores conditions at known values, nuisance parameters estimated anew.
+/// Scores conditions at known values, with nuisance parameters estimated again.
 ///
-/// @param spread  of the values, for bands of prediction; null: none
+/// @param spread  covariance of the values, for bands of prediction; null: none
 Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
              const std::vector<const Condition*>& conditions,
              const std::vector<FittedValue>* values, const FitOptions& options, Budget& budget,
@@ -138,7 +138,7 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
   return fit;
 }
 
-/// What was being made, in words.
+/// Name of the stage for messages.
 std::string_view words(StoppedIn stage) {
   switch (stage) {
     case StoppedIn::nothing:
@@ -188,7 +188,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
                      "nothing is free in the conditions of the fit: expected `fit = true` at a "
                      "parameter, or --free");
   }
-  // A leak level that only validation has must be told before the hours of a fit, not after.
+  // A leak level that only the validation has must be reported before the hours of a fit.
   std::vector<FittedValue> starts;
   for (const Unknown& unknown : problem.map.unknowns()) {
     if (!unknown.nuisance)
@@ -209,7 +209,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
       spread = estimate_spread(problem, solved.optimum.z, solved.spread);
       add_prediction_sd(problem, solved.optimum.z, *spread, options.threads, result.conditions);
     }
-    // Before what may take hours, so that a stop there changes no score.
+    // Scored before steps that may take hours, so that stopping them changes no score.
     std::optional<Fit> validation;
     if (!validated.empty()) {
       const auto values = values_of(result.parameters);

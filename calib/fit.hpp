@@ -18,13 +18,13 @@ namespace rigcal::calib {
 Fit fit(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
         const FitOptions& options);
 
-/// Scores `fit` and `validate` conditions with given values; estimates nothing but nuisance
-/// parameters (by the same machinery as fit()).
+/// Scores `fit` and `validate` conditions with given values. Estimates only nuisance parameters (by
+/// the same code as fit()).
 ///
 /// @param values  of an earlier fit, or empty: the campaign's own values
-/// @param origin  of `values`; null: the campaign's `fit` conditions are taken for those that its
-///                values were estimated from
-/// @throws InputError  a leak level (or condition) that needs a value which `values` does not have
+/// @param origin  of `values`; null: they are assumed to be estimated from the campaign's `fit`
+///                conditions
+/// @throws InputError  `values` lacks a value for a leak level or condition
 Fit validate(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
              const std::vector<datasets::FittedValue>* values, const FitOptions& options,
              const Origin* origin = nullptr);

@@ -13,10 +13,10 @@
 namespace rigcal::calib {
 namespace {
 
-/// Step budget of a later point, relative to what the start takes at a coarse tolerance: it may
-/// have to be simulated to its end where the start soon becomes periodic.
+/// Step budget of a later point relative to the start at a coarse tolerance: the later point may
+/// need a simulation to its end where the start soon becomes periodic.
 constexpr long kStepsOverStart = 100;
-/// For starts of fewer than twenty steps, at which nothing moves: elsewhere it may.
+/// Least budget, for starts of fewer than twenty steps, in which nothing moves.
 constexpr long kLeastSteps = 20'000;
 
 void budget_steps(Problem& problem, const Evaluation& start) {
@@ -59,7 +59,7 @@ Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& o
       fit.message = "no start could be simulated; of the first: " + fit.message;
     return {};
   }
-  give_freed_memory_back();  // of the simulations: what follows asks for other sizes
+  give_freed_memory_back();  // memory of the simulations; the next steps need other sizes
   const bool awaited = found.result.status == FitStatus::stopped && evaluator.budget().cancelled();
   Uncertainty spread = uncertainty(problem, found.optimum, std::move(rows), options.threads,
                                    awaited ? Detail::plain : Detail::full);

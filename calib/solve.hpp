@@ -9,19 +9,19 @@
 
 namespace rigcal::calib {
 
-/// What every later look at a fit needs; the optimum is not ok where there is none.
+/// Data that later steps need of a solved fit; the optimum is not ok if there is none.
 struct Solved {
   Evaluation optimum;
   Uncertainty spread;
   std::vector<std::size_t> open;  ///< unknowns that a scaling symmetry leaves open
 };
 
-/// Solves a problem and describes what was found, all but the scores: multi-start, weights, verify,
-/// trust.
+/// Solves a problem and describes the result except for the scores: multi-start, weights,
+/// verification, intervals.
 Solved solve_problem(Problem& problem, Evaluator& evaluator, const FitOptions& options, Fit& fit);
 
-/// The same; where its only start ends at no minimum, goes on with further starts as a multi-start
-/// would that had begun with that one.
+/// The same. If its only start ends away from a minimum, it continues with further starts, as a
+/// multi-start that began with it would.
 Solved solve_from_starts(Problem& problem, Evaluator& evaluator, const FitOptions& options,
                          Fit& fit);
 

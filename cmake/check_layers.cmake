@@ -1,4 +1,4 @@
-# Forbids includes that go up, and rooms too large to look over: cmake -DROOT=... -P check_layers.cmake
+# Forbids includes that go up, and rooms that are too large: cmake -DROOT=... -P check_layers.cmake
 cmake_minimum_required(VERSION 3.25)
 # common <- { model, metrics } <- datasets <- calib <- diagnosis <- report <- { apps, python }
 set(layers common model metrics datasets calib diagnosis report apps python)
@@ -12,8 +12,8 @@ set(allowed_report common model metrics datasets calib diagnosis report)
 set(allowed_apps common model metrics datasets calib diagnosis report apps)
 set(allowed_python common model metrics datasets calib diagnosis report python)
 
-# What a room may include of its own layer, beside itself. What lies in no room is for all of model and datasets, and
-# stands above all rooms of calib and diagnosis. A room within a room has the arrows of the outer one.
+# Rooms of its own layer that a room may include besides itself. Files outside all rooms are open to all of model and
+# datasets, and are above all rooms of calib and diagnosis. A room inside a room has the arrows of the outer one.
 set(model_arithmetic)
 set(model_signal .)
 set(model_plant . arithmetic signal)
@@ -47,7 +47,7 @@ set(report_comparison json store text page figure document)
 set(report_live json store text page figure document run)
 set(report_run json store text page)
 
-# A header and its source are one.
+# A header and its source count as one.
 set(most_units 20)
 
 set(violations "")

@@ -1,5 +1,5 @@
 # Writes files into a C++ source as raw strings: cmake -DOUT=... "-DFILES=name=path;..." -P embed.cmake
-# With -DMAP=function -DHEADER=file the function that the header declares gives them all, by name.
+# With -DMAP=function -DHEADER=file, the function that the header declares returns all of them by name.
 cmake_minimum_required(VERSION 3.25)
 set(rows "")
 foreach(entry IN LISTS FILES)

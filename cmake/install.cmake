@@ -1,9 +1,9 @@
-# cmake --install, in two components: `program` is what the packages hold (scripts/package); `development` the headers,
-# the libraries and what find_package(rigcal) reads.
+# cmake --install, in two components. `program` is the content of the packages (scripts/package); `development` has the
+# headers, the libraries and the files for find_package(rigcal).
 include(CMakePackageConfigHelpers)
 set(config ${CMAKE_INSTALL_LIBDIR}/cmake/rigcal)
 
-# Not the headers that need a package which the libraries keep to themselves; none of the others includes one.
+# Without the headers that need a package which the libraries use only internally; no other header includes one of them.
 install(DIRECTORY common model metrics datasets calib diagnosis report
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/rigcal COMPONENT development
   FILES_MATCHING PATTERN *.hpp
@@ -33,7 +33,7 @@ add_custom_command(OUTPUT ${notices}
 add_custom_target(rigcal_notice ALL DEPENDS ${notices})
 install(FILES ${notices} DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 
-# The .deb: the program without the libraries that it is made of.
+# The .deb: the program without the libraries that it is linked from.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME rigcal)
 set(CPACK_PACKAGE_CONTACT "rigcal maintainers <rigcal@localhost>")

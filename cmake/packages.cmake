@@ -11,7 +11,7 @@ find_package(ZLIB REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(tomlplusplus REQUIRED IMPORTED_TARGET tomlplusplus)
 pkg_check_modules(matio REQUIRED IMPORTED_TARGET matio)
-# Where a parallel HDF5 lies beside the serial one, `hdf5` may be either; matio brings the serial one.
+# If a parallel HDF5 is installed beside the serial one, `hdf5` may mean either. matio needs the serial one.
 pkg_search_module(hdf5 REQUIRED IMPORTED_TARGET hdf5-serial hdf5)
 pkg_check_modules(libzip REQUIRED IMPORTED_TARGET libzip)
 pkg_check_modules(expat REQUIRED IMPORTED_TARGET expat)

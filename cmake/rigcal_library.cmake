@@ -1,5 +1,5 @@
-# Of an inline function that several objects have, the linker keeps the first: for what computes, not that of
-# a test or of what writes a page. So these objects come before the others.
+# If several objects have the same inline function, the linker keeps the first one. Code that computes must not get that
+# of a test or of a page writer, so its objects come before the others.
 #   rigcal_optimised_first(target layer...)
 function(rigcal_optimised_first target)
   foreach(layer IN LISTS ARGN)
@@ -8,13 +8,13 @@ function(rigcal_optimised_first target)
   endforeach()
 endfunction()
 
-# What computes is optimised under the sanitizers too, or the tests would crawl; not what prepares, judges
-# or writes, which compiles in a quarter of the time so. In a release that is optimised less.
+# Code that computes is optimised under the sanitizers, too, or the tests would be far too slow. Code that prepares,
+# judges or writes is not; it compiles in a quarter of the time. A release optimises it less.
 set(rigcal_optimised $<$<BOOL:${RIGCAL_SANITIZE}>:-O1>)
 set(rigcal_less_optimised $<$<CONFIG:Release>:-O1>)
 set(rigcal_light diagnosis report)
 
-# Objects of these targets may become part of the command and of a shared module alike (CMakeLists.txt).
+# Objects of these targets may become part of the command and of a shared module (CMakeLists.txt).
 function(rigcal_position_independent)
   set_target_properties(${ARGN} PROPERTIES POSITION_INDEPENDENT_CODE ${rigcal_shared})
   if(rigcal_shared)
@@ -23,7 +23,7 @@ function(rigcal_position_independent)
 endfunction()
 
 # rigcal_library(name SOURCES ... LIGHT ... LINKS ...): one layer as a static library, alias rigcal::name.
-# LIGHT: its sources that compute little, where the others do.
+# LIGHT: sources of a layer that compute little, unlike its others.
 function(rigcal_library name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LIGHT;LINKS;PRIVATE_LINKS" ${ARGN})
   add_library(rigcal_${name} STATIC ${ARG_SOURCES})

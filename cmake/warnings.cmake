@@ -1,4 +1,4 @@
-# Warnings as a private target, so that they never leak to whoever links the library.
+# Warnings as a private target, so that targets that link the library do not inherit them.
 add_library(rigcal_warnings INTERFACE)
 target_compile_options(rigcal_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
   -Wold-style-cast -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Wimplicit-fallthrough)
@@ -6,7 +6,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports false positives of these for std::string and fixed-size Eigen at -O2.
   target_compile_options(rigcal_warnings INTERFACE -Wno-restrict -Wno-null-dereference
     -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow)
-  # GCC 13 and 14 warn where a function takes a temporary text and returns a reference into something else.
+  # GCC 13 and 14 warn falsely about functions that take a temporary text and return a reference to something else.
   target_compile_options(rigcal_warnings INTERFACE -Wno-dangling-reference)
 endif()
 if(RIGCAL_WERROR)

@@ -1,7 +1,7 @@
-# The model as a WebAssembly module, with which pages simulate (model/wasm, report/live): the sources of the library of the model
-# without FMI, with the solvers of every processor, none of them with sensitivities. clang compiles it for a machine without
-# a system; of what Debian has for that, all three packages are needed (scripts/setup). Where one is missing there is no module, and
-# `rigcal --version` says so.
+# The model as a WebAssembly module, for pages that simulate (model/wasm, report/live). It has the sources of the
+# model's library without FMI, with the solvers for every processor and without sensitivities. clang compiles it for a
+# machine without an operating system, which needs three packages of Debian (scripts/setup). If one is missing there is
+# no module, and `rigcal --version` says so.
 option(RIGCAL_WASM "Make the model for pages that simulate, where its compiler is there" ON)
 if(NOT RIGCAL_WASM OR NOT CMAKE_BUILD_TYPE STREQUAL "Release")
   return()
@@ -9,20 +9,22 @@ endif()
 find_program(RIGCAL_WASM_CLANG NAMES clang++ clang++-19 clang++-14)
 find_program(RIGCAL_GZIP gzip)
 set(wasm ${CMAKE_CURRENT_BINARY_DIR}/wasm)
-# The headers of packages by themselves: those of the machine's own C library beside them are not meant.
+# A folder with the headers of these packages alone: those of the machine's own C library in the same place must not be
+# used.
 foreach(package boost fmt)
   find_path(RIGCAL_WASM_${package} ${package} REQUIRED)
   file(MAKE_DIRECTORY ${wasm}/include)
   file(CREATE_LINK ${RIGCAL_WASM_${package}}/${package} ${wasm}/include/${package} SYMBOLIC)
 endforeach()
 get_target_property(eigen Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
-# Nothing unwinds a stack there: what is thrown ends the module (model/wasm/module.cpp).
+# WebAssembly does not unwind the stack: an exception ends the module (model/wasm/module.cpp).
 set(compile ${RIGCAL_WASM_CLANG} --target=wasm32-wasi -std=c++20 -O2 -DNDEBUG -fno-math-errno
   -I${PROJECT_SOURCE_DIR} -isystem ${eigen} -isystem ${wasm}/include -DFMT_HEADER_ONLY -DFMT_EXCEPTIONS=0 -DEIGEN_NO_EXCEPTIONS
   -DEIGEN_DONT_VECTORIZE)
 set(link ${RIGCAL_WASM_CLANG} --target=wasm32-wasi -mexec-model=reactor -O2 -Wl,--strip-all -Wl,--gc-sections)
 
-# Whether all of it goes together, tried once: with the headers that the model includes, and what stands for exceptions.
+# Tests once whether the toolchain is complete, with the headers that the model includes and the stand-in for
+# exceptions.
 if(RIGCAL_WASM_CLANG AND RIGCAL_GZIP AND NOT RIGCAL_WASM_COMPILES)
   file(WRITE ${wasm}/try.cpp "#include <fmt/format.h>
 #include <Eigen/LU>
@@ -79,7 +81,7 @@ foreach(plant IN LISTS plants)
   get_property(header GLOBAL PROPERTY RIGCAL_HEADER_OF_${plant})
   get_property(sizes GLOBAL PROPERTY RIGCAL_base_SIZES_OF_${plant})
   foreach(states IN LISTS sizes)
-    # No width of sensitivities: none is ever asked for.
+    # No widths: the module computes no sensitivities.
     rigcal_wasm_object(${plant}_${states} ${CMAKE_CURRENT_SOURCE_DIR}/solver/simulate_sized.cpp RIGCAL_PLANT=${plant}
       "RIGCAL_PLANT_HEADER=\"${header}\"" RIGCAL_STATES=${states} RIGCAL_INSTRUCTION_SET=base RIGCAL_WIDTHS=0)
   endforeach()

@@ -11,8 +11,8 @@
 #include <string>
 #include <tuple>
 
-// Values as bytes that read back to the same bits, for what goes from one process to another. A
-// struct gets there by `template <typename Archive> void serialize(Archive&, Struct&)` beside it.
+// Values as bytes that read back to the same bits, for exchange between processes. A struct takes
+// part by a `template <typename Archive> void serialize(Archive&, Struct&)` beside it.
 
 namespace rigcal {
 

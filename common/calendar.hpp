@@ -5,7 +5,7 @@
 
 namespace rigcal {
 
-/// Days since 1970-01-01 of "2026-03-01"; empty for what is no date.
+/// Days since 1970-01-01 of "2026-03-01"; empty if it is no date.
 std::optional<int> day_of(const std::string& date);
 
 /// "2026-03-01" of the day that a time in days since 1970-01-01 falls on.

@@ -44,7 +44,7 @@ std::size_t address_bytes() {
   return pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
 
-/// A lower limit that is in force stays.
+/// Sets the limit of a resource, but never raises one that is in force.
 void limit(decltype(RLIMIT_AS) resource, rlim_t soft, rlim_t hard) {
   rlimit now{};
   ::getrlimit(resource, &now);
@@ -68,7 +68,8 @@ bool write_all(int descriptor, const char* bytes, std::size_t count) {
 [[noreturn]] void work_in_child(const std::function<std::string()>& work,
                                 const Confinement& confinement, std::size_t addresses, pid_t parent,
                                 int out) noexcept {
-  std::set_new_handler(nullptr);  // that of the parent may remove its files; `work` sees bad_alloc
+  // The handler of the parent may remove its files; `work` gets std::bad_alloc.
+  std::set_new_handler(nullptr);
   // The parent handles signals from the terminal; this process ends with it.
   std::signal(SIGINT, SIG_IGN);
   std::signal(SIGTERM, SIG_IGN);
@@ -81,7 +82,7 @@ bool write_all(int descriptor, const char* bytes, std::size_t count) {
   }
   limit(RLIMIT_CORE, 0, 0);
   const auto seconds = static_cast<rlim_t>(confinement.cpu_seconds);
-  limit(RLIMIT_CPU, seconds, seconds + 2);  // SIGXCPU first: SIGKILL is that of want of memory
+  limit(RLIMIT_CPU, seconds, seconds + 2);  // SIGXCPU first; SIGKILL means lack of memory
   const rlim_t bytes = addresses + confinement.bytes;
   if (kLimitsMemory) limit(RLIMIT_AS, bytes, bytes);
   const std::string result = work();
@@ -142,7 +143,7 @@ Confinement Confinement::of_file(std::uintmax_t file_bytes) {
   Confinement result;
   result.cpu_seconds =
       kLeastSeconds + kSecondsPerMB * static_cast<int>(std::min(file_bytes >> 20, kMostMB));
-  // On a busy machine a second of computing takes long.
+  // On a busy machine a second of CPU time takes several seconds.
   constexpr int kWallPerCpu = 10;
   result.wall_seconds = std::max(result.wall_seconds, kWallPerCpu * result.cpu_seconds);
   return result;

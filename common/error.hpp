@@ -32,7 +32,7 @@ class UsageError : public Error {
   explicit UsageError(const std::string& message) : Error(ExitCode::bad_input, message) {}
 };
 
-/// Where in a file something is wrong; line and column count from 1, 0 means "not known".
+/// Place of an error in a file; line and column count from 1, 0 means unknown.
 struct Location {
   std::string file;
   long line = 0;
@@ -58,7 +58,7 @@ class InputError : public Error {
   Location where_;
 };
 
-/// Nothing usable came out: every start failed, nothing could be simulated.
+/// No usable result: every start failed, nothing could be simulated.
 class NoResultError : public Error {
  public:
   explicit NoResultError(const std::string& message) : Error(ExitCode::no_result, message) {}

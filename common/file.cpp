@@ -37,7 +37,7 @@ std::string reason(int error_number) { return std::generic_category().message(er
 class RegularFile {
  public:
   RegularFile(const fs::path& path, const std::string& expected) : where_{path.string()} {
-    // O_NONBLOCK: opening a pipe does not wait for its writer. It does nothing to regular files.
+    // O_NONBLOCK: opening a pipe does not wait for its writer. It has no effect on regular files.
     descriptor_ = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
     if (descriptor_ < 0)
       throw InputError(where_,
@@ -82,8 +82,8 @@ class RegularFile {
   std::size_t bytes_ = 0;
 };
 
-/// SHA-256 as OpenSSL knows it. From a context of its own: in the default one, OpenSSL 3.0 does not
-/// look whether there was memory to make it.
+/// OpenSSL's SHA-256, from a separate context: in the default one OpenSSL 3.0 does not check its
+/// allocation.
 class Sha256Algorithm {
  public:
   Sha256Algorithm() : context_(OSSL_LIB_CTX_new()) {
@@ -133,13 +133,13 @@ class Sha256 {
 
 }  // namespace
 
-/// A new file beside its place; removed again unless it was put there. What it replaces is kept
-/// beside until all files of a set are in their places, so that each can be taken back.
+/// A new file next to its target; removed unless it is renamed to the target. The file that it
+/// replaces is kept until all files of a set have been renamed, so that each can be restored.
 class TemporaryFile {
  public:
   TemporaryFile(const fs::path& target, std::string_view content) : target_(target) {
-    // O_EXCL: what a killed process of the same number left, as in containers, where all are
-    // number 1, is passed over.
+    // O_EXCL skips files that a killed process with the same number left behind. That happens in
+    // containers, where every process has number 1.
     for (int tries = 0; descriptor_ < 0; ++tries) {
       path_ = temporary_name(target);
       descriptor_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -158,29 +158,29 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
   ~TemporaryFile() { end(); }
 
-  /// Unless it is in its place already. Safe within a handler of signals.
+  /// Removes the file unless it was renamed to its target. Safe within a signal handler.
   void remove() const {
     if (!renamed_) ::unlink(path_.c_str());
   }
 
-  /// @param keep  what is there, for take_back()
+  /// @param keep  keep the earlier file for take_back()
   void rename_into_place(bool keep) {
     if (keep) keep_earlier();
     if (::rename(path_.c_str(), target_.c_str()) != 0) fail_to_write(target_, reason(errno));
     renamed_ = true;
   }
 
-  /// As it was before rename_into_place(), whether that came to its end or not.
+  /// Restores the state before rename_into_place(), whether or not that succeeded.
   void take_back() const noexcept {
     if (earlier_.empty()) {
       if (renamed_) ::unlink(target_.c_str());
       return;
     }
-    // Two names of one file stay as they are, so that one of them goes then.
+    // rename() does nothing if both names are of one file, so the second name is removed.
     if (::rename(earlier_.c_str(), target_.c_str()) == 0) ::unlink(earlier_.c_str());
   }
 
-  /// There is no way back any more.
+  /// Removes the kept earlier file. take_back() is impossible afterwards.
   void settle() const {
     if (!earlier_.empty()) ::unlink(earlier_.c_str());
   }
@@ -210,7 +210,8 @@ class TemporaryFile {
     remove();
   }
 
-  /// Gives what is there a second name, or another one where the file system knows no second names.
+  /// Keeps the earlier file under a second name; renames it where the file system has no hard
+  /// links.
   void keep_earlier() {
     struct stat status {};
     if (::lstat(target_.c_str(), &status) != 0 || S_ISDIR(status.st_mode)) return;
@@ -227,7 +228,7 @@ class TemporaryFile {
 
   fs::path target_;
   fs::path path_;
-  fs::path earlier_;  ///< what stood there; none where there was nothing
+  fs::path earlier_;  ///< kept earlier file; empty if there was none
   int descriptor_ = -1;
   bool renamed_ = false;
 };
@@ -244,7 +245,7 @@ void write_files_atomically(const std::vector<std::pair<fs::path, std::string_vi
 
 namespace {
 
-/// Those that live, newest first. A signal handler can reach nothing but a global.
+/// Living objects, newest first. A signal handler can access only globals.
 FilesInWriting* in_writing = nullptr;
 std::mutex change_in_writing;
 
@@ -275,7 +276,7 @@ void FilesInWriting::remove_all() {
 
 void FilesInWriting::remove_made_folders() const {
   for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder)
-    ::rmdir(folder->c_str());  // which leaves what holds something
+    ::rmdir(folder->c_str());  // fails if the folder is not empty
 }
 
 void FilesInWriting::make_folders(const fs::path& folder) {
@@ -296,7 +297,8 @@ void FilesInWriting::add(const fs::path& path, std::string_view content) {
   written_.push_back(std::make_unique<TemporaryFile>(path, content));
 }
 
-// Where one cannot be renamed, those before it are taken back: no set is half an earlier one.
+// If one file cannot be renamed, those before it are restored: a set is never a mixture of two
+// runs.
 void FilesInWriting::rename_into_place() {
   const Uninterrupted whole;
   auto next = written_.begin();
@@ -317,7 +319,7 @@ std::string read_file(const fs::path& path, std::size_t most_bytes, const std::s
                                                     bytes, expected, most_bytes >> 20));
   };
   check(file.bytes());
-  // One byte more than there was, which tells whether it has grown.
+  // One byte more than the file has, to detect whether it has grown.
   std::string text(file.bytes() + 1, '\0');
   std::size_t count = 0;
   for (;;) {

@@ -17,14 +17,14 @@ namespace rigcal {
 /// @throws WriteError  with path and reason; no partial file stays behind
 void write_file_atomically(const std::filesystem::path& path, std::string_view content);
 
-/// The same for several files: all are written before the first takes its place.
+/// The same for several files: all are written before the first is renamed to its target.
 void write_files_atomically(
     const std::vector<std::pair<std::filesystem::path, std::string_view>>& files);
 
 class TemporaryFile;
 
-/// Files on their way: each is written beside its place when it is added, and all are renamed into
-/// their places together. What was not renamed goes with the object.
+/// Files in writing: add() writes each next to its target, and all are renamed together. The
+/// destructor removes those that were not renamed.
 class FilesInWriting {
  public:
   FilesInWriting();
@@ -32,15 +32,15 @@ class FilesInWriting {
   FilesInWriting& operator=(const FilesInWriting&) = delete;
   ~FilesInWriting();
 
-  /// Creates missing folders, which go again where nothing comes into them.
+  /// Creates missing folders, which are removed again if they stay empty.
   /// @throws WriteError  with path and reason
   void add(const std::filesystem::path& path, std::string_view content);
 
   /// @throws WriteError  with path and reason
   void rename_into_place();
 
-  /// Removes what no object has renamed yet, where the process ends before their destructors can.
-  /// Safe within a handler of signals, as long as there is no Uninterrupted.
+  /// Removes the files that no object has renamed yet, for a process that ends before their
+  /// destructors can run. Safe within a signal handler, as long as there is no Uninterrupted.
   static void remove_all();
 
  private:
@@ -48,7 +48,7 @@ class FilesInWriting {
   void remove_made_folders() const;
 
   std::vector<std::unique_ptr<TemporaryFile>> written_;
-  std::vector<std::string> folders_;  ///< that were made, each after the one it lies in
+  std::vector<std::string> folders_;  ///< created folders, outer ones first
   FilesInWriting* next_ = nullptr;
 };
 
@@ -61,12 +61,12 @@ class FilesInWriting {
 std::string read_file(const std::filesystem::path& path, std::size_t most_bytes,
                       const std::string& expected);
 
-/// Refuses what is no regular file before something opens it that would wait for a pipe.
+/// Refuses a file that is not regular before some code opens it and waits for a pipe.
 ///
 /// @throws InputError  as read_file()
 void require_regular_file(const std::filesystem::path& path, const std::string& expected);
 
-/// A file as it stood at one moment: whatever changes it, or takes its place, makes another state.
+/// State of a file at one moment: any change or replacement gives another state.
 struct FileState {
   std::string path;
   std::uint64_t inode = 0;
@@ -75,7 +75,7 @@ struct FileState {
   bool operator==(const FileState&) const = default;
 };
 
-/// Of a file that is there; of one that is not, its path alone.
+/// State of an existing file; of a missing one only its path.
 FileState state_of_file(const std::filesystem::path& path);
 
 /// SHA-256 of a file that was read since `before`, so that the hash is of the bytes that were read.
@@ -88,7 +88,7 @@ std::string sha256_of_unchanged(const FileState& before);
 /// @throws InputError  the file cannot be read
 std::string sha256_of_file(const std::filesystem::path& path);
 
-/// SHA-256 of a text, likewise.
+/// SHA-256 of a text.
 std::string sha256_of_text(std::string_view text);
 
 }  // namespace rigcal

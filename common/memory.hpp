@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstdlib>  // tells which C library
+#include <cstdlib>  // defines which C library this is
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -8,10 +8,11 @@
 
 namespace rigcal {
 
-/// Memory that is freed stays with the process. The C library would give large blocks back to the
-/// system, and fetching their pages anew for the results of every simulation takes a tenth of a
-/// fit. All threads share one heap: with one each, what one of them has freed is of no use to the
-/// others, which is 15 MB of a fit of the demo; waiting for one another cannot be measured there.
+/// Keeps freed memory in the process. The C library would return large blocks to the system, and
+/// fetching their pages again for the results of every simulation takes a tenth of a fit. All
+/// threads share one heap: with one heap each, memory that one thread has freed is useless to the
+/// others, which costs 15 MB in a fit of the demo. The threads do not measurably wait for each
+/// other.
 inline void keep_freed_memory() {
 #ifdef __GLIBC__
   constexpr int kLargest = 1 << 30;
@@ -21,15 +22,15 @@ inline void keep_freed_memory() {
 #endif
 }
 
-/// But for what was kept for one task and is too scattered for the next: where the records are
-/// read, or a search has ended.
+/// Returns memory that was kept for one task and is too fragmented for the next: after the records
+/// are read, or a search has ended.
 inline void give_freed_memory_back() {
 #ifdef __GLIBC__
   malloc_trim(0);
 #endif
 }
 
-/// From now on the largest blocks, of which few are made, go back at once: the texts of a result.
+/// From now on returns the largest blocks at once, which are rare: the texts of a result.
 inline void give_large_blocks_back() {
 #ifdef __GLIBC__
   constexpr int kLarge = 1 << 22;

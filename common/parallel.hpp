@@ -10,11 +10,11 @@
 
 namespace rigcal {
 
-/// Calls task(i) once for each i in [0, count) on up to `threads` threads, the caller's included,
-/// or as many as the system gives. Each task must write to a place of its own and read nothing that
-/// another writes: then the results are the same bits for any number of threads.
+/// Calls task(i) once for each i in [0, count) on up to `threads` threads, including the caller's,
+/// or as many as the system provides. Each task must write to a separate place and read nothing
+/// that another one writes; then the results are the same bits for any number of threads.
 ///
-/// @throws  what the task of the lowest index threw; the others are run to their end
+/// @throws  the exception of the task with the lowest index; the other tasks are completed
 template <typename Task>
 void parallel_for(std::size_t count, int threads, Task task) {
   std::vector<std::exception_ptr> errors(count);

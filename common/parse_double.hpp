@@ -8,17 +8,17 @@
 
 namespace rigcal {
 
-/// As std::from_chars(first, last, value), to the last bit, and three times as fast for plain
+/// Like std::from_chars(first, last, value), to the last bit, but three times as fast for plain
 /// decimal numbers of few digits, which are most of what loggers write.
 ///
-/// A whole number below 2^53 and a power of ten up to 22 are doubles without rounding, so that
-/// their quotient is rounded but once, and that rightly (Clinger, How to read floating point
-/// numbers accurately, 1990). All else goes to std::from_chars.
+/// A whole number below 2^53 and a power of ten up to 22 are exact doubles, so their quotient is
+/// rounded only once, and correctly (Clinger, How to read floating point numbers accurately, 1990).
+/// All other numbers go to std::from_chars.
 inline std::from_chars_result parse_double(const char* first, const char* last, double& value) {
   constexpr std::array kPowers{1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8, 1e9,
                                1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18};
   constexpr std::uint64_t kExact = std::uint64_t{1} << 53U;
-  constexpr std::ptrdiff_t kMostDigits = 19;  // as many as 64 bits hold
+  constexpr std::ptrdiff_t kMostDigits = 19;  // as many as 64 bits can represent
 
   const auto digit_of = [](char c) {
     return static_cast<unsigned>(static_cast<unsigned char>(c)) - unsigned{'0'};
@@ -35,7 +35,7 @@ inline std::from_chars_result parse_double(const char* first, const char* last, 
     const char* const fraction = ++at;
     for (; at != last && digit_of(*at) < 10; ++at) digits = 10 * digits + digit_of(*at);
     decimals = at - fraction;
-    if (decimals == 0) count = 0;  // for the other to judge
+    if (decimals == 0) count = 0;  // left to std::from_chars
     count += decimals;
   }
   const bool plain = count > 0 && count <= kMostDigits && digits <= kExact &&

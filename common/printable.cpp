@@ -12,10 +12,10 @@ namespace {
 
 struct Character {
   std::uint32_t code = 0;
-  std::size_t bytes = 0;  ///< 0: the first byte begins no character
+  std::size_t bytes = 0;  ///< 0: the first byte starts no character
 };
 
-/// The character of UTF-8 (RFC 3629) at the start of a text that is not empty.
+/// Returns the UTF-8 character (RFC 3629) at the start of a text that is not empty.
 Character first_character(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned lead = byte(0);
@@ -40,7 +40,7 @@ bool acts_on_a_terminal(std::uint32_t code) {
          (code >= 0x2066U && code <= 0x2069U);
 }
 
-/// Length of a sequence that sets or ends bold or a colour at the start of a text; else 0.
+/// Length of an escape sequence at the start of a text that sets or ends bold or a colour; else 0.
 std::size_t colour_length(std::string_view text) {
   if (!text.starts_with("\x1b[")) return 0;
   const std::size_t end = text.find_first_not_of("0123456789;", 2);

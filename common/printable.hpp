@@ -5,16 +5,15 @@
 
 namespace rigcal {
 
-/// Text as a terminal may show it: names of files, columns and campaigns may hold what would move
-/// its cursor, set its title, or show text in another order than it has. Control characters (C0 but
-/// for line ends, DEL, C1), marks of direction and of lines, and bytes that are no UTF-8 become
-/// "\u001B" or "\xFF"; a text without any stays as it is. What is valid JSON stays that, of the
-/// same texts.
+/// Makes a text safe for a terminal. Names of files, columns and campaigns may contain characters
+/// that move the cursor, set the title or reverse the order of the text. Control characters (C0
+/// except line ends, DEL, C1), marks of direction and of lines, and bytes that are not UTF-8 become
+/// "\u001B" or "\xFF". Other texts stay unchanged. Valid JSON stays valid, with the same strings.
 ///
-/// @param coloured  keep the sequences that make text bold or coloured
+/// @param coloured  keep the escape sequences for bold and colours
 std::string printable(std::string_view text, bool coloured = false);
 
-/// Writes printable() text; where all that goes to stderr does.
+/// Writes printable() text to stderr; every message goes through here.
 void say(std::string_view text);
 
 }  // namespace rigcal

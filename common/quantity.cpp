@@ -86,7 +86,7 @@ constexpr ut_visitor kTakeApart{
     [](const ut_unit*, double, const ut_unit*, void*) { return UT_VISIT_ERROR; },  // logarithms
 };
 
-/// Our names on top of the database's: value, and what it means there.
+/// Our names in addition to the database's: value, and its meaning there.
 struct Alias {
   const char* name;
   const char* meaning;
@@ -105,8 +105,8 @@ class UnitSystem {
   UnitSystem() {
     const PlainLocale plain;
     ut_set_error_message_handler(ut_ignore);  // it would write to stderr
-    // Debian's database lies where the library looks; the archive of scripts/package has one of its
-    // own.
+    // Debian's database is where the library expects it; the archive of scripts/package contains
+    // its own.
     const auto own = std::getenv("UDUNITS2_XML_PATH") == nullptr
                          ? installed_file("rigcal/udunits/udunits2.xml")
                          : std::nullopt;
@@ -133,7 +133,7 @@ class UnitSystem {
     Unit unit;
     const ut_status status =
         parsed ? ut_accept_visitor(parsed.get(), &kTakeApart, &unit) : ut_get_status();
-    if (status == UT_OS) throw std::bad_alloc();  // which is not the text's fault
+    if (status == UT_OS) throw std::bad_alloc();  // not a fault of the text
     if (!parsed || status != UT_SUCCESS) return std::nullopt;
     std::erase_if(unit.powers, [](const auto& entry) { return entry.second == 0; });
     return unit;
@@ -170,8 +170,8 @@ void refuse_control_characters(std::string_view text) {
       fmt::format("'{}' holds a control character (here '?'); expected text", shown));
 }
 
-/// Whether a number stands in the text that is no exponent ("2 mm", "bar 5"): UDUNITS would
-/// multiply by it. The "1" of "1/s" is none.
+/// Whether the text has a number that is no exponent ("2 mm", "bar 5"): UDUNITS would multiply by
+/// it. The "1" of "1/s" does not count.
 bool has_factor(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (!is_digit(text[i])) continue;
@@ -221,7 +221,7 @@ Unit parse_unit(std::string_view text) {
                   nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
 }
 
-/// What a dimension is called, and how a quantity of it is written.
+/// Name of a dimension, and an example of a quantity.
 struct Kind {
   std::string_view unit;
   std::string_view name;
@@ -268,7 +268,7 @@ std::string expected(const Unit& unit, std::string_view text) {
                          : fmt::format("a quantity such as \"1.5 {}\"", text);
 }
 
-/// What stands in the way of converting one unit to the other.
+/// Explains why one unit cannot be converted to the other.
 std::string mismatch(const Unit& from, std::string_view from_text, const Unit& to) {
   auto without_radian = from.powers;
   auto to_without_radian = to.powers;
@@ -291,8 +291,8 @@ std::string mismatch(const Unit& from, std::string_view from_text, const Unit& t
                          : fmt::format("'{}' has another dimension", from_text);
 }
 
-/// A factor between units is nearly always a short decimal; the rounding of its own computation is
-/// taken back, so that "1 kHz" is 1000 Hz and not 999.9999999999999.
+/// A factor between units is nearly always a short decimal number. This removes the rounding of its
+/// computation, so that "1 kHz" is 1000 Hz and not 999.9999999999999.
 double without_rounding(double factor) {
   const std::string digits = fmt::format("{:.13e}", factor);
   double rounded = factor;
@@ -305,13 +305,13 @@ UnitConversion conversion(const Unit& from, const Unit& to) {
   return {without_rounding(from.scale / to.scale), (from.offset - to.offset) / to.scale};
 }
 
-/// A number and what stands behind it.
+/// A number and the text after it.
 struct Split {
   double number;
   std::string_view unit;
 };
 
-/// @throws QuantityError  saying what is wrong with the number
+/// @throws QuantityError  says what is wrong with the number
 Split split_number(std::string_view text) {
   if (text.empty()) throw QuantityError("the text is empty");
   const bool plus = text.size() > 1 && text[0] == '+' && (is_digit(text[1]) || text[1] == '.');

@@ -6,8 +6,8 @@
 
 namespace rigcal {
 
-/// A text is not a quantity, or not one of the expected dimension. what() says which and what was
-/// expected; the reader of a file adds where.
+/// A text is not a quantity, or not one of the expected dimension. what() names it and what was
+/// expected; the reader of a file adds the place.
 class QuantityError : public std::invalid_argument {
  public:
   using std::invalid_argument::invalid_argument;

@@ -15,7 +15,7 @@ namespace rigcal {
 struct FarmJob {
   std::string name;       ///< "profiles"; the same job is run once at most
   std::string state;      ///< serialised inputs of its tasks: another state, other results
-  std::size_t count = 0;  ///< of tasks
+  std::size_t count = 0;  ///< number of tasks
   int lanes = 1;          ///< tasks at a time in each process
   std::map<std::size_t, std::string> known = {};  ///< results that exist already
 };
@@ -26,10 +26,10 @@ class FarmEnded : public std::runtime_error {
   FarmEnded() : std::runtime_error("the first process has ended without this job") {}
 };
 
-/// What a task made.
+/// Result of a task.
 struct TaskResult {
   std::string bytes;
-  bool whole = true;  ///< false: a limit or a signal cut it short, or it was not begun
+  bool whole = true;  ///< false: a limit or a signal cut it short, or it did not begin
 };
 
 /// Runs jobs: in the threads of this process, or in other processes too. Each task must depend on
@@ -37,8 +37,8 @@ struct TaskResult {
 class TaskFarm {
  public:
   using Task = std::function<TaskResult(std::size_t)>;
-  /// Told of each result as soon as it is there, in any order and from any thread, one at a time or
-  /// not. Of processes that work together only the first is told.
+  /// Called with each result as soon as it is available, in any order and from any thread, possibly
+  /// concurrently. Among cooperating processes only the first one is called.
   using Done = std::function<void(std::size_t, const TaskResult&)>;
 
   TaskFarm() = default;
@@ -46,9 +46,9 @@ class TaskFarm {
   TaskFarm& operator=(const TaskFarm&) = delete;
   virtual ~TaskFarm() = default;
 
-  /// Results of tasks 0 to count - 1, in their order, for every process that runs the job.
+  /// Results of tasks 0 to count - 1, in order, for every process that runs the job.
   ///
-  /// @throws  what the task of the lowest index threw; FarmEnded
+  /// @throws  the exception of the task with the lowest index; FarmEnded
   virtual std::vector<TaskResult> run(const FarmJob& job, const Task& task, const Done& done) = 0;
 
   /// Number of this process, from 0, and of all.
@@ -56,7 +56,7 @@ class TaskFarm {
   virtual int processes() const { return 1; }
 };
 
-/// In the threads of this process.
+/// Runs tasks in the threads of this process.
 class ThreadFarm final : public TaskFarm {
  public:
   std::vector<TaskResult> run(const FarmJob& job, const Task& task, const Done& done) override {

@@ -19,13 +19,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The name of whose making a temporary_name() is, and the process.
+/// Target name and process number in a name from temporary_name().
 struct Temporary {
   std::string_view name;
   pid_t process = 0;
 };
 
-/// Takes ".NUMBER" off the end; nothing where there is none.
+/// Takes ".NUMBER" off the end; nothing if the text does not end so.
 std::optional<unsigned long> take_number(std::string_view& text) {
   const std::size_t dot = text.rfind('.');
   if (dot == std::string_view::npos) return std::nullopt;
@@ -48,7 +48,7 @@ std::optional<Temporary> temporary(std::string_view name) {
   return Temporary{name, static_cast<pid_t>(*process)};
 }
 
-/// Another one than this.
+/// Whether another process of this number is running.
 bool lives(pid_t process) {
   return process != ::getpid() && (::kill(process, 0) == 0 || errno == EPERM);
 }
@@ -62,7 +62,7 @@ fs::path temporary_name(const fs::path& target) {
 }
 
 void remove_left_behind(const fs::path& folder, const std::set<std::string>& names) {
-  std::error_code unread;  // then there is nothing to be tidied either
+  std::error_code unread;  // a folder that cannot be read is left alone
   std::vector<fs::path> left;
   for (const auto& entry : fs::directory_iterator(folder, unread)) {
     const std::string name = entry.path().filename().string();
@@ -70,7 +70,7 @@ void remove_left_behind(const fs::path& folder, const std::set<std::string>& nam
     if (found && names.contains(std::string(found->name)) && !lives(found->process))
       left.push_back(entry.path());
   }
-  for (const fs::path& path : left) ::unlink(path.c_str());  // one that cannot go does no harm
+  for (const fs::path& path : left) ::unlink(path.c_str());  // a failure does no harm
 }
 
 }  // namespace rigcal

@@ -6,12 +6,13 @@
 
 namespace rigcal {
 
-/// ".NAME.PROCESS.NUMBER.tmp" beside a file, for what is not to stay. Process and running number
-/// keep writers of the same file apart.
+/// Name of a temporary file next to its target: ".NAME.PROCESS.NUMBER.tmp". Process number and
+/// running number distinguish writers of the same file.
 std::filesystem::path temporary_name(const std::filesystem::path& target);
 
-/// Removes what killed processes have left in a folder by such names of `names`. What another
-/// process writes that lives stays. Of this one what is there counts as left: it has not begun yet.
+/// Removes the temporary files of `names` that killed processes left in a folder. Files of other
+/// running processes stay. Files with the number of this process are removed, so call it before
+/// writing.
 void remove_left_behind(const std::filesystem::path& folder, const std::set<std::string>& names);
 
 }  // namespace rigcal

@@ -8,7 +8,7 @@
 namespace rigcal {
 namespace {
 
-// A signal handler can reach nothing but a global.
+// A signal handler can access only globals.
 std::atomic<int> uninterrupted{0};
 std::atomic<int> postponed{0};
 std::atomic<bool> ending{false};
@@ -17,7 +17,7 @@ static_assert(std::atomic<int>::is_always_lock_free, "a signal handler must not 
 }  // namespace
 
 Uninterrupted::Uninterrupted() {
-  // In this order: the handler either counts this one, or is seen here.
+  // The order matters: the handler either counts this object, or is seen here.
   ++uninterrupted;
   while (ending) {
     --uninterrupted;

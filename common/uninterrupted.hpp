@@ -16,8 +16,8 @@ class Uninterrupted {
   /// Whether one lives.
   static bool any();
 
-  /// For a handler, and safe within one: whether `signal` has to wait, as it then will. If not, no
-  /// other thread begins anything, and the handler must end the process.
+  /// For a signal handler, and safe within one: whether `signal` has to wait, as it then will. If
+  /// not, no other thread begins anything, and the handler must end the process.
   static bool postpones(int signal);
 };
 

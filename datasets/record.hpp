@@ -13,9 +13,9 @@
 
 namespace rigcal::datasets {
 
-/// What a column of a record holds.
+/// Quantity in a column of a record.
 enum class Channel {
-  reference,                ///< of a loop on position [m]
+  reference,                ///< reference of a position loop [m]
   command,                  ///< valve command [V]
   position,                 ///< [m]
   load_pressure,            ///< [Pa]
@@ -25,11 +25,11 @@ enum class Channel {
   tank_pressure,            ///< [Pa]
   force,                    ///< [N]
   temperature,              ///< [K]
-  acceleration,             ///< of the piston and what is fixed to it [m/s2]
-  payload_acceleration,     ///< of the second mass [m/s2]
-  force_reference,          ///< of a loop on force [N]
-  load_pressure_reference,  ///< of a loop on load pressure [Pa]
-  acceleration_reference,   ///< of a loop on acceleration [m/s2]
+  acceleration,             ///< acceleration of the piston and the mass fixed to it [m/s2]
+  payload_acceleration,     ///< acceleration of the second mass [m/s2]
+  force_reference,          ///< reference of a force loop [N]
+  load_pressure_reference,  ///< reference of a load pressure loop [Pa]
+  acceleration_reference,   ///< reference of an acceleration loop [m/s2]
 };
 
 struct ChannelInfo {
@@ -45,24 +45,24 @@ const std::vector<ChannelInfo>& channel_table();
 const ChannelInfo& info(Channel channel);
 std::optional<Channel> channel_from_key(std::string_view key);
 
-/// Whether a channel tells the rig what to do: a command, or the reference of a loop.
+/// Whether a channel drives the rig: a command, or the reference of a loop.
 bool is_drive(Channel channel);
 
-/// A step of time so long that samples are missing there.
+/// Step of time in which samples are missing.
 struct TimeHole {
-  std::size_t row = 0;  ///< the sample behind it, from 1
+  std::size_t row = 0;  ///< number of the sample after it, from 1
   double from_s = 0.0;
   double to_s = 0.0;
 };
 
 /// One recorded run as it came from a file, in SI.
 struct Repeat {
-  std::string source;  ///< file, and the column set where one file holds several repeats
+  std::string source;  ///< file, and the set of columns if one file has several repeats
   std::vector<double> time_s;
   std::map<Channel, std::vector<double>> values;  ///< each of the shape of time_s
-  std::vector<std::string> warnings{};            ///< in words: what its files look like
-  std::vector<TimeHole> holes{};                  ///< in the times of its file, increasing
-  /// Which samples its file lacks, shape of time_s; empty: none. They count for nothing.
+  std::vector<std::string> warnings{};            ///< doubts about its files, in words
+  std::vector<TimeHole> holes{};                  ///< holes in the times of its file, increasing
+  /// Marks the samples that its file lacks, shape of time_s; empty: none. They are never compared.
   std::vector<bool> bridged{};
 };
 
@@ -73,25 +73,25 @@ struct Series {
   /// sample; empty for a single repeat.
   std::vector<double> sd;
   std::vector<int> count;  ///< repeats that carry this sample
-  /// Standard deviation of one repeat, pooled over the samples: sqrt(mean of sd^2). NaN where
-  /// neither repeats nor the campaign's `sd` tell it.
+  /// Standard deviation of one repeat, pooled over the samples: sqrt(mean of sd^2). NaN without
+  /// both repeats and the campaign's `sd`.
   double pooled_sd = std::numeric_limits<double>::quiet_NaN();
-  /// Standard deviation of the mean: what a residual is divided by. NaN where unknown.
+  /// Standard deviation of the mean, by which residuals are divided. NaN if unknown.
   double sd_of_mean = std::numeric_limits<double>::quiet_NaN();
   int repeats = 1;  ///< repeats that carry this channel
-  /// Each repeat minus the mean, NaN where it has no sample, shape (repeats, samples); empty unless
-  /// asked for, and of a reference that all repeats share.
+  /// Each repeat minus the mean, NaN without a sample, shape (repeats, samples); empty unless
+  /// requested, and for a reference that all repeats share.
   std::vector<std::vector<double>> deviations;
 };
 
-/// What became of one repeat when it was averaged.
+/// Result of averaging for one repeat.
 struct RepeatReport {
   std::string source;
-  double offset_s = 0.0;  ///< by how much this repeat came later than their mean
+  double offset_s = 0.0;  ///< delay of this repeat against their mean
   /// rms distance from the mean of the others over the pooled sd; of its worst channel
   double deviation = 0.0;
   bool outlier = false;
-  double shifted_s = 0.0;  ///< offset_s where it was taken off to align the repeat, else 0
+  double shifted_s = 0.0;  ///< offset_s if it was subtracted to align the repeat, else 0
 };
 
 struct TimeWindow {
@@ -99,22 +99,22 @@ struct TimeWindow {
   double end_s = 0.0;
 };
 
-/// The averaged record of one condition: what the model is compared with.
+/// The averaged record of one condition, which the model is compared with.
 struct Record {
   std::string condition;
   std::vector<double> time_s;  ///< shape (samples), increasing
   std::map<Channel, Series> channels;
   int repeats = 1;
   std::vector<RepeatReport> repeat_reports;
-  /// What counts, in order: the campaign's windows, or those found; empty: all of it.
+  /// Windows in order: the campaign's, or those found; empty: the whole record.
   std::vector<TimeWindow> windows;
-  /// What its recorded drive is, where the model generates the same.
+  /// Generated signal that equals its recorded drive.
   std::optional<model::Signal> generated_drive{};
-  std::vector<std::string> notes;     ///< in words: what was done to it, such as decimation
+  std::vector<std::string> notes;     ///< in words: changes to the record, such as decimation
   std::vector<std::string> warnings;  ///< in words: outliers, gaps, spikes, sensors
-  /// In words: where samples are missing in what counts, so that nothing can be compared with it.
+  /// In words: samples missing in the windows, so that nothing can be compared with the record.
   std::vector<std::string> holes;
-  std::vector<FileState> files;  ///< every file read for it, as it stood before
+  std::vector<FileState> files;  ///< every file that was read for it, with its state before reading
 };
 
 }  // namespace rigcal::datasets

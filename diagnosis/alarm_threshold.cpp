@@ -39,7 +39,7 @@ std::vector<double> moving_rms(std::span<const double> x, std::size_t window) {
     sum += x[i] * x[i];
     ++run;
     if (run > window) sum -= x[i - window] * x[i - window];
-    // What is added and taken off again rounds: never below zero.
+    // Adding and subtracting rounds, so the sum is kept at zero or above.
     result[i] = std::sqrt(std::max(0.0, sum) / static_cast<double>(window));
   }
   return result;

@@ -6,22 +6,22 @@
 
 namespace rigcal::diagnosis {
 
-/// Least number of healthy records that tell how much such records scatter. The residuals of two,
-/// each less the other, are one and the same.
+/// Least number of healthy records from which their variation can be estimated. With two, each
+/// minus the other gives the same residual.
 inline constexpr std::size_t kLeastHealthyRecords = 3;
 
-/// What a new healthy record exceeds with a given probability: the one-sided prediction bound of
-/// the next of n independent values whose logarithms are normally distributed,
-/// exp(mean + t(n - 1; 1 - alpha) sd sqrt(1 + 1/n)) (Hahn and Meeker, Statistical Intervals, 1991,
-/// 4.8). Empty for fewer than kLeastHealthyRecords values, or one that is not positive.
+/// Threshold that a new healthy record exceeds with a given probability: the one-sided prediction
+/// bound of the next of n independent values whose logarithms are normally distributed, exp(mean +
+/// t(n - 1; 1 - alpha) sd sqrt(1 + 1/n)) (Hahn and Meeker, Statistical Intervals, 1991, 4.8). Empty
+/// for fewer than kLeastHealthyRecords values, or one that is not positive.
 ///
 /// @param healthy      one value per healthy record
 /// @param false_alarm  alpha, in (0, 1)
 std::optional<double> alarm_threshold(std::span<const double> healthy, double false_alarm);
 
-/// Root mean square of the last `window` samples at each sample. What comes before the series, or
-/// before a gap (NaN), counts as zero: a large residual need not wait until the window is full, and
-/// noise does not exceed there what it does later. NaN in a gap.
+/// Root mean square of the last `window` samples at each sample. Samples before the series, or
+/// before a gap (NaN), count as zero: a large residual raises it before the window is full, and
+/// noise gives no larger values there than later. NaN in a gap.
 ///
 /// @param x       shape (n)
 /// @param window  >= 1

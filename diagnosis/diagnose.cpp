@@ -191,7 +191,7 @@ void classify_by_features(std::vector<RecordDiagnosis>& records) {
 
 enum class Method { fitted_leak, features };
 
-/// Features that have nothing to be compared with are no judgement; a leak that was not found is.
+/// Features without a reference are no judgement; a search without a leak is one.
 template <typename Found>
 Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bool single,
                   Found found) {
@@ -204,8 +204,8 @@ Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bo
   return accuracy_of(judged);
 }
 
-/// What the share of each record is, and of the smallest leak in healthy ones. A share that cannot
-/// be simulated is a record that was not diagnosed.
+/// Estimates the share of each record, and the smallest detectable leak of healthy ones. A record
+/// whose share cannot be simulated counts as not diagnosed.
 void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& prepared,
               const SignalErrors& errors, RecordDiagnosis& record) {
   const CoefficientError error =
@@ -222,7 +222,7 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
     record.estimate = estimate_leak(record.fit.coefficient, error, curve, share_rig_se,
                                     problem.campaign.diagnosis);
     if (!prepared.is_healthy) return;
-    // A record that is its own reference differs from it by nothing.
+    // A record that is its own reference has no deviation from it.
     const auto of_healthy =
         record.is_reference
             ? error_of_averages(record.fit, errors, record.repeats, record.reference_repeats)
@@ -243,7 +243,7 @@ SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& erro
   SignalDiagnosis result;
   result.signal = signal;
   result.errors = errors;
-  // Another healthy average tells more than one that is its own reference.
+  // Another healthy average is better evidence than one that is its own reference.
   const auto is_other = [](const RecordDiagnosis* each) {
     return !each->repeat && !each->is_reference && each->smallest_leak.has_value();
   };
@@ -291,7 +291,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   std::vector<Prepared> prepared(records.size());
   parallel_for(prepared.size(), options.threads,
                [&](std::size_t i) { prepared[i] = prepare(problem, records[i], options); });
-  // The problem's own campaign has forgotten what was known of leaks.
+  // The problem's own campaign no longer has the known leaks.
   for (Prepared& each : prepared)
     each.is_healthy = is_healthy(campaign, *campaign.find(each.condition->id));
   std::vector<Task> tasks;
@@ -300,7 +300,7 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
       tasks.push_back({&each, single});
   }
   result.records.resize(tasks.size());
-  // A record is done when its leak is found, and when it is told what that means.
+  // A record counts as done after two passes: its leak is found, and then judged.
   std::atomic<int> halves{0};
   const auto half_done = [&] {
     const int done = ++halves / 2;

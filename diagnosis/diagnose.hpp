@@ -21,31 +21,33 @@ struct DiagnosisOptions {
   const std::atomic<bool>* cancel = nullptr;
   /// True values by which a synthetic campaign was made; the diagnosis is judged by them.
   std::optional<std::vector<datasets::FittedValue>> truth;
-  /// Told of every finished record: how many are done, and of how many. From any thread.
+  /// Called after every finished record: number done, total number. From any thread.
   std::function<void(int, int)> progress;
 };
 
-/// What was found in one record.
+/// Diagnosis of one record.
 struct RecordDiagnosis {
   std::string condition;
   std::string signal;         ///< "sine 0.1 Hz, 50.8 mm"
   std::optional<int> repeat;  ///< from 1; empty: the average
-  int repeats = 1;            ///< that the record is the mean of
-  /// Healthy repeats of the same signal whose parity residual was taken off the record; 0: none.
+  int repeats = 1;            ///< number of repeats in the record's mean
+  /// Healthy repeats of the same signal whose parity residual was subtracted from the record; 0:
+  /// none.
   int reference_repeats = 0;
   /// A repeat of a healthy condition that was corrected by the other healthy repeats.
   bool corrects_others = false;
   /// It is itself that reference, so that its leak is zero by construction.
   bool is_reference = false;
-  LeakFit fit;                         ///< says why where nothing was found
-  metrics::ResidualFeatures features;  ///< of the parity residual, eq. 14, nothing taken off [m]
-  LeakEstimate estimate;               ///< means nothing unless fit.ok()
-  std::optional<DetectionLimit> smallest_leak;  ///< of a healthy record, where something tells it
-  /// A leak leaves more than a third of the difference from the healthy model: some other fault.
+  LeakFit fit;                         ///< gives the reason if nothing was found
+  metrics::ResidualFeatures features;  ///< for the parity residual, eq. 14, uncorrected [m]
+  LeakEstimate estimate;               ///< valid only if fit.ok()
+  std::optional<DetectionLimit> smallest_leak;  ///< for a healthy record, if its errors are known
+  /// The leak leaves more than a third of the difference from the healthy model unexplained: there
+  /// is another fault.
   bool unexplained = false;
   std::optional<LeakClass> leak_class;  ///< empty: undecided
-  /// By the paper's features, clusters learned without this repeat, and without this signal; empty
-  /// where nothing with a label is left to learn from.
+  /// By the paper's features, with clusters learned without this repeat, and without this signal;
+  /// empty without a labelled record to learn from.
   std::optional<LeakClass> by_features;
   std::optional<LeakClass> by_features_of_other_signals;
   std::optional<double> true_share;
@@ -53,13 +55,13 @@ struct RecordDiagnosis {
   std::vector<std::string> warnings;
 };
 
-/// What the records of one signal tell together.
+/// Joint result of the records of one signal.
 struct SignalDiagnosis {
   std::string signal;
   SignalErrors errors;
   std::optional<DetectionLimit> smallest_leak;         ///< in an average
   std::optional<DetectionLimit> smallest_single_leak;  ///< in a single repeat
-  int repeats = 1;                                     ///< of that average
+  int repeats = 1;                                     ///< repeats in that average
   std::string reason;                                  ///< why there is no limit, in words
 };
 
@@ -67,7 +69,7 @@ struct Diagnosis {
   std::vector<RecordDiagnosis> records;  ///< campaign order; the average, then its repeats
   std::vector<SignalDiagnosis> signals;  ///< in order of their first appearance
   std::vector<MachineState> states;      ///< in order of their first appearance
-  std::vector<LeakTrend> trends;         ///< of states that differ in their date alone
+  std::vector<LeakTrend> trends;         ///< trends over states that differ only in their date
   Accuracy single;                       ///< fitted leak, single repeats
   Accuracy averaged;                     ///< fitted leak, averages
   Accuracy features;                     ///< paper's features, without the repeat in question
@@ -84,15 +86,15 @@ struct Diagnosable {
 };
 Diagnosable diagnosable(const datasets::Campaign& campaign);
 
-/// Healthy records of a signal calibrate it: what they differ by from the healthy model, friction
-/// or a lag that it does not have, is taken off every record of the same generated signal before a
-/// leak is fitted. A healthy repeat is corrected by the others; the average of healthy repeats is
-/// the reference itself.
-///
 /// Fits a leak to the average and to every single repeat of some conditions, and classifies them by
 /// two methods.
 ///
-/// @param records  of diagnosable conditions, by the name in their average
+/// Healthy records of a signal calibrate it. Their difference from the healthy model, such as
+/// friction or a lag that it lacks, is subtracted from every record of the same generated signal
+/// before a leak is fitted. A healthy repeat is corrected by the others; the average of healthy
+/// repeats is the reference itself.
+///
+/// @param records  of diagnosable conditions, found by the name in their average
 /// @throws InputError  records or campaign are wrong
 Diagnosis diagnose(const datasets::Campaign& campaign,
                    const std::vector<datasets::RepeatRecords>& records, const RigFit& rig,

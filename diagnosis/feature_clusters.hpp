@@ -17,10 +17,11 @@ struct LabelledFeatures {
   metrics::ResidualFeatures features;
 };
 
-/// The source paper's classification as far as it is told: one cluster per class in the space of
-/// (mean, RMS, standard deviation) of the parity residual's absolute value, and a record belongs to
-/// the nearest. Assumed here, since the paper does not say: the centre of a cluster is the mean of
-/// its records, the distance is Euclidean in the residual's unit, nothing is scaled.
+/// The source paper's classification, as far as it is described: one cluster per class in the space
+/// of (mean, RMS, standard deviation) of the parity residual's absolute value; a record belongs to
+/// the nearest one. The paper does not define the clusters. Assumed here: the centre of a cluster
+/// is the mean of its records, and the distance is Euclidean in the residual's unit, without
+/// scaling.
 class FeatureClusters {
  public:
   explicit FeatureClusters(const std::vector<LabelledFeatures>& training);
@@ -35,7 +36,7 @@ class FeatureClusters {
   std::vector<Cluster> clusters_;
 };
 
-/// Class of a record by clusters of its own signal, learned from the repeats but this one.
+/// Class of a record by clusters of its own signal, learned from all repeats except this one.
 std::optional<datasets::LeakClass> class_without_repeat(const std::vector<LabelledFeatures>& all,
                                                         const LabelledFeatures& record);
 

@@ -11,7 +11,7 @@
 
 namespace rigcal::diagnosis {
 
-/// What one healthy record differs by from the healthy model, on its own time base.
+/// Difference of one healthy record from the healthy model, on its own time base.
 struct TimedResidual {
   const std::map<datasets::Channel, std::vector<double>>* channels = nullptr;
   const std::vector<double>* time_s = nullptr;

@@ -9,12 +9,12 @@ namespace {
 
 /// Share changes by less than this fraction of a relative change of the coefficient: a plateau.
 constexpr double kFlat = 0.1;
-/// Share of a difference from the healthy model that a leak leaves unexplained: told of, and too
-/// much for a class.
+/// Fractions of a difference from the healthy model that a leak leaves unexplained: one that is
+/// reported, and one that is too large for a class.
 constexpr double kNoticeable = 0.05;
 constexpr double kTooMuch = 1.0 / 3.0;
 
-/// A record that is the healthy reference is not judged by itself.
+/// Adds warnings to a record. A record that is the healthy reference gets only a note that it is.
 void warn(RecordDiagnosis& record, const SignalErrors& errors, double healthy_m) {
   if (record.is_reference) {
     record.warnings.emplace_back(

@@ -10,7 +10,7 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// A trend of less probability is significant.
+/// A trend with a p-value below this is significant.
 constexpr double kSignificantTrend = 0.05;
 
 /// A state with the day of its date.
@@ -56,7 +56,7 @@ metrics::Trend line_through(const std::vector<DatedState>& states,
     coefficients.push_back(pooled.coefficient);
     errors.push_back({pooled.error.own_se, pooled.error.freedom});
   }
-  // The rig moves all dates together.
+  // Errors of the rig's parameters shift the coefficients of all dates together.
   return metrics::weighted_trend(days, coefficients, errors,
                                  moves * rig_covariance * moves.transpose());
 }

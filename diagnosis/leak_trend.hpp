@@ -10,22 +10,22 @@
 
 namespace rigcal::diagnosis {
 
-/// How the leak of one machine changes from date to date.
+/// Change of one machine's leak from date to date.
 struct LeakTrend {
-  std::string leak_level, specimen;  ///< what its states have in common; empty where not stated
+  std::string leak_level, specimen;  ///< common to its states; empty if not stated
   std::string duty;                  ///< signal whose share is stated
   int first_day = 0, last_day = 0;   ///< since 1970-01-01
   int dates = 0;
   double coefficient_per_day = 0.0;
   double share_per_day = 0.0;  ///< at the duty, about the last date
   std::pair<double, double> share_per_day_ci95{};
-  double p = 1.0;            ///< of so steep a line where nothing changes, two-sided
+  double p = 1.0;            ///< p-value, two-sided, for no change
   bool significant = false;  ///< at 5 %
-  double chi_squared = 0.0;  ///< of the states about the line
+  double chi_squared = 0.0;  ///< scatter of the states about the line
   double freedom = 0.0;      ///< dates - 2
-  double widened = 1.0;      ///< factor of the error: more than 1 where they lie off the line
-  /// Where the leak rises significantly: the next limit above its share on the last date, and on
-  /// which day the line reaches it, with the days of the interval's ends. An open end: never.
+  double widened = 1.0;      ///< factor on the error; above 1 if the points scatter about the line
+  /// If the leak rises significantly: the next limit above its share on the last date, and the day
+  /// on which the line reaches it, with the days of the interval's ends. An open end means never.
   std::optional<LeakClass> next_class;
   double next_limit = 0.0;
   double reached_day = 0.0;
@@ -33,19 +33,19 @@ struct LeakTrend {
   std::optional<double> latest_day;
 };
 
-/// The trend of every machine that was diagnosed on three dates or more, in order of appearance:
-/// states of one leak level and specimen.
+/// Returns the trend of every machine that was diagnosed on three or more dates, in order of
+/// appearance. A machine is the states of one leak level and specimen.
 ///
-/// metrics::weighted_trend() through the coefficients: errors of their own, and that of the rig's
-/// parameters in common.
+/// The trend is metrics::weighted_trend() of the coefficients; each has its own error, and all have
+/// that of the rig's parameters in common.
 ///
 /// @param rig_covariance  of the rig's parameters, shape (rig_moves)^2
 std::vector<LeakTrend> leak_trends(const std::vector<MachineState>& states,
                                    const Eigen::MatrixXd& rig_covariance,
                                    const datasets::DiagnosisSettings& settings);
 
-/// Machines that were diagnosed on two dates, in words: nothing tells their difference from that of
-/// two days, so they have no trend.
+/// Lists, in words, machines that were diagnosed on two dates only. Their difference could be the
+/// usual one between two days, so they get no trend.
 std::vector<std::string> too_few_dates(const std::vector<MachineState>& states);
 
 }  // namespace rigcal::diagnosis

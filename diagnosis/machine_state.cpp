@@ -12,7 +12,7 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Of a limit: nearer than this a share is said to sit on it.
+/// A share within this fraction of a limit counts as being on it.
 constexpr double kOnLimit = 0.05;
 /// Disagreement of less probability widens the error.
 constexpr double kDisagree = 0.05;
@@ -73,7 +73,7 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
     pooled.widened = std::max(1.0, std::sqrt(pooled.chi_squared / pooled.freedom));
 
   double variance = 0.0;
-  double squares = 0.0;  // of Welch and Satterthwaite
+  double squares = 0.0;  // sum by Welch and Satterthwaite
   for (Eigen::Index i = 0; i < n; ++i) {
     const double part = square_of(weights(i)) * own(i);
     variance += part;

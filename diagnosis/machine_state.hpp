@@ -9,7 +9,7 @@
 
 namespace rigcal::diagnosis {
 
-/// One machine in one state: what its leak level, specimen and date say is the same.
+/// One machine in one state: equal leak level, specimen and date.
 struct StateKey {
   std::string leak_level;  ///< the condition's id where it has neither leak level nor date
   std::string specimen;
@@ -19,44 +19,44 @@ struct StateKey {
 };
 StateKey state_of(const datasets::Condition& condition);
 
-/// What the average of one condition says of the state.
+/// Contribution of one condition's average to the state.
 struct StateMember {
   std::string condition;
   std::string signal;
   double coefficient = 0.0;
   double own_se = 0.0;  ///< without the rig's parameters
   double freedom = 1.0;
-  Eigen::VectorXd rig_moves;  ///< as LeakFit::rig_moves
+  Eigen::VectorXd rig_moves;  ///< like LeakFit::rig_moves
 };
 
 /// One leak that all members share.
 struct PooledLeak {
   double coefficient = 0.0;
   CoefficientError error;     ///< widened where members disagree
-  Eigen::VectorXd rig_moves;  ///< of the pooled coefficient
-  double chi_squared = 0.0;   ///< of the members about it
+  Eigen::VectorXd rig_moves;  ///< moves of the pooled coefficient
+  double chi_squared = 0.0;   ///< disagreement of the members
   double freedom = 0.0;       ///< members - 1
-  double p = 1.0;             ///< of as much disagreement by their errors alone
+  double p = 1.0;             ///< probability of as much disagreement by their errors alone
   bool disagree = false;      ///< at 5 %
   double widened = 1.0;       ///< factor of the error, at least 1
 };
 
-/// Pools by generalised least squares: members have errors of their own and one in common, that of
-/// the rig's parameters, which moves all of them together. Where they disagree by more than their
-/// errors allow, the error is multiplied by Birge's ratio, the root of chi-square over its degrees
-/// of freedom (Phys. Rev. 40, 1932): what is wrong with one of them is not known.
+/// Pools by generalised least squares. Members have errors of their own and a common one from the
+/// rig's parameters, which shifts all of them together. If they disagree by more than their errors,
+/// the error is multiplied by Birge's ratio, the root of chi-square over its degrees of freedom
+/// (Phys. Rev. 40, 1932), since it is unknown which of them is wrong.
 ///
 /// @param members         at least one; own_se above 0
 /// @param rig_covariance  of the rig's parameters, shape (rig_moves)^2
 PooledLeak pooled_leak(const std::vector<StateMember>& members,
                        const Eigen::MatrixXd& rig_covariance);
 
-/// Where a share stands among the limits of the classes.
+/// Position of a share among the limits of the classes.
 struct LimitDistance {
   LeakClass above = LeakClass::slight;  ///< the class that begins at the limit
   double limit = 0.0;
   double distance = 0.0;  ///< share less limit
-  /// The interval holds the limit, or the share is within a twentieth of it.
+  /// The interval includes the limit, or the share is within a twentieth of it.
   bool on_limit = false;
 };
 LimitDistance nearest_limit(const LeakEstimate& estimate,
@@ -69,9 +69,9 @@ struct MachineState {
   std::vector<std::string> left_out;  ///< condition and why, in words
   /// Every signal is its own healthy reference: its leak is zero by construction.
   bool is_reference = false;
-  std::string failure;  ///< why there is no verdict; the rest then means nothing
+  std::string failure;  ///< why there is no verdict; the other members are then meaningless
   PooledLeak pooled;
-  double leak_area_m2 = 0.0;            ///< coefficient times leakage area: what the oil passes
+  double leak_area_m2 = 0.0;            ///< coefficient times leakage area
   std::string duty;                     ///< signal whose share is stated
   LeakEstimate estimate;                ///< at that duty
   double share_slope = 0.0;             ///< d share / d coefficient there

@@ -15,7 +15,7 @@ using datasets::Campaign;
 using datasets::Channel;
 using datasets::Condition;
 
-/// Reasons with the conditions they hold for, in order of their first appearance.
+/// Reasons with their conditions, in order of their first appearance.
 class Reasons {
  public:
   void add(const std::string& reason, const std::string& condition) {

@@ -23,7 +23,8 @@ using datasets::Condition;
 using datasets::RepeatRecords;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-/// Of a record without a period: how much of it the moving root mean square is taken over.
+/// Length of the moving root mean square for a record without a period, as a fraction of the
+/// record.
 constexpr double kWindowShare = 0.1;
 
 /// Parity residuals of a condition's repeats, or of its average where there are none.
@@ -95,7 +96,7 @@ std::vector<double> corrected(const ParityCondition& condition, const ParityReco
   return result;
 }
 
-/// Everything that is told of a residual, but for the alarm.
+/// Fills in the description of a residual except for the alarm.
 void describe(const std::vector<double>& time_s, double window_s, ParityRecord& record) {
   std::vector<double> counted;
   for (const double value : record.residual_m)

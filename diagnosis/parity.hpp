@@ -20,26 +20,26 @@ struct ParityOptions {
   std::function<void(int, int)> progress;  ///< conditions done, of how many; from any thread
 };
 
-/// Features of the source paper (Table 4) by which a record may exceed what healthy ones have.
+/// Thresholds for features of the source paper (Table 4), from healthy records.
 struct FeatureThresholds {
   std::optional<double> mean, rms, std;  ///< [m]
 };
 
 /// The parity residual of one record: position minus that of the healthy model under the same
-/// reference (eq. 14), less the mean of that residual over healthy records of the signal, which is
-/// what the model lacks. A healthy record is compared with the others.
+/// reference (eq. 14), minus the mean of that residual over healthy records of the signal, which is
+/// the part that the model lacks. A healthy record is compared with the others.
 struct ParityRecord {
   std::string condition, signal;
   std::optional<int> repeat;  ///< from 1; empty: a file that is averaged already
   bool is_healthy = false;
   /// One of the healthy records that the threshold rests on; it raises no alarm.
   bool sets_threshold = false;
-  int reference_records = 0;           ///< healthy records whose mean was taken off
+  int reference_records = 0;           ///< healthy records whose mean was subtracted
   std::string failure;                 ///< why there is no residual; empty if there is one
-  std::vector<double> parity_m;        ///< shape (samples): nothing taken off
+  std::vector<double> parity_m;        ///< shape (samples), with nothing subtracted
   std::vector<double> residual_m;      ///< the same less the reference; NaN where it does not count
   std::vector<double> moving_rms_m;    ///< over the window of the signal
-  metrics::ResidualFeatures features;  ///< of residual_m
+  metrics::ResidualFeatures features;  ///< features of residual_m
   double peak_m = 0.0;                 ///< largest moving_rms_m
   bool alarm = false;                  ///< it exceeds the threshold of the signal
   double alarm_time_s = 0.0;           ///< from the first sample to the first that exceeds it
@@ -53,12 +53,12 @@ struct ParityCondition {
   std::vector<ParityRecord> records;
 };
 
-/// What healthy records of one signal say.
+/// Thresholds from the healthy records of one signal.
 struct ParitySignal {
   std::string signal;
-  double window_s = 0.0;  ///< of the moving root mean square: a period, else a tenth of the record
-  int healthy_records = 0;            ///< that the thresholds rest on
-  std::optional<double> threshold_m;  ///< of peak_m
+  double window_s = 0.0;    ///< moving root mean square: a period, else a tenth of the record
+  int healthy_records = 0;  ///< number of records behind the thresholds
+  std::optional<double> threshold_m;  ///< threshold for peak_m
   FeatureThresholds features;
   std::string reason;  ///< why there is no threshold, in words
 };

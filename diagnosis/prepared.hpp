@@ -13,12 +13,12 @@
 
 namespace rigcal::diagnosis {
 
-/// A condition with its records and what a leak does in it.
+/// A condition with its records and the simulated effects of a leak.
 struct Prepared {
   const datasets::Condition* condition = nullptr;
   const datasets::RepeatRecords* records = nullptr;
   LeakScan scan;
-  Residuals residuals;  ///< of the average, then of each repeat
+  Residuals residuals;  ///< for the average, then for each repeat
   std::string failure;
   std::optional<double> true_share;
   bool is_healthy = false;
@@ -28,7 +28,7 @@ struct Prepared {
   /// Least half width of a curve of shares: where a record is its own reference there is no error,
   /// and any width will do that leaks at all.
   double least_reach() const { return 1e-2 * scan.largest_coefficient; }
-  /// Of this coefficient a part in ten thousand of the smallest share that is told apart leaks.
+  /// Coefficient with a share of a ten thousandth of the smallest share of interest.
   double negligible() const { return 1e-4 * least_reach(); }
 };
 

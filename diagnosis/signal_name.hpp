@@ -6,7 +6,7 @@
 
 namespace rigcal::diagnosis {
 
-/// What drives a condition, which is what makes records comparable: "sine 0.1 Hz, 50.8 mm".
+/// Drive of a condition, by which records are comparable: "sine 0.1 Hz, 50.8 mm".
 std::string signal_name(const datasets::Campaign& campaign, const datasets::Condition& condition);
 
 }  // namespace rigcal::diagnosis

@@ -55,8 +55,8 @@ Moments moments(Signal measured, Signal simulated, std::string_view function) {
   m.variance_simulated = s.variance();
   m.covariance = mean_of(n, [&](auto i) { return y[i] * s[i]; });
 
-  // Not y[i] - s[i]: the rounding of the two means would show where the residual is much smaller
-  // than the signals. From the first samples the differences are exact for like signals.
+  // The difference y[i] - s[i] would show the rounding of the two means if the residual is much
+  // smaller than the signals. Differences from the first samples are exact for similar signals.
   const Extended mean_from_first = y.mean_from_first() - s.mean_from_first();
   m.variance_residual = mean_of(
       n, [&](auto i) { return square((y.from_first(i) - s.from_first(i)) - mean_from_first); });
@@ -148,7 +148,7 @@ Agreement agreement(Signal measured, Signal simulated) {
                 .rmse = rmse(m),
                 .nrmse_fit_percent = nrmse_fit_percent(m),
                 .maximum_error = maximum_error(m)};
-  // Those that the moments do not tell are computed each for itself.
+  // Metrics that do not follow from the moments are computed one by one.
   for (std::size_t i = kOfMoments; i < kMetrics.size(); ++i)
     all.*kMetrics[i].value = kMetrics[i].compute(measured, simulated);
   return all;

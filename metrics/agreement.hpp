@@ -17,7 +17,7 @@ namespace rigcal::metrics {
 /// At most 1, no lower limit; 0 for a constant simulated signal.
 double rho2(std::span<const double> measured, std::span<const double> simulated);
 
-/// 1 - rho2 = var(e) / var(y), with all its digits where rho2 is too near 1 to hold them.
+/// 1 - rho2 = var(e) / var(y), with full precision if rho2 is too close to 1.
 double unexplained_variance(std::span<const double> measured, std::span<const double> simulated);
 
 /// Pearson correlation, eq. 16: R = cov(y, s) / (std(y) std(s)), in [-1, 1]. Blind to gain and
@@ -53,8 +53,8 @@ struct Agreement {
   double maximum_error = 0.0;
 };
 
-/// All at once, for the cost of one and equal to each bit for bit. Throws where any of them does;
-/// for signals that lack one metric (a constant simulation has no R) ask for the others singly.
+/// All metrics at the cost of one, each with the same bits. Throws if any of them does; for signals
+/// that lack one metric (a constant simulation has no R) compute the others one by one.
 Agreement agreement(std::span<const double> measured, std::span<const double> simulated);
 
 }  // namespace rigcal::metrics

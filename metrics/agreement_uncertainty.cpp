@@ -11,7 +11,7 @@
 namespace rigcal::metrics {
 namespace {
 
-/// How many repeats have each sample, shape (n).
+/// Number of repeats with a value at each sample, shape (n).
 std::vector<double> counts_of(const std::vector<std::vector<double>>& deviations, std::size_t n) {
   std::vector<double> counts(n, 0.0);
   for (const auto& own : deviations)
@@ -45,7 +45,7 @@ double jackknife_variance(const std::vector<Agreement>& without, double Agreemen
   return squares * (repeats - 1.0) / repeats;
 }
 
-/// The scores of a mean that is changed as its sensor may be off, a list for each of its causes.
+/// Scores after changes of the mean by the sensor's uncertainty; one list per cause.
 using Changed = std::vector<std::vector<Agreement>>;
 
 Changed changed_by_sensor(const MeasuredMean& measured, std::span<const double> simulated) {
@@ -59,7 +59,8 @@ Changed changed_by_sensor(const MeasuredMean& measured, std::span<const double> 
     result.push_back({score(1.0 + sd, 0.0), score(1.0 - sd, 0.0)});
   if (const double sd = measured.offset_sd; sd > 0.0) {
     result.push_back({score(1.0, sd), score(1.0, -sd)});
-    // Or it changes from one end of the range to the other: rho2 and R are blind to a constant.
+    // An offset may also change from one end of the range to the other: rho2 and R are blind to a
+    // constant.
     const auto [low, high] = std::minmax_element(measured.mean.begin(), measured.mean.end());
     const double middle = 0.5 * (*low + *high);
     const double share = sd / (0.5 * (*high - *low));

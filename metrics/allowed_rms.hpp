@@ -4,8 +4,8 @@
 
 namespace rigcal::metrics {
 
-/// Root mean square of an error without offset with which rho2 is just a limit:
-/// sqrt((1 - limit) var(y)), in the unit of y.
+/// Root mean square of an error without offset at which rho2 equals its limit: sqrt((1 - limit)
+/// var(y)), in the unit of y.
 ///
 /// @param measured  shape (n)
 /// @return          0 for n < 2, and for a limit of 1 or more

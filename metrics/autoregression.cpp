@@ -63,7 +63,7 @@ std::vector<double> autocovariance(std::span<const double> series, int lags) {
 }
 
 std::vector<double> autocovariance(const Autoregression& model, int lags) {
-  // Levinson and Durbin the other way round: the recursion's own models tell lag after lag.
+  // Levinson and Durbin in reverse: the models of the recursion give one lag after the other.
   const std::vector<double> partial = partials(model.phi);
   double variance = model.variance;
   for (const double each : partial) variance /= 1.0 - each * each;
@@ -97,7 +97,7 @@ bool is_autocovariance(std::span<const double> gamma) {
 }
 
 Autoregression fit_autoregression(std::span<const double> gamma, double samples) {
-  constexpr double kMemory = 10.0;  // records must be so many times as long as what is remembered
+  constexpr double kMemory = 10.0;  // least length of the record over the model's memory
   if (gamma.empty() || !(gamma.front() > 0.0)) return {};
   const double most = std::max(0.0, 1.0 - kMemory / samples);
   Autoregression model{{}, gamma.front()};
@@ -105,9 +105,8 @@ Autoregression fit_autoregression(std::span<const double> gamma, double samples)
   double least = samples * std::log(model.variance);
   while (model.phi.size() + 1 < gamma.size()) {
     const double partial = next_partial(model, gamma);
-    // No series leaves this after the model so far: after a cut, of one that repeats itself
-    // exactly. What follows would only be cut again and again, to a model whose response grows
-    // beyond all numbers.
+    // No real series leads here; it happens after a cut, for a series that repeats exactly. Further
+    // terms would be cut, too, and give a model whose response grows without limit.
     if (!model.phi.empty() && !(std::abs(partial) < 1.0)) break;
     extend(model, std::clamp(partial, -most, most));
     const double criterion = samples * std::log(model.variance) +

@@ -8,9 +8,9 @@ namespace rigcal::metrics {
 /// Autoregressive model of a series about zero: x[t] = sum_k phi[k] x[t - 1 - k] + u[t], u white.
 struct Autoregression {
   std::vector<double> phi;  ///< shape (order); always stationary
-  double variance = 0.0;    ///< of u, in the square of the series' unit
+  double variance = 0.0;    ///< variance of u, in the square of the series' unit
 
-  /// How many independent samples tell the mean as well as `samples` of the series do:
+  /// Number of independent samples that determine the mean as well as `samples` of the series:
   /// samples * variance of a sample / long-run variance, from 1 to `samples`.
   double effective_samples(double samples) const;
 };
@@ -28,13 +28,13 @@ bool is_autocovariance(std::span<const double> gamma);
 /// Autocovariances of the model itself for lags 0..lags.
 std::vector<double> autocovariance(const Autoregression& model, int lags);
 
-/// The model of the order up to gamma.size() - 1 with the least Bayesian information criterion
-/// n ln(variance) + order ln(n), by the recursion of Levinson and Durbin (Brockwell and Davis, Time
-/// Series, 1991, 5.2 and 9.2). Partial autocorrelations are cut at 1 - 10 / n, so that no model
-/// remembers more than the series can tell; the first that is 1 or more after such a cut ends the
+/// The model of order up to gamma.size() - 1 with the least Bayesian information criterion n
+/// ln(variance) + order ln(n), by the recursion of Levinson and Durbin (Brockwell and Davis, Time
+/// Series, 1991, 5.2 and 9.2). Partial autocorrelations are cut at 1 - 10 / n, so that no model has
+/// a longer memory than the series can show. The first one of 1 or more after such a cut ends the
 /// recursion.
 ///
-/// @param gamma    autocovariances from lag 0, gamma[0] >= 0; white of variance 0 if it is 0
+/// @param gamma    autocovariances from lag 0, gamma[0] >= 0; white noise of variance 0 if it is 0
 /// @param samples  n, length of the series, >= 1
 Autoregression fit_autoregression(std::span<const double> gamma, double samples);
 

@@ -15,8 +15,8 @@ double normal_quantile(double probability) {
 double normal_cdf(double x) { return boost::math::cdf(boost::math::normal(), x); }
 
 double student_t_quantile(double probability, double freedom) {
-  // Near no degree of freedom a quantile exceeds every double: infinity, which is what it means, is
-  // no error.
+  // For degrees of freedom near zero a quantile exceeds every double. The result is then infinity,
+  // not an error.
   using Infinite = boost::math::policies::policy<
       boost::math::policies::overflow_error<boost::math::policies::ignore_error>>;
   return boost::math::quantile(boost::math::students_t_distribution<double, Infinite>(freedom),
@@ -28,7 +28,7 @@ double student_t_cdf(double t, double freedom) {
 }
 
 double chi_squared_exceedance(double x, double freedom) {
-  if (x == 0.0 && freedom > 0.0) return 1.0;  // where Boost overflows for many degrees
+  if (x == 0.0 && freedom > 0.0) return 1.0;  // Boost overflows here for many degrees
   return boost::math::cdf(boost::math::complement(boost::math::chi_squared(freedom), x));
 }
 

@@ -20,7 +20,7 @@ namespace {
 using Amplitude = std::complex<double>;
 
 constexpr int kLastHarmonic = 15;
-constexpr double kLeastHarmonic = 1e-2;  // of the fundamental
+constexpr double kLeastHarmonic = 1e-2;  // fraction of the fundamental
 constexpr std::size_t kLeastPerPeriod = 8;
 constexpr std::size_t kLeastSamplesOfRecord = 64;
 /// At either end. Bloomfield, Fourier Analysis of Time Series, 1976: a split cosine bell.
@@ -46,8 +46,8 @@ struct Products {
   }
 };
 
-/// Complex regression of Y on U: the variance of H is that of what is left, over the input's power,
-/// half of it in either direction. Bendat and Piersol, Random Data, 4th ed., Wiley 2010, 9.2.
+/// Complex regression of Y on U: the variance of H is that of the residual divided by the input's
+/// power, half of it in each direction. Bendat and Piersol, Random Data, 4th ed., Wiley 2010, 9.2.
 ///
 /// @param independent  effective number of independent pairs
 ResponsePoint point_of(double frequency_hz, const Products& sums, double independent) {
@@ -109,7 +109,7 @@ class Harmonics {
   std::vector<Amplitude> of(std::span<const double> signal) const {
     const Eigen::Map<const Eigen::VectorXd> values(signal.data(),
                                                    static_cast<Eigen::Index>(signal.size()));
-    // The mean would cost the digits of what moves.
+    // Removes the mean, which would cost digits of the variation.
     const Eigen::VectorXd moving = values.array() - values.mean();
     const Eigen::VectorXd solution = solver_.solve(columns_.transpose() * moving);
     std::vector<Amplitude> amplitudes;
@@ -128,8 +128,8 @@ struct Window {
   std::size_t end = 0;
 };
 
-/// Whole periods from the end of the record, in their order. A sample stands for the interval
-/// before it.
+/// Whole periods counted from the end of the record, in order of time. A sample represents the
+/// interval before it.
 std::vector<Window> whole_periods(std::span<const double> time_s, double frequency_hz) {
   const double last = time_s.back();
   const double step = (last - time_s.front()) / static_cast<double>(time_s.size() - 1);

@@ -10,7 +10,7 @@ namespace rigcal::metrics {
 struct ResponseInterval {
   double gain_low = 0.0;        ///< >= 0
   double gain_high = 0.0;       ///< > gain_low
-  double phase_half_deg = 0.0;  ///< at most 180: then nothing is known of the phase
+  double phase_half_deg = 0.0;  ///< at most 180: the phase is then unknown
 };
 
 /// Output over input at one frequency, estimated from several independent pairs of their complex
@@ -21,8 +21,8 @@ struct ResponsePoint {
   double phase_deg = 0.0;    ///< in (-180, 180]; negative where the output is late
   double coherence = 1.0;    ///< |S_uy|^2 / (S_uu S_yy), in [0, 1]; 1 where there is one pair alone
   double independent = 1.0;  ///< pairs, as many as would be independent
-  /// By Student's t with 2 (pairs - 1) degrees of freedom; nothing with fewer than two pairs, which
-  /// show no scatter, and nothing at coherence 0, where the interval has no upper end.
+  /// By Student's t with 2 (pairs - 1) degrees of freedom. Absent with fewer than two pairs, which
+  /// have no variance, and at coherence 0, where the interval has no upper end.
   std::optional<ResponseInterval> interval;
 };
 
@@ -48,11 +48,11 @@ std::vector<ResponsePoint> periodic_response(std::span<const double> time_s,
                                              std::span<const double> input,
                                              std::span<const double> output, double frequency_hz);
 
-/// The response of a record with any other drive: sweep, steps or noise. Both signals are
-/// differenced, which leaves their ratio as it is and takes drifts away, tapered over a tenth at
-/// either end, and transformed; the products of their lines are averaged over bins of equal width
-/// in log frequency that hold at least eight lines. A bin with less than a millionth of the input's
-/// largest power density is left out.
+/// The response in a record with any other drive: sweep, steps or noise. Both signals are
+/// differenced, which keeps their ratio and removes drifts, tapered over a tenth at either end, and
+/// transformed. The products of their lines are averaged over bins of equal width in log frequency
+/// with at least eight lines. A bin with less than a millionth of the input's largest power density
+/// is left out.
 ///
 /// @param sample_interval_s  > 0, equidistant
 /// @param input   shape (n), n >= 64, any unit

@@ -61,7 +61,7 @@ std::size_t window_begin(std::span<const double> time_s, double frequency_hz) {
                                   time_s.begin());
 }
 
-/// sin, cos and 1 at time t; whole turns are taken off before 2 pi rounds.
+/// sin, cos and 1 at time t. Whole turns are removed before the multiplication by 2 pi rounds.
 Vector3 regressors(double time_s, double frequency_hz) {
   const Extended turns = wide(time_s) * wide(frequency_hz);
   const auto angle =
@@ -69,7 +69,7 @@ Vector3 regressors(double time_s, double frequency_hz) {
   return {wide(std::sin(angle)), wide(std::cos(angle)), 1.0L};
 }
 
-/// What the times alone tell: signals of one record share it.
+/// Quantities that depend only on the times, so that the signals of one record share them.
 struct Basis {
   std::vector<Vector3> rows;
   Matrix3 normal = Matrix3::Zero();

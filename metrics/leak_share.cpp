@@ -23,7 +23,7 @@ Extended slope_along_line(Extended a, Extended b, Extended da, Extended db) {
   const Extended sign_b = b < 0.0L ? -1.0L : 1.0L;
   const Extended d_ends = sign_a * da + sign_b * db;
   if (a * b >= 0.0L) {
-    // From zero on |y| grows with the sign of the other end.
+    // From a zero on, |y| grows with the sign of the other end.
     const Extended sign = a + b < 0.0L ? -1.0L : 1.0L;
     return 0.5L * sign * (da + db);
   }

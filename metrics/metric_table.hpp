@@ -14,14 +14,14 @@ inline constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 /// All that the program knows about one metric; scorecards, limits of campaign files, reports and
 /// documentation are made from this row.
 struct MetricSpec {
-  std::string_view name;     ///< as in the results
-  std::string_view title;    ///< of its column on the page
+  std::string_view name;     ///< name in the results
+  std::string_view title;    ///< title of its column on the page
   std::string_view formula;  ///< one line; y measured, s simulated, e = y - s
   std::string_view unit;     ///< "1", "%", or "channel": that of the compared channel
   double Agreement::*value = nullptr;
   double (*compute)(std::span<const double> measured, std::span<const double> simulated) = nullptr;
   bool higher_is_better = true;
-  double lowest = 0.0;  ///< that it can be
+  double lowest = 0.0;  ///< least possible value
   double highest = kUnbounded;
 };
 

@@ -47,8 +47,8 @@ struct Range {
 
 /// Range of a signal of shape (n).
 ///
-/// @param function, name  who asks and which signal it is, for the message
-/// @throws std::invalid_argument  n < 2, or a value is not finite: says which
+/// @param function, name  the caller and the signal, for the message
+/// @throws std::invalid_argument  n < 2, or a value is not finite (names which)
 Range finite_range(std::span<const double> signal, std::string_view function,
                    std::string_view name);
 
@@ -58,7 +58,7 @@ Range finite_range(std::span<const double> signal, std::string_view function,
 double to_double(Extended value, std::string_view function);
 
 /// A signal minus its mean, exact to the rounding of the deviation even for offsets of 1e9: the
-/// first sample is taken off before the mean is formed.
+/// first sample is subtracted before the mean is formed.
 class Centred {
  public:
   /// @param signal  shape (n), n >= 1, finite; borrowed

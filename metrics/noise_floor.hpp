@@ -4,7 +4,7 @@
 
 namespace rigcal::metrics {
 
-/// What a model that equals the true signal would score against a measured one.
+/// Scores of a model that equals the true signal, against a measured one.
 struct NoiseFloor {
   double rho2 = 0.0;
   double ccc = 0.0;

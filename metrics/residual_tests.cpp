@@ -20,7 +20,7 @@ using Complex = std::complex<double>;
 constexpr std::size_t kLeastSamples = 16;
 constexpr int kTestedLags = 25;
 
-/// 95 % of the autocorrelations of n samples of white noise lie within +-this.
+/// 95 % of the autocorrelations of n samples of white noise are within +-this.
 double white_band(double n) { return kNormal95 / std::sqrt(n); }
 
 void conclude(Judged& test, Judged found) { test = std::move(found); }
@@ -172,9 +172,9 @@ Periodogram test_periodogram(const std::vector<double>& e, double interval_s) {
   result.peak_frequency_hz = static_cast<double>(peak + 1) * line_hz;
   for (std::size_t k = peak > 0 ? peak - 1 : 0; k <= std::min(peak + 1, power.size() - 1); ++k)
     result.peak_share += power[k] / total;
-  // By Parseval all lines together stand for the mean square.
+  // By Parseval's theorem all lines together give the mean square.
   const double density = mean_square(e) / (total * line_hz);
-  constexpr double kBinsPerDecade = 30.0;  // of a picture, as the points below
+  constexpr double kBinsPerDecade = 30.0;  // for pictures, like the points below
   for (std::size_t k = 0; k < power.size();) {
     const double upper = static_cast<double>(k + 1) * std::pow(10.0, 1.0 / kBinsPerDecade);
     double mean = 0.0;
@@ -250,7 +250,7 @@ Drift test_drift(std::span<const double> residual, const std::vector<double>& e,
 
 double effective_sample_size(std::span<const double> rho) {
   const auto n = static_cast<double>(rho.size());
-  // What white noise alone may show is no correlation.
+  // A correlation within the band of white noise counts as none.
   if (rho.size() < 2 || rho[1] <= white_band(n)) return n;
   double sum = 0.0;
   for (std::size_t k = 1; k < rho.size() && rho[k] > 0.0; ++k) sum += rho[k];
@@ -275,7 +275,7 @@ ResidualTests residual_tests(std::span<const double> residual, std::span<const d
   double largest = 0.0;
   for (const double value : residual) largest = std::max(largest, std::abs(value));
   const double variance = mean_square(e);
-  // Below this the spread is rounding of the mean.
+  // A standard deviation below this is rounding of the mean.
   const double least = 8.0 * std::numeric_limits<double>::epsilon() * largest;
   if (!(variance > least * least)) throw std::domain_error("the residual is constant");
 

@@ -17,7 +17,7 @@ namespace rigcal::metrics {
 /// Correlation of the residual with itself: white noise has none.
 struct Autocorrelation : Judged {
   std::vector<double> values;  ///< shape (lags + 1), from lag 0; biased estimate, values[0] = 1
-  double band = 0.0;           ///< 95 % of the values of white noise lie within +-band
+  double band = 0.0;           ///< 95 % of the values of white noise are within +-band
   double ljung_box = 0.0;      ///< Ljung and Box, Biometrika 65, 1978, over `tested_lags`
   int tested_lags = 0;
   double p_value = 0.0;
@@ -30,25 +30,25 @@ struct CrossCorrelation : Judged {
   std::vector<double> values;  ///< shape (2 lags + 1), from -lags: corr(e(t), u(t - lag))
   double band = 0.0;           ///< 95 % for one lag, by the effective sample size
   double band_of_peak = 0.0;   ///< 95 % for the largest of all lags (Bonferroni)
-  double peak = 0.0;           ///< of largest absolute value
+  double peak = 0.0;           ///< value of largest size
   double peak_lag_s = 0.0;     ///< > 0: the residual follows the input
 };
 
-/// Where in frequency the residual has its power.
+/// Distribution of the residual's power over frequency.
 struct Periodogram : Judged {
   std::vector<double> frequency_hz;  ///< shape (bins), logarithmic bins of the periodogram
   std::vector<double> density;       ///< mean one-sided power density, [unit^2/Hz]
-  double median_frequency_hz = 0.0;  ///< half of the power lies below
-  double peak_frequency_hz = 0.0;    ///< of the largest single line
-  double peak_share = 0.0;           ///< of the power in that line and its two neighbours
-  double distance = 0.0;  ///< of the cumulative periodogram from a straight line (Bartlett)
-  double limit = 0.0;     ///< 5 % critical distance of white noise
+  double median_frequency_hz = 0.0;  ///< half of the power is below it
+  double peak_frequency_hz = 0.0;    ///< frequency of the largest single line
+  double peak_share = 0.0;           ///< fraction of the power in that line and its two neighbours
+  double distance = 0.0;             ///< cumulative periodogram to a straight line (Bartlett)
+  double limit = 0.0;                ///< 5 % critical distance of white noise
 };
 
 /// Distribution of the residual.
 struct Normality : Judged {
   std::vector<double> normal_quantile;    ///< shape (points), of the standard normal
-  std::vector<double> residual_quantile;  ///< of (e - mean) / std
+  std::vector<double> residual_quantile;  ///< quantiles of (e - mean) / std
   double skewness = 0.0;
   double excess_kurtosis = 0.0;
   double jarque_bera = 0.0;  ///< Jarque and Bera, Economics Letters 6, 1980
@@ -65,7 +65,7 @@ struct Drift : Judged {
 
 struct ResidualTests {
   long samples = 0;
-  double std = 0.0;                ///< of the residual
+  double std = 0.0;                ///< standard deviation of the residual
   double effective_samples = 0.0;  ///< effective_sample_size()
   double sample_interval_s = 0.0;
   Autocorrelation autocorrelation;
@@ -75,10 +75,11 @@ struct ResidualTests {
   Drift drift;
 };
 
-/// Effective sample size: as many independent samples would tell the mean as well as n correlated
-/// ones do, n / (1 + 2 sum of rho) with the autocorrelations up to the first that is not positive
-/// (Geyer, Statistical Science 7, 1992, without his pairs). n where the first is within the 95 %
-/// band of white noise. Negative autocorrelations beyond do not raise it: it is on the safe side.
+/// Effective sample size: the number of independent samples that determine the mean as well as n
+/// correlated ones, n / (1 + 2 sum of rho) with the autocorrelations up to the first that is not
+/// positive (Geyer, Statistical Science 7, 1992, without his pairs). It is n if the first is within
+/// the 95 % band of white noise. Later negative autocorrelations do not raise it, which is on the
+/// safe side.
 ///
 /// @param rho  shape (n), n >= 1, from lag 0: rho[0] = 1
 /// @return     in [1, n]

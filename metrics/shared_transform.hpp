@@ -4,8 +4,8 @@
 
 namespace rigcal::metrics {
 
-/// Fourier transforms of this thread. What depends on the length alone, a sine and cosine for each
-/// sample, is computed once: for lengths that come again, as powers of two do.
+/// Fourier transforms of this thread. The table that depends only on the length (a sine and cosine
+/// per sample) is computed once, for lengths that recur, such as powers of two.
 inline Eigen::FFT<double>& shared_transform() {
   thread_local Eigen::FFT<double> transform;
   return transform;

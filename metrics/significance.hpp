@@ -5,37 +5,38 @@
 
 namespace rigcal::metrics {
 
-/// Degrees of freedom beyond which Student's t is the normal distribution.
+/// Degrees of freedom from which Student's t counts as the normal distribution.
 inline constexpr double kManyDegrees = 1e6;
 
-/// Standard error of an estimate, and the degrees of freedom with which it is known.
+/// Standard error of an estimate, with its degrees of freedom.
 struct EstimateError {
   double standard_error = 0.0;
   double freedom = kManyDegrees;
 };
 
-/// One of independent parts that a variance is the sum of.
+/// One of the independent contributions to a variance.
 struct ErrorPart {
   double variance = 0.0;
   double freedom = kManyDegrees;
 };
 
-/// Degrees of freedom with which a sum of variances is known: (sum v)^2 / sum (v^2 / freedom)
-/// (B. L. Welch, Biometrika 34, 1947), at least 1 and at most kManyDegrees.
+/// Effective degrees of freedom of a sum of variances: (sum v)^2 / sum (v^2 / freedom) (B. L.
+/// Welch, Biometrika 34, 1947), at least 1 and at most kManyDegrees.
 double effective_freedom(std::span<const ErrorPart> parts);
 
 /// Error of the difference between two independent estimates.
 EstimateError error_of_difference(const EstimateError& a, const EstimateError& b);
 
-/// Two-sided probability of a difference this large where there is none: by Student's t with the
-/// freedom of its error, which from kManyDegrees on is the normal distribution.
+/// Two-sided probability of a difference of this size if there is none. Uses Student's t with the
+/// degrees of freedom of the error; from kManyDegrees on that is the normal distribution.
 ///
-/// @param error  of the difference, same unit, > 0
-/// @throws std::invalid_argument  it is not, its freedom is not above 0, or a value is not finite
+/// @param error  of the difference, in the same unit; > 0
+/// @throws std::invalid_argument  the error or its degrees of freedom are not positive, or a value
+///                                is not finite
 double difference_p_value(double difference, const EstimateError& error);
 
-/// p-values that hold for all of them together: of the k-th smallest of n, (n - k + 1) p, never
-/// below that of a smaller one (S. Holm, Scand. J. Statist. 6, 1979).
+/// p-values adjusted for all of them together: the k-th smallest of n becomes (n - k + 1) p, but
+/// never less than that of a smaller one (S. Holm, Scand. J. Statist. 6, 1979).
 ///
 /// @param p_values  shape (n), in [0, 1]
 /// @return shape (n), in the same order

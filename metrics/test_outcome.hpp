@@ -5,7 +5,7 @@
 
 namespace rigcal::metrics {
 
-/// What a significance test says. A test that would hardly ever reject says nothing by not
+/// Outcome of a significance test. A test that would hardly ever reject proves nothing by not
 /// rejecting: that is no pass.
 enum class TestOutcome { passed, failed, not_judged };
 
@@ -26,25 +26,26 @@ struct Judged {
 /// one of 19 %.
 inline constexpr double kLeastEffectiveSamples = 10.0;
 
-/// Largest useful bound of a correlation or of a cumulative share of power, both of which end at 1.
-/// Half as large is a large effect (Cohen, Statistical Power Analysis, 1988): a test that lets it
-/// pass, a quarter of the variance explained, tells nothing by passing.
+/// Largest useful bound of a correlation or of a cumulative fraction of power, both of which end at
+/// 1. Half as large is a large effect (Cohen, Statistical Power Analysis, 1988). A test that
+/// accepts it, a quarter of the variance explained, proves nothing by passing.
 inline constexpr double kLargestUsefulBound = 0.5;
 
-/// The same of an excess kurtosis: that of a sine wave, the commonest residual that is not normal,
+/// The same for an excess kurtosis: that of a sine wave, the commonest residual that is not normal,
 /// is -1.5.
 inline constexpr double kLargestUsefulKurtosis = 1.5;
 
-/// The smallest effect that a test detects, and what it is of.
+/// The smallest effect that a test detects, with its kind.
 struct Power {
   double effective_samples = 0.0;
   double bound = 0.0;           ///< smallest effect that is rejected
-  double largest_useful = 0.0;  ///< bound above which a pass tells nothing
+  double largest_useful = 0.0;  ///< bound above which a pass proves nothing
   std::string_view effect{};    ///< "a correlation with the input", in the reason
 };
 
-/// The one rule for all tests: failed where the test rejects and its level holds; passed where it
-/// does not reject although it could have detected an effect of interest; else it cannot be judged.
+/// The one rule for all tests. A test fails if it rejects and its level is valid. It passes if it
+/// does not reject although it could have detected an effect of interest. Otherwise it cannot be
+/// judged.
 Judged judge(bool rejects, const Power& power);
 
 }  // namespace rigcal::metrics

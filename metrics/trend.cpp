@@ -11,9 +11,9 @@
 namespace rigcal::metrics {
 namespace {
 
-/// Scatter about the line that is less probable than this is more than the errors tell.
+/// Scatter about the line with a probability below this is more than the errors explain.
 constexpr double kUpperQuartile = 0.25;
-/// Errors of which the scatter is more than this many squares are none of these points.
+/// A larger chi-square means that the errors cannot belong to these points.
 constexpr double kMostChiSquare = 1e100;
 
 void require_points(std::span<const double> x, std::span<const double> y,
@@ -43,7 +43,7 @@ Trend weighted_trend(std::span<const double> x, std::span<const double> y,
   Eigen::MatrixXd design = Eigen::MatrixXd::Ones(n, 2);
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(n, n);
   if (common.size() > 0) covariance = common;
-  // About the mean of x: days since 1970 would leave few digits.
+  // Centred at the mean of x, since days since 1970 would leave few digits.
   double middle = 0.0;
   for (const double each : x) middle += each / static_cast<double>(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -54,7 +54,7 @@ Trend weighted_trend(std::span<const double> x, std::span<const double> y,
   const Eigen::LLT<Eigen::MatrixXd> root(covariance);
   const Eigen::MatrixXd weighted = root.solve(design);
   const Eigen::Matrix2d of_line = (design.transpose() * weighted).inverse();
-  const Eigen::MatrixXd weights = of_line * weighted.transpose();  // of the points, shape (2, n)
+  const Eigen::MatrixXd weights = of_line * weighted.transpose();  // for each point, shape (2, n)
   const Eigen::Map<const Eigen::VectorXd> values(y.data(), n);
   const Eigen::Vector2d line = weights * values;
 

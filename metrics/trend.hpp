@@ -12,38 +12,38 @@ namespace rigcal::metrics {
 struct Trend {
   double slope = 0.0;  ///< unit of y per unit of x
   double intercept = 0.0;
-  double slope_standard_error = 0.0;  ///< widened where the points lie off the line
-  double freedom = 0.0;               ///< with which that error is known
-  double ci95_low = 0.0;              ///< of the slope
+  double slope_standard_error = 0.0;  ///< widened if the points scatter about the line
+  double freedom = 0.0;               ///< degrees of freedom of that error
+  double ci95_low = 0.0;              ///< ends of the slope's interval
   double ci95_high = 0.0;
-  double p_value = 1.0;             ///< of no slope, two-sided
-  double chi_square = 0.0;          ///< of the points about the line
-  double reduced_chi_square = 0.0;  ///< over n - 2
-  double widened = 1.0;             ///< factor of the error of the slope, at least 1
+  double p_value = 1.0;             ///< two-sided, for no slope
+  double chi_square = 0.0;          ///< scatter of the points about the line
+  double reduced_chi_square = 0.0;  ///< chi-square divided by n - 2
+  double widened = 1.0;             ///< factor on the error of the slope, at least 1
 };
 
-/// Line y = intercept + slope x by generalised least squares, and the test of its slope: the one
-/// test of a trend that there is.
+/// Fits the line y = intercept + slope x by generalised least squares and tests its slope. It is
+/// the only test of a trend.
 ///
-/// The errors of the points are known, so the slope is tested by them: by the normal distribution,
-/// or Student's t where they are known with few degrees of freedom (Welch and Satterthwaite).
-/// Points that scatter about the line by more than that (chi-square beyond its upper quartile, see
-/// Bancroft and Han, International Statistical Review 45, 1977) show that something else differs
-/// between them, such as the day: their scatter then tells the error, by Birge's ratio, the root of
-/// reduced chi-square (Phys. Rev. 40, 1932), and the slope is tested by t with n - 2. Two points
-/// cannot show that, so they make no trend.
+/// The errors of the points are known, so they decide the test: by the normal distribution, or by
+/// Student's t if they have few degrees of freedom (Welch and Satterthwaite). If the points scatter
+/// about the line by more than their errors (chi-square beyond its upper quartile, see Bancroft and
+/// Han, International Statistical Review 45, 1977), something else differs between them, such as
+/// the day. The scatter then gives the error, by Birge's ratio, the root of reduced chi-square
+/// (Phys. Rev. 40, 1932), and the slope is tested by t with n - 2 degrees of freedom. Two points
+/// cannot show scatter, so they make no trend.
 ///
 /// @param x, y     shape (n), n >= 3
 /// @param errors   of each y, independent of each other, shape (n); above 0
-/// @param common   covariance of y by what moves all points together, shape (n)^2; empty: none
+/// @param common   covariance of y from causes that affect all points, shape (n)^2; empty: none
 /// @throws std::invalid_argument  fewer points, unequal shapes, an error that is not positive, a
 ///                                value that is not finite
-/// @throws std::domain_error      all x are equal, or errors so far from each other or from the
-///                                scatter that no line follows
+/// @throws std::domain_error      all x are equal, or the errors differ so much from each other or
+///                                from the scatter that no line can be fitted
 Trend weighted_trend(std::span<const double> x, std::span<const double> y,
                      std::span<const EstimateError> errors, const Eigen::MatrixXd& common = {});
 
-/// Fewest points of a trend.
+/// Least number of points of a trend.
 inline constexpr std::size_t kLeastTrendPoints = 3;
 
 }  // namespace rigcal::metrics

@@ -77,7 +77,7 @@ int plant_states(PlantKind plant) {
   return with_plant(plant, []<typename Plant>() { return Plant::kStates; });
 }
 
-/// Whether reversed inputs reverse all that is asked for.
+/// Whether reversed inputs reverse all requested outputs.
 bool reversible(PlantKind plant, const PresentTerms& terms, std::span<const Output> outputs) {
   return with_plant(plant, [&]<typename Plant>() {
     return std::all_of(outputs.begin(), outputs.end(),
@@ -100,11 +100,11 @@ using Avx2Solvers = Solvers<RIGCAL_avx2_SOLVERS>;
 template <typename Plant, int... States>
 std::integer_sequence<int, States...> sizes_of(const Sized<Plant, States...>& solvers);
 
-/// By the first solver that has room for all states.
+/// Runs the first solver that has room for all states.
 template <typename Plant, InstructionSet Set, int N, int... Larger>
 void run(std::integer_sequence<int, N, Larger...>, const SizedRequest& request,
          Simulation& result) {
-  // The smallest solver knows no more than the states of its plant and a loop on position.
+  // The smallest solver has only the plant's states and supports position loops alone.
   const bool takes_all = N > Plant::kStates || request.layout.position_alone();
   if (request.layout.states <= N && takes_all)
     return simulate_sized<Plant, N, Set>(request, result);
@@ -177,8 +177,8 @@ void SimulationOptions::validate() const {
 
 namespace {
 
-/// As Eigen's allFinite(), which looks at one number after the other, and faster than its sum(),
-/// which waits for each addition before the next.
+/// Like Eigen's allFinite(), but faster: that tests one number at a time. Eigen's sum() is slower,
+/// too, since each addition waits for the one before.
 bool all_finite(const Eigen::MatrixXd& values) {
   constexpr Eigen::Index kSums = 16;
   Eigen::Array<double, kSums, 1> sums = Eigen::Array<double, kSums, 1>::Zero();
@@ -189,10 +189,11 @@ bool all_finite(const Eigen::MatrixXd& values) {
   return sums.sum() + (0.0 * rest).sum() == 0.0;
 }
 
-/// Whether an input changes faster than instants can be told apart: no solver could follow it.
+/// Whether an input changes faster than two instants can be distinguished. No solver could follow
+/// it.
 bool too_fast(const SimulationInputs& inputs, std::span<const double> times_s) {
   constexpr double kInstants = 4.0;
-  constexpr double kMostEdges = 16.0;  // of a waveform, in a period
+  constexpr double kMostEdges = 16.0;  // edges of a waveform in one period
   const double least_s = kInstants * same_instant_s(times_s);
   const auto fast = [least_s](const std::optional<Signal>& signal) {
     if (!signal) return false;
@@ -247,7 +248,7 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
   const std::optional<SensorTimes> at = sensor_times(outputs, parameters, times_s);
   const std::span<const double> at_s = at ? std::span<const double>(at->times_s) : times_s;
   const auto samples = static_cast<Eigen::Index>(at_s.size());
-  // Not set to zero: a simulation that ends well writes all of them.
+  // Not initialised: a successful simulation writes all elements.
   result.outputs.resize(samples, static_cast<Eigen::Index>(outputs.size()));
   result.sensitivities.resize(outputs.size());
   const Eigen::Index columns =
@@ -262,10 +263,11 @@ Simulation simulate_either(const Eigen::VectorXd* state, const Rig& rig,
     const std::optional<double> tick_s =
         layout.sampled() ? std::optional(parameters["sample_time"]) : std::nullopt;
     period = sampled_period(inputs, at_s, reversible(rig.plant, layout.terms, outputs), tick_s);
-    // What the periods to come add is summed for each of them anew.
+    // Extrapolation sums over all remaining periods for each of them, so its cost grows with the
+    // square of their number.
     constexpr std::size_t kMostPeriods = 20'000;
     if (period && at_s.size() / period->samples > kMostPeriods) period.reset();
-    // A rig that still waits for its drive does not change, but is in no periodic state.
+    // A rig that still waits for its drive does not change, yet it is not in a periodic state.
     if (period && rig.before != Before::hold &&
         parameters["transport_delay"] > 0.5 * period->duration_s)
       period.reset();

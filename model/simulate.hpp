@@ -15,21 +15,22 @@
 
 namespace rigcal::model {
 
-/// What a simulation can tell at each sample. The recorded kinds include their sensor's offset.
+/// Outputs of a simulation at each sample. Those that are recorded include the offset of their
+/// sensor.
 enum class Output {
   position,              ///< reading of the position sensor [m]
   velocity,              ///< [m/s]
   load_pressure,         ///< P_L = p_A - p_B [Pa]
   pressure_a,            ///< [Pa]
   pressure_b,            ///< [Pa]
-  force,                 ///< what a load cell in the rod reads [N] (docs/model.md)
+  force,                 ///< reading of a load cell in the rod [N] (docs/model.md)
   command,               ///< controller output after the limit, or the recorded command [V]
   spool,                 ///< valve spool travel [m]
   servo_flow,            ///< Q_L, flow of the servo valve to the load [m3/s]
   leakage_flow,          ///< internal leakage across the piston [m3/s]
   work_flow,             ///< A x', flow that moves the piston [m3/s]
-  acceleration,          ///< of the piston and what is fixed to it [m/s2]
-  payload_acceleration,  ///< of the second mass [m/s2]; zero where the rig has none
+  acceleration,          ///< acceleration of the piston and the mass fixed to it [m/s2]
+  payload_acceleration,  ///< acceleration of the second mass [m/s2]; zero without one
 };
 
 /// "position_m", "servo_flow_m3_per_s": name with its SI unit.
@@ -50,13 +51,13 @@ inline constexpr std::array kAllOutputs{Output::position,
 
 enum class ControllerKind {
   none,  ///< the drive is the valve command [V]
-  pid,   ///< the drive is the reference of what the loop controls
+  pid,   ///< the drive is the reference of the controlled quantity
 };
 
-/// What a loop controls: its reference is of that quantity.
+/// Quantity that a loop controls; its reference has the same unit.
 enum class Feedback { position, force, load_pressure, acceleration };
 
-/// Gains, in the parameter table, of a loop that controls a quantity.
+/// Gains, in the parameter table, of a loop by its controlled quantity.
 struct FeedbackRow {
   std::string_view name;  ///< in campaign files
   std::string_view unit;  ///< SI
@@ -82,13 +83,13 @@ enum class InitialState {
   given,  ///< from the initial_* parameters (free or fixed)
 };
 
-/// What acts on the rig. The drive is delayed by `transport_delay`, the others are not.
+/// Inputs of the rig. Only the drive is delayed by `transport_delay`.
 struct SimulationInputs {
   Signal drive = Signal::constant(0.0);      ///< reference of the loop, or command [V]
   std::optional<Signal> external_force_n;    ///< added to the parameter `external_force`
   std::optional<Signal> supply_pressure_pa;  ///< in place of the parameter `supply_pressure`
   std::optional<Signal> tank_pressure_pa{};  ///< in place of the parameter `tank_pressure`
-  double drive_begins_s = 0.0;               ///< its first sample: what was before says Rig::before
+  double drive_begins_s = 0.0;               ///< time of its first sample; see Rig::before
 };
 
 enum class Method {
@@ -100,8 +101,8 @@ struct SimulationOptions {
   Method method = Method::rosenbrock;
   /// Local error per step over the running peak of each state, and of each sensitivity.
   double tolerance = 1e-6;
-  /// How many times that the local error of a sensitivity may be: a fit needs derivatives to a part
-  /// in a thousand.
+  /// Factor by which the local error of a sensitivity may be larger: a fit needs derivatives to one
+  /// part in a thousand.
   double sensitivity_looseness = 50.0;
   /// Whether the rest of a run is read from its last periods once it is in its periodic steady
   /// state, or comes nearer to it in a way that is known. Else every period is simulated.
@@ -118,7 +119,7 @@ enum class SimulationStatus {
   ok,
   bad_parameters,  ///< a value is not finite or outside its hard bounds
   not_finite,      ///< the state left the numbers
-  step_too_small,  ///< error control asked for a vanishing step
+  step_too_small,  ///< error control required a vanishing step
   too_many_steps,
   out_of_time,
   cancelled,
@@ -135,8 +136,8 @@ struct Simulation {
   Eigen::MatrixXd outputs;   ///< shape (samples, outputs), SI
   /// d outputs / d parameter: one matrix of shape (samples, free) per output, SI.
   std::vector<Eigen::MatrixXd> sensitivities;
-  /// State at the last sample: of plant, hoses, supply, second mass, valve and controller, as in
-  /// Layout.
+  /// State at the last sample: plant, hoses, supply, second mass, valve and controller, in the
+  /// order of Layout.
   Eigen::VectorXd end_state;
   Eigen::MatrixXd end_sensitivities;  ///< shape (states, columns of `sensitivities`)
   Eigen::VectorXd state_floor;        ///< below it a state counts as zero in the error control
@@ -150,7 +151,7 @@ struct Rig {
   PlantKind plant = PlantKind::load_pressure;
   ControllerKind controller = ControllerKind::pid;
   InitialState initial = InitialState::rest;
-  Feedback feedback = Feedback::position;  ///< of the controller, if there is one
+  Feedback feedback = Feedback::position;  ///< controlled quantity, if there is a controller
   Before before = Before::hold;
 };
 
@@ -166,14 +167,14 @@ Simulation simulate(const Rig& rig, const ParameterValues& parameters, std::span
                     const SimulationInputs& inputs, std::span<const double> times_s,
                     std::span<const Output> outputs, const SimulationOptions& options = {});
 
-/// The same from a state in the middle of a longer run, whatever the rig's initial one is: from the
-/// `end_state` of a run on times up to the first of these, it goes on as if it had never ended.
-/// Lags of sensors begin anew.
+/// The same from a state in the middle of a longer run, in place of the rig's initial one. Started
+/// from the `end_state` of a run that ended at the first of these times, it continues that run.
+/// Lags of sensors start anew.
 ///
-/// @param state  shape (states), at the first of `times_s`; behind the columns of `free`, all
-///               sensitivities have one per element of it
-/// @throws std::invalid_argument  also for a controller with `sample_time`, whose ticks it would
-///                                not know
+/// @param state  shape (states), at the first of `times_s`; all sensitivities have a column per
+///               state after those of `free`
+/// @throws std::invalid_argument  also for a controller with `sample_time`, since the phase of its
+///                                ticks is unknown
 Simulation simulate_from(const Eigen::VectorXd& state, const Rig& rig,
                          const ParameterValues& parameters, std::span<const int> free,
                          const SimulationInputs& inputs, std::span<const double> times_s,

@@ -19,7 +19,7 @@ struct Integer {
   pybind11::object value;
 };
 
-/// @throws pybind11::value_error  naming the argument, what was found and what was expected
+/// @throws pybind11::value_error  names the argument, what was found and what was expected
 std::uint64_t whole_number(const char* name, const Integer& integer, std::uint64_t lowest,
                            std::uint64_t highest);
 int count(const char* name, const Integer& integer, int lowest, int highest);
@@ -32,7 +32,7 @@ std::optional<double> positive(const char* name, std::optional<double> value);
 /// @throws pybind11::value_error  the path is empty, naming the argument
 void require_path(const char* name, const std::optional<std::filesystem::path>& path);
 
-/// Threads: as many as the machine has, unless told.
+/// Number of threads; by default as many as the machine has.
 int thread_count(const std::optional<Integer>& threads);
 
 /// name="value unit" of each entry of a dict.
@@ -40,11 +40,10 @@ int thread_count(const std::optional<Integer>& threads);
 /// @throws pybind11::type_error  a value is neither text nor number
 std::vector<std::string> assignments(const std::optional<pybind11::dict>& values);
 
-/// Text that may contain a file name: bytes that are not UTF-8 become what os.fsdecode() makes of
-/// them.
+/// Text that may contain a file name: bytes that are not UTF-8 are decoded like os.fsdecode().
 pybind11::str decoded(std::string_view text);
 
-/// Getter of a property that is a field of a member, or of what a member points to.
+/// Getter of a property that is a field of a member, or of its target if it is a pointer.
 template <typename Self, typename Member, typename Value>
 auto field(Member Self::*member, Value Member::*value) {
   return [=](const Self& self) { return (self.*member).*value; };
@@ -54,7 +53,7 @@ auto field(std::shared_ptr<const Member> Self::*member, Value Member::*value) {
   return [=](const Self& self) { return (*(self.*member)).*value; };
 }
 
-/// The same of an enumerator, as its name.
+/// The same for an enumerator, as its name.
 template <typename Self, typename Value>
 auto named(Value Self::*value) {
   return [=](const Self& self) { return to_string(self.*value); };

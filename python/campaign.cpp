@@ -13,7 +13,7 @@ namespace {
 
 namespace py = pybind11;
 
-/// A row of the campaign's parameters with what the table of its plant says of it.
+/// A row of the campaign's parameters, with its entry in the plant's table.
 struct Parameter {
   datasets::ParameterSetting setting;
   model::ParameterSpec spec;

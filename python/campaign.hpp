@@ -13,16 +13,16 @@
 
 namespace rigcal::python {
 
-/// A campaign as it was chosen; what is made from it keeps it alive.
+/// A campaign with its options; objects made from it keep it alive.
 struct Campaign {
   report::CampaignChoice choice;
   datasets::Campaign campaign;
-  std::string call;  ///< that made it: rigcal.load('campaign.toml')
+  std::string call;  ///< call that made it: rigcal.load('campaign.toml')
 };
 using CampaignPtr = std::shared_ptr<Campaign>;
 using CampaignClass = pybind11::class_<Campaign, CampaignPtr>;
 
-/// What the table of the plant says of a parameter, for a class with a `spec`.
+/// Properties of a parameter from the plant's table, for a class with a `spec`.
 template <typename Parameter>
 void bind_spec(pybind11::class_<Parameter>& parameter) {
   parameter
@@ -36,7 +36,7 @@ void bind_spec(pybind11::class_<Parameter>& parameter) {
                              "SI unit; \"1\" for a plain number.");
 }
 
-/// None for what is not known.
+/// None for an unknown number.
 inline std::optional<double> none_if_nan(double value) {
   return std::isnan(value) ? std::nullopt : std::optional(value);
 }

@@ -24,7 +24,7 @@ struct FitResult {
 };
 using FitResultPtr = std::shared_ptr<FitResult>;
 
-/// A parameter of a result with what the table of its plant says of it.
+/// A parameter of a result, with its entry in the plant's table.
 struct FittedParameter {
   calib::FittedParameter value;
   model::ParameterSpec spec;

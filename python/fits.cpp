@@ -34,7 +34,7 @@ using datasets::Use;
 
 // ---- making them
 
-/// Raises what the signal handler raised; Ctrl-C becomes an exception that holds the best fit so
+/// Raises the exception of the signal handler; Ctrl-C becomes an exception with the best fit so
 /// far.
 [[noreturn]] void raise_interrupted(const std::exception_ptr& raised, const FitResultPtr& found) {
   try {
@@ -177,7 +177,7 @@ FitResultPtr validate(const CampaignPtr& self, const std::optional<EarlierArgume
   });
 }
 
-// ---- what they hold
+// ---- members
 
 std::vector<FittedParameter> result_parameters(const FitResult& self) {
   const auto table = model::parameter_table(self.campaign->campaign.rig.plant);

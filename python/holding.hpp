@@ -9,7 +9,7 @@
 
 namespace rigcal::python {
 
-/// How a call holds the folder that it writes into. What it has to say is a UserWarning.
+/// Terms on which a call holds its output folder. Messages become a UserWarning.
 inline report::Holding holding(std::string verb, bool force) {
   return {std::move(verb), force, "force=True", [](const std::string& text) {
             const pybind11::gil_scoped_acquire acquired;

@@ -36,7 +36,7 @@ class Progress {
   /// Makes the fit report here, if there is a function.
   void attach(calib::FitOptions& settings);
 
-  /// Throws what the function raised, if anything. Needs the GIL.
+  /// Throws the exception of the function, if there was one. Needs the GIL.
   void rethrow() const;
 
  private:

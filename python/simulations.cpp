@@ -30,7 +30,7 @@ struct Simulated {
   std::string condition;
   std::vector<double> time_s;
   std::vector<double> reference;
-  bool of_position = true;  ///< what its loop controls
+  bool of_position = true;  ///< whether the loop controls the position
   model::Simulation simulation;
 };
 using SimulatedPtr = std::shared_ptr<Simulated>;

@@ -1,7 +1,7 @@
-"""The SPDX 2.3 list of what the packages of rigcal hold, in JSON. usage: spdx_list.py VERSION DATE PACKAGE...
+"""Prints the contents of rigcal's packages as SPDX 2.3 in JSON. usage: spdx_list.py VERSION DATE PACKAGE...
 
-PACKAGE: Debian's packages of the shared libraries; what is compiled in stands in cmake/parts.txt. DATE: of the commit, in UTC or
-with its offset, so that the same commit gives the same list.
+PACKAGE: Debian packages of the shared libraries; cmake/parts.txt lists the parts that are compiled in. DATE: date of the
+commit, in UTC or with its offset, so that the same commit gives the same list.
 """
 import datetime
 import json
@@ -22,7 +22,7 @@ def version_of(package):
 
 
 def licences_by_debian(package):
-    """The short names in Debian's copyright file, which are not all SPDX's."""
+    """Returns the short licence names in Debian's copyright file; not all are SPDX names."""
     file = pathlib.Path("/usr/share/doc") / package / "copyright"
     names = re.findall(r"^License: *(\S.*)$", file.read_text(errors="replace"), re.MULTILINE) if file.is_file() else []
     return ", ".join(dict.fromkeys(name.strip() for name in names))

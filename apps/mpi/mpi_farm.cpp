@@ -34,8 +34,8 @@ constexpr int kTag = 1;
 
 enum class Kind : std::uint8_t {
   request,  ///< to the leader: a lane is free
-  result,   ///< to the leader: of one task
-  bye,      ///< to the leader: nothing more will come
+  result,   ///< to the leader: result of a task
+  bye,      ///< to the leader: last message
   assign,   ///< from the leader: make this task
   all,      ///< from the leader: every result of the job
   gone,     ///< from the leader: there is no such job any more
@@ -89,12 +89,12 @@ Slot make(const TaskFarm::Task& task, std::size_t index) {
   try {
     slot.result = task(index);
   } catch (...) {
-    slot.threw = true;  // whoever needs the results runs it again, to throw there
+    slot.threw = true;  // a process that needs the results runs it again and throws there
   }
   return slot;
 }
 
-/// Tasks for the threads of this process, and what they made of them.
+/// Tasks for the threads of this process, and their results.
 class Lanes {
  public:
   Lanes(int count, const TaskFarm::Task& task) : idle_(count) {
@@ -149,7 +149,7 @@ class Lanes {
   std::vector<std::pair<std::size_t, Slot>> made_;
   int idle_;
   bool ended_ = false;
-  std::vector<std::jthread> threads_;  // last: they end before what they use
+  std::vector<std::jthread> threads_;  // last member: they end before the members that they use
 };
 
 class MpiFarm final : public TaskFarm {
@@ -190,9 +190,9 @@ class MpiFarm final : public TaskFarm {
   struct Led {
     std::string name;
     std::vector<Slot> slots;
-    std::size_t next = 0;        ///< the first that nobody has begun
+    std::size_t next = 0;        ///< the first task that has not begun
     std::size_t missing = 0;     ///< results
-    std::vector<int> waiting{};  ///< processes that ask where nothing is left to begin
+    std::vector<int> waiting{};  ///< processes that wait for a task
     const Done* done = nullptr;
     const FarmJob* job = nullptr;
 
@@ -264,7 +264,7 @@ class MpiFarm final : public TaskFarm {
         led->waiting.push_back(message.other);
       }
     } else if (led != nullptr) {
-      early_.push_back(message);  // of a job that this process has not come to
+      early_.push_back(message);  // belongs to a job that this process has not reached
     } else {
       send({message.other, Kind::gone, message.job, 0, {}});
     }
@@ -298,7 +298,7 @@ class MpiFarm final : public TaskFarm {
   int rank_ = 0;
   int processes_ = 1;
   int gone_ = 0;                                         ///< processes that have said goodbye
-  std::map<std::string, std::vector<Slot>> finished_{};  ///< of the leader
+  std::map<std::string, std::vector<Slot>> finished_{};  ///< kept by the leader
   std::vector<Message> early_{};                         ///< to the leader
 };
 

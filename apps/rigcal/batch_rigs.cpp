@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCampaignFile = "campaign.toml";
 
-/// Hash of a file as it is now; nothing where none can be read.
+/// Present hash of a file; nothing if it cannot be read.
 std::optional<std::string> hash_of(const fs::path& file) {
   try {
     return sha256_of_file(file);

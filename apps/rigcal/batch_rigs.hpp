@@ -14,7 +14,7 @@ namespace rigcal::app {
 struct BatchRig {
   std::string rig;                 ///< its folder, relative to that of the batch: "lab/bench_2"
   std::filesystem::path campaign;  ///< its campaign.toml
-  std::string folder;              ///< of its results, relative to --out
+  std::string folder;              ///< folder for its results, relative to --out
 };
 
 /// Every campaign.toml beneath `folder`, sorted by the name of its folder; links are not followed,
@@ -24,10 +24,10 @@ struct BatchRig {
 std::vector<BatchRig> find_rigs(const std::filesystem::path& folder,
                                 const std::filesystem::path& out);
 
-/// What is done with each rig.
+/// Work on each rig.
 struct RigTask {
   std::filesystem::path out;
-  std::filesystem::path root;  ///< outside of this folder nothing is read; empty: no limit
+  std::filesystem::path root;  ///< no file outside this folder is read; empty: no restriction
   std::vector<std::string> fit_arguments;
   int threads = 1;
   bool resume = false;
@@ -35,7 +35,7 @@ struct RigTask {
   bool force = false;
 };
 
-/// How a rig ended.
+/// Result of the work on a rig.
 struct RigEnd {
   ExitCode code = ExitCode::internal;
   bool left_result = false;  ///< the fit.json in its folder is of this run
@@ -44,11 +44,11 @@ struct RigEnd {
   std::string error;
 };
 
-/// As bytes, for a TaskFarm, and back.
+/// To bytes for a TaskFarm, and back.
 std::string bytes_of(const RigEnd& end);
 RigEnd rig_end_of(const std::string& bytes);
 
-/// Fits a rig, and diagnoses its records where that is asked for, each in a process of its own.
+/// Fits a rig, and diagnoses its records if requested, each in a separate process.
 RigEnd run_rig(const BatchRig& rig, const RigTask& task, const std::atomic<bool>& cancel);
 
 }  // namespace rigcal::app

@@ -1,6 +1,6 @@
-// Eigen allocates by malloc(), and its matrices are not whole again after std::bad_alloc: they free
-// twice what they could not enlarge. So what is linked into the program (--wrap in
-// apps/CMakeLists.txt) runs out of memory as operator new does: by the new handler, which ends it.
+// Eigen allocates by malloc(), and after std::bad_alloc its matrices are inconsistent: they free
+// memory twice that they could not enlarge. So code that is linked into the program (--wrap in
+// apps/CMakeLists.txt) runs out of memory like operator new: the new handler ends it.
 
 #include <cstddef>
 #include <new>
@@ -18,7 +18,7 @@ void* __wrap_realloc(void* memory, std::size_t size);
 
 namespace {
 
-/// The handler returns or throws where a file is being written: then the caller is told.
+/// While a file is being written the handler returns or throws; then the caller gets the error.
 void* checked(void* memory, std::size_t size) {
   if (memory != nullptr || size == 0) return memory;
   try {

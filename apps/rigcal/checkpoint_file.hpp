@@ -10,7 +10,7 @@
 
 namespace rigcal::app {
 
-/// What a fit keeps in its result folder so that it can go on after a kill.
+/// File in the result folder from which a fit can continue after a kill.
 class CheckpointFile {
  public:
   /// @param provenance  of the fit; borrowed
@@ -24,7 +24,7 @@ class CheckpointFile {
   /// Writes a checkpoint unless that would take more than a twentieth of the time.
   void keep(const calib::Checkpoint& checkpoint);
 
-  /// Writes what was held back if the fit was stopped; else removes the file, which no one needs.
+  /// Writes the withheld state if the fit was stopped; else removes the file.
   void finish(calib::FitStatus status);
 
  private:

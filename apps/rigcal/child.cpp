@@ -18,11 +18,11 @@
 namespace rigcal::app {
 namespace {
 
-/// How much of the end of a child's stderr is kept.
+/// Bytes that are kept of the end of a child's stderr.
 constexpr std::size_t kMostKept = 16'384;
 constexpr int kLookEvery_ms = 50;
 
-/// Variables by which a launcher tells a process that it is one of several.
+/// Variables by which a launcher marks a process as one of several.
 bool is_of_launcher(std::string_view variable) {
   constexpr std::array kPrefixes{"OMPI_", "PMIX_", "PMI_", "PRTE_", "MPI_"};
   return std::any_of(kPrefixes.begin(), kPrefixes.end(),
@@ -51,7 +51,7 @@ ChildEnd not_started(const char* what) {
   return end;
 }
 
-/// Calls only what is safe between fork and exec in a process with several threads.
+/// Calls only functions that are safe between fork and exec in a process with several threads.
 [[noreturn]] void become(char* const* arguments, char* const* environment, int err, int null,
                          pid_t parent) {
   ::setpgid(0, 0);  // a terminal's signal is for the parent, which passes it on once

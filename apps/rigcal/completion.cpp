@@ -18,7 +18,7 @@ std::vector<std::string> option_names(const CLI::App& verb) {
   return names;
 }
 
-/// Within single quotes of any of the shells.
+/// For single quotes of any of the shells.
 std::string quotable(std::string text) {
   for (char& c : text) {
     if (c == '\'' || c == '\\') c = ' ';

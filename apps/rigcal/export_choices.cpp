@@ -44,7 +44,7 @@ std::vector<std::string> leak_levels(const Campaign& campaign,
   return levels;
 }
 
-/// The leak level that --level asks for, or the only one there is; none where the rig has none.
+/// The leak level of --level, or the only one; none if the rig has none.
 std::optional<std::string> chosen_level(const ExportRequest& options,
                                         const std::vector<std::string>& levels) {
   if (options.level) {
@@ -60,7 +60,7 @@ std::optional<std::string> chosen_level(const ExportRequest& options,
   return levels.front();
 }
 
-/// Refuses what the fit does not have for a leak level, by the options that can help.
+/// Refuses values that the fit lacks for a leak level, and names the options that help.
 void require_values_of_level(const ExportRequest& options, const Campaign& campaign,
                              const Condition& condition, const report::EarlierFit& earlier) {
   const auto table = model::parameter_table(campaign.rig.plant);
@@ -108,7 +108,7 @@ ParameterValues values_of(const ExportRequest& options, const Campaign& campaign
   return values;
 }
 
-/// What is exported although nothing has estimated it.
+/// Warns of exported values that were not estimated.
 void warn_of_start_values(const Campaign& campaign, const Condition& condition,
                           const std::optional<report::EarlierFit>& earlier,
                           std::vector<std::string>& warnings) {
@@ -136,7 +136,7 @@ void warn_of_start_values(const Campaign& campaign, const Condition& condition,
                     fmt::join(of_records, ", ")));
 }
 
-/// Takes the sensors off: what they would read at the start becomes what is.
+/// Removes the sensors: their reading at the start becomes the state.
 void take_sensors_off(ParameterValues& values) {
   struct Reading {
     const char* initial;
@@ -166,7 +166,7 @@ void take_sensors_off(ParameterValues& values) {
   }
 }
 
-/// Leaves the delay out where that was asked for, and refuses it else.
+/// Leaves the delay out if requested, and refuses it otherwise.
 void take_delay_off(const ExportRequest& options, const Campaign& campaign, ParameterValues& values,
                     std::vector<std::string>& warnings) {
   const double delay_s = values["transport_delay"];
@@ -197,7 +197,7 @@ void require_simulable(const Campaign& campaign, const model::ExportedRig& rig) 
   if (!run.ok()) throw InputError({campaign.file.string()}, run.reason);
 }
 
-/// Inputs that were recorded start from their first sample; what follows is the importer's.
+/// Recorded inputs start from their first sample; the importer sets what follows.
 void start_from_record(const report::SimulationTask& task, ParameterValues& values,
                        std::vector<std::string>& warnings) {
   std::vector<std::string_view> recorded;

@@ -26,11 +26,11 @@ struct ExportChoice {
   std::vector<std::string> warnings;
 };
 
-/// The rig of a campaign with the values that hold at the chosen condition or leak level: those of
-/// the fit over the campaign's, those of --set over both.
+/// The rig of a campaign with the values of the chosen condition or leak level: those of the fit
+/// replace the campaign's, those of --set replace both.
 ///
-/// @throws UsageError, InputError  nothing says which leak level; a value is missing; the rig has a
-///                                 term that an FMU cannot have
+/// @throws UsageError, InputError  the leak level is not determined; a value is missing; the rig
+///                     has a term that an FMU cannot have
 ExportChoice choose_export(const ExportRequest& options);
 
 }  // namespace rigcal::app

@@ -8,14 +8,14 @@
 
 namespace rigcal::app {
 
-/// What can be asked of a fit beside its campaign; `batch` asks it of every rig.
+/// Options of a fit in addition to its campaign; `batch` passes them to every rig.
 struct FitChoices : report::FitChoices {
   bool strict = false;
 };
 
 void add_fit_choices(CLI::App& verb, FitChoices& choices);
 
-/// The same as a command line takes them; what nobody asked for is left out.
+/// The same as arguments of a command line, without defaults.
 std::vector<std::string> arguments_of(const FitChoices& choices);
 
 }  // namespace rigcal::app

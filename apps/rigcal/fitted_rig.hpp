@@ -11,8 +11,8 @@ namespace rigcal::app {
 /// The rig of a leak table as a fit found it.
 struct FittedRig {
   calib::RigUncertainty uncertainty;
-  std::vector<std::string> notes;     ///< which values are whose, in words
-  std::vector<std::string> warnings;  ///< what the fit or the campaign leaves in doubt
+  std::vector<std::string> notes;     ///< origin of the values, in words
+  std::vector<std::string> warnings;  ///< doubts about the fit or the campaign
 };
 
 /// Puts the estimates of a fit over the campaign's values and assumptions, and --set over both.
@@ -21,8 +21,8 @@ struct FittedRig {
 FittedRig take_fit(LeakTableInput& input, const report::EarlierFit& earlier,
                    const std::vector<std::string>& set);
 
-/// Where, without a fit, assumptions replace other values of the campaign's rig, such as those that
-/// `fit` put into its fitted.toml; empty where none does.
+/// Values of the campaign's rig that assumptions replace without a fit, such as those that `fit`
+/// wrote into its fitted.toml; empty if there are none.
 std::vector<std::string> replaced_by_assumptions(const LeakTableInput& input);
 
 }  // namespace rigcal::app

@@ -13,18 +13,18 @@
 namespace rigcal::app {
 namespace {
 
-// A signal handler can reach nothing but a global.
+// A signal handler can access only globals.
 std::atomic<bool> interrupted{false};
 std::atomic<int> keeping{0};
 static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler must not lock");
 
-/// Nothing in here locks or asks for memory: the signal may have come in the middle of either.
+/// Must not lock or allocate: the signal may have come in the middle of either.
 [[noreturn]] void end_at_once() {
   constexpr std::string_view kWords = "rigcal: stopped by a signal before its end\n";
   FilesInWriting::remove_all();
   report::HeldFolder::remove_if_empty();
   if (::write(STDERR_FILENO, kWords.data(), kWords.size()) < 0) {
-    // Nobody is left to be told.
+    // The error cannot be reported any more.
   }
   ::_exit(static_cast<int>(ExitCode::stopped));
 }

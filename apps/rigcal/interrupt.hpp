@@ -4,14 +4,14 @@
 
 namespace rigcal::app {
 
-/// Lets SIGINT and SIGTERM end the run. Where nothing of it is worth keeping they end the process
-/// at once, exit code `stopped`, wherever it is; while a Kept lives, the first one sets the flag
-/// that is returned and a second one ends the process. Writing beyond a limit of the size of files
-/// fails, and ends nothing by itself.
+/// Lets SIGINT and SIGTERM end the run. If there is nothing worth keeping they end the process at
+/// once, with exit code `stopped`. While a Kept lives, the first signal sets the returned flag and
+/// a second one ends the process. Writing beyond a limit of file sizes fails without ending the
+/// process.
 const std::atomic<bool>& watch_signals();
 
-/// While one lives, what the run has reached is kept when a signal ends it: the work looks at the
-/// flag, and its results are written.
+/// While an object lives, a signal does not discard the work: the work checks the flag, and its
+/// results are written.
 class Kept {
  public:
   Kept();

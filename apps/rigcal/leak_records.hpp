@@ -9,7 +9,7 @@
 
 namespace rigcal::app {
 
-/// What a leak is looked for in.
+/// Records in which leaks are searched.
 struct LeakRecords {
   std::vector<datasets::RepeatRecords> conditions;
   std::vector<std::string> left_out;  ///< conditions that cannot be diagnosed, and why, in words
@@ -20,7 +20,7 @@ struct LeakRecords {
 /// Reads the repeats of every condition that can be diagnosed.
 LeakRecords load_leak_records(const datasets::Campaign& campaign, int threads);
 
-/// What is doubtful about recordings, alike doubts together.
+/// Doubts about recordings, with equal ones gathered.
 std::vector<datasets::RecordWarning> gathered_doubts(const std::vector<datasets::Record>& averages);
 
 /// Leak levels that --healthy names are normal, as if `level_class` said so.

@@ -20,7 +20,7 @@ LeakTableInput load_leak_table(const CampaignOptions& options) {
   // The residual's scale is no parameter of the rig: only the leak table knows it.
   std::erase_if(of_campaign.set,
                 [](const std::string& text) { return text.starts_with(kResidualScale); });
-  of_campaign.free.clear();  // of the tables, not of the records
+  of_campaign.free.clear();  // the tables have their own, not the records'
   LeakTableInput input{load(of_campaign), {}};
   input.settings = leak_table_settings(input.campaign);
   for (const std::string& assignment : options.set) {

@@ -24,10 +24,10 @@ calib::LeakTableOptions leak_table_options(const CampaignOptions& options,
                                            const datasets::Campaign& campaign,
                                            const Invocation& invocation);
 
-/// What leak_table_files() and the page may be.
+/// Files that leak_table_files() and the page may write.
 report::PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings);
 
-/// leak_table.csv, and what else there is to it; leak_table.json last.
+/// leak_table.csv and the other files of a table; leak_table.json comes last.
 std::vector<report::ResultFile> leak_table_files(const report::LeakTableResult& result);
 
 }  // namespace rigcal::app

@@ -117,7 +117,7 @@ void check_verb(int argc, char** argv) {
   }
 }
 
-/// What writes the manual page and the completions of the package; true if that was asked for.
+/// Prints the manual page or a completion for the package; true if one was requested.
 bool print_manual(const CLI::App& app, const std::vector<std::string>& arguments) {
   std::string text;
   if (arguments == std::vector<std::string>{"--man-page"}) {
@@ -131,8 +131,8 @@ bool print_manual(const CLI::App& app, const std::vector<std::string>& arguments
   return true;
 }
 
-/// What a process does that was started beside the first one. What goes wrong goes wrong there too,
-/// and is said there.
+/// Work of a process that was started beside the first one. It meets the same errors and reports
+/// them there.
 ExitCode help(const VerbRow& row, const Run& action, const Invocation& invocation) {
   if (!row.spreads) return ExitCode::done;
   try {
@@ -197,9 +197,9 @@ ExitCode complain(ExitCode code, const std::string& message) {
   std::_Exit(static_cast<int>(ExitCode::internal));
 }
 
-/// Ends the process where memory runs out, rather than unwind: what frees a JSON value takes memory
-/// itself, and not every library is whole again after an exception. Only files that are half
-/// written are taken back first.
+/// Ends the process when memory runs out instead of unwinding: freeing a JSON value takes memory
+/// itself, and some libraries are inconsistent after an exception. Incomplete files are removed
+/// first.
 void end_without_memory() {
   if (rigcal::Uninterrupted::any()) throw std::bad_alloc();
   end("rigcal: out of memory\n");

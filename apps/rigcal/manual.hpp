@@ -8,17 +8,17 @@
 
 namespace rigcal::app {
 
-// Written from what --help prints, so that neither can tell anything else.
+// Made from the output of --help, so that the two cannot differ.
 
 /// The manual page rigcal(1) in roff.
 std::string man_page(const CLI::App& app);
 
 inline constexpr std::array<std::string_view, 3> kShells{"bash", "zsh", "fish"};
 
-/// What a shell completes verbs, options and paths by.
+/// Script with which a shell completes verbs, options and paths.
 ///
 /// @param shell  one of kShells
-/// @throws UsageError  it is none
+/// @throws UsageError  an unknown shell
 std::string completion(const CLI::App& app, std::string_view shell);
 
 /// The verbs in the order of --help.

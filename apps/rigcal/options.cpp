@@ -104,7 +104,7 @@ std::size_t terminal_columns(int stream) {
 
 namespace {
 
-/// What COLUMNS says, as other programs take it; else what the terminal says.
+/// The value of COLUMNS, as in other programs; else the width of the terminal.
 std::size_t output_columns() {
   constexpr std::size_t kFewest = 20;
   constexpr std::size_t kMost = 10'000;
@@ -138,7 +138,7 @@ report::Style terminal_style(const PrintOptions& options) {
 
 void print(const PrintOptions& options, const std::string& text, const report::Json& json) {
   if (options.quiet) return;
-  // JSON reads the escapes of the few characters that its own writer leaves as they are.
+  // JSON understands the escapes of the few characters that its writer does not escape itself.
   const std::string shown =
       options.json
           ? printable(report::json_text(json))

@@ -17,10 +17,10 @@ namespace rigcal::app {
 struct PrintOptions {
   bool quiet = false;
   bool json = false;
-  bool verbose = false;  ///< every row, however many lines that takes
+  bool verbose = false;  ///< print every row, however many lines it takes
 };
 
-/// What every verb that reads a campaign understands.
+/// Options of every verb that reads a campaign.
 struct CampaignOptions : report::CampaignChoice {
   std::filesystem::path out = "rigcal-out";
   bool force = false;
@@ -31,7 +31,7 @@ struct CampaignOptions : report::CampaignChoice {
 /// Refuses the empty path, which a script passes where a variable is not set.
 CLI::Validator not_empty();
 
-/// CLI11's own conversion takes what is too large for the largest there is.
+/// CLI11's own conversion turns numbers that are too large into the largest one.
 CLI::Validator whole_number(std::uint64_t lowest, std::uint64_t highest);
 
 /// Threads that this machine has.
@@ -42,10 +42,10 @@ void add_print_options(CLI::App& verb, PrintOptions& options);
 void add_force_option(CLI::App& verb, bool& force);
 void add_campaign_options(CLI::App& verb, CampaignOptions& options);
 
-/// How a verb holds its folder of results.
+/// Terms on which a verb holds its folder of results.
 report::Holding holding(std::string verb, bool force, const PrintOptions& print);
 
-/// Columns of the terminal that a stream goes to; 0 where it goes elsewhere.
+/// Columns of the terminal behind a stream; 0 if it is redirected.
 std::size_t terminal_columns(int stream);
 
 /// Colour on a terminal, unless NO_COLOR is set; tables as wide as it is.

@@ -13,7 +13,7 @@ namespace rigcal::app {
 /// @param strict  WARN counts as FAIL
 ExitCode exit_code_of(calib::FitStatus status, std::optional<calib::Verdict> verdict, bool strict);
 
-/// Writes the files of a fit or validation into --out, which is held, and prints scorecard,
+/// Writes the files of a fit or validation into the held folder of --out, and prints scorecard,
 /// parameters and verdict.
 ///
 /// @throws WriteError

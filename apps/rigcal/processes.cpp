@@ -28,13 +28,14 @@ int number_in(const char* variable) {
   return number;
 }
 
-/// As the launcher says: mpirun of Open MPI, that of MPICH, srun with PMIx (which tells no number).
+/// Asks the launcher's variables: mpirun of Open MPI, that of MPICH, srun with PMIx (which gives no
+/// number).
 bool is_one_of_several() {
   return number_in("OMPI_COMM_WORLD_SIZE") > 1 || number_in("PMI_SIZE") > 1 ||
          (std::getenv("PMIX_RANK") != nullptr && number_in("SLURM_NTASKS") > 1);
 }
 
-/// Beside the program as it is built, or where it is installed.
+/// Beside the program in the build tree, or where it is installed.
 fs::path module_file() {
   std::error_code unknown;
   const fs::path program = fs::read_symlink("/proc/self/exe", unknown).parent_path();
@@ -55,7 +56,7 @@ std::unique_ptr<TaskFarm> launched_processes() {
         fmt::format("started as one of several MPI processes, but {} is missing: expected a rigcal "
                     "that was built with MPI (docs/many-rigs.md), or a single process",
                     kModule));
-  // Open MPI loads parts of its own, which look for its symbols.
+  // Open MPI loads plugins, which need its symbols.
   void* const module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
   if (module == nullptr)
     throw UsageError(fmt::format("{}: cannot be loaded: {}", file.string(), ::dlerror()));

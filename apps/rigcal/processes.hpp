@@ -12,7 +12,7 @@ namespace rigcal::app {
 /// @throws UsageError  there are others, and this rigcal was built without MPI
 std::unique_ptr<TaskFarm> launched_processes();
 
-/// How many of them share this machine; 1 where there are none.
+/// Number of processes that share this machine; 1 without a launcher.
 int processes_on_this_machine();
 
 }  // namespace rigcal::app

@@ -19,7 +19,7 @@ std::string left_text(const std::optional<double>& seconds) {
   return seconds ? fmt::format(", about {} left", report::duration_text(*seconds)) : std::string();
 }
 
-/// What an iteration came to: one whose trial is worse, or could not be simulated, is rejected.
+/// Result of an iteration; it is rejected if its trial is worse or could not be simulated.
 std::string step_text(int iteration, double cost, double relative_change) {
   constexpr double kNoCost = 1e300;  // Ceres gives the largest double where there is none
   if (!(cost < kNoCost)) return "trial could not be simulated";

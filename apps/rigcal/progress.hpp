@@ -11,8 +11,8 @@
 
 namespace rigcal::app {
 
-/// A line on stderr that tells how far long work is: rewritten on a terminal, a plain line about
-/// every second elsewhere. Silent for the first second. Not for several threads at once.
+/// A line on stderr with the progress of long work: rewritten on a terminal, a plain line about
+/// every second elsewhere. Silent for the first second. Not thread-safe.
 class StatusLine {
  public:
   explicit StatusLine(bool quiet);
@@ -35,10 +35,11 @@ class StatusLine {
   Clock::time_point last_shown_ = begin_;
 };
 
-/// Tells how far a fit is.
+/// Shows the progress of a fit.
 class FitProgress {
  public:
-  /// @param work      what is told of: "start {} of 3"; braces stand for the number of the start
+  /// @param work      name of the work: "start {} of 3"; braces are replaced by the number of the
+  ///                  start
   /// @param settings  of the fit: its starts, tolerance and limit of time
   FitProgress(bool quiet, std::string work, const calib::FitOptions& settings);
 
@@ -53,7 +54,7 @@ class FitProgress {
   std::optional<double> max_seconds_;
 };
 
-/// Tells how many of several equal pieces of work are done.
+/// Shows how many of several equal tasks are done.
 class CountProgress {
  public:
   /// @param pieces  their name: "records"
@@ -68,7 +69,7 @@ class CountProgress {
   std::string pieces_;
 };
 
-/// Tells how much is done of what is made beside a fit, one kind of work after the other.
+/// Shows the progress of bootstrap, profiles and cross-validation, one after the other.
 class BesideProgress {
  public:
   explicit BesideProgress(bool quiet) : quiet_(quiet) {}

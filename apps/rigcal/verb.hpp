@@ -10,19 +10,19 @@
 
 namespace rigcal::app {
 
-/// What every verb is told about this run of the command.
+/// Data of this run of the command for every verb.
 struct Invocation {
   std::string command;              ///< the command line
   const std::atomic<bool>& cancel;  ///< becomes true when a signal asks the run to end
-  TaskFarm* processes = nullptr;    ///< that were started together; null: this one alone
+  TaskFarm* processes = nullptr;    ///< processes that were started together; null: only this one
 
-  /// Of processes that work together the first alone writes and prints.
+  /// Among cooperating processes only the first one writes and prints.
   bool leads() const { return processes == nullptr || processes->rank() == 0; }
 };
 
 using Run = std::function<ExitCode(const Invocation&)>;
 
-// Each adds the options of one verb to its subcommand and returns what runs it.
+// Each adds the options of one verb to its subcommand and returns the function that runs it.
 Run add_check(CLI::App& verb);
 Run add_average(CLI::App& verb);
 Run add_simulate(CLI::App& verb);

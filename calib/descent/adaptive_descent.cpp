@@ -10,25 +10,28 @@
 namespace rigcal::calib {
 namespace {
 
-/// Least fall of the cost, of what was foreseen, for which a step is taken; Ceres' value.
+/// A step is accepted if the cost falls by more than this fraction of the prediction; Ceres' value.
 constexpr double kTaken = 1e-3;
-/// Below the first the trust region shrinks to some part of the step, above the second it grows.
+/// Ratio of actual to predicted fall: below the first the trust region shrinks to a fraction of the
+/// step, above the second it grows.
 constexpr double kPoorGain = 0.25;
 constexpr double kGoodGain = 0.75;
 constexpr double kRadiusGrowth = 2.0;
 constexpr double kLeastShrink = 0.1;
 constexpr double kMostShrink = 0.5;
-/// How much nearer to what the cost did the other model has to be to be followed; NL2SOL's value.
+/// The other model is used next if its prediction error is smaller by this factor; NL2SOL's value.
 constexpr double kNearer = 1.5;
-/// By how much the scale of an unknown may fall from one point to the next; NL2SOL's value.
+/// Least ratio of an unknown's scale at one point to that at the point before; NL2SOL's value.
 constexpr double kScaleMemory = 0.6;
-/// Least scale, of the largest, and least cosine of step and change of the gradient.
+/// Least scale, relative to the largest one, and least cosine of the angle between a step and the
+/// change of the gradient.
 constexpr double kLeastScale = 1e-6;
 constexpr double kLeastCosine = 1e-6;
-/// A step that is refused and was to change the cost by no more, relative to it, ends the descent:
-/// simulations are no more exact.
+/// A rejected step ends the descent if its predicted and actual change of the cost are below this
+/// fraction of the cost: the simulations are not more exact.
 constexpr double kNoise = 1e-8;
-/// Points in a row that cannot be evaluated, before it gives up: the last is a millionth as far.
+/// The descent gives up after so many points in a row that cannot be evaluated; the last step is
+/// then a millionth as long as the first.
 constexpr int kMostInvalid = 10;
 
 struct Point {
@@ -47,13 +50,13 @@ std::optional<Point> point_at(const DescentOptions& options, const Eigen::Vector
                found->jacobian.transpose() * found->jacobian};
 }
 
-/// S after a step, by the update of Dennis, Gay and Welsch: S maps the step onto the change of the
-/// gradient that J'J does not explain, and is else as near to what it was as that allows.
+/// Updates S after a step (Dennis, Gay and Welsch): the new S maps the step onto the change of the
+/// gradient that J'J does not explain, and otherwise is as close to the old S as possible.
 void learn(const Point& from, const Point& to, const Eigen::VectorXd& scale, Eigen::MatrixXd& s) {
   const Eigen::VectorXd step = to.z - from.z;
   const Eigen::VectorXd change = to.gradient - from.gradient;
   const Eigen::VectorXd unexplained = change - 0.5 * (to.square + from.square) * step;
-  // What was learnt where residuals were larger is too large by now.
+  // S estimated where the residuals were larger is now too large.
   const double before = std::abs(step.dot(s * step));
   if (before > 0.0) s *= std::min(1.0, std::abs(step.dot(unexplained)) / before);
   const double along = change.dot(step);
@@ -66,13 +69,13 @@ void learn(const Point& from, const Point& to, const Eigen::VectorXd& scale, Eig
   s += half + half.transpose() - error.dot(step) * weight * weight.transpose();
 }
 
-/// Lengths of the columns of the Jacobian, which fall slowly from one point to the next.
+/// Scales are the column norms of the Jacobian; they fall slowly from one point to the next.
 void rescale(const Point& at, Eigen::VectorXd& scale) {
   scale = at.square.diagonal().cwiseSqrt().cwiseMax(kScaleMemory * scale);
   scale = scale.cwiseMax(std::max(kLeastScale * scale.maxCoeff(), 1e-150));
 }
 
-/// How far Levenberg and Marquardt's step leads, in units of the scale.
+/// Length of the Levenberg-Marquardt step, in units of the scale.
 double damped_length(const Point& at, const Eigen::VectorXd& scale, double damping) {
   const Eigen::VectorXd inverse = scale.cwiseInverse();
   Eigen::MatrixXd damped = inverse.asDiagonal() * at.square * inverse.asDiagonal();
@@ -80,7 +83,7 @@ double damped_length(const Point& at, const Eigen::VectorXd& scale, double dampi
   return damped.llt().solve(inverse.cwiseProduct(at.gradient)).norm();
 }
 
-/// Where the cost is least along a step, in parts of it, by its slope and what it came to.
+/// Fraction of a step at which the cost is least, by a parabola through its slope and actual fall.
 double least_along(double slope, double actual_fall) {
   const double curvature = -actual_fall - slope;
   return curvature > 0.0 ? std::clamp(-0.5 * slope / curvature, kLeastShrink, kMostShrink)
@@ -108,7 +111,7 @@ Descent descend_adaptively(const DescentOptions& options, std::vector<double>& z
   double radius = damped_length(*here, scale, 1.0 / options.trust_radius);
   Eigen::MatrixXd second = Eigen::MatrixXd::Zero(n, n);  // S
   bool augmented = false;
-  bool switched = false;  // at this point, after a step that was refused
+  bool switched = false;  // the model was exchanged at this point, after a rejected step
   int invalid = 0;
   bool ended = enough(here->cost, 0.0);
   while (!ended && !result.converged && result.iterations < options.most_iterations) {
@@ -135,7 +138,7 @@ Descent descend_adaptively(const DescentOptions& options, std::vector<double>& z
     const double gain = fall / tried.fall;
     const double other = (augmented ? plain : full).fall(tried.step);
     const bool other_nearer = kNearer * std::abs(fall - other) < std::abs(fall - tried.fall);
-    learn(*here, *there, scale, second);  // from a step that is refused, too
+    learn(*here, *there, scale, second);  // also from a rejected step
     if (gain <= kTaken) {
       ended = enough(here->cost, 0.0);
       result.converged = std::max(std::abs(fall), tried.fall) <= kNoise * here->cost;

@@ -6,11 +6,11 @@
 
 namespace rigcal::calib {
 
-/// Least squares in the unit box where residuals may be large: a trust region with two models of
-/// the cost, J'J as Gauss and Newton have it and J'J + S, where S is what changes of the gradient
-/// say of the second derivatives of the residuals. After each step the next one follows the model
-/// that foresaw it better (NL2SOL: Dennis, Gay and Welsch, ACM Trans. Math. Softw. 7, 1981). Bounds
-/// are met within a step (box_step()). Each trial point is evaluated once, with derivatives.
+/// Least squares in the unit box for large residuals. The trust region has two models of the cost:
+/// J'J (Gauss-Newton), and J'J + S, where S estimates the second derivatives of the residuals from
+/// changes of the gradient. After each step the next one uses the model that predicted it better
+/// (NL2SOL: Dennis, Gay and Welsch, ACM Trans. Math. Softw. 7, 1981). box_step() keeps each step
+/// within the bounds. Each trial point is evaluated once, with derivatives.
 Descent descend_adaptively(const DescentOptions& options, std::vector<double>& z);
 
 }  // namespace rigcal::calib

@@ -8,26 +8,27 @@
 namespace rigcal::calib {
 namespace {
 
-/// Eigenvalues below this fraction of the largest are rounding of a matrix that was squared.
+/// Eigenvalues below this fraction of the largest are rounding errors: the matrix is a square.
 constexpr double kSquaredRounding = 1e-12;
-/// How exactly a step ends on the trust region, and iterations that suffice by far: Newton's method
-/// takes three or four.
+/// Relative tolerance for a step that ends on the trust region. The limit of iterations is never
+/// reached: Newton's method takes three or four.
 constexpr double kOnRadius = 1e-8;
 constexpr int kMostRadiusIterations = 100;
 
 struct BallStep {
   Eigen::VectorXd step;
-  double multiplier = 0.0;  ///< of the ball; 0 inside of it
+  double multiplier = 0.0;  ///< multiplier of the constraint on the radius; 0 inside the ball
 };
 
-/// The least of c' y + y' B y / 2 over |y| <= radius.
+/// Minimises c' y + y' B y / 2 over |y| <= radius.
 BallStep ball_step(const Eigen::MatrixXd& b, const Eigen::VectorXd& c, double radius) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(b);
   const double flat = kSquaredRounding * spectrum.eigenvalues().cwiseAbs().maxCoeff() + 1e-300;
   Eigen::VectorXd curvature = spectrum.eigenvalues().unaryExpr(
       [&](double value) { return std::abs(value) <= flat ? flat : value; });
   const Eigen::VectorXd along = spectrum.eigenvectors().transpose() * c;
-  // Counted from where the matrix is no longer indefinite, so that nothing cancels there.
+  // The shift is counted from the point where the matrix ceases to be indefinite, to avoid
+  // cancellation.
   const double least = std::max(0.0, -curvature(0));
   curvature.array() += least;
   const auto length_at = [&](double more) {
@@ -43,7 +44,7 @@ BallStep ball_step(const Eigen::MatrixXd& b, const Eigen::VectorXd& c, double ra
       const double length = (along.array() / divisor).matrix().norm();
       if (std::abs(length - radius) <= kOnRadius * radius) break;
       (length > radius ? low : high) = more;
-      // Newton's method for 1 / length, which is all but linear.
+      // Newton's method for 1 / length, which is nearly linear.
       const double slope = (along.array().square() / divisor.cube()).sum();
       const double next =
           more + (length / radius - 1.0) * length * length / std::max(slope, 1e-300);
@@ -52,7 +53,8 @@ BallStep ball_step(const Eigen::MatrixXd& b, const Eigen::VectorXd& c, double ra
     }
   }
   Eigen::VectorXd y = -(along.array() / (curvature.array() + more).max(1e-300)).matrix();
-  // No gradient along the most negative curvature: that is where the rest of the way leads.
+  // Hard case: the gradient has no component along the most negative curvature. The step goes on in
+  // that direction up to the radius.
   const double short_of = radius * radius - y.squaredNorm();
   if (least > 0.0 && short_of > 2.0 * kOnRadius * radius * radius)
     y(0) += std::copysign(std::sqrt(short_of + y(0) * y(0)) - std::abs(y(0)), y(0));
@@ -111,7 +113,7 @@ BoxStep box_step(const QuadraticModel& model, const StepLimits& limits) {
         fixed[static_cast<std::size_t>(hit)] = true;
       }
     }
-    // Where the model is indefinite, a way along bounds may lead up again.
+    // Where the model is indefinite, a step along bounds may raise the cost again.
     if (model.fall(x) > best.fall) best = {x, model.fall(x), multiplier > 0.0};
     if (hit >= 0) continue;
     const Eigen::VectorXd slope =

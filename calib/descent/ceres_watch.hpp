@@ -9,8 +9,8 @@
 
 namespace rigcal::calib {
 
-/// Tells of each iteration of Ceres, and ends the call where it is enough. Nothing may be thrown
-/// through Ceres: what is thrown ends the call, and whoever made it throws it again.
+/// Reports each iteration of Ceres, and ends the call on request. Exceptions must not pass through
+/// Ceres: one that is thrown here ends the call, and the caller throws it again.
 class CeresWatch final : public ceres::IterationCallback {
  public:
   CeresWatch(const std::function<bool(const DescentStep&)>& enough, std::exception_ptr& error)

@@ -6,11 +6,11 @@
 
 namespace rigcal::calib {
 
-/// Least squares in the unit box by Ceres, from z to where it ends: trust region, dense QR. What
-/// the functions throw is thrown again, past Ceres.
+/// Least squares in the unit box by Ceres (trust region, dense QR). Starts at z and leaves its end
+/// point there. Exceptions of the functions pass through Ceres to the caller.
 ///
-/// @param residuals     how many
-/// @param active_bound  unknowns that stay where they are
+/// @param residuals     number of residuals
+/// @param active_bound  unknowns that stay at their value
 Descent descend(const DescentOptions& options, Eigen::Index residuals,
                 const std::vector<bool>& active_bound, std::vector<double>& z);
 

@@ -17,28 +17,29 @@ inline constexpr double kFunctionTolerance = 1e-10;
 struct DescentStep {
   int number = 0;
   double cost = 0.0;
-  double relative_change = 0.0;  ///< of the cost
+  double relative_change = 0.0;  ///< relative change of the cost
   double seconds = 0.0;          ///< since the descent began
 };
 
-/// What is minimised, and how far.
+/// Function to minimise, and the tolerances.
 struct DescentOptions {
-  /// Residuals and their derivatives at a point of the unit box; none where it cannot be evaluated.
-  /// Of the Jacobian only where it is asked for.
+  /// Residuals at a point of the unit box; none if it cannot be evaluated. The Jacobian is computed
+  /// only on request.
   std::function<std::optional<Linearisation>(std::span<const double> z, bool jacobian)> linearise;
-  double trust_radius = 0.0;  ///< of the first step: 1 / Levenberg and Marquardt's damping
+  double trust_radius = 0.0;  ///< radius of the first step: 1 / damping of Levenberg and Marquardt
   int most_iterations = 0;
   double function_tolerance = kFunctionTolerance;
   double parameter_tolerance = 1e-9;
-  /// Told of every iteration, the start as number 0; true ends the descent. May be empty.
+  /// Called after every iteration, with the start as number 0; returns true to end the descent. May
+  /// be empty.
   std::function<bool(const DescentStep&)> enough;
 };
 
-/// How a descent ended.
+/// End of a descent.
 struct Descent {
-  bool converged = false;  ///< by the tolerances
+  bool converged = false;  ///< within the tolerances
   int iterations = 0;      ///< steps tried, the start not counted
-  std::string failure;     ///< why it gave up; else empty
+  std::string failure;     ///< why the descent gave up; else empty
 };
 
 }  // namespace rigcal::calib

@@ -11,7 +11,7 @@
 
 namespace rigcal::calib {
 
-/// What one condition contributes at one point of the unit box.
+/// Contribution of one condition at a point of the unit box.
 struct ConditionEvaluation {
   model::SimulationStatus status = model::SimulationStatus::ok;
   double failed_at_s = 0.0;
@@ -53,7 +53,7 @@ Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t cha
 Eigen::VectorXd acting_slopes(const Problem& problem, std::size_t condition,
                               std::span<const double> z);
 
-/// How a condition is simulated: the campaign's method and limits at some tolerance.
+/// Options for simulating a condition: the campaign's method and limits, with a given tolerance.
 model::SimulationOptions simulation_options(const Problem& problem, std::size_t condition,
                                             double tolerance, const std::atomic<bool>* cancel);
 
@@ -68,13 +68,13 @@ ConditionEvaluation evaluate_condition(const Problem& problem, std::size_t condi
                                        ConditionRows* rows = nullptr,
                                        const Fidelity& fidelity = Fidelity::full);
 
-/// The simulation that evaluate_condition() looks at. It depends on what was measured only where
-/// that drives the model, so that the same one serves other measurements of the outputs.
+/// The simulation for evaluate_condition(). It depends on the measurements only where they drive
+/// the model, so that it also serves other measurements of the outputs.
 model::Simulation simulate_condition(const Problem& problem, std::size_t condition,
                                      std::span<const double> z, const std::atomic<bool>* cancel,
                                      const Fidelity& fidelity = Fidelity::full);
 
-/// What evaluate_condition() makes of it, to the same bits.
+/// Evaluates a simulation, with the same bits as evaluate_condition().
 /// @param run  at `z` and this fidelity
 ConditionEvaluation evaluate_run(const Problem& problem, std::size_t condition,
                                  std::span<const double> z, const model::Simulation& run,
@@ -85,13 +85,13 @@ ConditionEvaluation evaluate_run(const Problem& problem, std::size_t condition,
 struct Evaluation {
   std::vector<double> z;
   std::vector<ConditionEvaluation> conditions;
-  double cost = 0.0;                                 ///< half the sum of squares, priors included
-  bool ok = false;                                   ///< every condition could be simulated
-  double share = 1.0;                                ///< of the samples that count, those looked at
-  std::shared_ptr<std::vector<ConditionRows>> rows;  ///< of each condition, where they were kept
+  double cost = 0.0;   ///< half the sum of squares, priors included
+  bool ok = false;     ///< every condition could be simulated
+  double share = 1.0;  ///< fraction of the samples in windows that is evaluated
+  std::shared_ptr<std::vector<ConditionRows>> rows;  ///< rows of each condition, if they were kept
 };
 
-/// How a point is evaluated.
+/// Options for evaluating a point.
 struct EvaluationOptions {
   Fidelity fidelity = Fidelity::full;
   const std::atomic<bool>* cancel = nullptr;

@@ -28,8 +28,8 @@ std::vector<double> recorded(const Record& record, Channel channel) {
   return found == record.channels.end() ? std::vector<double>{} : found->second.mean;
 }
 
-/// What a sensor of the load pressure reads, from those of both chambers if need be; empty if
-/// neither is there.
+/// Reading of a load pressure sensor, computed from those of both chambers if necessary; empty if
+/// neither was recorded.
 std::vector<double> load_pressure(const Record& record, const model::ParameterValues& values) {
   if (auto direct = recorded(record, Channel::load_pressure); !direct.empty()) return direct;
   std::vector<double> a = recorded(record, Channel::pressure_a);
@@ -55,7 +55,7 @@ double initial_mean(const Record& record, const std::vector<double>& signal, dou
 }
 
 /// Value and slope of a line through the finite samples within `half_width_s` of an instant;
-/// nothing where there are none.
+/// nothing if there are none.
 std::optional<std::pair<double, double>> line_at(const Record& record,
                                                  const std::vector<double>& signal, double time_s,
                                                  double half_width_s) {
@@ -93,7 +93,7 @@ double fastest_change(const Record& record, const std::vector<double>& signal) {
   return fastest;
 }
 
-/// One initial_* parameter: its value from the record, and how far it may lie from there.
+/// One initial_* parameter: its value from the record, and its allowed deviation.
 struct Guess {
   std::string_view key;
   double value = 0.0;
@@ -137,7 +137,7 @@ InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condit
   add_pressure("initial_load_pressure", load_pressure(record, values), 0.0);
   add_pressure("initial_pressure_a", recorded(record, Channel::pressure_a), 0.5 * supply_pa);
   add_pressure("initial_pressure_b", recorded(record, Channel::pressure_b), 0.5 * supply_pa);
-  // A rig that settles begins at the speed and the pressures that it settles to.
+  // A rig that settles starts from the speed and the pressures at which it settles.
   if (campaign.rig.before == model::Before::steady) guesses.resize(1);
   for (const Guess& guess : guesses) {
     const int index = model::parameter_index(campaign.rig.plant, guess.key);

@@ -9,24 +9,23 @@
 
 namespace rigcal::calib {
 
-/// Where a simulation of one condition starts.
+/// Initial state of the simulation of one condition.
 struct InitialPlan {
   model::InitialState state = model::InitialState::rest;
   datasets::Overrides known;      ///< initial_* values read from the record
   std::vector<Unknown> unknowns;  ///< initial_* values to be estimated; nuisance
 };
 
-/// What the campaign's `initial` means for one condition:
-///   rest    all states zero;
-///   record  position, and load pressure where pressures are recorded, are their means over the
-///           `initial_window`; the velocity is zero, and an unrecorded load pressure that of
+/// Applies the campaign's `initial` to one condition:
+///   rest    all states are zero;
+///   record  position, and load pressure if pressures are recorded, are their means over the
+///           `initial_window`; the velocity is zero, and an unrecorded load pressure is in
 ///           equilibrium with the load;
-///   fit     position, velocity and load pressure are estimated, between bounds from the record:
-///   one
-///           peak-to-peak about the mean of the window, the fastest change between two samples, the
-///           supply pressure (or one peak-to-peak of the recorded load pressure).
-/// Values that the campaign gives or fits itself stay as they are. A load pressure that comes from
-/// both chamber pressures is told without the offsets of their sensors, as `values` has them.
+///   fit     position, velocity and load pressure are estimated, with bounds from the record: one
+///           peak-to-peak about the mean of the window, the fastest change between two samples, and
+///           the supply pressure (or one peak-to-peak of the recorded load pressure).
+/// Values that the campaign gives or fits itself stay unchanged. A load pressure from both chamber
+/// pressures is corrected by the offsets of their sensors in `values`.
 ///
 /// @param values  of the condition: known, fitted before, or the start of an estimate
 /// @throws InputError  record or fit without a recorded position
@@ -34,15 +33,15 @@ InitialPlan plan_initial_state(const datasets::Campaign& campaign,
                                const datasets::Condition& condition, const datasets::Record& record,
                                const model::ParameterValues& values);
 
-/// What is wrong with `initial = "record"` where the piston moves within the window, in words;
-/// empty if nothing is.
+/// Explains, in words, why `initial = "record"` is wrong if the piston moves within the window;
+/// empty if it does not move.
 std::string moving_start(const datasets::Campaign& campaign,
                          const std::vector<const datasets::Condition*>& conditions,
                          const std::vector<datasets::Record>& records);
 
-/// What the initial_* parameters would be for a run that begins in the middle of a record: position
-/// and velocity from a straight line through the samples within `half_width_s` of that instant,
-/// recorded pressures their means there. Of unrecorded position nothing is told.
+/// Values of the initial_* parameters for a run that begins in the middle of a record. Position and
+/// velocity come from a straight line through the samples within `half_width_s` of that instant,
+/// recorded pressures from their means there. Without a recorded position there are none.
 ///
 /// @param values  of the condition, for the sensors of both pressures
 datasets::Overrides recorded_state(const datasets::Campaign& campaign,

@@ -5,8 +5,8 @@
 
 namespace rigcal::calib {
 
-/// Standard deviation of a channel's averaged samples, SI, as its repeats tell it, else the
-/// campaign's `sd`; NaN if neither does. What residuals are divided by.
+/// Standard deviation of a channel's averaged samples, SI, from its repeats, else from the
+/// campaign's `sd`; NaN without both. Residuals are divided by it.
 double known_sd(const datasets::Campaign& campaign, datasets::Channel channel,
                 const datasets::Series& series);
 

@@ -6,11 +6,11 @@
 
 namespace rigcal::calib {
 
-/// Values in a condition where those of a fit hold in place of the rig's. Values that the campaign
-/// knows for the condition or its leak level go first. Nuisance parameters are left alone.
+/// Values in a condition with those of a fit in place of the rig's. Values that the campaign states
+/// for the condition or its leak level have priority. Nuisance parameters stay unchanged.
 ///
 /// @throws InputError  a parameter that the campaign fits, or that was fitted per leak level or
-///                     condition, has no value for this one: names it and the levels that exist
+///                     condition, has no value for this one (names it and the levels that exist)
 model::ParameterValues values_with(const datasets::Campaign& campaign,
                                    const datasets::Condition& condition,
                                    const std::vector<datasets::FittedValue>& fitted);

@@ -32,11 +32,11 @@ struct Unknown {
   bool nuisance = false;
 };
 
-/// True where the condition, or its leak level, has a known value of its own for a parameter: it
-/// goes before any value that holds for the rig, fitted ones too.
+/// Whether the condition, or its leak level, has a known value of its own for a parameter. It has
+/// priority over any value of the rig, including a fitted one.
 bool known_in(const datasets::Campaign& campaign, const datasets::Condition& condition, int index);
 
-/// The level for which a value of this scope holds in a condition: empty for the rig.
+/// The level of a value of this scope in a condition; empty for the rig.
 ///
 /// @throws InputError  scope leak_level, and the condition has none
 std::string level_in(const datasets::Condition& condition, datasets::Scope scope,
@@ -51,12 +51,13 @@ std::string parameter_name(const model::ParameterSpec& spec, datasets::Scope sco
 /// in the bounds, or in their logarithms where both are positive and span more than a decade.
 class ParameterMap {
  public:
-  /// @param conditions     those that take part
-  /// @param nuisance_only  true in validation: everything but nuisance parameters keeps its value
-  /// @param extra          unknowns beside those of the campaign (initial states of conditions)
-  /// @param repeats        of how many the record of each condition is the mean; empty: 1
+  /// @param conditions     the conditions of the problem
+  /// @param nuisance_only  true in validation: only nuisance parameters are unknown
+  /// @param extra          unknowns in addition to those of the campaign (initial states of
+  ///                       conditions)
+  /// @param repeats        number of repeats averaged in the record of each condition; empty: 1
   /// @throws InputError    a start outside its bounds, bounds that are not finite or empty, a
-  ///                       condition without the leak level that a scope asks for
+  ///                       condition without the leak level that a scope needs
   ParameterMap(const datasets::Campaign& campaign,
                const std::vector<const datasets::Condition*>& conditions, bool nuisance_only,
                const std::vector<Unknown>& extra = {}, const std::vector<int>& repeats = {});

@@ -23,8 +23,8 @@ using datasets::Record;
 
 /// First guess of an unknown standard deviation, as a share of the peak-to-peak.
 constexpr double kGuessedNoise = 1e-2;
-/// Tolerance of the simulations where nothing tells the noise, and the largest: cost and gradient
-/// jump by about the tolerance when the steps of a simulation change, which stalls the optimiser.
+/// Tolerance of the simulations without known noise, and the largest one: cost and gradient jump by
+/// about the tolerance when the steps of a simulation change, which stalls the optimiser.
 constexpr double kDefaultTolerance = 1e-6;
 constexpr double kLeastTolerance = 1e-8;
 /// Largest of a record whose noise lets it be simulated less exactly than others.
@@ -83,8 +83,8 @@ ProblemChannel make_channel(const Campaign& campaign, const ProblemCondition& co
   return result;
 }
 
-/// A channel of unknown noise starts from a share of its largest peak-to-peak over all conditions:
-/// one value, as estimate_weights() will find one.
+/// The unknown noise of a channel starts at a fraction of its largest peak-to-peak over all
+/// conditions. It is one value per channel, as in estimate_weights().
 void guess_unknown_sd(std::vector<ProblemCondition>& conditions) {
   std::map<Channel, double> largest;
   for (const ProblemCondition& condition : conditions) {

@@ -16,9 +16,9 @@ namespace rigcal::calib {
 /// Fidelity of one simulation: tolerance, horizon, with or without sensitivities.
 struct Fidelity {
   bool derivatives = true;
-  bool exact = false;  ///< as the noise asks for, else to within a standard error or so
-  /// Of each record the samples until so long after the first that counts, of a sine or square
-  /// those of its first period at most. Infinite: all samples.
+  bool exact = false;  ///< as exact as the noise requires, else to within about a standard error
+  /// Length of each record that is used, counted from the first sample in a window; for a sine or
+  /// square at most the first period. Infinite: all samples.
   double horizon_s = std::numeric_limits<double>::infinity();
 
   static const Fidelity cost;  ///< the cost of a start
@@ -38,9 +38,9 @@ inline constexpr Fidelity Fidelity::full{true, true};
 struct ProblemChannel {
   datasets::Channel channel = datasets::Channel::position;
   std::vector<double> measured;  ///< SI, samples that count
-  double sd = 0.0;               ///< what a residual is divided by, SI
+  double sd = 0.0;               ///< divisor of the residuals, SI
   bool sd_known = false;         ///< false: estimated from the residual of the fit
-  double peak_to_peak = 0.0;     ///< of `measured`
+  double peak_to_peak = 0.0;     ///< peak-to-peak of `measured`
 };
 
 /// One condition with everything that its simulation needs. Borrows the campaign and the record.
@@ -48,16 +48,16 @@ struct ProblemCondition {
   const datasets::Condition* condition = nullptr;
   const datasets::Record* record = nullptr;
   model::Rig rig;
-  model::ParameterValues values;  ///< of what is not an unknown
+  model::ParameterValues values;  ///< values of everything that is not an unknown
   model::SimulationInputs inputs;
   std::vector<ProblemChannel> channels;
-  std::vector<model::Output> outputs;  ///< of the channels
+  std::vector<model::Output> outputs;  ///< outputs of the channels
   std::vector<std::size_t> rows;       ///< samples that count (inside the windows)
   std::vector<int> free;               ///< table indices of the acting unknowns
-  std::size_t first_period_rows = 0;   ///< how many of `rows` tell what periods repeat
+  std::size_t first_period_rows = 0;   ///< number of `rows` that are in the first period
   long max_steps = 0;                  ///< budget of one simulation
 
-  /// How many of `rows` lie within the horizon of a fidelity.
+  /// Number of `rows` within the horizon of a fidelity.
   std::size_t rows_at(const Fidelity& fidelity) const;
   /// Sample times up to the last that counts.
   std::span<const double> fit_times(const Fidelity& fidelity = Fidelity::full) const {
@@ -65,22 +65,22 @@ struct ProblemCondition {
   }
 };
 
-/// What is to be solved: conditions with records, inputs and weights, and the unknowns.
+/// The problem to solve: conditions with records, inputs and weights, and the unknowns.
 struct Problem {
   const datasets::Campaign* campaign = nullptr;
   ParameterMap map;
   std::vector<ProblemCondition> conditions;
-  double tolerance = 0.0;        ///< of the simulations: the least that a condition asks for
-  bool tolerance_fixed = false;  ///< by the campaign
+  double tolerance = 0.0;  ///< tolerance of the simulations: the smallest that a condition requires
+  bool tolerance_fixed = false;  ///< the campaign fixes it
 
   /// Tolerance of the simulations of a condition: as much above the least as its noise is, in
   /// shares of the motion, where that is known of all.
   double tolerance_of(std::size_t condition, const Fidelity& fidelity = Fidelity::full) const;
   /// Tolerance far from an optimum.
   double coarse_tolerance() const;
-  /// Of one simulation at the least tolerance, with the campaign's method and limit of time.
+  /// Options of a simulation at the smallest tolerance, with the campaign's method and time limit.
   model::SimulationOptions simulation_options(const std::atomic<bool>* cancel = nullptr) const;
-  /// Fraction of all residuals that lie within the horizon of a fidelity.
+  /// Fraction of all residuals within the horizon of a fidelity.
   double share_at(const Fidelity& fidelity) const;
   /// Whether some record is longer than one period of its drive.
   bool repeats_itself() const;
@@ -92,8 +92,8 @@ struct Problem {
   bool has_estimated_sd() const;
   /// The least standard deviation that may be estimated for a channel, SI.
   double least_sd(const ProblemChannel& channel) const;
-  /// Floor of the RMS of the weighted residuals, below which errors of the simulation dominate: 1
-  /// where the noise of a channel is known, else what least_sd() allows.
+  /// RMS of the weighted residuals below which errors of the simulation dominate: 1 if the noise of
+  /// a channel is known, else the limit of least_sd().
   double least_noise() const;
   /// Values of all parameters in a condition at unit-box coordinates z.
   model::ParameterValues values_at(std::size_t condition, std::span<const double> z) const;
@@ -112,14 +112,14 @@ struct Problem {
 std::vector<datasets::Channel> output_channels(const datasets::Campaign& campaign,
                                                const datasets::Record& record);
 
-/// Samples of a record that lie inside the condition's windows, or those found from the record; all
-/// if it has none.
+/// Samples of a record inside the windows of the condition, or those found from the record; all if
+/// there are none.
 std::vector<std::size_t> samples_that_count(const datasets::Condition& condition,
                                             const datasets::Record& record);
 
-/// Least tolerance that the noise of the channels asks for, between 1e-8 and 1e-6.
+/// Smallest tolerance that the noise of the channels requires, between 1e-8 and 1e-6.
 ///
-/// @param estimated  count channels of estimated noise too
+/// @param estimated  also count channels of estimated noise
 double tolerance_from_noise(const std::vector<ProblemCondition>& conditions, bool estimated);
 
 /// Sets up the problem of some conditions.

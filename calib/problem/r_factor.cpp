@@ -6,13 +6,13 @@
 namespace rigcal::calib {
 namespace {
 
-/// Sum of squares that is nothing: its inverse must remain a number.
+/// A sum of squares at or below this is zero; its inverse must be finite.
 constexpr double kNothing = 1e-300;
 
 }  // namespace
 
-/// Householder's reflections of one row of the R factor and the new rows at a time: what else
-/// stands below the diagonal is zero already.
+/// Applies a Householder reflection to one row of the R factor and the new rows at a time; all
+/// other elements below the diagonal are already zero.
 void RFactor::add(Eigen::MatrixXd rows) {
   for (Eigen::Index first = 0; first < rows.rows(); first += kBlock) {
     auto block = rows.middleRows(first, std::min(kBlock, rows.rows() - first));

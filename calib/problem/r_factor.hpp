@@ -4,9 +4,9 @@
 
 namespace rigcal::calib {
 
-/// Replaces the many rows of [J r] by a upper triangle R with R^T R = [J r]^T [J r]: cost,
-/// gradient and Gauss-Newton matrix of least squares stay what they were, to rounding and without
-/// squaring the condition number. Rows are taken in blocks, in the order given.
+/// Replaces the many rows of [J r] by an upper triangle R with R^T R = [J r]^T [J r]. Cost,
+/// gradient and Gauss-Newton matrix of least squares stay the same up to rounding, and the
+/// condition number is not squared. Rows are added in blocks, in the given order.
 class RFactor {
  public:
   explicit RFactor(Eigen::Index columns) : factor_(Eigen::MatrixXd::Zero(columns, columns)) {}

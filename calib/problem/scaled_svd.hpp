@@ -23,7 +23,7 @@ class ScaledSvd {
   /// 1 / length of each column; 0 of a column of zeros.
   const Eigen::VectorXd& inverse_lengths() const { return inverse_lengths_; }
 
-  /// What a step can take away of a residual, shape (rank()).
+  /// Part of a residual that a step can remove, shape (rank()).
   Eigen::VectorXd explained(const Eigen::VectorXd& residual) const {
     return svd_.matrixU().leftCols(rank_).transpose() * residual;
   }

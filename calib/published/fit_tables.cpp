@@ -27,7 +27,7 @@ constexpr int kMostCalls = 10;
 constexpr double kTablesTrustRadius = 10.0;
 /// The flows themselves are good to 2e-4 only.
 constexpr double kTablesTolerance = 1e-6;
-constexpr double kRankThreshold = 1e-6;  ///< of the singular values, columns scaled to length 1
+constexpr double kRankThreshold = 1e-6;  ///< of singular values, columns scaled to length 1
 
 std::vector<double> values_at(const std::vector<UnitInterval>& intervals,
                               std::span<const double> z) {
@@ -87,7 +87,7 @@ void add_uncertainty(const TableResiduals::Evaluation& optimum, model::PlantKind
   const Eigen::MatrixXd root = svd.root();
   const Eigen::MatrixXd covariance =
       root * root.transpose() * (optimum.residuals.squaredNorm() / freedom);
-  // Share in what the tables do not determine.
+  // Fraction in the directions that the tables do not determine.
   const Eigen::VectorXd open = svd.V().rightCols(n - svd.rank()).rowwise().squaredNorm();
   const double t = metrics::student_t_quantile(0.975, freedom);
   fit.correlation.setIdentity(n, n);

@@ -21,7 +21,7 @@ struct FittedAssumption {
   double upper = 0.0;
   std::optional<double> standard_error;  ///< absent where the tables do not determine it
   std::optional<std::pair<double, double>> ci95;
-  std::optional<double> degrees_of_freedom;  ///< of the standard error
+  std::optional<double> degrees_of_freedom;  ///< for the standard error
   bool at_bound = false;
   Identifiability identifiability = Identifiability::not_identifiable;
 };
@@ -29,7 +29,7 @@ struct FittedAssumption {
 /// One published number against the computed one, at the end of the fit.
 struct TableResidual {
   std::string what;        ///< "share, sine_0.1Hz, 10 %", "mean, Slight"
-  double weight = 1.0;     ///< of its square root in the cost
+  double weight = 1.0;     ///< weight of its square root in the cost
   double log_ratio = 0.0;  ///< ln(computed / published)
 };
 
@@ -41,12 +41,12 @@ struct TablesFit {
   int iterations = 0;
   int evaluations = 0;
   double wall_seconds = 0.0;
-  double rms = 0.0;  ///< of the weighted residuals
+  double rms = 0.0;  ///< root mean square of the weighted residuals
   std::vector<FittedAssumption> parameters;
   Eigen::MatrixXd correlation;  ///< shape (parameters)^2
   std::vector<TableResidual> residuals;
   std::vector<std::string> left_out;     ///< published numbers that do not count, and why
-  datasets::LeakTableSettings settings;  ///< with the estimated values in place
+  datasets::LeakTableSettings settings;  ///< with the estimated values filled in
 };
 
 /// Weight of the logarithm of a share at its published coefficient; of a flow or feature it is 1.

@@ -11,7 +11,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// Of ln coefficient: well below what three printed digits tell, above the noise of the flows.
+/// Of ln coefficient: well below the resolution of three printed digits, above the noise of the
+/// flows.
 constexpr double kRootWidth = 1e-4;
 /// Bisection alone would come from two decades to the root's width in sixteen.
 constexpr std::uintmax_t kMostRootSteps = 60;
@@ -85,7 +86,7 @@ void FlowCurve::polish(const Quantity& quantity, double target) {
     const bool near = std::min(low, high) < kNear * target && target < kNear * std::max(low, high);
     const bool flat = std::abs(std::log(high / low)) < kFlatPower * width;
     if (near && flat && width > kFinest) {
-      at(std::sqrt(left->first * right->first));  // and look at its left half again
+      at(std::sqrt(left->first * right->first));  // then checks its left half again
     } else {
       left = right;
     }

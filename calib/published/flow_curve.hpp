@@ -9,7 +9,8 @@
 namespace rigcal::calib {
 
 /// Mean flows of one rig under one drive as a function of the leakage coefficient. Every
-/// coefficient is simulated once; what one needed in periods and samples the next begins with.
+/// coefficient is simulated once; each simulation starts with the number of periods and samples
+/// that the one before needed.
 class FlowCurve {
  public:
   using Quantity = std::function<double(const PeriodicFlow&)>;

@@ -106,7 +106,7 @@ LeakRoot root_at(const FlowCurve& curve, double coefficient, const LeakTableOpti
   const Eigen::VectorXd slopes = curve.share_slopes(coefficient, rig.indices);
   root.log_slope = coefficient * slopes(0);
   const Eigen::VectorXd moves = -slopes.tail(slopes.size() - 1) / root.log_slope;
-  // No interval is narrower than what transient and sampling leave in the share.
+  // An interval is at least as wide as the error of the share from transient and sampling.
   const double numeric = options.periodic.tolerance / root.log_slope;
   root.log_error = std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)) + numeric * numeric);
   return root;

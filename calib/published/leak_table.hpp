@@ -12,7 +12,7 @@
 
 namespace rigcal::calib {
 
-/// How near a published coefficient the computed one comes.
+/// Agreement of the computed coefficient with the published one.
 enum class LeakGrade { within_10, within_16, outlier, not_published };
 std::string_view to_string(LeakGrade grade);
 
@@ -31,9 +31,9 @@ struct LeakRoot {
 struct LeakComparison {
   double published = 0.0;
   double share_percent = 0.0;      ///< at the published coefficient
-  double share_low_percent = 0.0;  ///< at the ends of what its rounding allows
+  double share_low_percent = 0.0;  ///< at the ends of the interval that its rounding allows
   double share_high_percent = 0.0;
-  std::optional<double> relative_error_percent;  ///< of the nearest root; absent without a root
+  std::optional<double> relative_error_percent;  ///< for the nearest root; absent without one
 };
 
 /// One cell of the table: a signal and a target share.
@@ -58,7 +58,7 @@ struct FeatureRow {
   datasets::PrintedFeatures printed;
   double servo_flow_m3_per_s = 0.0;
   double leak_flow_m3_per_s = 0.0;
-  metrics::ResidualFeatures features;  ///< of the scaled residual: leaking minus healthy position
+  metrics::ResidualFeatures features;  ///< scaled residual: leaking minus healthy position
   /// Coefficients that give the published leak flow; for the rig without a fault only.
   std::vector<double> coefficients_for_leak_flow;
   PeriodicSeries series;  ///< one period, outputs of kFeatureOutputs
@@ -74,24 +74,24 @@ struct FixedCombination {
   double value = 0.0;
 };
 
-/// How well the published numbers are met, over all entries that have one.
+/// Agreement with the published numbers, over all entries that have one.
 struct LeakSummary {
   int published = 0;
   int within_10 = 0;
-  int within_16 = 0;                        ///< those within 10 % included
+  int within_16 = 0;                        ///< including those within 10 %
   std::optional<double> share_rms_percent;  ///< rms of ln(share / target), in percent
 };
 
 struct LeakTable {
   std::vector<LeakEntry> entries;  ///< signals in their order, targets within
   std::vector<NormalEntry> normals;
-  std::optional<PeriodicSeries> healthy;  ///< of the feature signal, without a leak
+  std::optional<PeriodicSeries> healthy;  ///< series of the feature signal, without a leak
   std::vector<FeatureRow> features;
   std::vector<FixedCombination> fixed_combinations;
   LeakSummary summary;
 };
 
-/// How well the rig's values are known: what a fit says of those that it estimated.
+/// Uncertainty of the rig's values, from a fit.
 struct RigUncertainty {
   std::vector<int> indices;    ///< rows of the parameter table
   Eigen::MatrixXd covariance;  ///< SI, shape (indices)^2
@@ -99,7 +99,7 @@ struct RigUncertainty {
 
 struct LeakTableOptions {
   PeriodicOptions periodic;
-  int series_samples = 2000;  ///< of the features' period
+  int series_samples = 2000;  ///< samples in the features' period
   int threads = 1;            ///< results are the same bits for any number
   RigUncertainty rig;         ///< empty: coefficients have no interval
 };

@@ -5,8 +5,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// How far before a jump the last sample of a piece stands, in pieces. The simulation takes times
-/// that are closer than 1e-9 s for one.
+/// Distance, in pieces, of the last sample of a piece from the next jump. The simulation treats
+/// times that are closer than 1e-9 s as one.
 constexpr double kBeforeJump = 1e-7;
 /// Part of a square's samples that is equidistant.
 constexpr double kUniform = 0.01;

@@ -17,18 +17,19 @@ using model::Output;
 constexpr std::array kOutputs{Output::servo_flow, Output::leakage_flow, Output::command};
 enum FlowColumn { kServo, kLeak, kCommand };
 
-/// Of a period; what more would resolve is not resolved.
+/// Intervals in a period; more do not help.
 constexpr int kMostIntervals = 16384;
-/// Of a mean flow that is as good as none, so that a relative change means something.
+/// A mean flow below this fraction counts as zero, so that relative changes are meaningful.
 constexpr double kNoFlow = 1e-9;
-/// Of the limit: here the command counts as saturated.
+/// Fraction of the limit from which the command counts as saturated.
 constexpr double kAtLimit = 0.999;
-/// Largest y (see the header) that the two changes are trusted to tell: close to 1 the noise of the
-/// simulation makes any quotient.
+/// Largest y (see the header) that the two changes can determine reliably: near 1 the noise of the
+/// simulation can give any quotient.
 constexpr double kSlowest = 0.8;
-/// From so many periods on, a transient that is to decay within the most that are simulated leaves
-/// at most this part of what it left of half as many: else the loop cycles by itself, if what is
-/// left is more than the noise of the simulation can be, so many tolerances.
+/// Number of periods from which the loop can be judged. A transient that will decay within the
+/// largest number of periods must then have shrunk to this fraction since half as many. Otherwise
+/// the loop cycles by itself, if the remainder exceeds the noise of the simulation by so many
+/// tolerances.
 constexpr int kTellingPeriods = 256;
 constexpr double kDecays = 0.7;
 constexpr double kNotNoise = 10.0;
@@ -52,11 +53,11 @@ std::string why(const model::Simulation& run) {
 /// Every how many samples of the grid the two earlier periods are sampled.
 constexpr std::size_t kEarlyStride = 4;
 
-/// A run with three of its periods sampled: n/4 and n/2 coarsely, to see what has become of the
-/// transient, and the last finely.
+/// A run with three sampled periods: n/4 and n/2 coarsely, to observe the transient, and the last
+/// one finely.
 struct Run {
-  PeriodGrid grid;        ///< of the last period
-  PeriodGrid early_grid;  ///< of the two others
+  PeriodGrid grid;        ///< grid of the last period
+  PeriodGrid early_grid;  ///< grid of the two others
   model::Simulation simulation;
 
   std::span<const double> last(const Eigen::MatrixXd& matrix, Eigen::Index column) const {
@@ -66,7 +67,7 @@ struct Run {
   double mean(FlowColumn column, std::size_t stride = 1) const {
     return mean_absolute(grid, last(simulation.outputs, column), stride);
   }
-  /// Of period n/4 (0) or n/2 (1).
+  /// Mean in period n/4 (0) or n/2 (1).
   double early_mean(FlowColumn column, std::size_t which) const {
     const std::size_t n = early_grid.offset_s.size();
     const double* first = simulation.outputs.col(column).data() +
@@ -97,8 +98,8 @@ Run make_run(const PeriodicDrive& drive, const model::ParameterValues& values,
   return run;
 }
 
-/// What the sampling leaves of a mean flow: its largest relative change when every other sample is
-/// left out, over what a rule of second order gains.
+/// Sampling error of a mean flow: its largest relative change without every other sample, divided
+/// by the gain of a second-order rule.
 double sampling_error(const Run& run) {
   const double servo = run.mean(kServo);
   double worst = 0.0;
@@ -110,8 +111,8 @@ double sampling_error(const Run& run) {
   return worst;
 }
 
-/// What is left of the transient of one flow, relative to it: see the header. `noise` is what
-/// the simulation's own tolerance makes of two equal periods.
+/// Remaining transient of one flow, relative to it: see the header. `noise` is the difference
+/// between two equal periods that the tolerance of the simulation causes.
 double transient_left(const Run& run, FlowColumn column, double noise) {
   const double last = run.mean(column, kEarlyStride);
   const double scale = std::max(last, kNoFlow * run.mean(kServo, kEarlyStride));

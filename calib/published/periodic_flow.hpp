@@ -18,10 +18,10 @@ struct PeriodicDrive {
 
 struct PeriodicOptions {
   model::SimulationOptions simulation{.tolerance = 1e-5};
-  int periods = 4;          ///< to begin with; a power of two, at least 4
+  int periods = 4;          ///< initial number; a power of two, at least 4
   int most_periods = 1024;  ///< beyond: not periodic
   int intervals = 512;      ///< samples per piece of a period, to begin with
-  double tolerance = 1e-4;  ///< of the mean flows: what transient and sampling may leave
+  double tolerance = 1e-4;  ///< allowed error of the mean flows from transient and sampling
 };
 
 /// Mean flows of a rig that has become periodic.
@@ -31,7 +31,7 @@ struct PeriodicFlow {
   Eigen::VectorXd servo_slope;       ///< d servo flow / d parameter, shape (free), SI
   Eigen::VectorXd leak_slope;
   double saturated = 0.0;  ///< part of the period in which the command is at its limit
-  int periods = 0;         ///< that were simulated from rest
+  int periods = 0;         ///< periods simulated from rest
   int intervals = 0;       ///< per piece
   std::string failure;     ///< why there is no result; empty if there is one
 

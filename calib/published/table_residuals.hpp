@@ -24,7 +24,7 @@ class TableResiduals {
   Evaluation evaluate(const std::vector<double>& values, bool with_jacobian);
 
   std::size_t size() const { return rows_.size(); }
-  /// What a residual is of, and its weight.
+  /// Quantity of a residual, and its weight.
   const std::string& name(std::size_t row) const { return rows_[row].what; }
   double weight(std::size_t row) const { return rows_[row].weight; }
 
@@ -32,7 +32,7 @@ class TableResiduals {
   struct Row {
     std::string what;
     double weight = 1.0;
-    std::size_t run = 0;     ///< whose result it is
+    std::size_t run = 0;     ///< index of the run that gives the result
     double published = 0.0;  ///< SI, features in their printed unit
     bool is_share = false;   ///< else `feature`
     datasets::Feature feature = datasets::Feature::servo_flow;
@@ -42,7 +42,7 @@ class TableResiduals {
     PeriodicDrive drive;
     double coefficient = 0.0;
     bool with_series = false;
-    PeriodicOptions options;  ///< begins with what the last evaluation needed
+    PeriodicOptions options;  ///< starts with the numbers that the last evaluation needed
   };
   struct Outcome {
     PeriodicFlow flow;

@@ -5,7 +5,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// How grave a state is.
+/// Gravity of a state.
 int rank(AspectState state) {
   switch (state) {
     case AspectState::fail:

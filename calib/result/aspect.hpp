@@ -7,22 +7,22 @@
 
 namespace rigcal::calib {
 
-/// What one aspect of a result, or one reason, amounts to.
+/// State of one aspect of a result, or of one reason.
 enum class AspectState {
   pass,
-  reservation,   ///< nothing failed, but whoever signs must know
+  reservation,   ///< nothing failed, but the signatory must know
   fail,          ///< a limit is broken, or cannot be evaluated
   not_assessed,  ///< there was nothing to judge by
-  note,          ///< of a reason alone: it is told, and changes nothing
+  note,          ///< for reasons only: shown, but does not change the state of the aspect
 };
 std::string_view to_string(AspectState state);
 
-/// Whether a reason of this state keeps its aspect from passing.
+/// Whether a reason of this state prevents its aspect from passing.
 bool is_against(AspectState state);
 
 /// One reason: a code for scripts, the numbers behind it, and the same in words for people.
 struct Reason {
-  AspectState state = AspectState::pass;  ///< what it speaks for
+  AspectState state = AspectState::pass;  ///< state that the reason supports
   std::string code;                       ///< "limit_broken", "lack_of_fit", ...; docs/report.md
   std::string subject;                    ///< condition or parameter; empty: the whole result
   std::vector<std::pair<std::string, double>> numbers;
@@ -38,16 +38,15 @@ struct Aspect {
   std::vector<Reason> reasons;  ///< the gravest first
 };
 
-/// The gravest reason makes the state, of which notes are none; reasons of one state stay in their
-/// order.
+/// The gravest reason that is not a note decides the state. Reasons of one state keep their order.
 Aspect aspect_of(std::vector<Reason> reasons);
 
 /// The four things that are judged apart. A verdict follows from them (verdict_of).
 struct Assessment {
   Aspect agreement;   ///< every scored condition against the limits of the campaign
   Aspect validation;  ///< the conditions that no estimate rests on, against the same limits
-  Aspect adequacy;    ///< of the model: what it leaves, against the noise of the records
-  Aspect parameters;  ///< whether the records determine what was estimated
+  Aspect adequacy;    ///< model error against the noise of the records
+  Aspect parameters;  ///< whether the records determine the estimates
 };
 
 }  // namespace rigcal::calib

@@ -14,7 +14,7 @@
 #include "metrics/noise_floor.hpp"
 #include "metrics/residual_tests.hpp"
 
-// How well the model agrees with the record of a condition.
+// Agreement of the model with the record of a condition.
 
 namespace rigcal::calib {
 
@@ -23,14 +23,14 @@ struct ChannelScore {
   datasets::Channel channel = datasets::Channel::position;
   std::optional<metrics::Agreement> agreement;     ///< absent: see `problem`
   std::optional<metrics::NoiseFloor> noise_floor;  ///< absent where the noise is unknown
-  /// Of each score, by repeats and sensor; absent with fewer than two repeats.
+  /// Of each score, from repeats and sensor; absent with fewer than two repeats.
   std::optional<metrics::Agreement> expanded_uncertainty;
   std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
   std::string problem;                                   ///< why a metric does not exist, in words
-  /// Of measured minus simulated, over the longest stretch that counts; absent where it is too
-  /// short, or constant.
+  /// Tests of measured minus simulated, over the longest window; absent if that is too short or the
+  /// residual is constant.
   std::optional<metrics::ResidualTests> residual_tests;
-  std::optional<LackOfFit> lack_of_fit;  ///< of a prediction; absent where the noise is unknown
+  std::optional<LackOfFit> lack_of_fit;  ///< test of a prediction; absent if the noise is unknown
 };
 
 enum class Verdict { pass, warn, fail };
@@ -42,7 +42,7 @@ struct LimitCheck {
   std::string metric;
   std::optional<double> value;  ///< absent: it does not exist, see `words`
   std::optional<double> limit, warn;
-  std::optional<double> expanded_uncertainty;  ///< of the value; absent where not known
+  std::optional<double> expanded_uncertainty;  ///< uncertainty of the value; absent if unknown
   Verdict verdict = Verdict::pass;
   bool in_guard_band = false;  ///< WARN because the limit is not kept by more than that
   double used = 0.0;           ///< distance of the value from the ideal over that of the limit
@@ -54,13 +54,13 @@ struct ConditionScore {
   std::string id;
   datasets::Use use = datasets::Use::fit;
   std::vector<ChannelScore> channels;
-  std::vector<LimitCheck> checks;          ///< of every limit that holds for a channel of it
+  std::vector<LimitCheck> checks;          ///< verdicts on all limits of its channels
   std::optional<Verdict> verdict;          ///< worst of the checks; absent without limits
-  std::vector<std::string> reasons;        ///< of WARN and FAIL, in words
-  std::vector<std::string> data_warnings;  ///< what is doubtful about the recording, in words
+  std::vector<std::string> reasons;        ///< reasons for WARN and FAIL, in words
+  std::vector<std::string> data_warnings;  ///< doubts about the recording, in words
   std::string failure;                     ///< why it could not be simulated; empty if it could
   std::string not_scored;  ///< why it was not scored although it might be; empty if it was
-  long samples = 0;        ///< that count (inside the windows)
+  long samples = 0;        ///< number of samples inside the windows
   std::vector<double> time_s;
   /// measured mean and simulated value per output channel, whole record
   std::map<datasets::Channel, std::pair<std::vector<double>, std::vector<double>>> series;
@@ -73,8 +73,8 @@ struct ConditionScore {
   std::vector<double> servo_flow_m3_per_s, leakage_flow_m3_per_s;
   std::vector<bool> in_window;  ///< empty: all
 
-  /// Of one channel, the worst of its checks; that of the condition where this could not be
-  /// simulated. Nothing where no limit judges the channel.
+  /// Verdict on a channel: the worst of its checks, or the verdict of the condition if that could
+  /// not be simulated. Empty if no limit applies to the channel.
   std::optional<Verdict> verdict_of(datasets::Channel of) const;
 };
 

@@ -8,7 +8,7 @@
 
 namespace rigcal::calib {
 
-/// How uncertain the estimates of a fit are together, for who predicts with them.
+/// Joint covariance of the estimates of a fit, for predictions.
 struct EstimateSpread {
   /// One estimate, by which a condition finds those that act in it.
   struct Estimate {

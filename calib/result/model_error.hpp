@@ -8,8 +8,8 @@
 #include "datasets/record.hpp"
 #include "metrics/residual_tests.hpp"
 
-// What the records say of the model: its error against the noise, differences between repeats,
-// predictions of what was left out.
+// Model errors that the records show: error relative to the noise, differences between repeats,
+// predictions of omitted records.
 
 namespace rigcal::calib {
 
@@ -26,14 +26,14 @@ struct LackOfFit : metrics::Judged {
   double p = 1.0;
 };
 
-/// How the repeats of the fitted conditions differ from one another (between_repeats.hpp).
+/// Differences between the repeats of the fitted conditions (between_repeats.hpp).
 struct BetweenRepeats {
-  bool differ = false;  ///< by more than the residuals of their mean tell, at 5 %
-  double p = 1.0;       ///< of the parameter that shows it most, times the number of parameters
+  bool differ = false;  ///< beyond the residuals of their mean, at 5 %
+  double p = 1.0;       ///< for the most significant parameter, times the number of parameters
   double ratio = 0.0;   ///< largest of error by the repeats over error by the residuals
-  std::vector<std::string> parameters;  ///< whose interval rests on the repeats
+  std::vector<std::string> parameters;  ///< parameters whose interval is based on the repeats
   std::string cause;      ///< that would explain it: key of a parameter, or "start"; empty: none
-  double cause_sd = 0.0;  ///< of the cause between repeats: relative, of the start in s
+  double cause_sd = 0.0;  ///< standard deviation of the cause: relative; in s for the start
   double cause_explains = 0.0;  ///< share of how the repeats differ, 0 to 1
 };
 
@@ -41,10 +41,10 @@ struct BetweenRepeats {
 struct HeldOut {
   std::string condition;
   std::string problem;  ///< why there is no prediction, in words; empty if there is one
-  std::vector<std::pair<datasets::Channel, double>> rms;         ///< of the prediction, SI
-  std::vector<std::pair<datasets::Channel, double>> fitted_rms;  ///< where it took part, SI
-  double largest_shift = 0.0;  ///< of a parameter, in its error; 0 if none has one
-  std::string shifted;         ///< that parameter
+  std::vector<std::pair<datasets::Channel, double>> rms;         ///< error of the prediction, SI
+  std::vector<std::pair<datasets::Channel, double>> fitted_rms;  ///< in its own fit, SI
+  double largest_shift = 0.0;  ///< largest change of a parameter, in its error; 0 if none has one
+  std::string shifted;         ///< the parameter that changes most
 };
 
 }  // namespace rigcal::calib

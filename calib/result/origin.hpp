@@ -9,11 +9,11 @@
 
 namespace rigcal::calib {
 
-/// What an earlier fit, whose values are validated, tells of itself.
+/// Data of an earlier fit whose values are validated.
 struct Origin {
   std::set<std::string> estimated_from;  ///< conditions whose records it was fitted to
-  Aspect parameters;                     ///< as it judged them
-  std::optional<EstimateSpread> spread;  ///< of the values; none where it did not converge
+  Aspect parameters;                     ///< as that fit judged them
+  std::optional<EstimateSpread> spread;  ///< for the values; none without convergence
 };
 
 }  // namespace rigcal::calib

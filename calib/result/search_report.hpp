@@ -7,7 +7,7 @@
 
 #include "model/simulate.hpp"
 
-// How the search went.
+// Course of the search.
 
 namespace rigcal::calib {
 
@@ -18,7 +18,7 @@ enum class FitStatus {
 };
 std::string_view to_string(FitStatus status);
 
-/// What a job was at when it was stopped.
+/// Stage at which a job was stopped.
 enum class StoppedIn { nothing, starts, validation, bootstrap, profiles, cross_validation };
 std::string_view to_string(StoppedIn stage);
 
@@ -34,11 +34,13 @@ struct StartReport {
   std::string message;
 };
 
-/// Further starts that a fit of one start looked at with coarse simulations alone.
+/// Further starts that a fit with one start evaluated with coarse simulations.
 struct FurtherStarts {
   int looked_at = 0;
-  int followed = 0;  ///< that led lower than the campaign's start, and were searched to their end
-  int as_low = 0;    ///< that ended as low as the result, as far as such simulations tell
+  /// Starts that led lower than the campaign's start and were searched to their end.
+  int followed = 0;
+  /// Starts that ended as low as the result, within the error of coarse simulations.
+  int as_low = 0;
 };
 
 /// Converged starts that ended at one point.

@@ -20,7 +20,7 @@ const metrics::MetricSpec& metric(std::string_view name) {
   return *found;
 }
 
-/// What the noise of the record leaves of a metric to any model; empty where that is not known.
+/// Noise floor of a metric for any model; empty if it is unknown.
 std::optional<double> floor_of(const ChannelScore& score, std::string_view name) {
   if (!score.noise_floor) return std::nullopt;
   if (name == "rho2") return score.noise_floor->rho2;
@@ -37,7 +37,7 @@ double used_of(const metrics::MetricSpec& spec, double value, double bound) {
   return distance / allowed;
 }
 
-/// Whether a score keeps its limit only by more than its expanded uncertainty.
+/// Whether a score must keep its limit by more than its expanded uncertainty.
 bool counts_uncertainty(datasets::DecisionRule rule) {
   switch (rule) {
     case datasets::DecisionRule::simple:
@@ -141,7 +141,7 @@ std::string tolerance_used_text(double used) {
   constexpr int kMostDigits = 6;
   if (used > 10.0) return "over 1000 %";
   std::string text = significant(100.0 * used, 2);
-  // Beside 1 as many digits as tell which side of it.
+  // Near 100 % as many digits as it takes to show on which side the value is.
   for (int digits = 3; text == "100" && used != 1.0 && digits <= kMostDigits; ++digits)
     text = significant(100.0 * used, digits);
   if (used < 1.0 && text.starts_with("100")) return "just below 100 %";

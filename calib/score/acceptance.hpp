@@ -16,13 +16,13 @@ namespace rigcal::calib {
 void judge(const std::vector<datasets::AcceptanceLimit>& limits, datasets::DecisionRule rule,
            ConditionScore& score);
 
-/// What a decision rule is called where somebody signs: "simple acceptance", "guard band".
+/// Name of a decision rule on certificates: "simple acceptance", "guard band".
 std::string_view words_of(datasets::DecisionRule rule);
 
-/// How much of a tolerance is used, rounded so that a limit that is kept never looks used up:
+/// Part of a tolerance that is used, rounded so that a limit that is kept never looks exhausted:
 /// "37 %", "99.96 %", "over 1000 %".
 ///
-/// @param used  share of it; above 1: the limit is broken
+/// @param used  fraction of the tolerance; above 1 the limit is broken
 std::string tolerance_used_text(double used);
 
 }  // namespace rigcal::calib

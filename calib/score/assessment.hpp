@@ -10,11 +10,11 @@
 
 namespace rigcal::calib {
 
-/// Judges a finished fit or validation: the only place that does. Reports repeat what it says.
-/// The four aspects are judged apart: judge_agreement.hpp, judge_validation.hpp, judge_adequacy.hpp
-/// and judge_parameters.hpp say by what.
+/// Judges a finished fit or validation. No other code judges; reports only repeat its words. The
+/// four aspects are judged separately, see judge_agreement.hpp, judge_validation.hpp,
+/// judge_adequacy.hpp and judge_parameters.hpp.
 ///
-/// @param estimated_from  ids of conditions whose records the values in use were estimated from
+/// @param estimated_from  ids of the conditions whose records gave the values in use
 /// @param parameters      of the fit whose values are validated; null: judged from `fit`
 Assessment assess(const datasets::Campaign& campaign, const Fit& fit,
                   const std::set<std::string>& estimated_from, const Aspect* parameters = nullptr);
@@ -23,8 +23,8 @@ Assessment assess(const datasets::Campaign& campaign, const Fit& fit,
 /// campaign has no limits.
 std::optional<Verdict> verdict_of(const Assessment& assessment);
 
-/// Whether a result may state where its model is valid: it was validated on records of its own, and
-/// no limit is broken. Else what its conditions cover is what was tested.
+/// Whether a result may state a range of validity: it was validated on separate records and no
+/// limit is broken. Otherwise the report only states which conditions were tested.
 bool has_range_of_validity(AspectState agreement, AspectState validation);
 
 }  // namespace rigcal::calib

@@ -25,8 +25,8 @@ std::string signal_of(const std::string& condition, datasets::Channel channel) {
   return fmt::format("{} of {}", datasets::info(channel).key, condition);
 }
 
-/// The largest model error of signals that pass. An estimate may exceed the allowed error by chance
-/// alone; it is then told as not significant.
+/// Words for the largest model error of signals that pass. An estimate may exceed the allowed error
+/// by chance; it is then reported as not significant.
 std::string error_words(double largest, double largest_significant, double bound) {
   if (largest <= bound)
     return fmt::format("model error at most {:.2g} times the noise ({:.2g} allowed)", largest,
@@ -42,9 +42,9 @@ std::string error_words(double largest, double largest_significant, double bound
                      noise);
 }
 
-/// What the records of known noise say.
+/// Judges the records of known noise.
 void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
-  /// A residual of less than half of the stated noise means that this is stated too large, and
+  /// A residual of less than half of the stated noise means that the noise is overstated; then
   /// nothing is judged by it.
   constexpr double kOverstated = 0.25;
   const double bound = campaign.acceptance_bounds.model_error_to_noise;
@@ -53,8 +53,8 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   std::vector<const LackOfFit*> beyond;
   std::vector<const LackOfFit*> overstated;
   std::vector<const LackOfFit*> powerless;
-  double largest = 0.0;            // of all signals
-  double significant_error = 0.0;  // of those that differ from the noise significantly
+  double largest = 0.0;            // over all signals
+  double significant_error = 0.0;  // over the signals that differ significantly from the noise
   for (const LackOfFit& test : tests) {
     if (test.failed() && model_error(test) > bound) beyond.push_back(&test);
     if (!test.passed() && !test.failed()) powerless.push_back(&test);
@@ -109,7 +109,7 @@ void judge_lack_of_fit(const Campaign& campaign, const Fit& fit, std::vector<Rea
   }
 }
 
-/// A signal whose noise nothing tells, so that its residual alone can speak.
+/// A signal of unknown noise, which can be judged by its residual only.
 struct UnjudgedSignal {
   const ConditionScore* condition = nullptr;
   const ChannelScore* channel = nullptr;
@@ -157,7 +157,7 @@ void judge_driven(const std::vector<UnjudgedSignal>& signals, std::vector<Reason
       worst->condition->id, {{"share", largest}, {"signals", static_cast<double>(count)}}));
 }
 
-/// What the records of unknown noise say.
+/// Judges the records of unknown noise.
 void judge_residuals(const std::vector<UnjudgedSignal>& signals, std::vector<Reason>& reasons) {
   if (signals.empty()) return;
   judge_driven(signals, reasons);

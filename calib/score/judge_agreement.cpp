@@ -19,7 +19,7 @@ using datasets::Campaign;
 /// the variance does not describe a record by anybody's standard.
 constexpr double kPoorRho2 = 0.9;
 
-/// Limits of the campaign that no scored condition could be held against.
+/// Reports limits of the campaign that apply to no scored condition.
 void judge_unused_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto by_campaign = [&](const ConditionScore& score) {
     const datasets::Condition* condition = campaign.find(score.id);
@@ -61,14 +61,14 @@ void judge_recordings(const Fit& fit, std::vector<Reason>& reasons) {
              first->id, {{"conditions", static_cast<double>(count)}}));
 }
 
-/// A channel that is compared somewhere without a limit.
+/// Output channel that no limit judges in some conditions.
 struct WithoutLimit {
   std::size_t conditions = 0;
-  const ConditionScore* worst = nullptr;  ///< of lowest rho2; of the first where none exists
+  const ConditionScore* worst = nullptr;  ///< lowest rho2; the first if none has one
   double rho2 = std::numeric_limits<double>::infinity();
 };
 
-/// What the limits pass over.
+/// Reports the compared channels that no limit judges.
 void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   std::map<std::pair<datasets::Channel, bool>, WithoutLimit> found;
   for (const ConditionScore& score : fit.conditions) {
@@ -109,7 +109,7 @@ void judge_without_limits(const Campaign& campaign, const Fit& fit, std::vector<
   }
 }
 
-/// What the sensors of [report] leave open.
+/// Reports doubts about the sensors of [report].
 void judge_sensors(const Campaign& campaign, std::vector<Reason>& reasons) {
   for (const datasets::SensorDoubt& doubt : datasets::sensor_doubts(campaign))
     reasons.push_back(reason(doubt.grave ? AspectState::reservation : AspectState::note, doubt.code,

@@ -8,14 +8,14 @@
 
 namespace rigcal::calib {
 
-/// Whether anything can be judged: the campaign or a condition of its own has limits.
+/// Whether there are limits, of the campaign or of a condition.
 bool has_limits(const datasets::Campaign& campaign, const Fit& fit);
 
 /// The reason where it cannot.
 Reason no_limits();
 
-/// Appends what the limits say of some conditions, the furthest beyond them first: one reason for
-/// each that does not keep its limits or is not scored, and one for all that do.
+/// Appends the verdicts on the limits of some conditions, the worst first: one reason for each
+/// condition that breaks its limits or is not scored, and one for all that keep them.
 void judge_limits(const std::vector<const ConditionScore*>& scores, std::vector<Reason>& reasons);
 
 /// "1 condition", "3 conditions".

@@ -15,8 +15,8 @@ namespace {
 
 using datasets::Campaign;
 
-/// An upper limit is negligible below this share of what the same parameter is elsewhere in the
-/// campaign: the share that makes an estimate weak.
+/// An upper limit is negligible below this fraction of the same parameter's value elsewhere in the
+/// campaign; it is the fraction that makes an estimate weak.
 constexpr double kNegligibleShare = 0.2;
 
 /// The largest size that a parameter has in the result at another level, condition or known value.
@@ -30,7 +30,7 @@ double elsewhere(const Fit& fit, const FittedParameter& parameter) {
   return largest;
 }
 
-/// The largest size that a parameter which cannot be told from zero may have (95 %).
+/// Largest possible size (95 %) of a parameter that is not distinguishable from zero.
 double upper_limit(const FittedParameter& parameter) {
   return parameter.ci95
              ? std::max(std::abs(parameter.ci95->first), std::abs(parameter.ci95->second))
@@ -58,8 +58,8 @@ Reason judge_bounded(const Campaign& campaign, const Fit& fit, const FittedParam
                 {{"upper_limit", limit}, {"allowed", allowed}});
 }
 
-/// The known values on which the estimates rest as if they were exact: those that somebody might
-/// give an uncertainty (`prior_sd`) and has not.
+/// Notes the known values that the estimates take as exact: those for which `prior_sd` could state
+/// an uncertainty and does not.
 void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
   const auto table = model::parameter_table(campaign.rig.plant);
   std::set<int> uncertain;
@@ -87,14 +87,14 @@ void note_exact_values(const Campaign& campaign, const Fit& fit, std::vector<Rea
              {}, {{"values", static_cast<double>(names.size())}}));
 }
 
-/// Whether no other of several starts ended at the result.
+/// Whether only one of several starts ended at the result.
 bool found_once(const Fit& fit) {
   const bool several = fit.starts.size() > 1 && !fit.basins.empty();
   return several && fit.basins.front().starts.size() < 2 &&
          !(fit.further_starts && fit.further_starts->as_low > 0);
 }
 
-/// What a fit of one start looked at beside it.
+/// Notes how many further starts a fit with one start evaluated, and where they led.
 void note_further_starts(const Fit& fit, std::vector<Reason>& reasons) {
   if (!fit.further_starts || fit.further_starts->looked_at == 0) return;
   const FurtherStarts& looks = *fit.further_starts;
@@ -117,7 +117,7 @@ void note_further_starts(const Fit& fit, std::vector<Reason>& reasons) {
 
 Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
   const auto table = model::parameter_table(campaign.rig.plant);
-  // What is known of an estimate is known at a minimum.
+  // Intervals and grades hold only at a minimum.
   if (!fit.has_converged())
     return aspect_of({reason(AspectState::reservation, "not_converged", fit.message)});
   std::vector<Reason> reasons;

@@ -5,8 +5,8 @@
 
 namespace rigcal::calib {
 
-/// Pass where every estimate but nuisance parameters is identified, or cannot be told from zero
-/// with an upper limit that is negligible; else reservation.
+/// Passes if every estimate except nuisance parameters is identified, or is not distinguishable
+/// from zero with a negligible upper limit; else a reservation.
 Aspect judge_parameters(const datasets::Campaign& campaign, const Fit& fit);
 
 }  // namespace rigcal::calib

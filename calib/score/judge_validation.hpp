@@ -9,8 +9,8 @@
 
 namespace rigcal::calib {
 
-/// What the limits say of the conditions that are not in `estimated_from`; not assessed without
-/// any.
+/// Judges the limits of the conditions that are not in `estimated_from`; not assessed if there are
+/// none.
 Aspect judge_validation(const datasets::Campaign& campaign, const Fit& fit,
                         const std::set<std::string>& estimated_from);
 

@@ -71,7 +71,7 @@ std::optional<metrics::ResidualTests> test_residual(const ProblemCondition& cond
   }
 }
 
-/// The averaged channel with what makes it uncertain, of the samples that count.
+/// The averaged channel and its uncertainty, for the samples in windows.
 metrics::MeasuredMean measured_mean(const datasets::Campaign& campaign,
                                     const ProblemCondition& condition,
                                     const ProblemChannel& channel) {

@@ -17,7 +17,7 @@ namespace rigcal::calib {
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
                                              int threads);
 
-/// The same conditions where their nuisance parameters were not estimated: no score is told.
+/// The same conditions without scores, since their nuisance parameters were not estimated.
 ///
 /// @param why  in words
 std::vector<ConditionScore> unscored_conditions(const Problem& problem, const std::string& why);

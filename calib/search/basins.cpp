@@ -9,9 +9,9 @@
 namespace rigcal::calib {
 namespace {
 
-/// Of a 95 % interval, 0.4 standard errors: searches end within 0.05.
+/// Fraction of a 95 % interval that equals 0.4 standard errors; searches end within 0.05.
 constexpr double kSamePoint = 0.1;
-/// Of the variance of a residual: half the square of 0.2 standard errors.
+/// Fraction of the variance of a residual: half the square of 0.2 standard errors.
 constexpr double kSameCost = 0.02;
 /// Share of the cost by which simulations of one point may differ.
 constexpr double kSimulated = 2e-6;

@@ -8,12 +8,12 @@
 
 namespace rigcal::calib {
 
-/// Whether two costs are those of one minimum: no further apart than 0.02 variances of the
-/// residuals (0.2 standard errors), or than two millionths, which errors of the simulations leave.
+/// Whether two costs belong to the same minimum: they differ by at most 0.02 variances of the
+/// residuals (0.2 standard errors), or by two millionths, the error of the simulations.
 bool same_cost(double a, double b, double variance);
 
-/// Whether start a is the better one: that of the lower cost, whatever ended it; of one cost the
-/// converged one.
+/// Whether start a is better: it has the lower cost, whatever ended it. At equal cost a converged
+/// start is better than one that has not converged.
 bool better_start(const StartReport& a, const StartReport& b, double variance);
 
 /// Gathers converged starts that ended at one point: no parameter farther than a tenth of its

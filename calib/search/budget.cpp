@@ -5,7 +5,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Some thirty years: what is longer would overflow a clock of nanoseconds.
+/// About thirty years; a longer time would overflow a clock of nanoseconds.
 constexpr double kWithoutEnd = 1e9;
 
 }  // namespace

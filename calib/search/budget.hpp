@@ -7,8 +7,7 @@
 
 namespace rigcal::calib {
 
-/// What a whole job may cost: the search and everything that is made beside it. Shared by its
-/// threads.
+/// Budget of a whole job: the search and everything in addition to it. Its threads share it.
 class Budget {
  public:
   using Clock = std::chrono::steady_clock;
@@ -16,13 +15,13 @@ class Budget {
   /// Without limits, but for a request.
   explicit Budget(const std::atomic<bool>* cancel = nullptr) : cancel_(cancel) {}
   /// @param cancel           ends the job when it becomes true; may be null
-  /// @param max_seconds      from `began`; beyond what a clock can count: without end
+  /// @param max_seconds      from `began`; longer than a clock can count means no limit
   /// @param max_evaluations  of all residuals
   Budget(const std::atomic<bool>* cancel, Clock::time_point began,
          const std::optional<double>& max_seconds, const std::optional<long>& max_evaluations);
 
-  /// For a part of the job that is counted when it is done: as long, but of any number of
-  /// evaluations.
+  /// Budget of a part of the job whose evaluations are counted at its end: the same deadline, any
+  /// number of evaluations.
   Budget part() const { return Budget(cancel_, deadline_); }
 
   const std::atomic<bool>* cancel() const { return cancel_; }
@@ -37,9 +36,9 @@ class Budget {
   bool out_of_evaluations() const {
     return max_evaluations_ && evaluations_.load() >= *max_evaluations_;
   }
-  /// Whether nothing more may begin.
+  /// Whether no further work may begin.
   bool spent() const { return cancelled() || out_of_time() || out_of_evaluations(); }
-  /// "stopped on request", "stopped by the time limit", ...: what has spent it.
+  /// What has spent it: "stopped on request", "stopped by the time limit", ...
   std::string reason() const;
 
  private:

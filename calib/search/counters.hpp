@@ -17,7 +17,7 @@ struct EvaluationCounters {
   std::map<std::pair<std::size_t, model::SimulationStatus>, int> kept;
 
   void record(const Problem& problem, const Evaluation& evaluation, int start);
-  /// As if what `later` has counted had been counted here, one after the other.
+  /// Adds the counts of `later` as if they had been counted here afterwards.
   void add(const EvaluationCounters& later, const Problem& problem);
 };
 

@@ -11,8 +11,8 @@ namespace rigcal::calib {
 
 /// Evaluates all conditions of a problem at one fidelity, within a budget.
 ///
-/// Every evaluation carries sensitivities: nearly every trial point becomes the next iterate, whose
-/// Jacobian is then there already, and cost and gradient come from the same steps of the solver.
+/// Every evaluation includes sensitivities: nearly every trial point becomes the next iterate,
+/// whose Jacobian is then available, and cost and gradient come from the same steps of the solver.
 /// The last and the best point are kept, so that nothing is computed twice.
 class Evaluator {
  public:
@@ -20,7 +20,7 @@ class Evaluator {
   /// then.
   Evaluator(const Problem& problem, Budget& budget, int threads = 1)
       : problem_(problem), budget_(budget), threads_(threads) {}
-  /// What another one keeps, but a budget and counters of its own.
+  /// Copies the kept points of another one, with a separate budget and counters.
   Evaluator(const Evaluator& other, Budget& budget)
       : problem_(other.problem_),
         budget_(budget),
@@ -57,9 +57,9 @@ class Evaluator {
   /// Counts an evaluation that was made elsewhere, and records its failures.
   void record(const Evaluation& evaluation);
   const EvaluationCounters& counters() const { return counters_; }
-  /// Goes on counting from there, as after a resumed fit.
+  /// Continues counting from there, after a resumed fit.
   void set_counters(EvaluationCounters counters);
-  /// Counts what another evaluator of the same problem has counted.
+  /// Adds the counts of another evaluator of the same problem.
   void add(const EvaluationCounters& counters);
 
  private:

@@ -6,8 +6,8 @@
 
 namespace rigcal::calib {
 
-/// The iterations of one start: one budget for all of its stages, and one count for who is told of
-/// them. Borrows the options.
+/// Counts the iterations of one start: one budget for all of its stages, and one count for progress
+/// messages. Borrows the options.
 class Iterations {
  public:
   /// @param start   number of the start
@@ -21,7 +21,7 @@ class Iterations {
   int total() const { return before_ + used_; }
   void add(int iterations) { used_ += iterations; }
 
-  /// Tells of one iteration of a stage, whose iterations are not added yet.
+  /// Reports one iteration of a stage whose iterations are not added yet.
   void tell(int iteration, double cost, double relative_change, double seconds) const {
     if (options_.progress)
       options_.progress(start_, total() + iteration, cost, relative_change, seconds);

@@ -13,13 +13,13 @@ namespace {
 
 /// Standard errors that may be left of a step with coarse simulations: their own errors leave more.
 constexpr double kCoarseOffset = 1.0;
-/// Share of the cost that may be left to gain in a horizon: the model then errs by a fraction of
-/// what it leaves anyway.
+/// Fraction of the cost that may still be gained in a horizon: the error of the model is then a
+/// fraction of the residual anyway.
 constexpr double kHorizonLeaves = 0.05;
 /// Standard errors that may be left with it: in many samples a parameter that is far off, but acts
 /// on few of them, is a small share of the cost.
 constexpr double kHorizonOffset = 10.0;
-/// Relative change of the cost below which coarse simulations tell no more.
+/// Relative change of the cost below which coarse simulations cannot resolve it.
 constexpr double kCoarseChange = 1e-4;
 
 /// Whether a horizon carries no more information: the next one, a few times as long, has far more.

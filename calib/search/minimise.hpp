@@ -14,8 +14,8 @@ namespace rigcal::calib {
 struct SolveResult {
   FitStatus status = FitStatus::failed;
   std::string message;  ///< in words
-  int iterations = 0;   ///< of its start, all stages together
-  OptimumCheck check;   ///< of the best point, if there is one
+  int iterations = 0;   ///< iterations of its start, all stages together
+  OptimumCheck check;   ///< check of the best point, if there is one
 };
 
 /// Trust-region minimisation by Ceres at the evaluator's fidelity: to a stationary point where the
@@ -33,9 +33,9 @@ SolveResult minimise(const Problem& problem, Evaluator& evaluator, std::vector<d
 /// The result where not even the start could be simulated.
 SolveResult no_start(const Problem& problem, const Evaluator& evaluator, const Evaluation& first);
 
-/// Why a fit ended that did not come to an end by itself.
+/// Reason why a fit ended before it converged.
 ///
-/// @param most_iterations  that it was allowed
+/// @param most_iterations  limit of iterations
 std::string stop_reason(const Evaluator& evaluator, int most_iterations);
 
 SolveResult converged(const Iterations& iterations, const OptimumCheck& check);

@@ -32,10 +32,10 @@ void serialize(Archive& archive, EvaluationCounters& counters) {
 
 namespace {
 
-/// Iterations of a start that is only looked at.
+/// Iterations of a start that is only evaluated coarsely.
 constexpr int kLookIterations = 30;
-/// What of the cost coarse simulations may err by, and a search that goes no further than they do
-/// may leave; and what is no difference between minima, in variances of a residual.
+/// Two minima differ if their costs differ by more than both tolerances together: the error of
+/// coarse simulations, as a fraction of the cost, and a number of variances of a residual.
 constexpr double kCoarseCost = 1e-3;
 constexpr double kFurtherCost = 2.0;
 
@@ -44,7 +44,7 @@ double uniform(boost::random::mt19937_64& random) {
   return static_cast<double>(random() >> 11U) * 0x1p-53;
 }
 
-/// The campaign's start values, and others beside them.
+/// Returns the campaign's start values and `count - 1` points of a latin hypercube.
 std::vector<std::vector<double>> start_points(const Problem& problem, int count,
                                               std::uint64_t seed) {
   const auto& unknowns = problem.map.unknowns();
@@ -61,14 +61,14 @@ std::vector<std::vector<double>> start_points(const Problem& problem, int count,
   return points;
 }
 
-/// Variance of the weighted residuals that a cost leaves; 1 at least where the noise is known.
+/// Variance of the weighted residuals at a cost; at least 1 where the noise is known.
 double residual_variance(const Problem& problem, double cost) {
   const auto freedom = problem.residual_count() - static_cast<long>(problem.map.unknowns().size());
   const double variance = 2.0 * cost / static_cast<double>(std::max(1L, freedom));
   return problem.has_estimated_sd() ? variance : std::max(1.0, variance);
 }
 
-/// Takes over where a search ended.
+/// Enters the end of a search into the report.
 void report_end(const Problem& problem, const SolveResult& solved, const Evaluation& end,
                 StartReport& report) {
   report.status = solved.status;
@@ -157,8 +157,8 @@ void make_in_turn(const Problem& problem, Evaluator& evaluator, const FitOptions
   }
 }
 
-/// Makes the starts side by side in the processes of a farm: to the same bits, since each begins
-/// with what the evaluator has before the first.
+/// Makes the starts in parallel in the processes of a farm. The bits are the same, since each
+/// begins with the evaluator's state before the first.
 void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                   const std::vector<std::vector<double>>& points, TaskFarm& farm,
                   MultiStart& found) {
@@ -193,23 +193,23 @@ void make_in_farm(const Problem& problem, Evaluator& evaluator, const FitOptions
   describe_best(problem, best_z, options.threads, found);
 }
 
-/// Where coarse simulations led a start.
+/// End point of a start that was searched with coarse simulations.
 struct Approach {
   std::size_t start = 0;
   std::vector<double> end;
-  double cost = 0.0;  ///< that it leads to, by coarse simulations of whole records
+  double cost = 0.0;  ///< after the step that is left, by coarse simulations of whole records
 };
 
-/// Looks at further starts beside the one that was made, and searches to their end those that lead
-/// lower.
+/// Evaluates further starts coarsely, then searches to the end those that lead lower than the
+/// first.
 void look_around(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                  MultiStart& found) {
   FitOptions coarsely = options;
   coarsely.progress = nullptr;
   coarsely.max_iterations = std::min(options.max_iterations, kLookIterations);
   const auto points = start_points(problem, 1 + options.further_starts, options.seed);
-  // Of whole records, and what a Gauss-Newton step from there would leave: an approach may end some
-  // standard errors before its minimum.
+  // The cost counts the fall of one more Gauss-Newton step: an approach may end some standard
+  // errors before its minimum.
   const auto coarse_cost = [&](const std::vector<double>& z) {
     evaluator.set_fidelity(Fidelity::coarse);
     const Evaluation& there = evaluator.evaluate(z);

@@ -8,7 +8,7 @@
 
 namespace rigcal::calib {
 
-/// Latin hypercube: every dimension is cut into `points` strata and each stratum holds one point.
+/// Latin hypercube: every dimension is cut into `points` strata, and each stratum has one point.
 /// Portable: the same seed gives the same bits on any machine.
 ///
 /// @return  `points` vectors of shape (dimensions), in [0, 1)
@@ -19,18 +19,18 @@ std::vector<std::vector<double>> latin_hypercube(std::size_t points, std::size_t
 struct MultiStart {
   std::vector<StartReport> starts;
   int best = 0;  ///< number of the best start, from 1; 0 if none has a point that can be simulated
-  SolveResult result;                           ///< of the best start
+  SolveResult result;                           ///< result of the best start
   Evaluation optimum;                           ///< its end point; not ok if there is none
-  std::optional<FurtherStarts> further_starts;  ///< that were looked at
+  std::optional<FurtherStarts> further_starts;  ///< absent if no further starts were evaluated
 };
 
 /// Solves from the campaign's start values (start 1) and from a latin hypercube over the unit box;
 /// nuisance parameters always start at their own start values. A start that fails leaves the others
-/// alone. The best is that of lowest cost, whatever ended it; of those of one cost (same_cost()) a
-/// converged one; ties by number.
+/// alone. The best start has the lowest cost, whatever ended it; at equal cost (same_cost()) a
+/// converged one is better; ties go to the lower number.
 ///
-/// Where a single start converges, `further_starts` of the options are looked at: led by coarse
-/// simulations, and searched to the end only where these lead lower.
+/// After a single start that converges, the `further_starts` of the options are evaluated with
+/// coarse simulations, and searched to the end only if they lead lower.
 MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOptions& options);
 
 /// Polishes the optimum again, where weights or tolerance have changed since.
@@ -39,11 +39,11 @@ MultiStart multi_start(const Problem& problem, Evaluator& evaluator, const FitOp
 bool search_on(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                MultiStart& found);
 
-/// Where the best of several starts has not converged: another round of iterations from its end.
+/// If the best of several starts has not converged, runs another round of iterations from its end.
 void go_on_with_best(const Problem& problem, Evaluator& evaluator, const FitOptions& options,
                      MultiStart& found);
 
-/// Takes over what the best start ended at into its report.
+/// Enters the end of the best start into its report.
 void report_best(const Problem& problem, MultiStart& found);
 
 }  // namespace rigcal::calib

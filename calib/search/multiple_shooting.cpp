@@ -21,8 +21,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// Jumps that weigh as much as a residual of one standard deviation, stage by stage, in floors:
-/// from about a tenth of what states usually reach to less than a simulation resolves.
+/// Jumps that weigh as much as a residual of one standard deviation, per stage, in floors: from
+/// about a tenth of the usual size of states to less than a simulation resolves.
 constexpr double kJumps[] = {3e3, 30.0, 0.3, 3e-3};
 constexpr std::size_t kStages = std::size(kJumps);
 /// Relative change of the cost that ends a stage.
@@ -32,21 +32,21 @@ constexpr double kCoordinate = 1e4;
 constexpr std::size_t kLeastSamples = 4;
 /// Share of an interval over which the record is read to each side of a node.
 constexpr double kReadShare = 0.1;
-/// Levenberg and Marquardt's damping is relative to the weights: the heavier the jumps, the more it
-/// holds back what all states do together, unless the radius grows with the square of the weights.
+/// The damping of Levenberg and Marquardt is relative to the weights. Heavier jumps damp the common
+/// motion of all states more, unless the radius grows with the square of the weights.
 constexpr double kTrustRadii[] = {1e2, 1e4, 1e8, 1e12};
 /// Reduced systems up to this size are solved densely: the same bits whatever library is there.
 constexpr std::size_t kMostDense = 1000;
 
-/// A part of a condition's record that is simulated by itself; its last sample is the first of the
-/// next piece, to which it counts.
+/// A part of a condition's record that is simulated separately. Its last sample is the first of the
+/// next piece and belongs to that one.
 struct Piece {
   std::size_t condition = 0;
   std::size_t first = 0;                   ///< sample
   std::size_t last = 0;                    ///< sample
   std::size_t begin_row = 0, end_row = 0;  ///< in the condition's `rows`
-  int node = -1;       ///< whose state it starts from; -1: the condition's initial state
-  int next_node = -1;  ///< whose state it should end at; -1: none
+  int node = -1;       ///< node with its initial state; -1: the condition's initial state
+  int next_node = -1;  ///< node with the state at its end; -1: none
 };
 
 /// The state between two pieces.
@@ -65,7 +65,7 @@ struct PieceEvaluation {
   /// R factor of [J r], columns: acting unknowns, coordinates of the node if it has one, r.
   Eigen::MatrixXd r_factor;
   Eigen::VectorXd end;           ///< state, in floors
-  Eigen::MatrixXd end_jacobian;  ///< by the columns of the R factor but the last
+  Eigen::MatrixXd end_jacobian;  ///< by the columns of the R factor except the last
 };
 
 /// First sample of each piece of a condition.
@@ -79,7 +79,7 @@ std::vector<std::size_t> cuts(const ProblemCondition& condition, double interval
                                  "fewer than {} samples of its record",
                                  condition.condition->id, interval_s, kLeastSamples));
   };
-  // Before anything is as long as that.
+  // Refuses before allocating anything of that length.
   if (wanted > 1.0 && wanted * kLeastSamples > static_cast<double>(times.size() - 1)) refuse();
   const auto pieces = static_cast<std::size_t>(wanted);
   std::vector<std::size_t> result{0};
@@ -111,8 +111,8 @@ class Pieces final : public ceres::EvaluationCallback {
   std::span<const double> z() const {
     return std::span(coordinates_).first(problem_.map.unknowns().size());
   }
-  /// What Ceres works on: the unknowns in the unit box, then state / (kCoordinate floor) of every
-  /// node. One piece of memory, because Ceres orders its blocks by their addresses.
+  /// Coordinates for Ceres: the unknowns in the unit box, then state / (kCoordinate floor) of every
+  /// node. They are contiguous in memory, because Ceres orders its blocks by their addresses.
   double* unknown(std::size_t j) { return &coordinates_[j]; }
   double* coordinates(const Node& node) { return &coordinates_[node.first]; }
   const PieceEvaluation& evaluation(std::size_t piece) const { return evaluations_[piece]; }
@@ -134,7 +134,7 @@ class Pieces final : public ceres::EvaluationCallback {
         values.set(index, value);
       model::Rig rig = condition.rig;
       rig.initial = model::InitialState::given;
-      rig.before = model::Before::hold;  // the drive has long begun
+      rig.before = model::Before::hold;  // the drive began long before
       const auto found = model::simulate(rig, values, {}, condition.inputs, {&at_s, 1}, {});
       if (!found.ok()) return false;
       Node& node = nodes_[static_cast<std::size_t>(piece.node)];
@@ -146,7 +146,7 @@ class Pieces final : public ceres::EvaluationCallback {
     return true;
   }
 
-  /// How finely to simulate.
+  /// Tolerance of the simulations.
   void set_tolerance(double tolerance) { tolerance_ = tolerance; }
 
   void PrepareForEvaluation(bool /*evaluate_jacobians*/, bool /*new_evaluation_point*/) override {
@@ -425,7 +425,7 @@ ShootingResult multiple_shooting(const Problem& problem, Evaluator& evaluator,
                                  Iterations& iterations) {
   ShootingResult result{std::move(z), 0, 0.0};
   Pieces pieces(problem, evaluator, interval_s);
-  if (pieces.nodes().empty()) return result;  // nothing to cut
+  if (pieces.nodes().empty()) return result;  // a single piece
   result.largest_gap = std::numeric_limits<double>::infinity();
   if (!pieces.begin_at(result.z, interval_s)) return result;
   const int end = iterations.used() + most;

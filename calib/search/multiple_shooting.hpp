@@ -7,12 +7,12 @@
 
 namespace rigcal::calib {
 
-/// Where multiple shooting ends.
+/// End of multiple shooting.
 struct ShootingResult {
-  std::vector<double> z;  ///< in the unit box; the start where it came to nothing
-  int iterations = 0;     ///< that it took
-  /// Largest jump between two pieces that is left, in floors of the states' error control (1e-6 m,
-  /// 1e-5 m/s, 100 Pa, 1e-3 V); infinite where it came to nothing.
+  std::vector<double> z;  ///< in the unit box; the start if it failed
+  int iterations = 0;     ///< iterations used
+  /// Largest remaining jump between two pieces, in floors of the states' error control (1e-6 m,
+  /// 1e-5 m/s, 100 Pa, 1e-3 V); infinite if it failed.
   double largest_gap = 0.0;
 };
 

@@ -13,14 +13,14 @@
 namespace rigcal::calib {
 namespace {
 
-/// A direction is a valley where a step along it changes the residuals by less than this fraction
-/// of what a step of one parameter does.
+/// A direction is a valley if a step along it changes the residuals by less than this fraction of
+/// the change by a step of one parameter.
 constexpr double kValley = 0.1;
-/// Least part of a valley, as a square of its direction, that names a parameter.
+/// A parameter is named if it has at least this fraction of the squared direction of a valley.
 constexpr double kPart = 0.1;
 
-/// Unknowns along which the valley leads that holds most of the way which is left; empty where no
-/// valley does.
+/// Unknowns of the direction in which most of the remaining step lies, if that is a valley; else
+/// empty.
 std::vector<std::size_t> valley(const Problem& problem, Linearisation system,
                                 const OptimumCheck& check) {
   for (std::size_t j = 0; j < check.active_bound.size(); ++j) {

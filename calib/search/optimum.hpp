@@ -9,7 +9,7 @@ namespace rigcal::calib {
 
 enum class BoundSide { inside, lower, upper };
 
-/// Within this of a face of the unit box a parameter is at its bound.
+/// Distance from a face of the unit box within which a parameter is at its bound.
 inline constexpr double kAtBound = 1e-6;
 
 BoundSide bound_side(double z);
@@ -18,8 +18,8 @@ BoundSide bound_side(double z);
 /// which the data do not determine: the derivatives themselves are no better (ErrorNorm).
 double rank_threshold(double simulation_tolerance);
 
-/// Fall of the cost, in variances of a residual, below which a point is a minimum: a single
-/// parameter is then 0.14 standard errors off at most.
+/// A point is a minimum if one more step would lower the cost by less than this many variances of a
+/// residual; a single parameter is then off by at most 0.14 standard errors.
 inline constexpr double kMinimumLeaves = 0.01;
 
 /// Unknowns at a bound where the cost falls only towards the outside.
@@ -28,18 +28,19 @@ std::vector<bool> active_bounds(const Linearisation& system, std::span<const dou
 /// Whether a point is a minimum in the box, judged by our own measure and not by the optimiser's.
 struct OptimumCheck {
   std::vector<BoundSide> side;     ///< per unknown
-  std::vector<bool> active_bound;  ///< as active_bounds()
-  Eigen::VectorXd step;            ///< of Gauss and Newton, in the unit box; 0 at an active bound
+  std::vector<bool> active_bound;  ///< result of active_bounds()
+  Eigen::VectorXd step;            ///< Gauss-Newton step in the unit box; 0 at an active bound
   /// Length of the Gauss-Newton step in standard errors, root mean square over the free directions
-  /// (relative offset of Bates and Watts, Technometrics 23, 1981). 0.01: the step that is left is a
-  /// hundredth of what the noise leaves uncertain.
+  /// (relative offset of Bates and Watts, Technometrics 23, 1981). At 0.01 the remaining step is a
+  /// hundredth of the uncertainty from noise.
   double relative_offset = 0.0;
   double reducible = 0.0;  ///< fraction of the cost that this step is predicted to take away
-  /// The same in variances of a residual, where 2 would be one parameter's 95 % interval.
+  /// The same in variances of a residual; 2 corresponds to one parameter at the end of its 95 %
+  /// interval.
   double fall_left = 0.0;
-  /// Where a search need go no further: a relative offset of 0.01, and a minimum.
+  /// Whether a search may end: a relative offset below 0.01, at a minimum.
   bool stationary() const;
-  /// Where it has converged: no more than kMinimumLeaves of the fall are left.
+  /// Whether the search has converged: at most kMinimumLeaves are left of the fall.
   bool is_minimum() const;
 };
 

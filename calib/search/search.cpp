@@ -8,19 +8,21 @@
 namespace rigcal::calib {
 namespace {
 
-/// Where full Gauss-Newton steps begin, in standard errors, and how many of them there are.
+/// Distance from the minimum, in standard errors, at which full Gauss-Newton steps begin, and their
+/// number.
 constexpr double kFullStepOffset = 30.0;
 constexpr int kFullSteps = 4;
-/// Where they end: a third of what counts as stationary, since each is all but exact.
+/// Distance at which they end: a third of the limit of stationarity, since each step is nearly
+/// exact.
 constexpr double kFullStepEnd = 0.003;
-/// Growth of the cost beyond which a step from coarse to exact simulations led astray: where
-/// residuals are large a Gauss-Newton step may overshoot, and errors of the coarse simulations are
-/// far smaller.
+/// A step from coarse to exact simulations went astray if the cost grew by more than this factor.
+/// With large residuals a Gauss-Newton step may overshoot; errors of the coarse simulations are far
+/// smaller.
 constexpr double kWorseStep = 1.5;
 /// Growth of the mean square residual beyond which the shorter horizon's estimate is discarded.
 constexpr double kForeseen = 4.0;
 
-/// Where a full Gauss-Newton step leads.
+/// Point that a full Gauss-Newton step leads to.
 std::vector<double> gauss_newton(const Evaluation& evaluation, const OptimumCheck& check) {
   std::vector<double> z = evaluation.z;
   for (std::size_t j = 0; j < z.size(); ++j)
@@ -72,9 +74,9 @@ SolveResult Search::run_stages(std::vector<double> z, bool polished) {
   return result;
 }
 
-/// Sets the fidelity of a stage and the point from which it goes on.
+/// Sets the fidelity of a stage and the point from which it continues.
 ///
-/// @return  false where it has nothing to do
+/// @return  false if the stage has nothing to do
 bool Search::enter(const Stage& stage) {
   const bool after_horizons = foreseen_ < std::numeric_limits<double>::infinity();
   if (stage.is_horizon()) {
@@ -103,7 +105,7 @@ bool Search::enter(const Stage& stage) {
     return !evaluator_.best().ok ||
            check_optimum(problem_, evaluator_.best()).relative_offset > kFullStepOffset;
   }
-  // From coarse simulations to those of the working tolerance.
+  // The step from coarse simulations to those of the working tolerance.
   const Evaluation coarse = evaluator_.best();
   const OptimumCheck check = check_optimum(problem_, coarse);
   evaluator_.set_fidelity(stage.fidelity);
@@ -114,8 +116,8 @@ bool Search::enter(const Stage& stage) {
   return true;
 }
 
-/// Where multiple shooting leads, if a simulation of whole records from there is the better one;
-/// half of the iterations at most.
+/// Returns the end of multiple shooting, if a simulation of whole records from there is better. It
+/// gets at most half of the iterations.
 std::vector<double> Search::shoot(std::vector<double> z, double interval_s) {
   const Evaluation first = evaluator_.evaluate(z);
   const ShootingResult found =
@@ -134,9 +136,9 @@ SolveResult Search::polish(std::vector<double> z) {
   return minimise(problem_, evaluator_, std::move(z), kPolishStage, iterations_);
 }
 
-/// Full Gauss-Newton steps from the evaluator's best point while they come nearer to a stationary
-/// one; near it the cost itself tells nothing, because errors of the simulation move it by more
-/// than is left to gain. Where they end is the evaluator's best point.
+/// Makes full Gauss-Newton steps from the evaluator's best point as long as they approach a
+/// stationary one. Near it the cost is no guide, because errors of the simulation exceed the
+/// remaining gain. The last point becomes the evaluator's best point.
 OptimumCheck Search::full_steps() {
   OptimumCheck check = check_optimum(problem_, evaluator_.best());
   const int most = std::min(kFullSteps, iterations_.left());

@@ -5,9 +5,9 @@
 
 namespace rigcal::calib {
 
-/// Least squares from one start, in the unit box. The end point is the evaluator's best().
-/// `converged` is what check_optimum() finds stationary, or nearly so where Ceres says that it
-/// converged too. Borrows everything.
+/// Least squares from one start, in the unit box. The end point is the evaluator's best(). A search
+/// has `converged` if check_optimum() finds the point stationary, or nearly so if Ceres converged,
+/// too. Borrows everything.
 class Search {
  public:
   /// @param start   its number, for progress and messages
@@ -19,14 +19,14 @@ class Search {
         options_(options),
         iterations_(options, start, before) {}
 
-  /// Multiple shooting where the campaign asks for it, then the stages of plan_schedule(). Where it
-  /// is stopped, the best point is that of the stages' ends with the least cost over whole records.
+  /// Runs multiple shooting if the campaign asks for it, then the stages of plan_schedule(). After
+  /// a stop the best point is the end of a stage with the least cost over whole records.
   SolveResult run(std::vector<double> z);
 
-  /// All stages but the last: the best point is that of the least cost over whole records, coarsely
-  /// simulated.
+  /// Runs all stages but the last. The best point is the one with the least cost over whole
+  /// records, by coarse simulations.
   ///
-  /// @return  false where there is none, or the budget ended it
+  /// @return  false if there is no such point, or the budget was spent
   bool approach(std::vector<double> z);
 
   /// The last stage alone, from a point near the optimum.
@@ -44,13 +44,13 @@ class Search {
   const FitOptions& options_;
   Iterations iterations_;
 
-  std::vector<double> z_;                  ///< where the stages have led
-  std::vector<double> begin_;              ///< where they began
-  double begin_cost_ = 0.0;                ///< of whole records there
-  std::vector<double> before_;             ///< where the last horizon began
+  std::vector<double> z_;                  ///< end of the stages so far
+  std::vector<double> begin_;              ///< start of the stages
+  double begin_cost_ = 0.0;                ///< cost of whole records there
+  std::vector<double> before_;             ///< start of the last horizon
   double foreseen_ = 0.0;                  ///< mean square that the last horizon ended with
   int horizons_until_ = 0;                 ///< iterations used, after which horizons end
-  std::vector<std::vector<double>> ends_;  ///< of stages
+  std::vector<std::vector<double>> ends_;  ///< ends of stages
 };
 
 }  // namespace rigcal::calib

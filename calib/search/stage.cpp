@@ -7,15 +7,15 @@
 namespace rigcal::calib {
 namespace {
 
-/// Where samples resolve what rings, so few are less than a cycle of it. As many more for each
-/// unknown that one record alone has to tell: its initial state, the offset of a sensor.
+/// If the samples resolve an oscillation, so few of them are less than a cycle. Each unknown that
+/// only one record determines (its initial state, the offset of a sensor) adds as many.
 constexpr std::size_t kShortestSamples = 4;
-/// How much longer each horizon is than the one before it, at most.
+/// Largest ratio of the length of a horizon to the one before.
 constexpr double kGrowth = 4.0;
 /// Iterations at one horizon: the next one carries more information.
 constexpr int kHorizonIterations = 10;
 
-/// How many unknowns no other record tells.
+/// Number of unknowns that no other record determines.
 std::size_t own_unknowns(const Problem& problem, std::size_t condition) {
   const std::vector<int>& acting = problem.map.acting(condition);
   return static_cast<std::size_t>(std::count_if(acting.begin(), acting.end(), [&](int j) {

@@ -6,11 +6,11 @@
 
 namespace rigcal::calib {
 
-/// One stage of a search: what is simulated, and how far it goes.
+/// One stage of a search: its fidelity and its limits.
 struct Stage {
   Fidelity fidelity = Fidelity::full;
-  double trust_radius = 0.0;  ///< of its first step
-  int most_iterations = 0;    ///< of this stage; 0: what the search has left
+  double trust_radius = 0.0;  ///< radius of its first step
+  int most_iterations = 0;    ///< limit for this stage; 0: all that the search has left
 
   bool is_horizon() const { return !fidelity.whole(); }
 };

@@ -23,7 +23,7 @@ std::vector<ConditionRows> verify_optimum(const Problem& problem, Evaluator& eva
     return {};
   }
   found.result.check = check_optimum(problem, found.optimum);
-  evaluator.forget();  // so that they are held once
+  evaluator.forget();  // frees a second copy
   std::vector<ConditionRows> rows = std::move(*found.optimum.rows);
   found.optimum.rows.reset();
   return rows;

@@ -11,7 +11,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// Where nothing has settled by then the fit says so in a warning.
+/// If the standard deviations have not settled by then, a warning says so.
 constexpr int kMaxRounds = 10;
 /// Reweighting stops when no standard deviation changes by more.
 constexpr double kSettled = 0.1;
@@ -27,9 +27,9 @@ void for_each_estimated(Problem& problem, const Evaluation& optimum, const Actio
   }
 }
 
-/// Root mean square residual of each channel of estimated noise, over the samples of all its
-/// conditions. By condition, the record that the model happens to fit best would weigh most, and
-/// the others would be given up.
+/// Root mean square residual of each channel whose noise is estimated, over the samples of all its
+/// conditions. A value per condition would give most weight to the record that the model happens to
+/// fit best, at the expense of the others.
 std::map<datasets::Channel, double> pooled_rms(Problem& problem, const Evaluation& optimum) {
   struct Sum {
     double squares = 0.0;
@@ -47,8 +47,9 @@ std::map<datasets::Channel, double> pooled_rms(Problem& problem, const Evaluatio
   return pooled;
 }
 
-/// Sets every estimated standard deviation to the pooled residual of its channel, and the tolerance
-/// to what that asks for; returns the largest relative change of a standard deviation.
+/// Sets every estimated standard deviation to the pooled residual of its channel, and derives the
+/// tolerance of the simulations from it. Returns the largest relative change of a standard
+/// deviation.
 double update(Problem& problem, const Evaluation& optimum) {
   const auto pooled = pooled_rms(problem, optimum);
   double largest = 0.0;

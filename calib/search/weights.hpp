@@ -7,13 +7,13 @@
 
 namespace rigcal::calib {
 
-/// Where neither repeats nor the campaign tell the noise of a channel: takes it from the residuals
-/// of the fit, pooled over the conditions in which it is unknown, solves again from the optimum,
-/// and repeats until no standard deviation moves by more than a tenth. The tolerance of the
-/// simulations follows, unless the campaign fixes it. Not below Problem::least_sd(), so that no fit
-/// chases the errors of its own simulations; said in a warning. With known noise
-/// in other channels this sets their share right; model errors count as noise here, which is said
-/// in a warning.
+/// Estimates the noise of channels for which neither repeats nor the campaign give it. It is the
+/// residual of the fit, pooled over the conditions in which the noise is unknown. The fit is solved
+/// again from the optimum until no standard deviation changes by more than a tenth. The tolerance
+/// of the simulations follows, unless the campaign fixes it. An estimate is never below
+/// Problem::least_sd(), so that no fit follows the errors of its own simulations; a warning says
+/// so. If other channels have known noise, this sets the relative weight of the channels correctly;
+/// model errors then count as noise, which a warning says, too.
 ///
 /// @param problem  its estimated standard deviations, and its tolerance, are changed
 /// @param found    optimum and result are those of the last round

@@ -12,7 +12,7 @@ namespace {
 
 /// Bancroft and Han's (docs/uncertainty.md): keeps the coverage near 95 % whatever is true.
 constexpr double kPoolingLevel = 0.25;
-/// Where Fisher's F is that of infinitely many, to six digits.
+/// From here Fisher's F equals that of infinitely many degrees of freedom, to six digits.
 constexpr double kFreedomWithoutEnd = 1e6;
 /// Share of the squares from which one cause is named: a second one has a quarter of its at most.
 constexpr double kMostlyExplained = 0.8;
@@ -94,13 +94,13 @@ VectorXd effect_of(CauseEffects& effects, std::size_t condition, const std::stri
   return felt.size() > 0 ? VectorXd(felt.col(found - causes.begin())) : VectorXd();
 }
 
-/// Squares of deviations along a direction, and by what noise they would be as large on average.
+/// Squares of deviations along a direction, and the noise that would give the same on average.
 struct AlongCause {
   double squares = 0.0;
   double noise = 0.0;
 };
 
-/// Parts of a record that are taken for independent: nineteen degrees of freedom.
+/// Number of parts of a record that count as independent: nineteen degrees of freedom.
 constexpr Index kStretches = 20;
 
 AlongCause along(const VectorXd& direction, const MatrixXd& deviations) {
@@ -207,7 +207,7 @@ std::optional<LikelyDifference> likely_difference(CauseEffects& effects,
   std::vector<std::string> causes = effects.causes();
   causes.emplace_back("start");
   const auto count = static_cast<Index>(causes.size());
-  VectorXd explained = VectorXd::Zero(count);  // of the squares of all scores
+  VectorXd explained = VectorXd::Zero(count);  // part of the squares of all scores
   VectorXd size = VectorXd::Zero(count);
   double all = 0.0;
   for (std::size_t i = 0; i < scores.size(); ++i) {

@@ -17,14 +17,15 @@
 namespace rigcal::calib {
 namespace {
 
-/// Of so many the standard deviation is known to a sixth.
+/// From so many replicates the standard deviation is known to a sixth.
 constexpr std::size_t kLeastReplicates = 20;
-/// Two repeats differ from their mean by the same, but for the sign: nothing to draw from.
+/// Two repeats differ from their mean by the same amount with opposite signs, which leaves nothing
+/// to draw.
 constexpr std::size_t kLeastRepeats = 3;
 
 using Samples = std::vector<std::vector<double>>;  ///< per channel, samples that count
 
-/// What replicates of one condition are drawn from.
+/// Data from which the replicates of one condition are drawn.
 struct Source {
   Samples centre;                ///< record, or simulation
   std::vector<Samples> repeats;  ///< deviations, enlarged; empty: blocks of residuals
@@ -147,7 +148,8 @@ BootstrapSpread replicate_spread(std::vector<double> values, double estimate, do
   return {std::sqrt(squares / (count - 1.0)), mean - estimate, freedom, {end(0.025), end(0.975)}};
 }
 
-/// Satterthwaite's degrees of freedom of an unknown, from what each condition adds to its variance.
+/// Satterthwaite's degrees of freedom of an unknown, from the contributions of the conditions to
+/// its variance.
 double freedom_of(const Uncertainty& found, const std::vector<Source>& sources,
                   Eigen::Index unknown) {
   const Eigen::VectorXd c = found.root.row(unknown).transpose();
@@ -190,8 +192,8 @@ std::string drawn_from(const std::vector<Source>& sources) {
   return text;
 }
 
-/// Drops what lies beyond the replicate that reached a limit of evaluations: which of the later
-/// ones were made meanwhile depends on the threads.
+/// Drops the replicates after the one that reached a limit of evaluations: the number of threads
+/// decides which of them were made.
 void cut_at(const std::optional<long>& allowed, std::vector<long>& taken,
             std::vector<std::vector<double>>& values) {
   if (!allowed) return;

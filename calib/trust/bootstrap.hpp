@@ -19,25 +19,25 @@ std::size_t block_length(const metrics::Autoregression& noise, std::size_t sampl
 /// Bootstrap of a fit: every replicate is drawn anew and fitted from the optimum with the same
 /// weights.
 ///
-/// A condition whose record keeps its repeats (`Series::deviations`, at least 3) draws as many of
-/// them with replacement: record + mean of the deviations drawn. Nothing is assumed of the noise
-/// within a repeat, and what the model lacks stays as it is. R repeats show sqrt((R - 1) / R) of
-/// their spread, which is corrected.
+/// A condition whose record has its repeats (`Series::deviations`, at least 3) draws as many of
+/// them with replacement: record + mean of the drawn deviations. This assumes nothing about the
+/// noise within a repeat, and keeps the model error. R repeats show only sqrt((R - 1) / R) of their
+/// standard deviation, which is corrected.
 ///
-/// Any other condition is simulation + residuals drawn in circular blocks, all channels together;
-/// the residuals are enlarged by what the fit has taken from their variance. Here errors of the
-/// model count as noise.
+/// Any other condition is simulation + residuals drawn in circular blocks, all channels together.
+/// The residuals are enlarged by the part that the fit has removed from their variance. Model
+/// errors count as noise here.
 ///
-/// Intervals: percentiles, their distance from the estimate widened by the quantile of Student's t
-/// over that of the normal distribution. Degrees of freedom are Satterthwaite's over the
-/// conditions, R - 1 for each that has repeats. Enters the spread into `fit.parameters`, and how it
-/// was made, or why not, into `fit.bootstrap_message`. Random numbers depend on seed, replicate and
-/// condition alone.
+/// Intervals are percentiles; their distance from the estimate is widened by the quantile of
+/// Student's t over that of the normal distribution. Degrees of freedom are Satterthwaite's over
+/// the conditions, R - 1 for each with repeats. Enters the result into `fit.parameters`, and how it
+/// was made, or why not, into `fit.bootstrap_message`. Random numbers depend only on seed,
+/// replicate and condition.
 ///
 /// @param found   with scatter
 /// @param scores  of the problem's conditions at the optimum, in their order
-/// @param left  the budget of the whole job. A
-///                limit of evaluations ends it after the same replicate for any number of threads
+/// @param left  budget of the whole job; a limit of evaluations ends the bootstrap after the same
+///              replicate for any number of threads
 void bootstrap(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
                const std::vector<ConditionScore>& scores, const FitOptions& options, Fit& fit,
                Budget& left);

@@ -10,10 +10,10 @@
 
 namespace rigcal::calib {
 
-/// What the parameters by which repeats may differ do to the outputs of every condition: supply
-/// pressure and bulk modulus, as far as the plant has them and the campaign does not declare that
-/// they differ. A condition is simulated once, when it is first asked for: whether a cause is
-/// likely, and whether noise could look like it, are questions to the same simulation.
+/// Effects on the outputs of every condition of the parameters that may differ between repeats:
+/// supply pressure and bulk modulus, if the plant has them and the campaign does not declare them.
+/// A condition is simulated once, at the first request; the simulation answers both whether a cause
+/// is likely and whether noise could look like it.
 class CauseEffects {
  public:
   /// Borrows both.
@@ -22,12 +22,12 @@ class CauseEffects {
   const Problem& problem() const { return problem_; }
   /// Their keys.
   const std::vector<std::string>& causes() const { return causes_; }
-  /// Of each cause in a condition, SI.
+  /// Values of the causes in a condition, SI.
   std::vector<double> values(std::size_t condition) const;
   /// Change of the weighted outputs per SI unit, shape (channels * samples that count, causes);
   /// empty where the condition cannot be simulated.
   const Eigen::MatrixXd& of(std::size_t condition);
-  /// What recorded inputs explain of the deviations of the repeats (repeat_inputs.hpp).
+  /// Part of the repeats' deviations that recorded inputs explain (repeat_inputs.hpp).
   Eigen::MatrixXd explained_by_inputs(std::size_t condition) const;
 
  private:
@@ -35,7 +35,7 @@ class CauseEffects {
   std::span<const double> z_;
   std::vector<int> indices_;  ///< rows of the plant's table
   std::vector<std::string> causes_;
-  std::vector<std::optional<Eigen::MatrixXd>> effects_;  ///< of the conditions asked for so far
+  std::vector<std::optional<Eigen::MatrixXd>> effects_;  ///< for the conditions requested so far
 };
 
 }  // namespace rigcal::calib

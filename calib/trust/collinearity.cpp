@@ -13,9 +13,11 @@
 namespace rigcal::calib {
 namespace {
 
-/// From here a combination of two is known ten times as well as each (1 / sqrt(1 - r^2) = 7).
+/// Above this correlation the best combination of two estimates is known ten times as precisely as
+/// either of them (its variance is 1 - r).
 constexpr double kCombination = 0.99;
-/// From here the variance of one is five times what it would be with the other known.
+/// Above this correlation the variance of an estimate is five times what it would be if the other
+/// were known (1 / (1 - r^2)).
 constexpr double kMadeUp = 0.9;
 constexpr double kInflated = 10.0;
 

@@ -6,16 +6,16 @@
 
 namespace rigcal::calib {
 
-/// How much larger the variance of each estimate is than with all others known: the diagonal of the
+/// Variance of each estimate relative to its variance if all others were known: the diagonal of the
 /// inverse of the correlation (Belsley, Kuh, Welsch, Regression Diagnostics, 1980, 3.1). Pairs
-/// alone do not tell it: an estimate may be made up by several others together.
+/// alone do not show it: an estimate may depend on several others together.
 ///
 /// @param correlation  shape (n, n), finite
 /// @return             shape (n); infinite where the correlation is singular
 Eigen::VectorXd variance_inflation(const Eigen::MatrixXd& correlation);
 
-/// What may be said of how well estimates are told apart: the strongest pair, and every estimate
-/// whose variance is inflated more than tenfold. Empty with fewer than two.
+/// Describes how strongly estimates are correlated: the strongest pair, and every estimate whose
+/// variance is inflated more than tenfold. Empty for fewer than two estimates.
 ///
 /// @param names  shape (n)
 std::string collinearity_words(const std::vector<std::string>& names,

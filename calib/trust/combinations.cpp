@@ -17,7 +17,7 @@ namespace {
 constexpr double kMuchBetter = 1.0 / 3.0;
 /// A power this near a simple one, relative to it, is written as that: 0.52 as a square root.
 constexpr double kRoundedPower = 0.1;
-/// Outside, one of the two is all but alone in what is fixed.
+/// Outside this range the combination consists almost entirely of one of the two.
 constexpr double kLeastPower = 0.2;
 constexpr double kMostPower = 5.0;
 

@@ -75,7 +75,7 @@ void warn_of_priors(const Problem& problem, const std::vector<FittedParameter>& 
   }
 }
 
-/// Names in words what is not to be trusted about the parameters.
+/// Adds warnings about unreliable parameters.
 void warn_of_parameters(const Problem& problem, const std::vector<FittedParameter>& parameters,
                         Fit& fit) {
   std::vector<std::string> bounded;
@@ -93,8 +93,9 @@ void warn_of_parameters(const Problem& problem, const std::vector<FittedParamete
   if (!loose.empty()) fit.message += fmt::format("; not identifiable: {}", fmt::join(loose, ", "));
 }
 
-/// Akaike's and Schwarz's criteria. The noise is known, or was estimated from the residual: 2 cost
-/// is -2 ln(likelihood) but for a constant, of which correlated residuals tell only their share.
+/// Akaike's and Schwarz's criteria. The noise is known or was estimated from the residual, so 2
+/// cost is -2 ln(likelihood) except for a constant. Correlated residuals count by their independent
+/// fraction.
 void rate_model(const Uncertainty& spread, Fit& fit) {
   const double residuals = std::max(1.0, static_cast<double>(fit.residual_count));
   const double effective = spread.scatter.empty() ? residuals : spread.independent_residuals;
@@ -103,7 +104,7 @@ void rate_model(const Uncertainty& spread, Fit& fit) {
   fit.bic = weighed + spread.rank * std::log(std::max(1.0, effective));
 }
 
-/// What the residuals say of the noise, and of the intervals that rest on it.
+/// Judges the noise, and the intervals based on it, by the residuals.
 void judge_residuals(const Problem& problem, const OptimumCheck& check, const Uncertainty& spread,
                      Fit& fit) {
   fit.independent_residuals = spread.independent_residuals;
@@ -121,8 +122,8 @@ void judge_residuals(const Problem& problem, const OptimumCheck& check, const Un
   rate_model(spread, fit);
 }
 
-/// Says what would tell parameters that the records do not; the first few, since each is tried. Of
-/// those that a symmetry leaves open its own words tell.
+/// Adds measures that would determine parameters that the records leave open; the first few only,
+/// since each is tried. A symmetry has its own words.
 void add_remedies(const Problem& problem, const Evaluation& optimum,
                   const std::vector<std::size_t>& symmetric, const Uncertainty& spread,
                   std::vector<FittedParameter>& parameters) {
@@ -147,9 +148,10 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
   }
 }
 
-/// What is fixed where single parameters are not, and what would tell them.
+/// Adds the combinations that are determined where single parameters are not, and measures that
+/// would determine those.
 ///
-/// @return  the unknowns that a scaling symmetry leaves open
+/// @return  the unknowns that a scaling symmetry leaves undetermined
 std::vector<std::size_t> judge_identifiability(const Problem& problem, const Evaluation& optimum,
                                                const Uncertainty& spread, int threads, Fit& fit) {
   const double sigma = std::sqrt(std::max(1.0, spread.reduced_chi_square));

@@ -8,11 +8,11 @@
 
 namespace rigcal::calib {
 
-/// What the search has found, into a fit that has its starts and counters: parameters with
-/// intervals, how far starts agree, what identifies them and what would, tests of the residuals,
-/// correlation, and warnings of what is not to be trusted.
+/// Completes a fit that has its starts and counters: parameters with intervals, agreement of the
+/// starts, combinations and remedies, tests of the residuals, correlation, and warnings about
+/// unreliable results.
 ///
-/// @return  unknowns that a scaling symmetry leaves open
+/// @return  unknowns that a scaling symmetry leaves undetermined
 std::vector<std::size_t> describe_findings(const Problem& problem, const Evaluation& optimum,
                                            const OptimumCheck& check, const Uncertainty& spread,
                                            int threads, Fit& fit);

@@ -12,15 +12,17 @@
 namespace rigcal::calib {
 namespace {
 
-/// An interval as wide as the value to each side: not even its sign is told (docs/uncertainty.md).
+/// The interval is as wide as the value to each side: not even the sign is known
+/// (docs/uncertainty.md).
 constexpr double kNotIdentifiable = 1.0;
 /// Robust over plain error from which the residuals are called autocorrelated: the interval is
 /// then half as wide again, which a user would miss.
 constexpr double kRobustMatters = 1.5;
-/// Below this share of the noise residuals tell of the simulation or of a wrong `sd`, not of noise.
+/// Residuals below this fraction of the noise show errors of the simulation or a wrong `sd`, not
+/// noise.
 constexpr double kSuspiciouslySmall = 0.5;
-/// Student's t of two degrees of freedom has no variance: a robust error that is smaller than the
-/// plain one says nothing there.
+/// Student's t with two degrees of freedom has no variance: a robust error below the plain one
+/// means nothing there.
 constexpr double kLeastFreedom = 3.0;
 /// A partner is named where less than a fifth of the variance is a parameter's own (1 - 0.9^2).
 constexpr double kStrongCorrelation = 0.9;
@@ -63,7 +65,8 @@ std::string partner(const Problem& problem, const Uncertainty& found, std::size_
                      problem.name(static_cast<std::size_t>(best)));
 }
 
-/// Half width over value; beyond what is identifiable where the value is zero.
+/// Half width relative to the value; for a value of zero a number above the limit of
+/// identifiability.
 double share_of_value(double value, double half_width) {
   return value != 0.0 ? half_width / std::abs(value) : kNotIdentifiable * 2.0;
 }
@@ -72,8 +75,8 @@ void add_reason(FittedParameter& parameter, const std::string& text) {
   parameter.reason += parameter.reason.empty() ? text : "; " + text;
 }
 
-/// Grade and reason of a parameter that has an interval of this half width: by nothing but the
-/// interval and the value, so that wider bounds change neither.
+/// Grades a parameter by its value and the half width of its interval only, so that wider bounds
+/// change neither grade nor reason.
 void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown, double half_width,
            FittedParameter& parameter) {
   const Unknown& u = problem.map.unknowns()[unknown];
@@ -100,7 +103,8 @@ void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown
                             partner(problem, found, unknown));
 }
 
-/// As student_t() takes it; known variances have no end of it.
+/// Degrees of freedom as student_t() accepts them; infinitely many, with known variances, are
+/// capped.
 double degrees(double freedom) { return std::clamp(freedom, 1.0, metrics::kManyDegrees); }
 
 /// Half width of the 95 % interval, and on which error it rests.
@@ -129,7 +133,7 @@ double choose_interval(const Problem& problem, const Uncertainty& found, std::si
   return found.robust_quantile[unknown] * robust;
 }
 
-/// On which bound the estimate lies, and whether the cost presses against it.
+/// Describes the bound at which the estimate is, and whether the cost presses against it.
 void describe_bound(const Problem& problem, const OptimumCheck& check, std::size_t unknown,
                     FittedParameter& parameter) {
   const BoundSide side = check.side[unknown];
@@ -233,7 +237,7 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
 
 bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
                     const std::vector<double>& z, std::size_t unknown) {
-  constexpr double kMost = 0.7;  // of the error: half of the variance
+  constexpr double kMost = 0.7;  // fraction of the error: half of the variance
   const auto row = static_cast<Eigen::Index>(unknown);
   const auto& error = uncertainty.standard_error[unknown];
   if (!error || uncertainty.known.names.empty()) return false;

@@ -10,43 +10,43 @@
 
 namespace rigcal::calib {
 
-/// How well a value is known by the half width of its 95 % interval, as describe_unknowns() says.
+/// Grades a value by the half width of its 95 % interval (see describe_unknowns()).
 ///
-/// @param arbitrary_zero  zero lies within its range like any other value: offsets, initial
-///                           states, bounds of both signs
+/// @param arbitrary_zero  zero is a value like any other in its range: offsets, initial states,
+///                        bounds of both signs
 Identifiability grade_of(const model::ParameterSpec& spec, double value, double half_width,
                          bool arbitrary_zero);
 
-/// The unknowns of a solved problem as results: values, errors, intervals, bounds and how well each
-/// is identified, in words where it is not.
+/// Describes the unknowns of a solved problem: values, errors, intervals, bounds and grades, with
+/// reasons where a grade is poor.
 ///
-/// Interval: value +- t SE, cut at the limits beyond which the parameter makes no sense; with the
-/// robust error, and with the plain one where residuals are below half of what the noise is known
-/// to be, or too few to tell their own correlation. Half width above 20 % of the value: weak; above
-/// 100 %, or no standard error: not identifiable. Where the value may be zero (leakage, friction,
-/// optional terms; offsets, initial states and bounds of both signs) an interval that holds zero
-/// makes it bounded instead: it is not significantly different from zero, and the interval is what
-/// is known. None of this depends on the bounds.
+/// The interval is value +- t SE, cut at the limits beyond which the parameter makes no sense. SE
+/// is the robust error; it is the plain one if the residuals are below half of the known noise, or
+/// too few to show their own correlation. A half width above 20 % of the value is weak; above 100
+/// %, or without standard error, the parameter is not identifiable. If the value may be zero
+/// (leakage, friction, optional terms; offsets, initial states and bounds of both signs), an
+/// interval that includes zero makes it bounded instead: it is not significantly different from
+/// zero, and only the interval is known. None of this depends on the bounds.
 std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Evaluation& optimum,
                                                const OptimumCheck& check,
                                                const Uncertainty& uncertainty);
 
-/// "half width of the 95 % interval is 37 % of the value".
+/// Returns, for example, "half width of the 95 % interval is 37 % of the value".
 ///
-/// @param share  half width over the value
+/// @param share  half width divided by value
 std::string half_width_words(double share);
 
-/// Of a search that was stopped before it converged: no estimate is graded by the derivatives at a
-/// point that is no minimum.
+/// Removes the grades after a search that was stopped before it converged: the derivatives at a
+/// point that is no minimum cannot grade an estimate.
 void withhold_grades(std::vector<FittedParameter>& parameters);
 
-/// Whether most of a standard error is what known values leave uncertain, not what the records do.
+/// Whether most of a standard error comes from uncertain known values, not from the records.
 bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
                     const std::vector<double>& z, std::size_t unknown);
 
-/// What the campaign knows: its other settings, and values of leak levels and conditions.
+/// Known values of the campaign: its other settings, and values of leak levels and conditions.
 ///
-/// @param values  of an earlier fit, which stand in for those of the campaign; null: none
+/// @param values  of an earlier fit, which replace those of the campaign; null: none
 std::vector<FittedParameter> describe_known(
     const Problem& problem, const std::vector<datasets::FittedValue>* values = nullptr);
 

@@ -17,7 +17,7 @@ namespace {
 /// Part in an undetermined direction from which a parameter is lost with it, as in uncertainty().
 constexpr double kLost = 0.1;
 constexpr double kTriedPrior = 0.05;      // relative standard deviation of a prior that is tried
-constexpr double kPressureNoise = 0.003;  // of the supply pressure, that of a plain sensor
+constexpr double kPressureNoise = 0.003;  // fraction of the supply pressure; a plain sensor
 /// A record that is tried: half a period of the slowest signal, at 1 kHz or less.
 constexpr double kTriedSeconds = 5.0;
 constexpr std::size_t kMostSamples = 5000;
@@ -116,7 +116,7 @@ void try_signals(const Problem& problem, std::span<const double> z, const Eigen:
     times.push_back(step_s * static_cast<double>(times.size()));
   const ProblemChannel& channel = condition.channels.front();
   for (const double frequency_hz : {0.1, 1.0, 10.0}) {
-    // No faster than what the rig was seen to do.
+    // Limits the speed to the largest observed one.
     const double amplitude = *c.amplitude * std::min(1.0, *c.frequency_hz / frequency_hz);
     for (const bool square : {false, true}) {
       model::SimulationInputs inputs = condition.inputs;

@@ -10,9 +10,9 @@
 
 namespace rigcal::calib {
 
-/// What a Jacobian of weighted residuals (rows any, one column per unknown, unit box) tells of each
-/// unknown: Cramer-Rao standard deviation, SI, white noise, all unknowns free. Empty where it takes
-/// part in a direction that the rows do not determine.
+/// Cramer-Rao standard deviation of each unknown, SI, from a Jacobian of weighted residuals (any
+/// number of rows, one column per unknown, unit box), for white noise and all unknowns free. Empty
+/// if it takes part in a direction that the rows do not determine.
 std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<const double> z,
                                               const Eigen::MatrixXd& jacobian);
 
@@ -20,10 +20,11 @@ std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<
 /// without one, or where the value is 0.
 std::optional<double> relative_half_width(const std::optional<double>& sd, double value);
 
-/// What would tell unknowns that the records do not: for each target the simplest additions that
-/// bring its interval below 20 % of the value, in words: "a prior on mass_kg (5 %)", "a recorded
-/// load pressure", "a square wave of 10 Hz" (the first two priors, the slowest signal). Each is
-/// tried alone, by simulation at z. Empty where none of them would do.
+/// Suggests additions that would determine unknowns which the records leave open. For each target
+/// it gives the simplest additions that bring its interval below 20 % of the value, in words: "a
+/// prior on mass_kg (5 %)", "a recorded load pressure", "a square wave of 10 Hz" (the first two
+/// priors, the slowest signal). Each is tried alone, by simulation at z. Empty if none is
+/// sufficient.
 ///
 /// @param jacobian  of all conditions and priors
 std::vector<std::string> remedies(const Problem& problem, std::span<const double> z,

@@ -28,7 +28,7 @@ double skewness(double value, const std::pair<double, double>& interval) {
   return std::max(below / above, above / below);
 }
 
-/// Both ends with as many digits as tell them apart.
+/// Both ends with enough digits to distinguish them.
 std::string ends_text(const std::pair<double, double>& interval, std::string_view unit) {
   const double size = std::max(std::abs(interval.first), std::abs(interval.second));
   const double share = width(interval) > 0.0 ? size / width(interval) : 1.0;
@@ -37,7 +37,8 @@ std::string ends_text(const std::pair<double, double>& interval, std::string_vie
                      unit == "1" ? "" : " ", unit == "1" ? "" : unit);
 }
 
-/// Where profile or bootstrap of a parameter say otherwise than `ci95`, and which to use.
+/// Compares profile and bootstrap of a parameter with `ci95` and names the interval to use if they
+/// differ.
 std::string other_interval(const FittedParameter& parameter, std::string_view unit, bool misfit) {
   if (parameter.profile && parameter.profile->low.value && parameter.profile->high.value) {
     const std::pair ends{*parameter.profile->low.value, *parameter.profile->high.value};
@@ -56,7 +57,7 @@ std::string other_interval(const FittedParameter& parameter, std::string_view un
   if (skewness(parameter.value, drawn) > 2.0 * kAgrees)
     return fmt::format("use the interval of the bootstrap, {}: it is skewed",
                        ends_text(drawn, unit));
-  // Few repeats know their own scatter badly: a variance of f degrees of freedom to sqrt(2 / f).
+  // With few repeats their variance is uncertain: with f degrees of freedom by sqrt(2 / f).
   const double chance = 2.0 / std::sqrt(2.0 * std::max(1.0, parameter.bootstrap->freedom));
   if (ratio * (kAgrees + chance) < 1.0) {
     return fmt::format("the bootstrap is {:.2g} times as wide; use `ci95`{}", ratio,

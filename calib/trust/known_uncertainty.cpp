@@ -11,16 +11,16 @@
 namespace rigcal::calib {
 namespace {
 
-/// One thing that is known with a stated uncertainty.
+/// Known value with a stated uncertainty.
 struct Known {
-  std::string name;  ///< as messages call it
+  std::string name;  ///< name in messages
   int index = 0;     ///< row of the parameter table
   double sd = 0.0;   ///< SI
   bool of_sensor = false;
 };
 
-/// What the certificates of the sensors leave open of a channel: the same as a prior of its gain or
-/// offset, unless these are estimated or have one.
+/// Adds the uncertainty of a channel's sensor as a prior of its gain and offset, unless these are
+/// estimated or have a prior.
 void add_sensor(const Problem& problem, const datasets::ChannelSetting& channel,
                 std::vector<Known>& result) {
   const auto key = datasets::info(channel.channel).key;
@@ -63,7 +63,8 @@ Eigen::MatrixXd known_rows(const Problem& problem, std::size_t i, std::span<cons
   if (rows.size() == 0) return rows;
   for (std::size_t p = 0; p < values.size(); ++p) {
     const Known& each = values[p];
-    // A prior is that of the rig's value; a certificate is that of the sensor, wherever it is used.
+    // A prior belongs to the value of the rig, so a condition with its own value is exempt. A
+    // certificate belongs to the sensor and applies to all conditions.
     const bool own = !each.of_sensor &&
                      known_in(*problem.campaign, *problem.conditions[i].condition, each.index);
     rows.col(static_cast<Eigen::Index>(p)) *= own ? 0.0 : each.sd;

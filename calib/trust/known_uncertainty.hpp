@@ -9,9 +9,9 @@
 
 namespace rigcal::calib {
 
-/// Known values whose uncertainty the campaign states (`prior` and `prior_sd` of a parameter that
-/// is not fitted; `gain_sd` and `offset_sd` of a channel that is compared, which are those of its
-/// sensor's gain and offset), and what it does to the estimates.
+/// Known values with a stated uncertainty, and its effect on the estimates: `prior` and `prior_sd`
+/// of a parameter that is not fitted; `gain_sd` and `offset_sd` of a compared channel, for the gain
+/// and offset of its sensor.
 struct KnownUncertainty {
   std::vector<std::string> names;
   /// Change of the unknowns in the unit box per standard deviation of each, to first order:
@@ -19,7 +19,7 @@ struct KnownUncertainty {
   Eigen::MatrixXd response;
 };
 
-/// What they are called in messages.
+/// Names of these values in messages.
 std::vector<std::string> uncertain_names(const Problem& problem);
 
 /// Weighted sensitivities of one condition to parameters that are known in it: shape (channels *

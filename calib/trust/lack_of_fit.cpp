@@ -12,7 +12,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// A residual twice as large as the noise: what a test that passes must be able to tell.
+/// A test that passes must be able to detect a residual twice as large as the noise.
 constexpr double kLargestUsefulRatio = 4.0;
 
 /// 1 + 2 sum rho_h^2: by how much correlation thins a sum of squares out.
@@ -34,8 +34,8 @@ double exceedance(double ratio, const LackOfFit& test) {
   return metrics::fisher_f_exceedance(ratio, test.freedom, test.pure_freedom);
 }
 
-/// F's level holds for few degrees of freedom too, so that a rejection counts always. A test passes
-/// only where it could have rejected kLargestUsefulRatio.
+/// The level of F is valid for few degrees of freedom, too, so a rejection always counts. A test
+/// passes only if it could have rejected kLargestUsefulRatio.
 metrics::Judged judged(const LackOfFit& test, double level) {
   using metrics::TestOutcome;
   if (test.p < level) return {TestOutcome::failed, {}};

@@ -12,22 +12,22 @@ namespace rigcal::calib {
 
 /// Compares the residual of every channel of known noise with its pure error: F = variance of the
 /// residual / variance of the mean of the repeats. Both come from records that are correlated in
-/// time, so each sum of n squares counts n / (1 + 2 sum rho_h^2) degrees of freedom, rho_h the
-/// autocorrelation of the residual (Bartlett; that of the noise too if the model is right), times
-/// repeats - 1 for the pure error; without end where the campaign's `sd` tells it. The variance of
-/// the residual is that of its noise model, corrected for what the fit has removed.
+/// time. A sum of n squares therefore counts n / (1 + 2 sum rho_h^2) degrees of freedom, with the
+/// autocorrelation rho_h of the residual (Bartlett; it is that of the noise, too, if the model is
+/// right). For the pure error this is multiplied by repeats - 1; it is infinite if the campaign
+/// states `sd`. The variance of the residual is that of its noise model, corrected for the part
+/// that the fit has removed.
 ///
-/// A test has passed where a residual of twice the size of the noise would have failed it.
+/// A test has passed if a residual of twice the noise would have failed it.
 ///
-/// @param found  with scatter; without, there is no test
+/// @param found  with scatter; without it there is no test
 std::vector<LackOfFit> lack_of_fit(const Problem& problem, const Uncertainty& found);
 
-/// The same test of a prediction, from which no parameter was estimated: mean square of the
-/// residual over the variance of the mean of the repeats.
+/// The same test for a prediction, from which no parameter was estimated: mean square of the
+/// residual divided by the variance of the mean of the repeats.
 ///
-/// @param residual  shape (samples that count), measured - simulated, SI
-/// @return  not judged yet; empty where nothing tells the noise of the channel, or the residual is
-///          zero
+/// @param residual  shape (samples in windows), measured - simulated, SI
+/// @return  not judged yet; empty if the noise of the channel is unknown, or the residual is zero
 std::optional<LackOfFit> lack_of_prediction(const ProblemCondition& condition,
                                             const ProblemChannel& channel,
                                             std::span<const double> residual);

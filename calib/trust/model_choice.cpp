@@ -13,7 +13,7 @@ namespace rigcal::calib {
 
 namespace {
 
-/// Variance of what a model leaves, in units of its weights, per independent residual.
+/// Residual variance of a model, in units of its weights, per independent residual.
 struct Noise {
   double variance = 0.0;
   double independent_residuals = 1.0;

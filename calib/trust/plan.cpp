@@ -120,7 +120,8 @@ Eigen::MatrixXd jacobian_of(const Problem& problem, const Evaluation& at,
   return total.get();
 }
 
-/// The smoothing of the orifice roots alone tells what a scaling symmetry leaves open: no physics.
+/// Only the smoothing of the orifice roots determines what a scaling symmetry leaves open, and that
+/// is no physics.
 void leave_open(std::size_t unknown, Plan& plan) {
   plan.recorded[unknown].reset();
   plan.all[unknown].reset();

@@ -9,29 +9,29 @@
 
 namespace rigcal::calib {
 
-/// What one record tells, or would tell.
+/// Information in one record, existing or planned.
 struct PlannedRecord {
   std::string condition;
-  bool recorded = false;                     ///< false: planned, simulated only
-  std::string problem;                       ///< why nothing is known of it; empty if something is
-  std::vector<std::optional<double>> alone;  ///< sd of each unknown from this record alone, SI
+  bool recorded = false;                       ///< false: planned, simulated only
+  std::string problem;                         ///< why nothing is known of it; else empty
+  std::vector<std::optional<double>> alone;    ///< sd of each unknown from this record alone, SI
   std::vector<std::optional<double>> without;  ///< and from all records but this
 };
 
-/// Cramer-Rao standard deviations at given values: white noise, the model right, every unknown
-/// free. What a fit reaches is rather worse.
+/// Cramer-Rao standard deviations at given values: white noise, a correct model, every unknown
+/// free. A real fit is less precise.
 struct Plan {
   std::vector<FittedParameter> parameters;      ///< value and bounds of each unknown, no errors
   std::vector<std::optional<double>> recorded;  ///< sd from all records that exist
   std::vector<std::optional<double>> all;       ///< and with the planned ones
   std::vector<PlannedRecord> records;
-  std::vector<std::string> remedies;  ///< per unknown: what would tell it, in words; may be empty
-  std::vector<std::string> messages;  ///< what is fixed in combination, symmetries, what to add
+  std::vector<std::string> remedies;  ///< per unknown: what would determine it; may be empty
+  std::vector<std::string> messages;  ///< determined combinations, symmetries, suggested additions
 };
 
 /// Conditions of use `fit` or `validate` without a record, but with duration and sample rate, are
-/// planned ones. Their noise is the channel's `sd`, that of [synthetic] over its repeats, or that
-/// of the records.
+/// planned ones. Their noise is the channel's `sd`, that of [synthetic] divided by the root of its
+/// repeats, or that of the records.
 ///
 /// @param values  of an earlier fit, or null: the campaign's own
 /// @throws InputError  nothing is free, no condition, or a planned one of unknown noise

@@ -21,7 +21,7 @@ Eigen::MatrixXd long_run_covariance(const Problem& problem, std::span<const doub
   return sum;
 }
 
-/// Whether an estimate of the fit acts in a condition, known values of its own aside.
+/// Whether an estimate of the fit acts in a condition that has no known value of its own.
 bool acts(const Problem& problem, const ProblemCondition& condition,
           const EstimateSpread::Estimate& estimate) {
   if (known_in(*problem.campaign, *condition.condition, estimate.index)) return false;
@@ -44,7 +44,7 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
   for (std::size_t j = 0; j < spread.estimates.size(); ++j) {
     const int index = spread.estimates[j].index;
     if (!acts(problem, condition, spread.estimates[j])) continue;
-    // A value of the condition or level goes before that of the rig: it stands behind it here.
+    // A value of the condition or level replaces that of the rig, and comes after it here.
     const auto same = std::find(free.begin(), free.end(), index);
     if (same == free.end()) {
       free.push_back(index);

@@ -12,12 +12,12 @@
 
 namespace rigcal::calib {
 
-/// The covariance of a fit's estimates: that of the scatter of its residuals (sandwich), where
-/// there is one, else sigma^2 (J^T J)^-1; with the uncertainty of known values. It is widened, as a
-/// whole so that correlations stay, until 1.96 standard deviations of no estimate are less than the
-/// half width of its 95 % interval by the same error: intervals that rest on the difference of
-/// repeats or on few degrees of freedom are wider. Directions that the data do not determine have
-/// the spread of the least singular value that would count.
+/// The covariance of a fit's estimates, including the uncertainty of known values. It is the
+/// sandwich of the score covariance if that exists, else sigma^2 (J^T J)^-1. It is widened by one
+/// factor, so that correlations stay, until 1.96 standard deviations of every estimate reach the
+/// half width of its 95 % interval: intervals from differences between repeats, or with few degrees
+/// of freedom, are wider. Directions that the data do not determine get the standard deviation of
+/// the least singular value that would count.
 EstimateSpread estimate_spread(const Problem& problem, std::span<const double> z,
                                const Uncertainty& uncertainty);
 
@@ -30,11 +30,11 @@ EstimateSpread estimate_spread(const Problem& problem, std::span<const double> z
 std::vector<double> prediction_sd(const Eigen::MatrixXd& gradient, const Eigen::MatrixXd& root,
                                   double noise_sd);
 
-/// Adds to each scored condition what a measurement is expected to scatter by about the simulation:
-/// the estimates' uncertainty, to first order, and the noise of the record. 95 % of the samples lie
-/// within 1.96 of it where the model is right. What is estimated from a condition's own record
-/// alone counts as known there, unless it is among the estimates. A condition whose sensitivities
-/// cannot be simulated gets none.
+/// Adds to each scored condition the expected standard deviation of a measurement about the
+/// simulation: the uncertainty of the estimates, to first order, and the noise of the record. If
+/// the model is right, 95 % of the samples are within 1.96 of them. Values that are estimated only
+/// from the record of a condition count as known there, unless they are among the estimates. A
+/// condition whose sensitivities cannot be simulated gets none.
 ///
 /// @param z       of `problem`, shape (its unknowns)
 /// @param scores  of the problem's conditions, in their order

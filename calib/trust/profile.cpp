@@ -29,14 +29,14 @@ namespace {
 /// First step where no interval suggests one, and the least, as a share of the box.
 constexpr double kFirstStep = 0.05;
 constexpr double kLeastStep = 1e-6;
-/// As many take a step of a four-thousandth of the box across it.
+/// So many doublings take a step of a four-thousandth of the box across it.
 constexpr int kMostDoublings = 12;
 /// Halvings alone would come from a doubled step to within kCrossing in six.
 constexpr int kMostRefinements = 8;
-/// How often a step is made shorter where there is no fit, and by what.
+/// How often a step is shortened where no fit converges, and by which factor.
 constexpr int kMostShortened = 4;
 constexpr double kShorter = 8.0;
-/// How near a crossing is found, relative to its distance from the optimum.
+/// Tolerance of a crossing, relative to its distance from the optimum.
 constexpr double kCrossing = 0.02;
 /// A rise below minus this share of the threshold, about one standard error: the fit was not at its
 /// minimum. Less may be the error of simulations, which differs from point to point.
@@ -156,8 +156,8 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
   for (int i = 0; i < kMostDoublings && inside != bound; ++i) {
     outside = std::clamp(inside + side * step, 0.0, 1.0);
     outside_rise = follower.rise(outside);
-    // Too far for a fit from the point before, as where the interval holds more than the records
-    // say.
+    // The step was too long for a fit from the point before, as when the interval includes more
+    // than the records.
     for (int k = 0; k < kMostShortened && !outside_rise && !follower.cancelled(); ++k) {
       step /= kShorter;
       outside = std::clamp(inside + side * step, 0.0, 1.0);
@@ -219,7 +219,7 @@ double first_step(const Problem& problem, std::size_t unknown, double z0,
   return std::clamp(metrics::kNormal95 * error / slope, kLeastStep, 0.5);
 }
 
-/// Of which the budget allowed nothing but the optimum.
+/// A profile of the optimum alone, where the budget allowed no more.
 Profile not_made(double value) {
   Profile profile;
   profile.low = {{}, value, true};
@@ -283,7 +283,7 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     parameter.profile = not_made(parameter.value);
     if (!results[j].bytes.empty()) from_bytes(results[j].bytes, taken[j], *parameter.profile);
   }
-  // Which profiles were made beyond the one that reached a limit depends on the threads.
+  // The number of threads decides which profiles were made beyond the one that reached a limit.
   long sum = 0;
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     FittedParameter& parameter = fit.parameters[j];
@@ -310,7 +310,7 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
     if (profile.low.value && profile.high.value) continue;
     const model::ParameterSpec& spec = model::parameter_table(
         problem.campaign->rig.plant)[static_cast<std::size_t>(unknowns[j].index)];
-    // Up to a limit of the parameter itself, such as no leakage at all, nothing is left open.
+    // A profile that reaches a limit of the parameter itself, such as zero leakage, is complete.
     const bool below = !profile.low.value && !profile.low.lost && unknowns[j].lower > spec.lower;
     const bool above = !profile.high.value && !profile.high.lost && unknowns[j].upper < spec.upper;
     if (!below && !above) continue;
@@ -319,7 +319,8 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
                     below && above ? "on both sides" : (above ? "above" : "below"),
                     profile.low.value.value_or(profile.low.reached), unit,
                     profile.high.value.value_or(profile.high.reached), unit));
-    // A bound within `ci95` cuts off what the records tell; beyond it they tell less than it says.
+    // A bound within `ci95` cuts off what the records determine; beyond it they determine less than
+    // `ci95` states.
     const double half_width = parameter.ci95 ? std::max(parameter.ci95->second - parameter.value,
                                                         parameter.value - parameter.ci95->first)
                                              : 0.0;

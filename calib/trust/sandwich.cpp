@@ -70,8 +70,8 @@ double lagged(const RowMajor& a, const RowMajor& b, Index lag) {
   return a.topRows(a.rows() - lag).cwiseProduct(b.bottomRows(b.rows() - lag)).sum();
 }
 
-/// By how much the fit has made the autocovariances of the residuals too small, if `noise` is what
-/// they come from and `total` the covariance of the whole score.
+/// Bias of the residuals' autocovariances due to the fit, if `noise` is their model and `total` the
+/// covariance of the whole score.
 std::vector<double> bias(const ChannelRows& rows, const Autoregression& noise,
                          const MatrixXd& total, Index lags) {
   const RowMajor& Q = rows.jacobian;
@@ -86,13 +86,13 @@ std::vector<double> bias(const ChannelRows& rows, const Autoregression& noise,
   return result;
 }
 
-/// Covariance of the score of one channel if `noise` is what its residuals come from.
+/// Covariance of the score of one channel if `noise` is the model of its residuals.
 MatrixXd expected(const ChannelRows& rows, const Autoregression& noise) {
   const RowMajor filtered = backwards(noise, rows.jacobian);
   return noise.variance * filtered.transpose() * filtered;
 }
 
-/// The noise of one channel, before what the fit has removed is known.
+/// The noise of one channel, before the part that the fit has removed is known.
 struct ChannelNoise {
   std::size_t condition = 0;
   Index channel = 0;
@@ -109,15 +109,16 @@ std::vector<ChannelNoise> channels_of(const std::vector<ScoreRows>& rows) {
   return channels;
 }
 
-/// In the order of the channels, whichever of them was made first.
+/// Adds in the order of the channels, whichever was computed first.
 MatrixXd total_of(const MatrixXd& priors, const std::vector<ChannelNoise>& channels) {
   MatrixXd total = priors;
   for (const ChannelNoise& each : channels) total += each.expected;
   return total;
 }
 
-/// Autoregressions of all channels, corrected for what the fit has removed. The rows of a channel
-/// are taken twice: those of all of them at once would be the most memory that a fit holds.
+/// Autoregressions of all channels, corrected for the part that the fit has removed. The rows of a
+/// channel are computed twice, since those of all channels together would be the largest memory of
+/// a fit.
 std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows, const MatrixXd& priors,
                                        int threads) {
   std::vector<ChannelNoise> channels = channels_of(rows);
@@ -137,7 +138,7 @@ std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows, const
     const ChannelRows own = channel_rows(rows[each.condition], each.channel);
     std::vector<double>& gamma = each.gamma;
     const auto removed = bias(own, each.noise, total, static_cast<Index>(gamma.size()) - 1);
-    // More than half taken away: the fit has left too little to tell the noise by.
+    // The fit has removed more than half, so too little is left to determine the noise.
     if (removed.front() < 0.5 * (gamma.front() + removed.front())) {
       for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
       // Far from an optimum residuals are not the noise that the correction supposes.
@@ -186,8 +187,8 @@ MatrixXd kernel_covariance(const RowMajor& scores, double width) {
   return sum;
 }
 
-/// What the channels of a condition add up to, each of shape (samples, directions or
-/// combinations). The records are long: these and two more of the kind are held at a time.
+/// Sums over the channels of a condition, each of shape (samples, directions or combinations).
+/// Records are long: these and two more of their kind are in memory at a time.
 struct ChannelSums {
   RowMajor scores;   ///< contributions of the samples to the score
   RowMajor weights;  ///< variance of each combination of them
@@ -291,7 +292,7 @@ RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const M
 }
 
 double RobustVariance::quantile() const {
-  constexpr double kMostOwn = 0.9;      // else nothing would be left to divide by
+  constexpr double kMostOwn = 0.9;      // limit that keeps the divisor away from zero
   constexpr double kMostFreedom = 1e9;  // Student's t is the normal distribution there
   const double share = std::clamp(own, 0.0, kMostOwn);
   const double rest = 1.0 - share;

@@ -18,15 +18,15 @@ struct ScoreRows {
   Eigen::Index channels = 1;
 };
 
-/// What one condition adds to the long-run covariance of the score J^T r.
+/// Contribution of one condition to the long-run covariance of the score J^T r.
 struct ScoreScatter {
   Eigen::MatrixXd covariance;  ///< shape (directions)^2, positive semidefinite
-  Eigen::VectorXd freedom;     ///< with which its variance of each combination is known
-  /// What the error of each combination itself adds to that variance where it is one standard error
-  /// large, over the expected variance of all conditions; empty: nothing.
+  Eigen::VectorXd freedom;     ///< degrees of freedom of its variance of each combination
+  /// Contribution of the error of each combination to that variance if the error is one standard
+  /// error, divided by the expected variance of all conditions; empty: none.
   Eigen::VectorXd own;
-  std::vector<metrics::Autoregression> noise;  ///< of the weighted residuals, per channel
-  double independent_residuals = 0.0;          ///< of all channels
+  std::vector<metrics::Autoregression> noise;  ///< models of the weighted residuals, per channel
+  double independent_residuals = 0.0;          ///< sum over all channels
 };
 
 /// Covariance of the score of every condition where residuals may be correlated in time and between
@@ -35,20 +35,22 @@ struct ScoreScatter {
 ///
 /// An autoregression, of an order that the data choose, whitens the residuals of each channel:
 /// r = L u with L unit lower triangular, hence J^T r = (L^T J)^T u exactly. The contributions
-/// (L^T J)_t u_t of the samples, summed over channels, are all but uncorrelated; what correlation
-/// is left is taken in by a Parzen kernel of Andrews' automatic bandwidth. Whitening the residuals
-/// rather than the scores keeps the changing Jacobian out of the estimate of the correlation.
+/// (L^T J)_t u_t of the samples, summed over channels, are nearly uncorrelated. A Parzen kernel
+/// with Andrews' automatic bandwidth accounts for the remaining correlation. The residuals are
+/// whitened, not the scores, so that the changing Jacobian does not enter the estimate of the
+/// correlation.
 ///
-/// The fit has removed a part of the noise, most of it slow, where the Jacobian lives: the
-/// autocovariances are corrected by the bias that (I - H) Sigma (I - H) has at the covariance
-/// Sigma found, H = J J^T.
+/// The fit has removed a part of the noise, mostly slow, in the space of the Jacobian. The
+/// autocovariances are corrected by the bias of (I - H) Sigma (I - H) at the covariance Sigma
+/// found, H = J J^T.
 ///
-/// Degrees of freedom: Satterthwaite's, from the scatter of a sum of squares with the weights of
+/// Degrees of freedom: Satterthwaite's, from the variance of a sum of squares with the weights of
 /// each combination, and 4 / independent residuals of a whitened long-run variance.
 ///
-/// Under correlated noise least squares is not the best estimate, and the residuals still hold a
-/// part of its error: what is far from its truth also looks uncertain. `own` is how much, by the
-/// covariance of u with the error, (I - H) Sigma J c whitened, through the same kernel.
+/// Under correlated noise least squares is not the best estimate, and the residuals still contain a
+/// part of its error: an estimate far from the truth also looks uncertain. `own` is the size of
+/// this part, from the covariance of u with the error, (I - H) Sigma J c whitened, with the same
+/// kernel.
 ///
 /// @param rows          all conditions of the fit
 /// @param priors        J^T J of the priors, whose errors have the variance that they state
@@ -60,17 +62,18 @@ std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
 /// Variance c^T (sum of all covariances + priors) c of a combination.
 struct RobustVariance {
   double variance = 0.0;
-  double freedom = 0.0;  ///< Satterthwaite's over the conditions; infinite if the priors tell all
-  double own = 0.0;  ///< share b of the variance that the error of the combination itself makes up
+  double freedom = 0.0;  ///< Satterthwaite's; infinite if only priors contribute
+  double own = 0.0;      ///< fraction b of the variance due to the error of the combination itself
 
-  /// Half width of the 95 % interval over the root of the variance. With the error z sigma and the
-  /// variance sigma^2 ((1 - b) chi^2_f / f + b z^2), z standard normal, |error| > q root(variance)
-  /// just where |z| root(f) / chi_f > t, q^2 = t^2 / (1 - b + b t^2): Student's t for b = 0, and
-  /// less where the error widens its own interval. f is `freedom` without the scatter of z^2.
+  /// Half width of the 95 % interval divided by the root of the variance. With the error z sigma
+  /// and the variance sigma^2 ((1 - b) chi^2_f / f + b z^2), z standard normal, |error| > q
+  /// root(variance) exactly if |z| root(f) / chi_f > t, with q^2 = t^2 / (1 - b + b t^2). That is
+  /// Student's t for b = 0, and less if the error widens its own interval. f is `freedom` without
+  /// the variance of z^2.
   double quantile() const;
 };
 
-/// 97.5 % quantile of Student's t; freedom below 1 counts as 1.
+/// 97.5 % quantile of Student's t; degrees of freedom below 1 count as 1.
 double student_t(double freedom);
 
 RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter,

@@ -42,7 +42,7 @@ std::vector<std::string> known_and_scaled(const Problem& problem) {
   }
   std::vector<std::string> names;
   for (const std::size_t row : rows) names.emplace_back(table[row].name);
-  // Air in the oil compares pressures with that of the atmosphere, which nobody scales.
+  // Air in the oil relates pressures to that of the atmosphere, which cannot be scaled.
   const int air = model::parameter_index(problem.campaign->rig.plant, "air_fraction");
   const bool holds_air =
       air >= 0 && std::any_of(problem.conditions.begin(), problem.conditions.end(),
@@ -134,7 +134,8 @@ std::optional<ScalingSymmetry> scaling_symmetry(const Problem& problem, std::spa
       continue;
     result.unknowns.push_back(j);
   }
-  // A known supply pressure fixes s through the orifices: what is open then, the Jacobian tells.
+  // A known supply pressure fixes s through the orifices; the Jacobian then shows what is
+  // undetermined.
   if (result.unknowns.size() < 2 || !takes_part(problem, result, kSupply)) return std::nullopt;
   result.known = known_and_scaled(problem);
   const double felt = felt_when_scaled(problem, z, result.unknowns, threads);
@@ -185,7 +186,7 @@ void grade_symmetric(const Problem& problem, const ScalingSymmetry& symmetry,
     FittedParameter& each = parameters[j];
     if (each.nuisance) continue;
     each.identifiability = Identifiability::not_identifiable;
-    // What was said of an interval goes with it.
+    // The words about an interval go with the interval.
     const std::string known = each.standard_error || each.reason.empty() ? "" : "; " + each.reason;
     each.standard_error.reset();
     each.robust_standard_error.reset();

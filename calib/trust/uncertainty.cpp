@@ -16,8 +16,8 @@
 namespace rigcal::calib {
 namespace {
 
-/// Share of a null direction above which a parameter counts as part of it: in what the outputs feel
-/// of it, or in how far it moves in the box against the one that moves most.
+/// A parameter belongs to a null direction above this fraction: of the effect on the outputs, or of
+/// the motion in the box relative to the largest one.
 constexpr double kFelt = 0.1;
 constexpr double kMoves = 0.05;
 /// Significance level of a difference between repeats whose cause can be named: it is looked for in

@@ -13,47 +13,47 @@
 
 namespace rigcal::calib {
 
-/// How much is made of the point where a search ended.
+/// How thoroughly the end of a search is examined.
 enum class Detail {
   full,
-  /// Nothing that takes further simulations, or passes over all residuals: of a point that is no
-  /// minimum, where somebody waits for the end.
+  /// Skips everything that needs further simulations, or another pass over all residuals: for a
+  /// point that is no minimum, while the user waits for the end.
   plain,
 };
 
-/// How far the unknowns are determined at an optimum.
+/// Uncertainty of the unknowns at an optimum.
 struct Uncertainty {
   Detail detail = Detail::full;
   /// SI; absent for an unknown that takes part in a combination which the data do not determine.
   std::vector<std::optional<double>> standard_error;
-  /// The same from the scatter of the residuals themselves (see below), with which freedom it is
-  /// known, and the half width of its 95 % interval in units of it.
+  /// The same from the residuals themselves (see below), with its degrees of freedom and the half
+  /// width of its 95 % interval in units of it.
   std::vector<std::optional<double>> robust_standard_error;
   std::vector<double> robust_freedom, robust_quantile;
-  /// Whether the robust error of an unknown is that of the spread of the repeats, which exceeds by
-  /// this factor what the residuals tell (0: not known), and the probability of such a factor where
-  /// repeats differ by their noise alone.
+  /// Whether the robust error of an unknown comes from the differences between the repeats, its
+  /// ratio to the error from the residuals (0: unknown), and the probability of such a ratio if
+  /// repeats differ only by noise.
   std::vector<bool> from_repeats;
   std::vector<double> repeats_ratio, repeats_p;
-  std::optional<LikelyDifference> difference;  ///< where they differ by more than their noise
+  std::optional<LikelyDifference> difference;  ///< if they differ by more than their noise
   int noiseless = 0;  ///< channels of conditions whose residual is no noise, see coherent_error.hpp
   std::vector<std::string> reason;  ///< in words, where there is no standard error
   Eigen::MatrixXd correlation;      ///< shape (unknowns)^2; meaningful where there are errors
   int rank = 0;
-  std::vector<double> singular_values;  ///< of the Jacobian with columns of length 1, descending
+  std::vector<double> singular_values;  ///< Jacobian with columns of length 1, descending
   double reduced_chi_square = 0.0;      ///< 2 cost / (residuals - rank)
   double freedom = 1.0;                 ///< degrees of freedom of standard_error, at least 1
   /// S with S S^T the covariance in the unit box; directions that the data do not determine have
   /// the least singular value that would count. Shape (unknowns)^2.
   Eigen::MatrixXd spread;
-  /// R with R R^T = (J^T J)^-1 on the directions that the data determine, shape (unknowns, rank);
-  /// `scatter` is in its coordinates.
+  /// R with R R^T = (J^T J)^-1 in the directions that the data determine, shape (unknowns, rank);
+  /// `scatter` is in these coordinates.
   Eigen::MatrixXd root;
   KnownUncertainty known;              ///< is in all errors
   std::vector<ScoreScatter> scatter;   ///< per condition; empty: no robust errors
-  double independent_residuals = 0.0;  ///< of all conditions and channels
+  double independent_residuals = 0.0;  ///< sum over all conditions and channels
 
-  /// Whether repeats differ by more than the residuals tell, at 5 % for all unknowns together
+  /// Whether repeats differ by more than the residuals predict, at 5 % for all unknowns together
   /// (Bonferroni).
   bool repeats_differ() const;
 };
@@ -62,20 +62,20 @@ struct Uncertainty {
 void add_prior_information(const Problem& problem, std::span<const double> z,
                            const Eigen::MatrixXd& root, Eigen::MatrixXd& sum);
 
-/// Standard errors from the Gauss-Newton matrix, sigma^2 (J^T J)^-1, at all unknowns, those at a
-/// bound included. sigma^2 is the larger of 1 (the noise is known) and the reduced chi-square (the
-/// residuals are larger than the noise, so the model is wrong somewhere).
+/// Standard errors from the Gauss-Newton matrix, sigma^2 (J^T J)^-1, for all unknowns including
+/// those at a bound. sigma^2 is the larger of 1 (the noise is known) and the reduced chi-square
+/// (the residuals exceed the noise, so the model has an error).
 ///
 /// The robust ones are the sandwich (J^T J)^-1 (covariance of J^T r) (J^T J)^-1 of score_scatter():
 /// residuals that are correlated in time, as model errors are, carry less information than their
-/// number says. Absent without a residual to spare. Where repeats differ from one another by more
-/// than the residuals of their mean tell, the spread of their scores takes the place of the
-/// covariance (between_repeats.hpp). Where residuals hold no noise neither error is less than that
-/// of errors of model and solver (coherent_error.hpp).
+/// number suggests. They are absent without degrees of freedom. If repeats differ by more than the
+/// residuals of their mean predict, the covariance of their scores is used (between_repeats.hpp).
+/// If the residuals have no noise, neither error is below that of errors of model and solver
+/// (coherent_error.hpp).
 ///
 /// @param optimum  an evaluation that is ok
 /// @param rows     all its rows, per condition; no longer needed by the caller
-/// @param detail   plain: no robust errors, nor what differs between repeats
+/// @param detail   plain: no robust errors, and no differences between repeats
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
                         std::vector<ConditionRows> rows, int threads, Detail detail = Detail::full);
 

@@ -22,7 +22,7 @@
 
 namespace rigcal::datasets {
 
-/// For whom one value of a fitted parameter holds.
+/// Scope of one value of a fitted parameter.
 enum class Scope { rig, leak_level, condition };
 std::string_view to_string(Scope scope);
 
@@ -30,7 +30,7 @@ struct Prior {
   double mean = 0.0;
   double sd = 0.0;
 
-  /// How far a value is from the mean, in standard deviations.
+  /// Distance of a value from the mean, in standard deviations.
   double residual(double value) const { return (value - mean) / sd; }
 };
 
@@ -58,13 +58,13 @@ using Overrides = std::vector<std::pair<int, double>>;
 enum class ChannelRole { input, output, ignore };
 enum class Interpolation { hold, linear };
 
-/// What the campaign says of the numbers of a column, to be held against what their file says.
+/// What the campaign states about the numbers of a column, to be compared with the labels in its
+/// file.
 struct StatedUnit {
-  std::string unit;            ///< "bar"; empty: numbers of a converter, which have none
+  std::string unit;            ///< "bar"; empty: raw numbers of a converter, which have no unit
   std::optional<double> gain;  ///< physical value in `unit` = gain * number
   bool has_offset = false;
-  std::string
-      ignored;  ///< `ignore_unit`: what the file names, and what does not hold; mostly empty
+  std::string ignored;  ///< `ignore_unit`: wrong unit in the file; mostly empty
   Location where;
 };
 
@@ -72,17 +72,17 @@ struct StatedUnit {
 struct ChannelSetting {
   Channel channel = Channel::position;
   std::string column;    ///< empty: only where `columns` of a repeat names one
-  std::string minus;     ///< second column that is taken off `column`; empty: none
+  std::string minus;     ///< second column that is subtracted from `column`; empty: none
   UnitConversion to_si;  ///< SI = conversion(gain * raw + offset), from the file's number
   StatedUnit stated;
-  std::optional<double> sd;               ///< of the samples in the file, SI, after `gain`
+  std::optional<double> sd;               ///< for samples in the file, SI, after `gain`
   double gain_sd = 0.0;                   ///< standard uncertainty of the sensor's gain, relative
-  std::optional<Location> gain_sd_where;  ///< of the channel's own `gain_sd`
-  double offset_sd = 0.0;                 ///< that of its offset, SI
+  std::optional<Location> gain_sd_where;  ///< where the channel states `gain_sd` itself
+  double offset_sd = 0.0;                 ///< standard uncertainty of its offset, SI
   ChannelRole role = ChannelRole::output;
   Interpolation interpolation = Interpolation::hold;
-  bool recognise = true;   ///< a recorded drive that the model generates is simulated as such
-  bool in_counts = false;  ///< raw numbers of a converter: nothing says what they measure
+  bool recognise = true;   ///< simulate a recorded drive as generated where it equals one
+  bool in_counts = false;  ///< raw numbers of a converter, in an unknown unit
 };
 
 enum class Use { fit, validate, diagnose, ignore };
@@ -91,7 +91,7 @@ std::string_view to_string(Use use);
 /// One item of `repeats`: files (a pattern with * and ?), or columns of one file.
 struct RepeatPattern {
   std::string file;
-  std::vector<std::string> numbers;        ///< what {n} stands for; empty: one repeat per file
+  std::vector<std::string> numbers;        ///< replacements of {n}; empty: one repeat per file
   std::map<Channel, std::string> columns;  ///< over the columns of the channels; {n} replaced
 };
 
@@ -103,32 +103,31 @@ struct AcceptanceLimit {
   std::optional<double> warn;
 };
 
-/// How the uncertainty of a score counts where it is held against a limit (ISO/IEC 17025:2017,
-/// 7.8.6).
+/// How the uncertainty of a score enters the comparison with a limit (ISO/IEC 17025:2017, 7.8.6).
 enum class DecisionRule {
   simple,      ///< not at all
   guard_band,  ///< a limit is kept without reservation only by more than the expanded uncertainty
 };
 std::string_view to_string(DecisionRule rule);
 
-/// What a result must be, beside the limits of its metrics, to be accepted without reservation.
+/// Conditions for acceptance without reservation, in addition to the limits of metrics.
 struct AcceptanceBounds {
   DecisionRule decision = DecisionRule::simple;
   /// Standard deviation of the model's error over that of the noise of a record's mean.
   double model_error_to_noise = 0.5;
-  /// Parameters of which an estimate that cannot be told from zero does not matter up to here, SI.
+  /// Largest negligible size, SI, of parameters whose estimate is not distinguishable from zero.
   std::map<int, double> negligible;
-  std::vector<Channel> not_judged;  ///< output channels that are to have no limit
+  std::vector<Channel> not_judged;  ///< output channels that need no limit
 };
 
 struct Condition {
   std::string id;
   Waveform waveform = Waveform::recorded;
-  std::optional<double> frequency_hz;      ///< of a chirp: at its start
-  std::optional<double> end_frequency_hz;  ///< of a chirp (`end_frequency`)
-  std::optional<double> sweep_s;           ///< of a chirp (`sweep_time`; the duration if left out)
+  std::optional<double> frequency_hz;      ///< for a chirp: at its start
+  std::optional<double> end_frequency_hz;  ///< for a chirp (`end_frequency`)
+  std::optional<double> sweep_s;           ///< for a chirp (`sweep_time`; default: the duration)
   bool logarithmic_sweep = false;          ///< `sweep = "logarithmic"`
-  std::optional<double> amplitude;         ///< of the drive, in the SI unit of its channel
+  std::optional<double> amplitude;  ///< amplitude of the drive, in the SI unit of its channel
   std::optional<std::string> leak_level;
   Use use = Use::fit;
   Overrides overrides;  ///< `parameters` and `controller` of this condition
@@ -138,12 +137,12 @@ struct Condition {
   std::vector<TimeWindow> windows;  ///< empty: the whole record counts
   bool moving_windows = false;      ///< `windows = "moving"`: found from the record
   std::optional<std::vector<AcceptanceLimit>> acceptance;  ///< in place of the campaign's
-  std::vector<Channel> not_judged;                         ///< beside those of the campaign
+  std::vector<Channel> not_judged;                         ///< in addition to those of the campaign
   std::optional<double> duration_s;
   std::optional<double> sample_rate_hz;
   std::optional<double> temperature_k;
   std::optional<std::string> date;
-  std::optional<std::string> specimen;  ///< which machine, where a campaign has several
+  std::optional<std::string> specimen;  ///< the machine, if a campaign has several
   Location where;
 
   bool has_record() const { return averaged.has_value() || !repeats.empty(); }
@@ -161,18 +160,18 @@ struct FitSettings {
   double loss_scale = 3.0;  ///< in standard deviations of a residual
   int max_iterations = 200;
   int starts = 1;
-  std::optional<double> max_seconds;  ///< of the whole fit
+  std::optional<double> max_seconds;  ///< limit for the whole fit
   std::vector<Channel> outputs;       ///< compared with the model; empty: every output channel
-  /// A start goes through multiple shooting with pieces of this length; none: it does not.
+  /// Length of the pieces of multiple shooting before a start; none: no multiple shooting.
   std::optional<double> shooting_interval_s;
 };
 
-/// [synthetic]: a known rig and what disturbs its records.
+/// [synthetic]: a known rig and the disturbances of its records.
 struct SyntheticSettings {
   Overrides parameters;                               ///< the truth, over the campaign's values
   std::map<std::string, Overrides> level_parameters;  ///< [synthetic.leak_level."..."]
   int repeats = 5;
-  double duration_s = 0.0;  ///< where a condition has none; 0: none
+  double duration_s = 0.0;  ///< for conditions without one; 0: none
   double sample_rate_hz = 0.0;
   std::map<Channel, double> noise_sd;      ///< white, of one repeat, SI
   std::map<Channel, double> ar1_sd;        ///< stationary sd of an AR(1) noise, SI
@@ -194,9 +193,9 @@ struct SimulationSettings {
 /// A campaign file, checked and in SI.
 struct Campaign {
   std::filesystem::path file;
-  FileState file_state;            ///< of it, before it was read
-  std::filesystem::path data_dir;  ///< where relative record paths start
-  std::filesystem::path root;      ///< outside of this folder nothing is read; empty: no limit
+  FileState file_state;            ///< taken before the file was read
+  std::filesystem::path data_dir;  ///< base of relative record paths
+  std::filesystem::path root;      ///< no file outside this folder is read; empty: no restriction
   std::string name;
   bool synthetic = false;  ///< its records were made by `rigcal synthesize`
   model::Rig rig;
@@ -204,15 +203,15 @@ struct Campaign {
   std::map<std::string, Overrides> leak_levels;
   InitialMode initial = InitialMode::rest;
   double initial_window_s = 0.1;
-  bool before_stated = false;  ///< the campaign says what Rig::before is
+  bool before_stated = false;  ///< the campaign sets Rig::before
   char separator = 0;
   std::optional<double> decimate_to_hz;
   SpikeTreatment spikes = SpikeTreatment::report;
-  std::optional<double> longest_bridge_s;  ///< of a hole that is bridged; none: all are refused
+  std::optional<double> longest_bridge_s;  ///< longest bridged hole; none: holes are refused
   std::string time_column;
   UnitConversion time_to_s;
   StatedUnit stated_time;
-  bool time_in_counts = false;  ///< samples are numbered, nothing says how long one lasts
+  bool time_in_counts = false;  ///< samples are numbered, and their interval is unknown
   std::map<Channel, ChannelSetting> channels;
   Alignment alignment = Alignment::correlate;
   std::vector<AcceptanceLimit> acceptance;
@@ -226,20 +225,20 @@ struct Campaign {
 
   const Condition* find(std::string_view id) const;
   const ParameterSetting* setting(int index) const;
-  /// What a condition is judged by: its own limits, or the campaign's.
+  /// Limits of a condition: its own, or the campaign's.
   const std::vector<AcceptanceLimit>& limits(const Condition& condition) const;
-  /// Whether `not_judged` says that a channel of a condition is to have no limit.
+  /// Whether `not_judged` allows an output channel of a condition to have no limit.
   bool may_lack_limits(const Condition& condition, Channel channel) const;
 };
 
-/// Channel of what drives the rig: the command, or the reference of what its loop controls.
+/// Channel of the drive: the command, or the reference of the loop.
 Channel drive_channel(const model::Rig& rig);
 inline Channel drive_channel(const Campaign& campaign) { return drive_channel(campaign.rig); }
 
 /// Reads and checks a campaign file.
 ///
-/// @param data_dir  where relative record paths start; the file's folder if empty
-/// @param root      outside of this folder nothing is read, wherever links lead; empty: no limit
+/// @param data_dir  base of relative record paths; the file's folder if empty
+/// @param root      no file outside this folder is read, wherever links lead; empty: no restriction
 /// @throws InputError  file:line:column with the key, what was found and what was expected; an
 ///                     unknown key names the nearest known one; a file outside `root`
 Campaign load_campaign(const std::filesystem::path& file,
@@ -256,17 +255,17 @@ void set_value(Campaign& campaign, std::string_view assignment);
 /// @throws UsageError  unknown name, or a parameter that cannot be fitted
 void set_free(Campaign& campaign, const std::vector<std::string>& names);
 
-/// Checks that the values still belong together; call it after the last set_value() and set_free(),
-/// since one alone may leave a pair half given.
-/// @throws UsageError  naming the condition and what is missing or contradicts
+/// Checks that the values are consistent. Call it after the last set_value() and set_free(), since
+/// one of them alone may leave a pair incomplete.
+/// @throws UsageError  names the condition, and what is missing or contradictory
 void check_values(const Campaign& campaign);
 
-/// What a condition lacks to be compared with the model, in words: parameters without a value, an
-/// unknown drive, time or unit, no output channel. Empty if nothing; conditions of use `fit` and
-/// `validate` that lack something but a unit are refused by load_campaign() already.
+/// What a condition lacks for a comparison with the model, in words: parameters without a value, an
+/// unknown drive, time or unit, no output channel. Empty if it lacks nothing. load_campaign()
+/// already refuses conditions of use `fit` and `validate` that lack something other than a unit.
 std::vector<std::string> lacks_for_model(const Campaign& campaign, const Condition& condition);
 
-/// Values that hold in a condition: rig, then its leak level, then its own.
+/// Values in a condition: those of the rig, replaced by those of its leak level and its own.
 model::ParameterValues values_in(const Campaign& campaign, const Condition& condition);
 
 /// One repeat of a condition: a file and the column of each channel.
@@ -277,12 +276,12 @@ struct RepeatSource {
 };
 
 /// Files of a condition, patterns expanded and sorted by name.
-/// @throws InputError  a pattern that matches no file, with the folder that was searched; a file
-///                     outside the campaign's root
+/// @throws InputError  a pattern matches no file (names the searched folder); a file is outside the
+///                     campaign's root
 std::vector<RepeatSource> repeat_sources(const Campaign& campaign, const Condition& condition);
 
-/// What drives the model in a condition.
-/// @param record  needed where the waveform is recorded; may be null otherwise
+/// Inputs of the model in a condition.
+/// @param record  needed for a recorded waveform; may be null otherwise
 model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& condition,
                                   const model::ParameterValues& values, const Record* record);
 
@@ -290,14 +289,14 @@ model::SimulationInputs inputs_of(const Campaign& campaign, const Condition& con
 /// @throws InputError  neither is there
 std::vector<double> sample_times(const Condition& condition, const Record* record);
 
-/// The campaign file with known values in place of starts: what `fitted.toml` holds. `values` are
-/// (table index, level or condition or empty for the rig, SI value). Nuisance parameters stay free;
-/// a start goes where every condition has a value of its own; what --set and --free changed is
-/// written too. Relative record paths are rewritten so that they hold from `out_dir`. Comments of
-/// the file are lost, its order is kept.
+/// The campaign file with known values in place of starts, as in `fitted.toml`. `values` are (table
+/// index, level or condition or empty for the rig, SI value). Nuisance parameters stay free. A
+/// start is removed if every condition has a value of its own. Changes by --set and --free are
+/// included. Relative record paths are rewritten to be valid from `out_dir`. Comments of the file
+/// are lost, its order is kept.
 ///
-/// @throws InputError             the campaign file is gone or was changed into a wrong one
-/// @throws std::invalid_argument  a value for a condition that is not there
+/// @throws InputError             the campaign file has disappeared or has become invalid
+/// @throws std::invalid_argument  a value for an unknown condition
 struct FittedValue {
   int index = 0;
   Scope scope = Scope::rig;

@@ -237,7 +237,7 @@ void check_campaign(const Campaign& campaign, const Location& start) {
   for (const Condition& condition : campaign.conditions) {
     if (condition.use == Use::ignore) continue;
     if (condition.use == Use::diagnose) {
-      // What it lacks is told by the diagnosis, all of it at once.
+      // The diagnosis reports everything that is missing, at once.
       if (values_in(campaign, condition).missing().empty()) check_values(campaign, condition);
       continue;
     }

@@ -157,7 +157,7 @@ struct Rule {
   bool allowed;
 };
 
-/// Which keys of a waveform must and may be there.
+/// Checks which keys a waveform needs and allows.
 void check_waveform_keys(const TomlNode& node, Waveform waveform) {
   const bool recorded = waveform == Waveform::recorded;
   const bool chirp = waveform == Waveform::chirp;

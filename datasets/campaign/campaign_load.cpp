@@ -164,7 +164,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   if (const auto node = root.find("condition")) read_conditions(*node, campaign);
   if (const auto node = root.find("diagnosis")) check_duty(*node, campaign);
   fill_times(campaign);
-  // Only its verbs use it, but whoever checks a campaign wants to know that all of it is right.
+  // Only its own verbs use this section, but a check of the campaign must cover it.
   if (const auto node = root.find("leak_table")) read_leak_table(*node, campaign);
   check_campaign(campaign, {file.string(), 1, 0});
   return campaign;

@@ -29,7 +29,7 @@ double read_value(const TomlNode& node, const model::ParameterSpec& spec) {
   return value;
 }
 
-/// Index of a key that may stand in this table.
+/// Index of a key that is allowed in this table.
 int read_index(const TomlNode& table, std::string_view key, model::PlantKind plant,
                ParameterGroup group, const std::vector<std::string>& others) {
   const int index = model::parameter_index(plant, key);
@@ -114,7 +114,7 @@ void read_setting_table(const TomlNode& node, const model::ParameterSpec& spec,
 
 void differ_between_repeats(const model::ParameterSpec& spec, double sd,
                             ParameterSetting& setting) {
-  constexpr double kReach = 8.0;  // standard deviations; farther off the mean no repeat lies
+  constexpr double kReach = 8.0;  // in standard deviations; no repeat is farther from the mean
   setting.between_repeats = true;
   setting.fit = true;
   setting.scope = Scope::condition;
@@ -220,7 +220,7 @@ std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValu
                   resistance ? "supply_capacity" : "supply_resistance")};
 }
 
-/// All of a second mass, or nothing of it.
+/// A second mass needs all of its parameters.
 std::optional<ParameterConflict> find_payload_conflict(const model::ParameterValues& values) {
   constexpr std::array kKeys{"payload_mass", "payload_frequency", "payload_damping_ratio"};
   const auto given = [&](std::string_view key) {
@@ -245,7 +245,7 @@ std::optional<ParameterConflict> find_payload_conflict(const model::ParameterVal
   return std::nullopt;
 }
 
-/// A loop has the gains of what it controls, and no others.
+/// A loop needs the gains of its controlled quantity, and takes no others.
 std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
                                                     const model::ParameterValues& values) {
   const auto given = [&](std::string_view key) {
@@ -287,7 +287,7 @@ std::optional<ParameterConflict> find_loop_conflict(const model::Rig& rig,
 
 std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                                                const model::ParameterValues& values) {
-  // Not every plant has every parameter.
+  // Some plants lack some parameters.
   const auto given = [&](std::string_view key) {
     return model::parameter_index(values.plant, key) >= 0 && values.is_given(key);
   };

@@ -9,7 +9,7 @@
 
 namespace rigcal::datasets {
 
-/// Where a parameter stands in the campaign file.
+/// Section of the campaign file that a parameter belongs to.
 enum class ParameterGroup {
   rig,         ///< [rig.parameters]: everything but the controller's
   controller,  ///< [rig.controller]
@@ -26,13 +26,13 @@ const model::ParameterSpec& spec_of(model::PlantKind plant, int index);
 /// Keys of a group in the order of the parameter table.
 std::vector<std::string> parameter_keys(model::PlantKind plant, ParameterGroup group);
 
-/// What is wrong with a value outside the limits of the parameter table; empty if nothing is.
+/// Explains why a value is outside the limits of the parameter table; empty if it is inside.
 std::optional<std::string> outside_limits(const model::ParameterSpec& spec, double value);
 
-/// Puts bounds where none were given (NaN): value/10 to 10 value within the parameter's limits, or
-/// the limits themselves where the value is 0.
+/// Fills in missing bounds (NaN): value/10 to 10 value within the parameter's limits, or the limits
+/// themselves for a value of 0.
 ///
-/// @return  what is wrong if a bound then is not finite or the value lies outside; else empty
+/// @return  the problem if a bound is then not finite or the value is outside; else empty
 std::optional<std::string> complete_bounds(const model::ParameterSpec& spec,
                                            ParameterSetting& setting);
 
@@ -62,10 +62,10 @@ struct ParameterConflict {
 std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
                                                const model::ParameterValues& values);
 
-/// A `gain_sd` of a channel whose sensor has a gain in [rig.parameters] that is estimated or has a
-/// prior: the same uncertainty would count twice.
+/// Conflict between the `gain_sd` of a channel and the gain of its sensor in [rig.parameters],
+/// which is estimated or has a prior: the same uncertainty would count twice.
 struct GainKnownTwice {
-  Location where;  ///< of the channel's `gain_sd`
+  Location where;  ///< place of the channel's `gain_sd`
   std::string message;
 };
 std::optional<GainKnownTwice> gain_known_twice(const Campaign& campaign);

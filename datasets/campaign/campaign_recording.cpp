@@ -18,7 +18,7 @@ bool is_in_counts(const TomlNode& node) {
   return unit && unit->is_string() && unit->string() == kCounts;
 }
 
-/// Numbers that nothing converts stay as they are.
+/// Counts have no unit, so they stay as they are.
 UnitConversion read_counts(const TomlNode& node) {
   for (const char* key : {"gain", "offset", "sd", "gain_sd", "offset_sd", "ignore_unit"}) {
     if (const auto entry = node.find(key))
@@ -149,7 +149,8 @@ void read_channels(const TomlNode& table, Campaign& campaign) {
   }
 }
 
-/// In a loop that has settled the reference says where the piston is.
+/// Reads `before`. In a settled loop the reference fixes the initial position, so "steady" excludes
+/// `initial`.
 void read_before(const TomlNode& node, Campaign& campaign) {
   campaign.before_stated = true;
   campaign.rig.before = node.choice<model::Before>({{"hold", model::Before::hold},

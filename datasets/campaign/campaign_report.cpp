@@ -34,19 +34,19 @@ std::vector<std::string> keys_of(const std::array<ReportField, count>& known) {
   return keys;
 }
 
-/// One statement of a sensor's uncertainty, with where it stands.
+/// Stated uncertainty of a sensor, and its place in the file.
 struct Statement {
   double sd = 0.0;
   TomlNode node;
 };
 
-/// Brings what sensors and [recording.channels] state of one number of a channel together.
+/// Merges the statements of sensors and [recording.channels] about the same number of a channel.
 class Statements {
  public:
   explicit Statements(const TomlNode& root) : root_(root) {}
 
-  /// @param key  of the channel: "gain_sd" or "offset_sd"
-  /// @throws InputError  they differ
+  /// @param key  "gain_sd" or "offset_sd"
+  /// @throws InputError  two statements differ
   void merge(Channel channel, std::string_view key, Statement stated, double& into) {
     constexpr double kSame = 1e-6;
     std::optional<Statement>& other = known_[{channel, std::string(key)}];

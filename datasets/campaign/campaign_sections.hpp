@@ -16,11 +16,11 @@ void read_recording(const TomlNode& node, Campaign& campaign);
 /// The limits in an `acceptance` of a condition; needs the channels.
 std::vector<AcceptanceLimit> read_limits(const TomlNode& node, const Campaign& campaign);
 
-/// Channels in `not_judged` of an `acceptance` that has these limits.
+/// Reads the channels in `not_judged` of an `acceptance` section that has these limits.
 std::vector<Channel> read_not_judged(const TomlNode& node, const Campaign& campaign,
                                      const std::vector<AcceptanceLimit>& limits);
 
-/// [acceptance] into the campaign: limits, and what is asked beside them; needs rig and channels.
+/// Reads [acceptance] into the campaign: limits and further conditions; needs rig and channels.
 void read_acceptance(const TomlNode& node, Campaign& campaign);
 
 /// [fit]; needs the channels.
@@ -33,10 +33,10 @@ void check_duty(const TomlNode& node, const Campaign& campaign);
 
 /// [report]
 ReportSettings read_report(const TomlNode& node);
-/// What the sensors of [report] state of their uncertainty, into the channels.
+/// Copies the uncertainties that the sensors of [report] state into the channels.
 ///
 /// @param root  the whole file
-/// @throws InputError  two statements of one channel differ: both places
+/// @throws InputError  two statements about one channel differ (names both places)
 void apply_sensors(const TomlNode& root, Campaign& campaign);
 
 /// [simulation]
@@ -48,16 +48,16 @@ SyntheticSettings read_synthetic(const TomlNode& node, model::PlantKind plant);
 /// One [[condition]]; needs the rig and the channels.
 Condition read_condition(const TomlNode& node, const Campaign& campaign);
 
-/// Name of a channel as a key of a table, and what is known instead if it is none.
+/// Reads the name of a channel as a key of a table; an error names the known ones.
 Channel read_channel_key(const TomlNode& table, const std::string& key);
 
 /// Output channels of the records, in the order of the channel table.
 std::vector<Channel> output_channels(const Campaign& campaign);
 
-/// What no single section can tell: parameters without a value, contradictions, runs without
+/// Checks that need several sections: parameters without a value, contradictions, runs without
 /// records.
 ///
-/// @param start  where the file starts
+/// @param start  start of the file
 void check_campaign(const Campaign& campaign, const Location& start);
 
 }  // namespace rigcal::datasets

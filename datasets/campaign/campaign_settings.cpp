@@ -54,7 +54,7 @@ AcceptanceLimit& limit_of(Limits& limits, Channel channel, std::string_view metr
   return limits.back();
 }
 
-/// One limit, as it holds for a channel.
+/// Reads one limit of a channel.
 void read_limit_into(Limits& limits, const TomlNode& node, std::string_view key, Channel channel) {
   const bool warns = key.starts_with(kWarnPrefix);
   const MetricSpec& metric = *metric_named(warns ? key.substr(kWarnPrefix.size()) : key);
@@ -136,7 +136,7 @@ Limits limits_but(const TomlNode& node, const Campaign& campaign,
     if (std::find(outputs.begin(), outputs.end(), channel) == outputs.end()) {
       entry.fail("is no output channel: expected one of those in [recording.channels]");
     }
-    // What a channel's own table says replaces what holds in general.
+    // The table of a channel replaces the general limits.
     for (const auto& limit : entry.entries()) {
       const std::string& name = limit.first;
       if (!is_limit(name)) entry.fail_unknown(name, "metric", names);

@@ -12,14 +12,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Entries of folders that the patterns of one condition may look at.
+/// Limit of folder entries that the patterns of one condition may visit.
 constexpr long kMostEntries = 200'000;
 
 bool is_pattern(std::string_view text) {
   return text.find_first_of("*?") != std::string_view::npos;
 }
 
-/// Whether a file name fits a pattern; '*' stands for any text, '?' for one character. Linear in
+/// Whether a file name matches a pattern; '*' matches any text, '?' one character. Linear in
 /// memory, at most quadratic in time.
 bool fits(std::string_view name, std::string_view pattern) {
   std::size_t n = 0;
@@ -44,7 +44,7 @@ bool fits(std::string_view name, std::string_view pattern) {
 }
 
 /// Entries of a folder that fit a pattern; hidden ones only where the pattern names the dot.
-/// @param left  how many entries may still be looked at
+/// @param left  number of entries that may still be visited
 std::vector<fs::path> entries_that_fit(const fs::path& folder, const std::string& pattern,
                                        long& left) {
   std::vector<fs::path> found;
@@ -64,8 +64,8 @@ struct Expansion {
   fs::path searched;            ///< folder in which the first pattern was looked for
 };
 
-/// @param root  nothing outside of it is looked at; empty: no limit
-/// @param left  how many entries of folders may still be looked at
+/// @param root  folders outside it are not visited; empty: no restriction
+/// @param left  number of entries that may still be visited
 Expansion expand(const fs::path& base, const std::string& pattern, const fs::path& root,
                  long& left) {
   Expansion result;

@@ -48,7 +48,8 @@ const Overrides* level_overrides(const Campaign& campaign, const Condition& cond
   return level == campaign.leak_levels.end() ? nullptr : &level->second;
 }
 
-/// A value for the rig that every condition overrides would change nothing, silently.
+/// Whether every condition overrides a value of the rig, so that changing it would silently do
+/// nothing.
 bool overridden_everywhere(const Campaign& campaign, int index) {
   return std::all_of(campaign.conditions.begin(), campaign.conditions.end(),
                      [&](const Condition& condition) {

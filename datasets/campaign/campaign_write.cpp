@@ -36,7 +36,7 @@ bool of_controller(const model::ParameterSpec& spec) {
   return spec.kind == model::ParameterKind::controller;
 }
 
-/// [rig.parameters] or [rig.controller], wherever the parameter stands.
+/// [rig.parameters] or [rig.controller], depending on the parameter.
 toml::table& rig_table(toml::table& root, const model::ParameterSpec& spec) {
   return child(child(root, "rig", false), of_controller(spec) ? "controller" : "parameters", false);
 }
@@ -74,8 +74,8 @@ void write_value(toml::table& root, const model::ParameterSpec& spec, const Fitt
   }
 }
 
-/// Whether a condition has a value besides the rig's: a known one of its own or of its leak level,
-/// or a fitted one.
+/// Whether a condition has a value other than the rig's: a known one of its own or of its leak
+/// level, or a fitted one.
 bool has_own_value(const Campaign& campaign, const Condition& condition, int index,
                    const std::vector<FittedValue>& values) {
   if (has_entry(condition.overrides, index)) return true;
@@ -91,9 +91,9 @@ bool has_own_value(const Campaign& campaign, const Condition& condition, int ind
   });
 }
 
-/// The start of a parameter with a value per leak level or condition. Where all conditions have
-/// their own it goes: a level that the fit never saw is then an error, not a start taken for a
-/// result.
+/// Writes the start of a parameter with a value per leak level or condition. If all conditions have
+/// their own, the start is removed: a level that the fit never saw is then an error, and no start
+/// is taken for a result.
 void write_scoped_start(toml::table& root, const Campaign& campaign,
                         const ParameterSetting& setting, const std::vector<FittedValue>& values) {
   const model::ParameterSpec& spec = spec_of(campaign.rig.plant, setting.index);
@@ -117,7 +117,7 @@ void write_nuisance_start(toml::table& root, const model::ParameterSpec& spec,
   if (auto* entry = table.get_as<toml::table>(spec.key)) put(*entry, spec, "start", fitted.value);
 }
 
-/// What --set and --free changed since the file was read.
+/// Writes the changes by --set and --free since the file was read.
 void write_changed_values(toml::table& root, const Campaign& campaign) {
   const Campaign original = load_campaign(campaign.file, campaign.data_dir, campaign.root);
   for (const ParameterSetting& setting : campaign.parameters) {
@@ -129,7 +129,7 @@ void write_changed_values(toml::table& root, const Campaign& campaign) {
   }
 }
 
-/// A record path that holds from `out` if it held from `data`.
+/// A record path relative to `out`, from one relative to `data`.
 std::string rebased(const std::string& file, const fs::path& data, const fs::path& out) {
   if (fs::path(file).is_absolute()) return file;
   const fs::path relative = (data / file).lexically_relative(out);

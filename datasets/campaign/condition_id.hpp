@@ -4,11 +4,11 @@
 
 namespace rigcal::datasets {
 
-/// Whether a text may be the id of a condition. Files of the results are named after it: nothing in
-/// it leads to another folder.
+/// Whether a text may be the id of a condition. Result files are named after it, so it must not
+/// lead to another folder.
 bool is_condition_id(std::string_view text);
 
-/// What is expected of one, in words.
+/// The rule for ids, in words.
 std::string_view condition_id_rule();
 
 }  // namespace rigcal::datasets

@@ -21,12 +21,12 @@ struct DiagnosisSettings {
   std::array<double, kLeakClasses.size() - 1> limits{0.01, 0.10, 0.20, 0.30};
   /// A class of lower probability is not stated: the record is undecided.
   double least_probability = 0.5;
-  double false_alarms = 0.01;  ///< of the test for a leak, one-sided
-  double detection = 0.95;     ///< share of leaks of the smallest told size that are found
+  double false_alarms = 0.01;  ///< rate of the one-sided test for a leak
+  double detection = 0.95;     ///< fraction of leaks of the smallest detectable size that are found
   /// Condition at whose signal the share of a machine's state is stated; empty: see
   /// diagnosis::machine_states().
   std::string duty;
-  /// Leak levels whose class is known; what the diagnosis is judged by.
+  /// Leak levels of known class, by which the diagnosis is judged.
   std::map<std::string, LeakClass> level_class;
 };
 

@@ -34,7 +34,7 @@ bool same_drive(const LeakSignal& a, const LeakSignal& b) {
   return a.waveform == b.waveform && a.frequency_hz == b.frequency_hz && a.amplitude == b.amplitude;
 }
 
-/// "0.25" as printed: its last digit tells how it was rounded.
+/// "0.25" as printed: the number of digits gives its rounding.
 PrintedCoefficient read_printed(const TomlNode& node) {
   constexpr const char* kExpected = "a number above zero as it was printed, in quotes: \"0.25\"";
   const std::string text = node.string(kExpected);

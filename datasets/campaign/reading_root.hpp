@@ -4,13 +4,13 @@
 
 namespace rigcal::datasets {
 
-/// Whether a path leads into a folder, wherever links lead.
+/// Whether a path ends inside a folder after all links are resolved.
 bool lies_within(const std::filesystem::path& folder, const std::filesystem::path& path);
 
-/// Refuses what leads out of the folder that `--root` names.
+/// Refuses a path that leads out of the folder of `--root`.
 ///
 /// @param root  empty: everything may be read
-/// @throws InputError  names both; there is no such root
+/// @throws InputError  the path is outside (names both), or the root does not exist
 void require_within(const std::filesystem::path& root, const std::filesystem::path& path);
 
 }  // namespace rigcal::datasets

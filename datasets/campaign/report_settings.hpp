@@ -9,13 +9,13 @@
 
 namespace rigcal::datasets {
 
-/// A key of [report] and what it is called on the page.
+/// A key of [report] with its label on the page.
 struct ReportField {
   std::string_view key, label;
 };
 
-/// What a test report states beside its results (ISO/IEC 17025:2017, 7.8.2), in the order of the
-/// page.
+/// Statements of a test report in addition to its results (ISO/IEC 17025:2017, 7.8.2), in the order
+/// of the page.
 inline constexpr std::array kReportFields{
     ReportField{"number", "Report number"},
     ReportField{"issued", "Date of issue"},
@@ -44,25 +44,25 @@ inline constexpr std::array kSensorFields{
 /// [report]: texts as the campaign gives them, dates as ISO 8601.
 struct ReportSettings {
   using Fields = std::vector<std::pair<std::string, std::string>>;  ///< key, text
-  Fields fields;                ///< those that are given, in the order of kReportFields
-  std::vector<Fields> sensors;  ///< likewise
+  Fields fields;                ///< the given ones, in the order of kReportFields
+  std::vector<Fields> sensors;  ///< the given ones of each sensor
 
   bool empty() const { return fields.empty() && sensors.empty(); }
 };
 
-/// The text of a key; empty where it is not given.
+/// Text of a key; empty if it is not given.
 std::string text_of(const ReportSettings::Fields& fields, std::string_view key);
 
-/// What a text says of the standard uncertainty of a sensor.
+/// Standard uncertainty of a sensor, as read from a text.
 struct StatedUncertainty {
   std::optional<double> gain_sd;    ///< relative
   std::optional<double> offset_sd;  ///< SI
-  std::string problem;              ///< why it says nothing that counts, in words; empty: it does
+  std::string problem;  ///< why the text states no uncertainty, in words; empty if it does
 };
 
 /// Reads "0.02 mm (k = 2)", an expanded uncertainty of the offset, or "0.1 % (k = 2)", one of the
-/// gain: over k they are standard uncertainties (JCGM 100:2008, 6.2). Any other text counts
-/// nothing.
+/// gain. Divided by k they are standard uncertainties (JCGM 100:2008, 6.2). Any other text states
+/// none.
 ///
 /// @param unit  of the sensor's channel, SI
 StatedUncertainty stated_uncertainty(std::string_view text, std::string_view unit);

@@ -9,17 +9,17 @@
 
 namespace rigcal::datasets {
 
-/// A position in the table of waveforms; those have a name here that other code asks for.
+/// Index in the table of waveforms, for those that code refers to by name.
 enum class Waveform { sine, square, chirp, recorded };
 
-/// All that the program knows about one waveform. What is periodic is drawn, averaged over periods,
-/// solved for its periodic state and given a leak table by this row alone.
+/// Everything that the program knows about one waveform. This row alone decides whether it is drawn
+/// by period, averaged over periods, solved for its periodic state and given a leak table.
 struct WaveformSpec {
-  std::string_view name;  ///< as in campaign files and results
+  std::string_view name;  ///< name in campaign files and results
   /// A signal of this amplitude and frequency [Hz]; null unless that is all that describes it, in
   /// which case it is periodic.
   model::Signal (*periodic)(double amplitude, double frequency_hz) = nullptr;
-  int pieces = 1;  ///< of a period, equally long, at whose starts it jumps; 1: it does not jump
+  int pieces = 1;  ///< equal pieces of a period that begin with a jump; 1: it has no jump
 };
 const WaveformSpec& info(Waveform waveform);
 

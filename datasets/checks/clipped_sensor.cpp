@@ -21,7 +21,7 @@ constexpr std::size_t kFewestDips = 10;
 constexpr double kShareOfStep = 0.5;
 constexpr double kFallSteps = 2.0;  // one of a converter's rounding is not enough
 
-/// How long a value typically lasts that is not extreme: 1, or more where samples are held.
+/// Typical duration of a value that is not extreme: 1, or more if samples are held.
 double typical_length(const std::vector<EqualRun>& runs, double low, double high) {
   std::size_t count = 0;
   std::size_t samples = 0;
@@ -74,7 +74,8 @@ std::vector<EqualRun> clipped_runs(std::span<const double> x, std::span<const do
   for (const EqualRun& run : runs)
     if (run.value == extreme && !(static_cast<double>(run.length) < shortest))
       long_enough.push_back(run);
-  if (long_enough.empty()) return found;  // as of most signals: the rest costs more than all above
+  // Most signals end here: the rest costs more than all of the above.
+  if (long_enough.empty()) return found;
   const bool noisy = shows_noise(runs, *low, *high);
   const double step = typical_step(runs);
   const double smallest = resolution(runs);

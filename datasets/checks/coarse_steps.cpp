@@ -10,7 +10,7 @@ namespace {
 
 /// Whether all values are multiples of the step, as a converter's are, but for rounding.
 bool on_a_grid(const std::vector<double>& values, double step) {
-  constexpr double kOffGrid = 0.05;  // of a step
+  constexpr double kOffGrid = 0.05;  // fraction of a step
   return std::all_of(values.begin(), values.end(), [&](double value) {
     const double multiple = (value - values.front()) / step;
     return std::abs(multiple - std::round(multiple)) <= kOffGrid;

@@ -7,10 +7,10 @@
 
 namespace rigcal::datasets {
 
-/// The step of a channel's converter where its noise is too small to smooth it out: below half a
-/// step every repeat is rounded alike, and their mean and their scatter know nothing of that error
-/// (Widrow and Kollar, Quantization Noise, 2008, ch. 9: the bias of the mean is q / pi
-/// exp(-2 pi^2 sigma^2 / q^2) at most). Empty where the noise suffices, or values lie on no grid.
+/// Step of a channel's converter if its noise is too small to smooth it out. Below half a step
+/// every repeat is rounded alike, and neither their mean nor their differences show that error
+/// (Widrow and Kollar, Quantization Noise, 2008, ch. 9: the bias of the mean is at most q / pi
+/// exp(-2 pi^2 sigma^2 / q^2)). Empty if the noise is sufficient, or the values are on no grid.
 ///
 /// @param repeats   as recorded
 /// @param noise_sd  of a sample of one repeat, rounding included; > 0

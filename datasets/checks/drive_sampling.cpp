@@ -7,9 +7,9 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kFewestPerPeriod = 4.0;    // a period
-constexpr double kShortestFraction = 0.01;  // of a period, or of the stated duration
-constexpr double kLongestRatio = 100.0;     // of the stated duration
+constexpr double kFewestPerPeriod = 4.0;    // samples in a period
+constexpr double kShortestFraction = 0.01;  // fraction of a period, or of the stated duration
+constexpr double kLongestRatio = 100.0;     // multiple of the stated duration
 constexpr double kMilli = 1000.0;
 
 }  // namespace

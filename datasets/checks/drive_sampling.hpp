@@ -7,10 +7,11 @@
 
 namespace rigcal::datasets {
 
-/// What tells, in words, that the times of a record do not go with the signal that its condition
-/// states: fewer than four samples a period of a generated drive (of a chirp: at its fastest), less
-/// than a hundredth of a period in all, or a length that is off from the stated `duration` by a
-/// factor of 100. A time column in ms that was read as s looks so. Empty where nothing does.
+/// Warns, in words, if the times of a record do not fit the signal that its condition states. A
+/// generated drive needs four samples per period (a chirp: at its highest frequency), the record at
+/// least a hundredth of a period, and its length may differ from the stated `duration` by a factor
+/// of 100 at most. A time column in ms that is read as s breaks these rules. Empty if the times
+/// fit.
 std::string drive_sampling_warning(const Condition& condition, const Record& record);
 
 }  // namespace rigcal::datasets

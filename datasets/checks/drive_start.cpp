@@ -11,11 +11,11 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kLeastJump = 0.1;         // of the range of the drive about its neutral
-constexpr double kSameStep = 0.05;         // of the step
-constexpr std::size_t kFewestAtFirst = 8;  // at the first value
+constexpr double kLeastJump = 0.1;         // fraction of the drive's range about its neutral value
+constexpr double kSameStep = 0.05;         // fraction of the step
+constexpr std::size_t kFewestAtFirst = 8;  // samples at the first value
 constexpr std::size_t kAStretch = 3;       // samples over which a speed is taken
-constexpr double kGetsGoing = 0.5;         // of the fastest stretch
+constexpr double kGetsGoing = 0.5;         // fraction of the fastest stretch
 
 }  // namespace
 

@@ -7,11 +7,11 @@
 
 namespace rigcal::datasets {
 
-/// Proposes `before = "rest"`, in words, where a record begins at the step of its drive: the first
-/// value of a recorded drive is off its neutral (no command, or a reference where the piston is) by
-/// a tenth of its range or more, it stays there for some samples, and the piston has yet to get
-/// going. Held before the first sample such a drive leaves a delay and a lag of the valve nothing
-/// to act on. Empty where none of it is so, or the campaign states what was before.
+/// Proposes `before = "rest"`, in words, if a record begins at the step of its drive. That is so if
+/// the first value of a recorded drive differs from neutral (no command, or a reference at the
+/// piston's position) by at least a tenth of its range, lasts for some samples, and the piston is
+/// only beginning to move. With that value held before the first sample a delay or lag of the valve
+/// would have no effect. Empty in all other cases, and if the campaign states `before`.
 std::string drive_start_proposal(const Campaign& campaign, const Condition& condition,
                                  const Record& record);
 

@@ -15,7 +15,7 @@ constexpr double kFreezeDriveMotion = 0.1;
 constexpr int kFreezePassages = 2;
 constexpr double kStandSteps = 4.0;
 
-/// How long a value typically lasts, without the run in question.
+/// Typical duration of a value, without the run in question.
 double typical_length(std::size_t samples, std::size_t runs, const EqualRun& left_out) {
   return static_cast<double>(samples - left_out.length) / static_cast<double>(runs - 1);
 }
@@ -32,7 +32,8 @@ std::vector<EqualRun> frozen_runs(std::span<const double> x, std::span<const dou
     if (!(static_cast<double>(run.length) <
           static_cast<double>(kShortestFreeze) * typical_length(x.size(), runs.size(), run)))
       long_enough.push_back(run);
-  if (long_enough.empty()) return found;  // as of most signals: the rest costs more than all above
+  // Most signals end here: the rest costs more than all of the above.
+  if (long_enough.empty()) return found;
   const bool noisy = shows_noise(runs, -kInfinity, kInfinity);
   const double least = std::max(typical_step(runs), kStandSteps * resolution(runs));
   for (const EqualRun& run : long_enough) {

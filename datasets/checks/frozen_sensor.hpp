@@ -7,14 +7,16 @@
 
 namespace rigcal::datasets {
 
-/// Runs of exactly equal samples in which a sensor, its line or its recording stood still while the
-/// rig moved: sixteen times as long as the signal's values typically last, and either
-/// - the signal shows noise elsewhere (of two steps of the converter, a run of this length comes by
-///   chance once in 1e12 samples), and the drive moves by 10 % of its range; or
-/// - the drive passes through its range and back, and the run cuts a motion: the signal arrives at
-///   it and leaves it, within three samples, by its typical step and four steps of the resolution.
-/// So slow signals of coarse converters are none, nor sweeps that die away below a converter's
-/// step, nor a piston that friction holds under a slow drive.
+/// Finds runs of exactly equal samples in which a sensor, its line or its recording froze while the
+/// rig moved. A run must be sixteen times as long as values of the signal typically last. In
+/// addition, one of two conditions must be met:
+/// - The signal shows noise elsewhere, and the drive moves by 10 % of its range. (With noise of two
+///   steps of the converter a run of this length occurs by chance once in 1e12 samples.)
+/// - The drive passes through its range and back, and the run interrupts a motion: within three
+///   samples the signal arrives at it and leaves it by its typical step plus four steps of the
+///   resolution.
+/// Slow signals of coarse converters are therefore excluded, as are sweeps that decay below a step
+/// of the converter, and a piston that sticks by friction under a slow drive.
 ///
 /// @param x      shape (n), evenly sampled, finite
 /// @param drive  shape (n): reference or command

@@ -12,8 +12,8 @@ namespace {
 // The row "hum of the mains" of docs/campaign-file.md in numbers; the frequency of a grid stays
 // within half a hertz.
 constexpr double kLineHalfWidthHz = 0.5;
-constexpr double kSideShare = 0.45;        ///< of the frequency: how far the neighbours reach
-constexpr double kSideLobes = 3.0;         ///< over the length of the record: what a line smears
+constexpr double kSideShare = 0.45;  ///< range of the neighbours, as a fraction of the frequency
+constexpr double kSideLobes = 3.0;   ///< width of a smeared line, over the record's length
 constexpr double kAboveNeighbours = 10.0;  ///< in power
 constexpr double kLeastShareOfVariance = 0.2;
 
@@ -21,8 +21,8 @@ constexpr double kLeastShareOfVariance = 0.2;
 struct Spectrum {
   std::vector<double> power;  ///< sum of |X|^2 over the repeats
   double step_hz = 0.0;
-  double length = 0.0;   ///< of the transform
-  double samples = 0.0;  ///< of one repeat
+  double length = 0.0;   ///< length of the transform
+  double samples = 0.0;  ///< samples in one repeat
   double squares = 0.0;  ///< sum over all samples of all repeats
 };
 
@@ -59,7 +59,7 @@ double largest(const Spectrum& spectrum, double frequency_hz, double from_hz, do
   return most;
 }
 
-/// Power of a line, which may lie between two frequencies of the spectrum.
+/// Power of a line, which may be between two frequencies of the spectrum.
 double total(const Spectrum& spectrum, double frequency_hz, double within_hz) {
   double sum = 0.0;
   for (std::size_t k = 0; k < spectrum.power.size(); ++k) {
@@ -69,7 +69,7 @@ double total(const Spectrum& spectrum, double frequency_hz, double within_hz) {
   return sum;
 }
 
-/// Whether a harmonic of the drive lies there, and the next ones are too far away to tell.
+/// Whether a harmonic of the drive is there, and the next ones are too far away to distinguish it.
 bool hidden_by_drive(double frequency_hz, double drive_hz, double line_hz) {
   if (!(drive_hz > 0.0)) return false;
   const double nearest = std::round(frequency_hz / drive_hz) * drive_hz;

@@ -11,19 +11,20 @@ struct MainsHum {
   double amplitude = 0.0;     ///< in a single repeat, in the unit of the channel
 };
 
-/// The larger hum of 50 and of 60 Hz by which the repeats differ, if any. A trigger knows nothing
-/// of the mains, so a hum has a phase of its own in each repeat and stays in the deviations from
-/// their mean, where what the drive moves cancels.
+/// Finds the larger hum of 50 and of 60 Hz by which the repeats differ, if any. A trigger is not
+/// synchronous with the mains, so a hum has another phase in each repeat. It therefore stays in the
+/// deviations from the mean, in which the response to the drive cancels.
 ///
-/// It is found where a line within 0.5 Hz of the mains stands tenfold above every other frequency
-/// up to 45 % away and makes up a fifth of the deviations' variance at least. Repeats that start at
-/// different times differ at all harmonics of the drive, near the mains' too, and so have no such
-/// line; nothing is judged where a harmonic falls there and its neighbours lie farther away.
+/// A hum is a line within 0.5 Hz of the mains frequency that is ten times as large as every other
+/// frequency up to 45 % away, and makes up at least a fifth of the deviations' variance. Repeats
+/// that start at different times differ at all harmonics of the drive, also near the mains
+/// frequency, and so have no such line. There is no verdict if a harmonic is there and its
+/// neighbours are farther away.
 ///
-/// @param deviations  of each repeat from the mean of all, shape (repeats, samples); a sample that
-///                    a repeat lacks is NaN
-/// @param rate_hz     of the samples; nothing is found below 2.9 times the mains' frequency, nor in
-///                    records of less than about 0.3 s
+/// @param deviations  of each repeat from the mean of all, shape (repeats, samples); NaN where a
+///                    repeat has no sample
+/// @param rate_hz     sample rate; nothing is found below 2.9 times the mains frequency, nor in
+///                    records shorter than about 0.3 s
 /// @param drive_hz    frequency of a periodic drive, 0 if there is none
 std::optional<MainsHum> mains_hum(const std::vector<std::vector<double>>& deviations,
                                   double rate_hz, double drive_hz);

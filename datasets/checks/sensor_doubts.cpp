@@ -23,7 +23,7 @@ std::string words_of(const ReportSettings::Fields& sensor) {
   return instrument.empty() ? text : text + fmt::format(" ({})", instrument);
 }
 
-/// The first condition that was tested later than a day, and how many there are.
+/// First condition that was tested after a day, and the number of such conditions.
 std::pair<const Condition*, int> tested_after(const Campaign& campaign, const std::string& day) {
   std::pair<const Condition*, int> result{nullptr, 0};
   for (const Condition& condition : campaign.conditions) {

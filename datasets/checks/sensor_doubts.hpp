@@ -7,16 +7,17 @@
 
 namespace rigcal::datasets {
 
-/// What is to be known of a sensor before a result that rests on it is signed.
+/// Doubt about a sensor that must be known before a result is signed.
 struct SensorDoubt {
   std::string code;   ///< "sensor_overdue", "sensor_dates", "sensor_uncertainty"
-  bool grave = true;  ///< else it is told, and changes nothing
+  bool grave = true;  ///< false: the doubt is shown, but changes no verdict
   std::string words;
 };
 
-/// Sensors of [report] that were past their due date on the day of a test (ISO/IEC 17025:2017,
-/// 6.4.13), or due before they were calibrated, or whose uncertainty is a text that cannot count;
-/// and uncertainties of channels that are in no figure.
+/// Finds doubts about the sensors of [report]: a sensor was overdue for calibration on the day of a
+/// test (ISO/IEC 17025:2017, 6.4.13), was due before it was calibrated, or its uncertainty cannot
+/// be read as a number. A stated uncertainty of an input channel, which affects no result, is a
+/// doubt, too.
 std::vector<SensorDoubt> sensor_doubts(const Campaign& campaign);
 
 }  // namespace rigcal::datasets

@@ -15,7 +15,7 @@ namespace {
 
 using Kind = SensorFault::Kind;
 
-/// What drives the rig at each sample; empty where that is not known.
+/// Drive of the rig at each sample; empty if it is unknown.
 std::vector<double> drive_of(const Campaign& campaign, const Condition& condition,
                              const Repeat& repeat) {
   const auto recorded = repeat.values.find(drive_channel(campaign));
@@ -32,7 +32,7 @@ std::vector<double> drive_of(const Campaign& campaign, const Condition& conditio
 void find(Channel channel, const Repeat& repeat, const std::vector<double>& drive,
           std::vector<SensorFault>& faults) {
   const std::vector<double>& x = repeat.values.at(channel);
-  std::set<std::size_t> told;  // where runs begin
+  std::set<std::size_t> told;  // starts of runs
   const auto add = [&](Kind kind, const std::vector<EqualRun>& runs) {
     for (const EqualRun& run : runs) {
       if (!told.insert(run.begin).second) continue;

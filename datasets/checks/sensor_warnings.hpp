@@ -13,21 +13,21 @@ struct SensorFault {
   enum class Kind { clipped_at_highest, clipped_at_lowest, frozen };
   Channel channel = Channel::position;
   Kind kind = Kind::frozen;
-  std::string source;  ///< of the repeat
+  std::string source;  ///< source of the repeat
   TimeWindow stretch;  ///< from its first sample to its last
   std::size_t samples = 0;
   double value = 0.0;
 };
 
-/// Stretches in which sensors of output channels were clipped or stood still. Without what drives
-/// the rig, recorded or a generated sine or square, nobody can tell a sensor from a rig at rest,
-/// and nothing is found.
+/// Parts of the record in which sensors of output channels were clipped or frozen. Without a drive
+/// (recorded, or a generated sine or square) a faulty sensor looks like a rig at rest, and nothing
+/// is found.
 ///
 /// @param repeats  as recorded, in SI
 std::vector<SensorFault> sensor_faults(const Campaign& campaign, const Condition& condition,
                                        const std::vector<Repeat>& repeats);
 
-/// Those that touch what counts of the record, in words: one for each channel and kind.
+/// Describes those within the windows of the record: one text for each channel and kind.
 ///
 /// @param windows  of the record; empty: all of it
 std::vector<std::string> sensor_warnings(const std::vector<SensorFault>& faults,

@@ -12,7 +12,7 @@ namespace {
 
 // The row "a record that ends early" of docs/campaign-file.md in numbers.
 constexpr double kStatedShare = 0.95;
-constexpr double kEquallyLong = 0.95;  // of the longest
+constexpr double kEquallyLong = 0.95;  // fraction of the longest
 constexpr double kShareOfLongest = 0.75;
 constexpr long kFewestAsLong = 2;
 
@@ -25,7 +25,7 @@ Signal signal_of(const Condition& condition) {
           condition.amplitude};
 }
 
-/// How long the records of a signal are meant to be, if most of them agree on it.
+/// Usual length of the records of a signal, if most of them agree on it.
 struct Usual {
   double seconds = 0.0;
   long as_long = 0;

@@ -8,7 +8,7 @@
 
 namespace rigcal::datasets {
 
-/// How long the record of a condition is.
+/// Length of a condition's record.
 struct RecordLength {
   const Condition* condition = nullptr;
   double seconds = 0.0;
@@ -16,14 +16,14 @@ struct RecordLength {
 
 double seconds_of(const Record& record);
 
-/// What tells, in words, that a record ended before its run did; per record, empty where nothing
-/// does. Repeats of one condition that all end early agree with each other, so that only this
-/// tells:
-/// - the condition states a `duration`, and the record is shorter than 95 % of it (a sample or two
-///   may be missing, no period); or
-/// - it is shorter than three quarters of the longest record of the same generated signal
-///   (waveform, frequencies, amplitude), and two or more, and more than are so short, are as long
-///   as that within 5 %. Fewer do not tell which length was meant.
+/// Warns, in words, if a record ended before its run did; one text per record, empty if it did not.
+/// If all repeats of one condition end early they agree with each other, so only these rules detect
+/// it:
+/// - The condition states a `duration`, and the record is shorter than 95 % of it (a sample or two
+///   may be missing, but no period).
+/// - The record is shorter than three quarters of the longest record of the same generated signal
+///   (waveform, frequencies, amplitude). In addition, at least two records, and more than are so
+///   short, are as long as that one within 5 %. Fewer do not show which length was intended.
 std::vector<std::string> short_records(const std::vector<RecordLength>& lengths);
 
 /// Adds that warning to the records it is about.

@@ -7,10 +7,10 @@
 
 namespace rigcal::datasets {
 
-/// What tells, in words, that the piston of a record travels as far as its rig cannot: beyond the
-/// known stroke of the cylinder by more than a tenth; without a stroke more than ten times as far
-/// as the reference, or less than a five hundredth of it; without a reference more than 20 m. A
-/// column in another unit than the campaign says looks so. Empty where nothing does.
+/// Warns, in words, if the piston of a record travels farther than its rig allows. With a known
+/// stroke the limit is 1.1 times the stroke. Without a stroke the travel must be between a five
+/// hundredth of the reference's range and ten times that range; without a reference it must be
+/// below 20 m. A column in a wrong unit breaks these rules. Empty if the travel is plausible.
 std::string travel_warning(const Campaign& campaign, const Condition& condition,
                            const Record& record);
 

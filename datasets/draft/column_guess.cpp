@@ -13,7 +13,7 @@
 namespace rigcal::datasets {
 namespace {
 
-/// SI units of what a loop may control.
+/// Quantities that a loop may control: SI unit and channel.
 using Controlled = std::pair<std::string_view, Channel>;
 constexpr std::array kControlled{Controlled{"m", Channel::reference},
                                  Controlled{"N", Channel::force_reference},
@@ -105,7 +105,7 @@ ColumnGuess guess_column(const std::string& name) {
     guess.unit = unit->unit;
     own.replace(unit->begin, unit->end - unit->begin, " ");
   }
-  // Of a path what stands last tells.
+  // Of a path only the last part names the quantity.
   if (own.starts_with('/')) own = own.substr(own.rfind('/') + 1);
   for (const char before : {'!', '.'}) own = own.substr(own.rfind(before) + 1);
   std::vector<std::string> words;
@@ -115,7 +115,7 @@ ColumnGuess guess_column(const std::string& name) {
     assign(guess, words[0] + "_" + words[1]);
   }
   for (const std::string& word : words) assign(guess, word);
-  // A command in a unit of what a loop controls is its reference.
+  // A command in the unit of a controlled quantity is the reference of a loop.
   if (guess.channel == Channel::command || guess.channel == Channel::reference) {
     for (const auto& [of_loop, reference] : kControlled)
       if (converts(guess.unit, of_loop)) guess.channel = reference;

@@ -58,7 +58,7 @@ struct FileColumns {
   std::string time_unit;
   std::vector<ChannelColumns> channels;
   std::vector<std::string> unknown;
-  std::map<std::string, std::string> units;  ///< of those, where one is told
+  std::map<std::string, std::string> units;  ///< of `unknown`, where the file gives one
   /// Lines of a matrix behind its time, which have no names: rows of an array of Simulink's "To
   /// File", or columns.
   std::vector<std::string> rows;
@@ -105,7 +105,7 @@ std::string names_text(const std::vector<RecordColumn>& columns) {
   return fmt::format("{}{}", fmt::join(names, ", "), more);
 }
 
-/// A file without names that tell a time: a matrix with a time, or why it is no recording.
+/// Handles a file without a column of times: a matrix with times, or no recording, with the reason.
 void without_time(const fs::path& file, const std::vector<RecordColumn>& columns,
                   FileColumns& found) {
   found.rows = timed_lines(file, columns);
@@ -131,7 +131,7 @@ void without_time(const fs::path& file, const std::vector<RecordColumn>& columns
 
 FileColumns columns_of(const fs::path& file) {
   const std::vector<RecordColumn> columns = record_reader(file).columns(file);
-  std::map<std::string, std::vector<std::string>> numbers;  // by stem
+  std::map<std::string, std::vector<std::string>> numbers;  // numbers by stem
   for (const RecordColumn& column : columns) {
     const Numbered numbered = split_number(column.name);
     if (!numbered.number.empty()) numbers[numbered.stem].push_back(numbered.number);
@@ -216,7 +216,7 @@ std::string channel_line(Channel channel, const std::string& column, const std::
                      remark);
 }
 
-/// Columns of numbers, one per name; empty where one holds none.
+/// Numbers of the named columns; empty if one of them has none.
 std::vector<std::vector<double>> columns_or_none(const fs::path& file,
                                                  const std::vector<std::string>& names) {
   try {
@@ -233,7 +233,7 @@ std::vector<std::vector<double>> columns_or_none(const fs::path& file,
   return columns;
 }
 
-/// How far a column goes, and what it may be, in brackets.
+/// Range of a column and its possible meaning, in brackets.
 std::string range_text(const std::vector<double>& values, const std::string& unit,
                        bool has_position) {
   if (values.empty()) return {};
@@ -249,7 +249,7 @@ std::string range_text(const std::vector<double>& values, const std::string& uni
                      guess);
 }
 
-/// The columns that nothing recognises, with what they hold.
+/// Lists the columns that nothing recognises, with their ranges.
 std::string unknown_columns_text(const fs::path& file, const FileColumns& columns) {
   constexpr std::size_t kMostShown = 40;
   std::vector<std::string> names = columns.unknown;
@@ -270,7 +270,7 @@ std::string unknown_columns_text(const fs::path& file, const FileColumns& column
   return fmt::format("# not used: {}{}\n", fmt::join(names, ", "), more);
 }
 
-/// For a file in which nothing is recognised, or not even a time.
+/// Text for a file in which no channel, or not even a time, is recognised.
 std::string blank_channels_text(const fs::path& file, const FileColumns& columns) {
   std::string text =
       "[recording.channels]\n# Nothing told which column is which: see those below.\n";
@@ -335,12 +335,12 @@ constexpr std::array<std::string_view, 13> kTwoChamberTerms{
     "external_force",     "load_gradient",      "coulomb_friction",    "air_fraction",
     "stop_stiffness"};
 
-/// And those that a servo-valve and a symmetric cylinder have.
+/// Terms of a servo valve with a symmetric cylinder.
 constexpr std::array<std::string_view, 8> kLoadPressureTerms{
     "valve_offset",       "valve_dead_band", "valve_time_constant", "transport_delay",
     "valve_null_leakage", "laminar_leakage", "external_force",      "coulomb_friction"};
 
-/// And that one has that carries a payload, where an acceleration was recorded.
+/// Terms of a rig with a payload, proposed if an acceleration was recorded.
 constexpr std::array<std::string_view, 3> kPayloadTerms{"payload_mass", "payload_frequency",
                                                         "payload_damping_ratio"};
 
@@ -361,7 +361,7 @@ std::string terms_text(model::PlantKind plant, bool with_payload) {
   return text;
 }
 
-/// @param loop  what is controlled; none: the command was recorded
+/// @param loop  controlled quantity; none: the command was recorded
 std::string rig_text(model::PlantKind plant, std::optional<model::Feedback> loop,
                      bool with_payload) {
   const bool two_chambers = plant == model::PlantKind::two_chamber;
@@ -426,13 +426,13 @@ std::string numbers_text(const std::vector<std::string>& numbers) {
   return fmt::format("[{}]", fmt::join(quoted, ", "));
 }
 
-/// A file, and what is in it.
+/// A file and its columns.
 struct Recording {
   fs::path file;
   FileColumns columns;
 };
 
-/// Files of one condition: their names differ in the last number only.
+/// Files of one condition: their names differ only in the last number.
 struct FileGroup {
   std::string id;
   std::vector<Recording> files;
@@ -476,7 +476,7 @@ const ChannelColumns* find(const FileColumns& columns, Channel channel) {
   return found == columns.channels.end() ? nullptr : &*found;
 }
 
-/// Limits for what is compared beside the position, which holds those of [acceptance] itself.
+/// Proposes limits, as comments, for the compared channels other than the position.
 std::string limits_of_others(const FileColumns& columns) {
   std::string text;
   for (const Channel channel : {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b}) {
@@ -488,7 +488,7 @@ std::string limits_of_others(const FileColumns& columns) {
   return text;
 }
 
-/// What the loop controls whose reference is recorded; none: there is no reference.
+/// Controlled quantity of the loop whose reference is recorded; none: no reference is recorded.
 std::optional<model::Feedback> loop_of(const FileColumns& columns) {
   for (std::size_t i = 0; i < model::kFeedbackCount; ++i) {
     const model::Rig rig{{}, model::ControllerKind::pid, {}, static_cast<model::Feedback>(i)};
@@ -497,7 +497,7 @@ std::optional<model::Feedback> loop_of(const FileColumns& columns) {
   return std::nullopt;
 }
 
-/// What drives the rig, as far as it is recorded.
+/// Drive of the rig, if it is recorded.
 const ChannelColumns* drive_of(const FileColumns& columns) {
   const auto loop = loop_of(columns);
   if (!loop) return find(columns, Channel::command);
@@ -522,7 +522,7 @@ std::optional<std::pair<std::vector<double>, std::vector<double>>> signal_of(
   return std::pair{std::move(data[0]), std::move(data[1])};
 }
 
-/// How runs start: as the record does, unless one of them begins in motion.
+/// Initial state of the runs: that of the record, unless one of them begins in motion.
 std::string initial_text(const std::vector<FileGroup>& groups) {
   const double window_s = Campaign().initial_window_s;
   for (const FileGroup& group : groups) {
@@ -586,7 +586,7 @@ std::string waveform_text(const fs::path& file, const FileColumns& columns) {
 
 constexpr std::size_t kFewestOfARecording = 8;  // samples
 
-/// Whether a file holds columns of numbers, whatever their names.
+/// Whether a file has columns of numbers, whatever their names.
 bool has_numbers(const fs::path& file) {
   constexpr std::size_t kMostTried = 40;
   std::vector<std::string> names;
@@ -598,8 +598,9 @@ bool has_numbers(const fs::path& file) {
          }) >= 2;
 }
 
-/// Files without a time or a channel, as a summary beside the recordings, are named in `left_out`.
-/// Where no file has both, those with numbers are recordings all the same.
+/// Sorts recordings from other files. A file without a time or a channel, such as a summary beside
+/// the recordings, is listed in `left_out`. If no file has both, files with numbers count as
+/// recordings.
 /// @throws InputError  no file is a recording
 std::vector<Recording> recordings_among(const std::vector<fs::path>& files,
                                         std::vector<std::string>& left_out) {
@@ -645,16 +646,16 @@ std::vector<FileGroup> groups_of(std::vector<Recording> recordings) {
   return result;
 }
 
-/// Reads what a draft is made from: time and drive of the first file of each group. Where it cannot
-/// be read, as where several runs stand below each other and the time restarts, the file is named
-/// in `left_out` and the next one of its group takes its place.
+/// Reads the data for a draft: time and drive of the first file of each group. A file that cannot
+/// be read, for example because it has several runs one after the other and the time restarts, is
+/// listed in `left_out`, and the next one of its group is used.
 /// @throws InputError  of the first file that cannot be read, if no group remains
 std::vector<FileGroup> readable_among(std::vector<FileGroup> groups,
                                       std::vector<std::string>& left_out) {
   std::optional<InputError> first;
   const auto reads = [&](const Recording& recording) {
     const auto& [file, columns] = recording;
-    if (!columns.lacks.empty()) return true;  // has_numbers() has read it
+    if (!columns.lacks.empty()) return true;  // has_numbers() has already read it
     const ChannelColumns* drive = drive_of(columns);
     ChannelColumns any;
     if (drive != nullptr) {

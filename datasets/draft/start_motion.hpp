@@ -5,10 +5,10 @@
 
 namespace rigcal::datasets {
 
-/// How far a signal moves within the first `window_s`, so that its mean there is not where it
-/// starts: the difference between the means of the first and the last quarter of the window. Empty
-/// if that is below 1 % of the range of the whole signal, or within four standard errors (of
-/// white noise, from the differences of neighbours), or the window holds fewer than eight samples.
+/// Motion of a signal within the first `window_s`, because of which its mean there is not its
+/// start: the difference between the means of the first and the last quarter of the window. Empty
+/// if it is below 1 % of the range of the whole signal, or within four standard errors (of white
+/// noise, from differences of neighbours), or the window has fewer than eight samples.
 ///
 /// @param time_s  shape (n), increasing
 /// @param signal  shape (n), any unit

@@ -19,14 +19,14 @@ namespace {
 constexpr double kFewestSamples = 0.02;  // shift that is not worth an interpolation
 constexpr double kSignificance = 3.0;    // standard deviations
 constexpr int kSearchSamples = 200;      // tried first, then ten times as many
-constexpr double kDisproportion = 10.0;  // of an offset, in median distances from the median
+constexpr double kDisproportion = 10.0;  // offset in median distances from the median
 
 double interval(const Repeat& repeat) {
   const auto n = repeat.time_s.size();
   return n < 2 ? 0.0 : (repeat.time_s.back() - repeat.time_s.front()) / static_cast<double>(n - 1);
 }
 
-/// Whether every sample lies within a quarter of an interval of its place.
+/// Whether every sample is within a quarter of an interval of its nominal time.
 bool is_uniform(const Repeat& repeat) {
   const double dt = interval(repeat);
   for (std::size_t i = 0; i < repeat.time_s.size(); ++i) {
@@ -138,8 +138,7 @@ double common_offset(const std::vector<double>& offsets, double smallest) {
   return sum / count;
 }
 
-/// Delay of each repeat against one of them, in samples of their own counting; empty where one of
-/// them cannot be told.
+/// Delay of each repeat against one of them, in samples; empty if one of them cannot be determined.
 std::optional<std::vector<Lag>> lags_against(std::size_t centre, const std::vector<Repeat>& repeats,
                                              Channel channel) {
   std::vector<const std::vector<double>*> others;
@@ -163,7 +162,7 @@ struct Offsets {
   std::vector<double> sd_s;
 };
 
-/// Offsets by correlation in the first channel that tells all of them.
+/// Offsets by correlation in the first channel that determines all of them.
 std::optional<Offsets> correlate_offsets(const std::vector<Repeat>& repeats) {
   const double dt = interval(repeats.front());
   for (const Channel channel : alignment_channels(repeats)) {
@@ -212,7 +211,7 @@ AlignedRepeats align(const std::vector<Repeat>& repeats, bool correlate) {
     result.shift.push_back(same ? 0.0 : (first.time_s.front() - repeat.time_s.front()) / dt);
   }
   if (!correlate || repeats.size() < 2) return result;
-  // An edge that fell into a hole stands where the hole ends, which would pass for an offset.
+  // A bridged hole moves an edge inside it to its end, which would look like an offset.
   if (std::any_of(repeats.begin(), repeats.end(),
                   [](const Repeat& repeat) { return !repeat.bridged.empty(); })) {
     result.warnings.emplace_back("holes are bridged: repeats are not aligned");

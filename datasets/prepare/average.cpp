@@ -46,7 +46,7 @@ std::map<Channel, Stack> stack_channels(const std::vector<Repeat>& repeats,
   return stacks;
 }
 
-/// Whether every channel has at least one repeat at a sample.
+/// Whether each channel has a value from at least one repeat at a sample.
 bool is_covered(const std::map<Channel, Stack>& stacks, std::size_t i) {
   return std::all_of(stacks.begin(), stacks.end(), [i](const auto& entry) {
     return std::any_of(entry.second.rows.begin(), entry.second.rows.end(),
@@ -54,7 +54,8 @@ bool is_covered(const std::map<Channel, Stack>& stacks, std::size_t i) {
   });
 }
 
-/// Drops the samples that some channel has of no repeat, where holes are bridged.
+/// Removes the samples at which some channel has no value from any repeat; this happens in bridged
+/// holes.
 void drop_uncovered(std::map<Channel, Stack>& stacks, std::vector<double>& time_s) {
   std::vector<std::size_t> kept;
   for (std::size_t i = 0; i < time_s.size(); ++i)
@@ -105,7 +106,8 @@ Series moments(const Stack& stack, Span span) {
   Series series;
   series.repeats = static_cast<int>(stack.rows.size());
   const bool several = stack.rows.size() > 1;
-  // At their size: what grows keeps up to twice as much, for as long as the record lives.
+  // Reserves the exact size: a growing vector would keep up to twice as much for the life of the
+  // record.
   series.mean.reserve(span.end - span.begin);
   series.count.reserve(span.end - span.begin);
   if (several) series.sd.reserve(span.end - span.begin);
@@ -119,8 +121,7 @@ Series moments(const Stack& stack, Span span) {
       sum += row[i];
       ++count;
     }
-    // Of equal values the sum rounds, and a command that all repeats share would seem to have
-    // noise.
+    // The sum of equal values rounds; a command that all repeats share would seem to have noise.
     const double mean = all_equal(stack, i) ? value_at(stack, i) : sum / count;
     series.mean.push_back(mean);
     series.count.push_back(count);
@@ -213,8 +214,8 @@ std::vector<double> distances_from_median(const Stack& stack, Span span) {
   return distances;
 }
 
-/// Standard deviation of the noise of one row, from its second differences: what is smooth at the
-/// scale of three samples cancels.
+/// Standard deviation of the noise of one row, from its second differences: parts that are smooth
+/// over three samples cancel.
 double noise_sd(const std::vector<double>& row, Span span) {
   if (span.end - span.begin < 3) return 0.0;
   const Span inner{span.begin + 1, span.end - 1};
@@ -222,7 +223,8 @@ double noise_sd(const std::vector<double>& row, Span span) {
          std::sqrt(6.0);
 }
 
-/// Two repeats cannot tell which of them is wrong, only that they differ by more than their noise.
+/// In a pair of repeats either may be wrong; they only show that they differ by more than their
+/// noise.
 void warn_of_pair(const Stack& stack, const Series& series, Channel channel, Span span,
                   const AverageOptions& options, const std::vector<Repeat>& repeats,
                   std::vector<std::string>& warnings) {
@@ -301,7 +303,7 @@ void judge_repeats(const Stack& stack, const Series& series, Channel channel, Sp
     warn_of_outliers(distinct, channel, span, options, record);
 }
 
-/// Names noise that the mean of the repeats and their scatter do not stand for.
+/// Warns of noise that neither the mean of the repeats nor their standard deviation shows.
 /// @param deviations  of each row from the mean
 void warn_of_noise(const std::vector<std::vector<double>>& deviations, const Series& series,
                    Channel channel, const AverageOptions& options,

@@ -12,14 +12,15 @@ namespace rigcal::datasets {
 struct AverageOptions {
   bool align =
       true;  ///< shift repeats by the cross-correlation of their driving or fastest channel
-  /// A repeat whose rms distance from the sample-wise median of all exceeds this many times the
-  /// median of these distances is named an outlier. It is never dropped silently: it stays in the
-  /// mean. (The mean would hide an outlier of three or four repeats: it lies halfway to it.)
+  /// A repeat is reported as an outlier if its rms distance from the sample-wise median of all
+  /// exceeds this many times the median of these distances. It is never dropped silently: it stays
+  /// in the mean. (The mean would hide an outlier among three or four repeats, since it is halfway
+  /// to it.)
   double outlier_ratio = 3.0;
   std::map<Channel, double> known_sd;  ///< the campaign's `sd` of a sample, where given
   int repeats_averaged = 1;            ///< repeats already averaged in a single file
   double drive_hz = 0.0;               ///< frequency of a periodic drive; 0 if there is none
-  bool keep_deviations = false;        ///< Series::deviations: what repeats tell of errors
+  bool keep_deviations = false;        ///< Series::deviations, for the errors of the repeats
 };
 
 /// Aligned mean, sd and count of any number of repeats of one condition. Repeats may carry
@@ -38,8 +39,8 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
                const AverageOptions& options);
 
 /// Delay of b against a by sub-sample cross-correlation: the lag (in samples, fractional) that
-/// maximises the normalised cross-correlation, positive if b is late. Empty where the signals are
-/// constant or the maximum lies at the edge of the search.
+/// maximises the normalised cross-correlation, positive if b is late. Empty if the signals are
+/// constant or the maximum is at the edge of the search.
 std::optional<double> lag_in_samples(const std::vector<double>& a, const std::vector<double>& b,
                                      int max_lag);
 

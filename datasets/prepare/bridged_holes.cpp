@@ -17,8 +17,8 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kLostSample = 1.5;  // median steps: one sample at least is missing
-constexpr double kRounding = 1e-9;   // of a time
+constexpr double kLostSample = 1.5;  // median steps: at least one sample is missing
+constexpr double kRounding = 1e-9;   // relative to the length of a hole
 
 double median_step(const std::vector<double>& time_s) {
   std::vector<double> steps;
@@ -33,7 +33,7 @@ bool is_held_input(const Campaign& campaign, Channel channel) {
          setting->second.interpolation == Interpolation::hold;
 }
 
-/// How many samples are missing before each one.
+/// Number of samples that are missing before each sample.
 std::vector<std::size_t> missing_before(const std::vector<double>& time_s, double longest_s) {
   const double step_s = median_step(time_s);
   std::vector<std::size_t> missing(time_s.size(), 0);
@@ -41,13 +41,13 @@ std::vector<std::size_t> missing_before(const std::vector<double>& time_s, doubl
     const double own_s = time_s[i] - time_s[i - 1];
     if (own_s <= kLostSample * step_s || own_s > longest_s * (1.0 + kRounding)) continue;
     const double lost = std::round(own_s / step_s) - 1.0;
-    // More than there are is refused: no need to count how many.
+    // The caller refuses more missing samples than the record has, so the count is capped.
     missing[i] = static_cast<std::size_t>(std::min(lost, static_cast<double>(time_s.size()) + 1.0));
   }
   return missing;
 }
 
-/// The same with what is missing put in, at equal parts of each hole.
+/// Inserts the missing samples, evenly spaced in each hole.
 std::vector<double> filled(const std::vector<double>& x, const std::vector<std::size_t>& missing,
                            bool held) {
   std::vector<double> result;
@@ -90,7 +90,7 @@ void bridge_holes(const Campaign& campaign, Repeat& repeat) {
 
 void forget_bridged(std::vector<double>& row, const std::vector<bool>& bridged, double shift) {
   if (bridged.empty()) return;
-  // As shifted() reads: a whole shift takes one sample, any other those on either side.
+  // Follows shifted(): a whole shift reads one sample, any other shift reads both neighbours.
   const double nearest = std::round(shift);
   const bool whole = std::abs(shift - nearest) < 1e-6;
   const auto below = static_cast<std::ptrdiff_t>(whole ? nearest : std::floor(shift));

@@ -8,24 +8,24 @@
 
 namespace rigcal::datasets {
 
-/// Gives a repeat the samples that its file lacks, where the campaign bridges holes (`holes =
-/// "bridge"`): in each step of time above 1.5 times the median, up to `longest_hole`, as many as
-/// are missing, evenly apart. They are marked as `bridged`: what stands there, a line between the
-/// neighbours or a held input, keeps filters and shifts going and is compared with nothing.
-/// Without such a request it does nothing.
+/// Inserts the missing samples of a repeat if the campaign bridges holes (`holes = "bridge"`). A
+/// step of time between 1.5 times the median and `longest_hole` gets as many evenly spaced samples
+/// as are missing. They are marked as `bridged` and are compared with nothing. Their values, a line
+/// between the neighbours or a held input, only keep filters and shifts going. Does nothing if the
+/// campaign does not bridge holes.
 ///
-/// @throws InputError  more samples are missing than there are
+/// @throws InputError  more samples are missing than the record has
 void bridge_holes(const Campaign& campaign, Repeat& repeat);
 
-/// Marks as NaN what shifted() made of bridged samples.
+/// Sets the values that shifted() made from bridged samples to NaN.
 ///
-/// @param row    as shifted(values, shift, ...) gave it
+/// @param row    result of shifted(values, shift, ...)
 void forget_bridged(std::vector<double>& row, const std::vector<bool>& bridged, double shift);
 
-/// What was bridged, in words, a text per repeat.
+/// Describes the bridged holes, one text per repeat.
 std::vector<std::string> bridged_notes(const std::vector<Repeat>& repeats);
 
-/// In words: where none of the repeats tells what a recorded drive did; empty if nowhere.
+/// Warns, in words, if a hole of a recorded drive is bridged in all repeats; empty otherwise.
 std::string guessed_drive_warning(const Campaign& campaign, const Condition& condition,
                                   const Record& record);
 

@@ -29,7 +29,7 @@ struct Found {
   Spike spike;
 };
 
-/// How many there are in one channel, and the largest of them by name.
+/// Number of spikes in one channel, with the largest one.
 std::string spikes_text(Channel channel, std::vector<Found> found) {
   constexpr std::size_t kMostNamed = 3;
   std::stable_sort(found.begin(), found.end(), [](const Found& a, const Found& b) {
@@ -75,7 +75,7 @@ void treat_spikes(const Campaign& campaign, std::vector<Repeat>& repeats, Condit
         "spikes excluded: {} samples replaced by lines between their neighbours", replaced));
 }
 
-/// A sample that stands for some of which one was marked is marked, too.
+/// Marks each decimated sample that was computed from a marked one.
 std::vector<bool> decimated_marks(const std::vector<bool>& marks, std::size_t factor) {
   std::vector<bool> result;
   for (std::size_t i = 0; i < marks.size(); i += factor) {

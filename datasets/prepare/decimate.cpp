@@ -11,8 +11,8 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kRippleDb = 66.0;        // 0.05 %; 0.1 % with what the formula leaves out
-constexpr double kTransitionShare = 0.2;  // of the new sample rate, from 0.4 to 0.6 of it
+constexpr double kRippleDb = 66.0;        // 0.05 %; 0.1 % including the error of the formula
+constexpr double kTransitionShare = 0.2;  // fraction of the new sample rate, from 0.4 to 0.6
 
 double value_beyond(const std::vector<double>& x, long index) {
   const long last = static_cast<long>(x.size()) - 1;
@@ -73,7 +73,7 @@ std::vector<double> decimated_hold(const std::vector<double>& x, std::size_t fac
     const std::size_t end = std::min(i + factor, x.size());
     const auto begin = x.begin() + static_cast<std::ptrdiff_t>(i);
     const double sum = std::accumulate(begin, x.begin() + static_cast<std::ptrdiff_t>(end), 0.0);
-    // A constant stays what it is, to the last bit.
+    // A constant stays unchanged to the last bit.
     const bool constant = std::all_of(begin, x.begin() + static_cast<std::ptrdiff_t>(end),
                                       [&](double value) { return value == *begin; });
     result.push_back(constant ? *begin : sum / static_cast<double>(end - i));

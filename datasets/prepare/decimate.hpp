@@ -9,26 +9,26 @@
 
 namespace rigcal::datasets {
 
-/// Zero-phase low-pass that a record goes through before every `factor`-th sample is kept: a sinc
-/// under a Kaiser window, of odd length 2 half + 1. With F the new sample rate it passes up to
-/// 0.4 F within 0.1 %, halves the amplitude at 0.5 F and leaves less than 0.1 % above 0.6 F, so
-/// that what folds back lies above 0.4 F.
+/// Zero-phase low-pass for a record before only every `factor`-th sample is kept: a sinc under a
+/// Kaiser window, of odd length 2 half + 1. With the new sample rate F it passes up to 0.4 F within
+/// 0.1 %, halves the amplitude at 0.5 F and leaves less than 0.1 % above 0.6 F, so that aliases are
+/// above 0.4 F.
 struct AntiAliasFilter {
   std::size_t factor = 1;
   std::vector<double> taps;  ///< symmetric, of sum 1
 
-  /// What is left of the standard deviation of white noise: sqrt(sum of squared taps).
+  /// Factor on the standard deviation of white noise: sqrt(sum of squared taps).
   double noise_gain() const;
 };
 
 /// @param factor  > 1
 AntiAliasFilter anti_alias_filter(std::size_t factor);
 
-/// y[k] = filtered x at sample k * factor. Beyond its ends a record continues by reflection through
-/// its last sample, so that a slope goes on.
+/// y[k] = filtered x at sample k * factor. Beyond its ends a record is continued by reflection
+/// through its last sample, which continues a slope.
 std::vector<double> decimated(const std::vector<double>& x, const AntiAliasFilter& filter);
 
-/// Mean of each `factor` samples from k * factor on: a held signal keeps its integral, and an edge
+/// Mean of each `factor` samples from k * factor on. A held signal keeps its integral, and an edge
 /// its place, without the ringing of a sharp filter.
 std::vector<double> decimated_hold(const std::vector<double>& x, std::size_t factor);
 

@@ -62,9 +62,9 @@ bool shows_noise(const std::vector<EqualRun>& runs, double low, double high) {
   if (runs.size() < 4) return false;
   const auto [smallest, largest] = std::minmax_element(
       runs.begin(), runs.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
-  const double least =
-      0.97 * std::max(kMotionSteps * resolution(runs),  // which is known to rounding only
-                      kShareOfRange * (largest->value - smallest->value));
+  // The resolution is known only within rounding.
+  const double least = 0.97 * std::max(kMotionSteps * resolution(runs),
+                                       kShareOfRange * (largest->value - smallest->value));
   const auto step = [&](std::size_t k) { return runs[k].value - runs[k - 1].value; };
   const auto is_inside = [&](std::size_t k) { return runs[k].value > low && runs[k].value < high; };
   std::size_t turning = 0;

@@ -30,18 +30,18 @@ double resolution(const std::vector<EqualRun>& runs);
 /// Median of the steps from one value to the next; 0 where all are equal.
 double typical_step(const std::vector<EqualRun>& runs);
 
-/// Whether the signal arrives at a run and leaves it with speed, as far as the record tells: three
-/// samples before it and after it lie at least so far from it.
+/// Whether the signal moves before and after a run, as far as the record shows: three samples
+/// before it and after it have at least this distance from it.
 ///
-/// @param x  shape (n), of which the run is
+/// @param x  shape (n), of which the run is a part
 bool cuts_a_motion(std::span<const double> x, const EqualRun& run, double least);
 
-/// Whether the signal has noise well above its resolution, so that no sensor that works gives the
-/// same value many times. The steps from one value to the next then go up and down: at least 5 % of
-/// them, and 30, are larger than both their neighbours, or smaller than both, by four steps of the
-/// resolution and by 1e-6 of the range (the rounding of simulations is less). Of white noise half
-/// and more are, whatever slow motion it lies on; of a smooth signal few. The rounding of a
-/// converter alone makes a difference of two steps.
+/// Whether the noise of the signal is well above its resolution, so that a working sensor never
+/// gives the same value many times. The steps between values then go up and down: at least 5 % of
+/// the values, and 30 of them, are larger or smaller than both their neighbours, by four steps of
+/// the resolution and by 1e-6 of the range (the rounding of simulations is less). In white noise
+/// this is half of them or more, whatever slow motion is below it; in a smooth signal only a few.
+/// The rounding of a converter alone causes a difference of two steps.
 ///
 /// @param low, high  runs at or beyond these values are left out
 bool shows_noise(const std::vector<EqualRun>& runs, double low, double high);

@@ -15,8 +15,8 @@ namespace {
 // Lags beyond the search that the interpolation of its outermost peak needs.
 constexpr int kMargin = 4;
 
-// Of the sample rate. A faster sinusoid has its peaks so close together, and so few samples on
-// each, that noise decides which is the nearest.
+// Fraction of the sample rate. A faster sinusoid has its peaks so close together, and so few
+// samples on each, that noise decides which one is nearest.
 constexpr double kFastest = 0.35;
 
 constexpr int kShortest = 64;
@@ -130,7 +130,7 @@ int peak_lag(const Correlation& c, int samples) {
   const auto peak = [&](int lag) { return peaks[static_cast<std::size_t>(lag - c.first_lag)]; };
   double highest = -1.0;
   for (const Peak& each : peaks) highest = std::max(highest, each.height);
-  // The ends of the overlap, which hold parts of periods, change a height by 1 / samples or so.
+  // Incomplete periods at the ends of the overlap change a height by about 1 / samples.
   const double tolerance = 0.5 * (1.0 - highest) + std::max(1e-4, 2.0 / samples);
   std::optional<int> nearest;
   std::optional<int> top;
@@ -192,7 +192,7 @@ Shape shape_at(const Correlation& c, double lag) {
 struct Coarse {
   int peak = 0;       ///< its lag
   int hill = 0;       ///< lags over which it stretches
-  double height = 0;  ///< of it
+  double height = 0;  ///< height of the peak
   int shorter = 0;    ///< samples of the shorter record
 };
 
@@ -232,7 +232,7 @@ double norm(const Trace& trace) {
       .norm();
 }
 
-/// Where the correlation of two records is highest, if that tells anything.
+/// Maximum of the correlation of two records, if it is significant.
 std::optional<Coarse> coarse_peak(const Trace& x, const Trace& y, double first_x, double first_y,
                                   int max_lag) {
   const auto shorter = static_cast<int>(std::min(x.x.size(), y.x.size()));
@@ -244,7 +244,7 @@ std::optional<Coarse> coarse_peak(const Trace& x, const Trace& y, double first_x
   const Correlation c = correlate(x, y, -max_lag - kMargin, max_lag + kMargin);
   const int peak = peak_lag(c, shorter);
   const double height = peak_at(c, peak).height;
-  // Six standard deviations of what unrelated noise correlates by chance.
+  // Six standard deviations of the correlation of unrelated noise.
   if (std::abs(peak) >= max_lag || height < 6.0 / std::sqrt(shorter)) return std::nullopt;
   if (cosine_at(c, peak) < std::cos(2.0 * std::numbers::pi * kFastest)) return std::nullopt;
   return Coarse{peak, half_width(c, peak), height, shorter};

@@ -21,7 +21,7 @@ constexpr std::size_t kTogether = 8;
 
 using Lanes __attribute__((vector_size(kLanes * sizeof(double)))) = double;
 
-// What takes or gives lanes has to be inlined: they pass through no call in both sets alike.
+// Functions with vector arguments must be inlined: the two instruction sets pass them differently.
 #define RIGCAL_INLINED [[gnu::always_inline]] inline
 
 RIGCAL_INLINED void add_product(Lanes& sum, const Lanes& factor, const double* x) {

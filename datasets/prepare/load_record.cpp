@@ -44,8 +44,9 @@ AverageOptions options_of(const Campaign& campaign, const Condition& condition) 
   throw InputError(condition.where, fmt::format("condition \"{}\": {}", condition.id, message));
 }
 
-/// A campaign may name any file. What stands in one that is no recording is shown only of files
-/// that whoever runs it points at, or that are named like one, wherever links lead.
+/// Whether error messages may quote a file. A campaign may name any file, so content is shown only
+/// of files in the folders that the user chose, or with the name of a recording after all links are
+/// resolved.
 bool may_be_shown(const Campaign& campaign, const std::filesystem::path& path) {
   std::error_code error;
   if (has_record_name(std::filesystem::weakly_canonical(path, error)) && !error) return true;
@@ -53,8 +54,7 @@ bool may_be_shown(const Campaign& campaign, const std::filesystem::path& path) {
          (!campaign.root.empty() && lies_within(campaign.root, path));
 }
 
-/// Columns of a file of any format, the time first; what is doubtful about the file goes to the
-/// repeat.
+/// Columns of a file of any format, the time first; doubts about the file go to the repeat.
 RecordTable read_columns(const Campaign& campaign, const std::filesystem::path& path,
                          const std::vector<std::string>& names, Repeat& repeat) {
   try {
@@ -89,7 +89,7 @@ void require_measurable(const RepeatSource& source, const std::string& column,
                     bad - values.begin() + 1, column, *bad, kLargest));
 }
 
-/// What drives the rig at each sample of the record.
+/// Drive of the rig at each sample of the record.
 std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& condition,
                                      const Record& record) {
   const auto drive = inputs_of(campaign, condition, values_in(campaign, condition), &record).drive;
@@ -99,7 +99,7 @@ std::vector<double> drive_at_samples(const Campaign& campaign, const Condition& 
   return result;
 }
 
-/// Whether the campaign has a term that takes what was before the first sample.
+/// Whether a term of the campaign depends on the drive before the first sample.
 bool delays_its_drive(const Campaign& campaign) {
   return std::any_of(
       campaign.parameters.begin(), campaign.parameters.end(), [&](const ParameterSetting& setting) {
@@ -157,7 +157,7 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source) {
                                  source.label));
   std::vector<std::string> names{campaign.time_column};
   for (const auto& [channel, column] : source.columns) names.push_back(column);
-  // Columns that a repeat names itself stand alone.
+  // Columns that a repeat names itself have no `minus`.
   const auto minus_of = [&](Channel channel, const std::string& column) {
     const ChannelSetting& setting = campaign.channels.at(channel);
     return column == setting.column ? setting.minus : std::string();

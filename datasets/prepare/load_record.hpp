@@ -5,7 +5,7 @@
 
 namespace rigcal::datasets {
 
-/// Every file of a condition, once, as it stands now.
+/// Every file of a condition, once, with its present state.
 /// @throws InputError  a pattern that matches no file
 std::vector<FileState> files_of(const Campaign& campaign, const Condition& condition);
 
@@ -17,9 +17,9 @@ Repeat load_repeat(const Campaign& campaign, const RepeatSource& source);
 /// @throws InputError  a file is wrong, or there is none
 std::vector<Repeat> load_all_repeats(const Campaign& campaign, const Condition& condition);
 
-/// Averages the repeats of a condition as the campaign says.
-/// @param repeats  decimated and cleared of spikes first, where the campaign asks for it
-/// @param keep_deviations  those of each repeat from the mean
+/// Averages the repeats of a condition with the campaign's settings.
+/// @param repeats  decimated and cleared of spikes first, if the campaign says so
+/// @param keep_deviations  keep those of each repeat from the mean
 /// @throws InputError  the repeats do not belong together
 Record average_of(const Campaign& campaign, const Condition& condition,
                   std::vector<Repeat>& repeats, bool keep_deviations = false);
@@ -31,7 +31,7 @@ Record load_record(const Campaign& campaign, const Condition& condition,
 
 /// Records of all conditions whose use is among `uses`, in the campaign's order; files are read in
 /// parallel.
-/// @throws InputError  as load_record(); samples are missing in what counts of a record
+/// @throws InputError  as load_record(); samples are missing in the windows of a record
 std::vector<Record> load_records(const Campaign& campaign, const std::vector<Use>& uses,
                                  int threads, bool keep_deviations = false);
 

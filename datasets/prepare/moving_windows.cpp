@@ -9,15 +9,15 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kHeldShare = 0.02;         // of the command's range
-constexpr double kStepShare = 0.05;         // of the command's range
-constexpr double kLongestRise = 0.1;        // of the time that the command is held afterwards
-constexpr double kLeastTravelShare = 0.05;  // of the range of positions
-constexpr double kArrivedShare = 0.01;      // of the travel
+constexpr double kHeldShare = 0.02;         // fraction of the command's range
+constexpr double kStepShare = 0.05;         // fraction of the command's range
+constexpr double kLongestRise = 0.1;        // fraction of the time that the command is held
+constexpr double kLeastTravelShare = 0.05;  // fraction of the range of positions
+constexpr double kArrivedShare = 0.01;      // fraction of the travel
 constexpr double kNoiseFactor = 6.0;        // standard deviations
 constexpr double kSpreadFactor = 2.0;       // standard deviations over the repeats
-constexpr double kTailShare = 0.05;         // of a held command, to judge where it ends
-constexpr std::size_t kFewestHeld = 5;      // samples
+constexpr double kTailShare = 0.05;  // fraction of a held command that shows where the motion ends
+constexpr std::size_t kFewestHeld = 5;  // samples
 
 /// Samples [begin, end).
 struct SampleSpan {
@@ -53,7 +53,7 @@ double noise_sd(std::span<const double> x) {
   std::vector<double> differences;
   for (std::size_t i = 1; i + 1 < x.size(); ++i)
     differences.push_back(std::abs(x[i - 1] - 2.0 * x[i] + x[i + 1]));
-  constexpr double kMedianOfNormal = 0.6745;  // of |N(0, 1)|
+  constexpr double kMedianOfNormal = 0.6745;  // median of |N(0, 1)|
   return median(differences) / (kMedianOfNormal * std::sqrt(6.0));
 }
 
@@ -71,7 +71,7 @@ std::vector<SampleSpan> held_levels(std::span<const double> command) {
   return levels;
 }
 
-/// Held levels that a step leads to, from the first sample off the level before.
+/// Held levels that a step leads to, from the first sample that leaves the level before.
 std::vector<SampleSpan> stepped_levels(std::span<const double> time_s,
                                        std::span<const double> command) {
   const double least =
@@ -93,7 +93,7 @@ std::vector<SampleSpan> stepped_levels(std::span<const double> time_s,
   return stepped;
 }
 
-/// Where the piston went under one held command; empty if it stayed.
+/// Motion of the piston under one held command; empty if it stayed.
 std::vector<Motion> motion_in(SampleSpan held, std::span<const double> time_s,
                               std::span<const double> position_m, std::span<const double> spread_m,
                               double least_travel_m, double noise_m) {

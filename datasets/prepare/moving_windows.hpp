@@ -18,22 +18,21 @@ struct Motion {
 
 /// Motions of a record, from its own samples.
 ///
-/// A command counts as held where it stays within 2 % of its range, or six standard deviations of
-/// its noise, of its first sample; it steps where it goes from one held level to another, by more
-/// than 5 % of its range, in less than a tenth of the time that it is held afterwards. A sine or a
-/// ramp has no steps. The first held level counts too if the piston moves in it.
+/// A command is held while it stays within 2 % of its range, or six standard deviations of its
+/// noise, of its first sample. A step goes from one held level to another, by more than 5 % of the
+/// range, in less than a tenth of the time for which it is held afterwards. A sine or a ramp has no
+/// steps. The first held level counts, too, if the piston moves in it.
 ///
-/// The piston moves under a held command if it ends farther from its start than 5 % of the record's
-/// range of positions and six standard deviations of the noise. It has arrived where it is first
-/// nearer to the end than 1 % of the travel or twice the standard deviation over the repeats,
-/// whichever is more: where some repeats have arrived and others have not, their mean is no motion.
-/// Positions are running medians, so that noise and spikes move an arrival by a few samples at
-/// most.
+/// The piston moves under a held command if its end is farther from its start than 5 % of the
+/// record's range of positions and six standard deviations of the noise. It has arrived when it is
+/// first closer to the end than 1 % of the travel or twice the standard deviation over the repeats,
+/// whichever is larger: while only some repeats have arrived, their mean is no motion. Positions
+/// are running medians, so that noise and spikes move an arrival by a few samples at most.
 ///
 /// @param time_s      shape (n), increasing
-/// @param command     shape (n), what steps: valve command or reference, any unit
+/// @param command     shape (n), valve command or reference with steps, any unit
 /// @param position_m  shape (n)
-/// @param spread_m    shape (n), standard deviation over the repeats at each sample, NaN where
+/// @param spread_m    shape (n), standard deviation over the repeats at each sample, NaN if
 ///                    unknown; or empty
 /// @return            in order, not overlapping; empty if nothing steps or moves
 /// @throws std::invalid_argument  sizes differ

@@ -22,26 +22,26 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 constexpr std::size_t kFewestToRecognise = 32;
-constexpr double kOfStep = 0.75;     // a rounded value is off by half a step at most
-constexpr double kMostStep = 0.02;   // of the amplitude: a coarser record shows no waveform
-constexpr double kExact = 1e-9;      // of the amplitude: rounding of its computation
-constexpr double kMostErrors = 5.0;  // standard deviations of the stated noise
-constexpr double kMostRms = 1.2;     // of the stated noise
-constexpr int kMostSteps = 30;       // of Gauss and Newton
+constexpr double kOfStep = 0.75;    // a rounded value is off by half a step at most
+constexpr double kMostStep = 0.02;  // fraction of the amplitude: a coarser record shows no waveform
+constexpr double kExact = 1e-9;     // fraction of the amplitude: rounding errors of the computation
+constexpr double kMostErrors = 5.0;  // in standard deviations of the stated noise
+constexpr double kMostRms = 1.2;     // in standard deviations of the stated noise
+constexpr int kMostSteps = 30;       // Gauss-Newton steps
 constexpr int kMostDigits = 12;
 
-/// Drive and time of a record, and how near a signal has to come.
+/// Recorded drive and the tolerance for recognising it.
 struct Recorded {
   std::span<const double> time_s;
   std::span<const double> drive;
   double sd = 0.0;
-  double step = 0.0;  ///< of its converter or digits
+  double step = 0.0;  ///< resolution of its converter or digits
 
   std::size_t size() const { return drive.size(); }
   double tolerance() const { return kOfStep * step + kMostErrors * sd; }
 };
 
-/// Farthest distance of a sample, if all are near enough.
+/// Largest deviation of a sample, if all are within the tolerance.
 std::optional<double> farthest_from(const Recorded& record, const model::Signal& signal,
                                     double amplitude) {
   double farthest = 0.0;
@@ -62,10 +62,10 @@ double rounded(double value, int digits) {
   return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
 }
 
-/// Gauss and Newton on a few parameters of a signal.
+/// Fits a few parameters of a signal by Gauss-Newton.
 ///
-/// @param model  value of the signal at a time, and its derivatives by the parameters
-/// @return       false where it leads nowhere
+/// @param model  returns the signal at a time and its derivatives by the parameters
+/// @return       false if the steps diverge
 template <int N>
 bool solve(const Recorded& record, Eigen::Vector<double, N>& p,
            const std::function<double(double, const Eigen::Vector<double, N>&,
@@ -79,7 +79,7 @@ bool solve(const Recorded& record, Eigen::Vector<double, N>& p,
       normal += slope * slope.transpose();
       right += slope * (record.drive[i] - value);
     }
-    // To the scale of each parameter: frequencies and amplitudes differ by magnitudes.
+    // Scales each parameter: frequencies and amplitudes differ by orders of magnitude.
     const Eigen::Vector<double, N> scale = normal.diagonal().cwiseSqrt().cwiseMax(1e-300);
     const Eigen::Matrix<double, N, N> scaled =
         scale.cwiseInverse().asDiagonal() * normal * scale.cwiseInverse().asDiagonal();
@@ -111,7 +111,8 @@ std::optional<RecognisedDrive> as_sine(const Recorded& record, double frequency_
   };
   if (!solve<4>(record, p, model) || !(p(3) > 0.0)) return std::nullopt;
   const double amplitude = std::hypot(p(1), p(2));
-  // The simplest that will do: the frequency in few digits, so that samples repeat themselves.
+  // Takes the simplest frequency within the tolerance: with few digits its samples repeat in each
+  // period.
   for (int digits = 2; digits <= kMostDigits; ++digits) {
     const double f = rounded(p(3), digits);
     const double a = rounded(amplitude, digits);
@@ -132,7 +133,7 @@ std::optional<RecognisedDrive> as_sine(const Recorded& record, double frequency_
   return std::nullopt;
 }
 
-/// The number in [low, high] of fewest digits.
+/// Number in [low, high] with the fewest digits.
 double roundest_between(double low, double high) {
   for (int digits = 1; digits <= 17; ++digits) {
     const double middle = rounded(0.5 * (low + high), digits);
@@ -143,7 +144,8 @@ double roundest_between(double low, double high) {
 
 std::optional<RecognisedDrive> as_square(const Recorded& record, double amplitude,
                                          const std::string& unit) {
-  // Edge k of a square wave is at k / (2 f): after the sample before it, not after its own.
+  // Edge k of a square wave is at k / (2 f), later than the sample before it and not later than the
+  // sample after it.
   constexpr double kEdgeRounding = 1e-12;
   double low_hz = 0.0;
   double high_hz = std::numeric_limits<double>::infinity();
@@ -164,7 +166,7 @@ std::optional<RecognisedDrive> as_square(const Recorded& record, double amplitud
       fmt::format("a square wave of {:.6g} Hz with an amplitude of {:.6g} {}", f, amplitude, unit));
 }
 
-/// Zero crossings between samples: half a cycle each.
+/// Zero crossings, interpolated between samples; they are half a cycle apart.
 std::vector<double> crossings_of(const Recorded& record) {
   std::vector<double> crossings;
   for (std::size_t i = 1; i < record.size(); ++i) {
@@ -177,16 +179,15 @@ std::vector<double> crossings_of(const Recorded& record) {
   return crossings;
 }
 
-/// Frequency and rate of a logarithmic chirp through its middle and its last crossing: (0, f,
-/// rate).
+/// Returns (0, frequency, rate) of the logarithmic chirp through the middle and the last crossing.
 Eigen::Vector<double, 3> logarithmic_start(const std::vector<double>& crossings) {
   const std::size_t middle = crossings.size() / 2;
   const double t1 = crossings[middle];
   const double t2 = crossings.back();
   const double ratio = static_cast<double>(crossings.size()) / static_cast<double>(middle + 1);
-  // expm1(rate t2) / expm1(rate t1) grows with the rate.
+  // Bisection, since expm1(rate t2) / expm1(rate t1) grows with the rate.
   double low = -50.0 / t2;
-  double high = 49.0 / t2;  // so that no rate tried is zero
+  double high = 49.0 / t2;  // asymmetric, so that no rate tried is zero
   for (int i = 0; i < 200; ++i) {
     const double rate = 0.5 * (low + high);
     (std::expm1(rate * t2) / std::expm1(rate * t1) < ratio ? low : high) = rate;
@@ -195,14 +196,14 @@ Eigen::Vector<double, 3> logarithmic_start(const std::vector<double>& crossings)
   return {0.0, 0.5 * static_cast<double>(crossings.size()) * rate / std::expm1(rate * t2), rate};
 }
 
-/// From t = 0 on, over the whole record.
+/// Recognises a chirp that begins at t = 0 and spans the whole record.
 std::optional<RecognisedDrive> as_chirp(const Recorded& record, double amplitude,
                                         const std::string& unit) {
   using P = Eigen::Vector<double, 3>;  // amplitude, frequency, rate
   const auto crossings = crossings_of(record);
   const double end_s = record.time_s.back();
   if (crossings.size() < 8 || std::abs(record.time_s.front()) > 1e-9 * end_s) return std::nullopt;
-  // Cycles over time at each crossing are the mean frequency until there: a line, or nearly one.
+  // Cycles divided by time is the mean frequency up to a crossing. It is nearly a straight line.
   double s = 0.0, st = 0.0, stt = 0.0, sy = 0.0, sty = 0.0;
   for (std::size_t k = 0; k < crossings.size(); ++k) {
     const double t = crossings[k];

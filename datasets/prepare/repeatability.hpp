@@ -9,13 +9,14 @@
 
 namespace rigcal::datasets {
 
-/// How well the repeats of one condition agree in one channel, and what that leaves to any model.
+/// Agreement of the repeats of one condition in one channel, and the noise floor that follows for
+/// any model.
 struct Repeatability {
   std::string condition;
   Channel channel = Channel::position;
-  int repeats = 1;          ///< that carry the channel
-  double pooled_sd = 0.0;   ///< of one repeat, SI unit of the channel; NaN if unknown
-  double sd_of_mean = 0.0;  ///< likewise
+  int repeats = 1;          ///< number of repeats with the channel
+  double pooled_sd = 0.0;   ///< for one repeat, SI unit of the channel; NaN if unknown
+  double sd_of_mean = 0.0;  ///< standard deviation of their mean
   /// Empty where the sd is unknown or the channel constant: then there is no such number.
   std::optional<metrics::NoiseFloor> noise_floor;
 };

@@ -10,13 +10,12 @@ enum class Interpolator {
   linear,        ///< no overshoot at the edges of a held signal
 };
 
-/// y[i] = x(i + shift) for i = 0..samples-1; NaN where x does not reach. A shift within 1e-6 of a
-/// whole number of samples copies.
+/// y[i] = x(i + shift) for i = 0..samples-1; NaN outside x. A shift within 1e-6 of a whole number
+/// of samples copies.
 ///
 /// The band-limited interpolator keeps the amplitude within 0.3 % up to 0.42 of the sample rate. At
-/// half a sample it leaves 97 % of the standard deviation of white noise (linear: 71 %).
-/// Beyond its ends a record continues by reflection through its last sample, so that a slope goes
-/// on.
+/// half a sample it keeps 97 % of the standard deviation of white noise (linear: 71 %). Beyond its
+/// ends a record is continued by reflection through its last sample, which continues a slope.
 std::vector<double> shifted(const std::vector<double>& x, double shift, std::size_t samples,
                             Interpolator interpolator);
 

@@ -12,8 +12,8 @@
 namespace rigcal::datasets {
 namespace {
 
-/// A record of one repeat holds numbers only: at the ends that it does not cover, its nearest
-/// sample, which `covered` keeps from counting.
+/// A record of one repeat must have numbers everywhere. Ends that the repeat does not cover get its
+/// nearest sample, and `covered` excludes them.
 void fill_ends(std::vector<double>& x, std::size_t& first, std::size_t& last) {
   const auto finite = [](double value) { return std::isfinite(value); };
   const auto begin = std::find_if(x.begin(), x.end(), finite);
@@ -26,7 +26,7 @@ void fill_ends(std::vector<double>& x, std::size_t& first, std::size_t& last) {
 }
 
 /// @param base_s  the common time base
-/// @param kept    where the samples of the average are on it
+/// @param kept    indices in base_s of the samples of the average
 Record single_record(const Record& average, const Repeat& repeat, double shift,
                      const std::vector<double>& base_s, std::vector<std::size_t> kept,
                      TimeWindow& covered) {

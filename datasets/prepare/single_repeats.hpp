@@ -7,10 +7,10 @@
 
 namespace rigcal::datasets {
 
-/// A condition's average and, on the same time base, each of its repeats as a record of its own.
+/// A condition's average and, on the same time base, a separate record of each repeat.
 struct RepeatRecords {
   Record average;
-  /// In the order of the files; empty where the file is averaged already or there is one repeat.
+  /// In the order of the files; empty for an averaged file or a single repeat.
   std::vector<Record> singles;
   /// Per single the times that it covers.
   std::vector<TimeWindow> covered;
@@ -23,8 +23,8 @@ struct RepeatRecords {
 RepeatRecords repeat_records(const Campaign& campaign, const Condition& condition,
                              std::vector<Repeat> repeats);
 
-/// Those of the files of a condition.
-/// @throws InputError  as load_record(); samples are missing in what counts
+/// Loads the average and the single repeats of a condition.
+/// @throws InputError  as load_record(); samples are missing in the windows
 RepeatRecords load_repeats(const Campaign& campaign, const Condition& condition);
 
 }  // namespace rigcal::datasets

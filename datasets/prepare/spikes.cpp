@@ -13,12 +13,12 @@ namespace {
 constexpr std::size_t kFewestForSpikes = 16;
 constexpr std::size_t kLongestRun = 2;
 constexpr double kDeviations = 10.0;
-constexpr double kSteps = 4.0;              // of neighbours
+constexpr double kSteps = 4.0;              // differences of neighbours
 constexpr double kNeighbourFactor = 3.0;    // times the difference of the neighbours
-constexpr double kMedianOfNormal = 0.6745;  // of |N(0, 1)|
+constexpr double kMedianOfNormal = 0.6745;  // median of |N(0, 1)|
 
-/// How far samples [begin, begin + length) lie off the line between the samples around them, all on
-/// one side: the least of them, signed; 0 if they lie on both sides.
+/// Distance of samples [begin, begin + length) from the line between their neighbours, all on one
+/// side: the smallest of them, signed; 0 if they are on both sides.
 struct Excursion {
   double least = 0.0;
   double farthest = 0.0;
@@ -38,7 +38,7 @@ Excursion excursion(const std::vector<double>& x, std::size_t begin, std::size_t
   return result;
 }
 
-/// That of a single sample.
+/// Distance of a single sample.
 double off_line(const std::vector<double>& x, std::size_t i) {
   return std::abs(x[i] - (x[i - 1] + 0.5 * (x[i + 1] - x[i - 1])));
 }
@@ -63,15 +63,15 @@ double limit_of(const std::vector<double>& x) {
   return std::max(limit_by(median(std::move(off))), kSteps * typical_step(x));
 }
 
-/// Whether on each side two samples agree, against how far a run lies off them: if not, it is part
-/// of an edge or an oscillation.
+/// Whether on each side two samples agree, compared with the distance of a run from them. Otherwise
+/// the run is part of an edge or an oscillation.
 bool stands_alone(const std::vector<double>& x, std::size_t begin, std::size_t length, double off) {
   const std::size_t after = begin + length;
   const auto [low, high] = std::minmax({x[begin - 2], x[begin - 1], x[after], x[after + 1]});
   return std::abs(off) > kNeighbourFactor * (high - low);
 }
 
-/// The largest excursion of runs that stand alone; 0 where none does.
+/// The largest excursion of isolated runs; 0 if there is none.
 double largest_alone(const std::vector<double>& x) {
   double largest = 0.0;
   for (std::size_t i = 2; i + 3 < x.size(); ++i) {
@@ -83,9 +83,9 @@ double largest_alone(const std::vector<double>& x) {
   return largest;
 }
 
-/// Whether no excursion up to this one is a spike, as counting tells: more than half of the samples
-/// lie so far off that the median does. Most records have no spike, and counting takes a tenth of
-/// what medians do.
+/// Whether counting rules out that any excursion up to this one is a spike: more than half of the
+/// samples have such an excursion, so the median does, too. Most records have no spike, and
+/// counting takes a tenth of the time of medians.
 bool is_usual(const std::vector<double>& x, double largest) {
   std::size_t far = 0;
   for (std::size_t i = 1; i + 1 < x.size(); ++i) far += limit_by(off_line(x, i)) >= largest ? 1 : 0;

@@ -5,19 +5,19 @@
 
 namespace rigcal::datasets {
 
-/// A run of one or two samples that stands out of its neighbours on both sides.
+/// A run of one or two samples that differs from its neighbours on both sides.
 struct Spike {
   std::size_t sample = 0;  ///< first of the run, from 0
   std::size_t length = 1;
-  double height = 0.0;  ///< of the farthest sample, over the line between its neighbours; signed
+  double height = 0.0;  ///< farthest sample minus the line between its neighbours; signed
 };
 
-/// Spikes of a signal: runs of up to two samples that lie off the line between the samples around
-/// them, on the same side, by more than ten standard deviations of what single samples do so in
-/// this signal (from the median, so that spikes do not count), more than four times the median of
-/// the differences of neighbours (those that are not zero: the step of a coarse converter), and
-/// more than three times as far as these neighbours differ. An edge is none: there the neighbours
-/// differ.
+/// Finds the spikes of a signal: runs of up to two samples that are on one side of the line between
+/// their neighbours. Their distance from it must exceed three limits: ten standard deviations of
+/// this distance for single samples of the signal (from the median, so that spikes do not count),
+/// four times the median difference of neighbours (without those that are zero: the step of a
+/// coarse converter), and three times the difference between the neighbours of the run. An edge is
+/// no spike, since its neighbours differ.
 ///
 /// White noise of 10^6 samples has none; noise with long tails may have some.
 ///

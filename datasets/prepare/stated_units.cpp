@@ -13,10 +13,10 @@ namespace rigcal::datasets {
 namespace {
 
 constexpr double kSameFactor = 1e-6;
-/// A gain may be rounded, and correct the sensor besides.
+/// A gain may be rounded, and may include a correction of the sensor.
 constexpr double kSameGain = 0.05;
 
-/// What the file says.
+/// Unit that the file gives for a column.
 struct NamedUnit {
   std::string unit;
   bool is_certain = true;
@@ -31,7 +31,7 @@ std::optional<NamedUnit> named_unit(const ColumnLabel& label) {
   return found ? std::optional(NamedUnit{found->unit, found->is_certain}) : std::nullopt;
 }
 
-/// Nothing if they are of different dimensions.
+/// Empty if the dimensions differ.
 std::optional<UnitConversion> conversion_between(const std::string& from, const std::string& to) {
   try {
     return unit_conversion(from, to);

@@ -8,15 +8,15 @@
 
 namespace rigcal::datasets {
 
-/// Holds the unit that a file names for a column against that of the campaign: in brackets or
-/// behind an underscore of its name, in a row of units, in an attribute. They are compared by
-/// meaning, to 1e-6. A gain that converts from the file's unit, within 5 %, contradicts nothing;
-/// nor does one to a unit of another dimension. What is no unit, or only looks like one of another
-/// dimension
-/// ("p_in" in bar), is passed over.
+/// Compares the unit that a file gives for a column with that of the campaign. Files give units in
+/// the name (in brackets or after an underscore), in a row of units, or in an attribute. Units are
+/// equal if they convert with a factor of 1 within 1e-6. A gain that performs the conversion,
+/// within 5 %, is no contradiction; nor is any gain between different dimensions. Texts that are no
+/// unit are ignored, and so are names that only look like a unit of another dimension ("p_in" in
+/// bar).
 ///
-/// @param key  of the channel in the campaign file: "position"
-/// @throws InputError  the two contradict each other: names both, with file, place and key
+/// @param key  channel in the campaign file: "position"
+/// @throws InputError  the units contradict each other (names both, with file, place and key)
 void require_stated_unit(const StatedUnit& stated, const std::string& key,
                          const std::filesystem::path& file, const ColumnLabel& label);
 

@@ -8,20 +8,20 @@
 
 namespace rigcal::datasets {
 
-/// Steps of time above three times their median, between samples `time_s`, shape (samples).
+/// Finds steps above three times the median step in sample times of shape (samples).
 std::vector<TimeHole> time_holes(const std::vector<double>& time_s);
 
-/// In words, per repeat: where samples are missing in what counts, with the file, its row and the
-/// times. A hole that no window touches takes nothing away, unless a recorded drive opens the loop:
-/// nobody knows what it did there, and the piston stays where it took it.
+/// Describes, per repeat, the holes that affect the result, with file, row and times. A hole
+/// outside all windows is harmless unless the drive is a recorded command without a loop: the drive
+/// during the hole is unknown, and the piston stays where it moved.
 ///
-/// @param repeats  as they came from their files
-/// @param windows  what counts; empty: all of it
+/// @param repeats  as read from their files
+/// @param windows  windows of the condition; empty: the whole record
 std::vector<std::string> holes_in_what_counts(const Campaign& campaign, const Condition& condition,
                                               const std::vector<Repeat>& repeats,
                                               const std::vector<TimeWindow>& windows);
 
-/// @throws InputError  samples are missing in what counts
+/// @throws InputError  samples are missing in the windows of the record
 void require_no_holes(const Campaign& campaign, const Record& record);
 
 }  // namespace rigcal::datasets

@@ -12,15 +12,15 @@
 namespace rigcal::datasets {
 namespace {
 
-constexpr double kHysteresis = 0.2;         // of the amplitude
+constexpr double kHysteresis = 0.2;         // fraction of the amplitude
 constexpr double kSteadyPeriods = 0.03;     // largest relative distance from their mean
 constexpr double kSineVariance = 0.98;      // explained by the fundamental
-constexpr double kSquareShare = 0.9;        // of samples at the two levels
-constexpr double kChirpRatio = 1.3;         // of the longest period to the shortest
-constexpr double kLeastStep = 0.1;          // of the amplitude, between two samples
+constexpr double kSquareShare = 0.9;        // fraction of samples at the two levels
+constexpr double kChirpRatio = 1.3;         // ratio of the longest period to the shortest
+constexpr double kLeastStep = 0.1;          // fraction of the amplitude, between two samples
 constexpr std::size_t kFewestPlateau = 50;  // samples per step, on average
 constexpr double kPhaseTolerance_rad = 0.1;
-constexpr double kOffsetTolerance = 0.02;  // of the amplitude
+constexpr double kOffsetTolerance = 0.02;  // fraction of the amplitude
 
 struct Level {
   double middle = 0.0;
@@ -90,7 +90,7 @@ void judge_periodic(std::span<const double> time_s, std::span<const double> sign
   guess.description = fmt::format("a {} of {:.4g} Hz", to_string(guess.waveform), f);
 }
 
-/// Changes between two samples, if they are few enough to be steps of a held signal.
+/// Describes the levels of a signal if it changes so rarely that it is held between steps.
 std::string steps_text(std::span<const double> signal, const Level& level) {
   std::size_t steps = 0;
   for (std::size_t i = 1; i < signal.size(); ++i)

@@ -8,10 +8,10 @@
 
 namespace rigcal::datasets {
 
-/// What a recorded signal looks like.
+/// Apparent waveform of a recorded signal.
 struct WaveformGuess {
   Waveform waveform = Waveform::recorded;
-  std::optional<double> frequency_hz;  ///< of a sine, square or chirp
+  std::optional<double> frequency_hz;  ///< for a sine, square or chirp
   std::optional<double> amplitude;     ///< half of peak to peak, in the unit of the signal
   std::optional<double> end_frequency_hz;
   /// Whether rigcal generates the same signal: without offset, and with the phase 0 at t = 0.
@@ -21,11 +21,11 @@ struct WaveformGuess {
 
 /// Recognises a sine, a square wave, a chirp and steps.
 ///
-/// Periods lie between upward crossings of the middle of the range, with a hysteresis of a fifth of
-/// the amplitude. Two or more that agree within 3 % make a sine, if a sine of that frequency leaves
-/// less than 2 % of the variance, or a square wave, if nine samples of ten lie within a tenth of
-/// the amplitude of its two levels. Three or more that grow or shrink by 30 % and all in one sense
-/// make a chirp.
+/// A period goes from one upward crossing of the middle of the range to the next, with a hysteresis
+/// of a fifth of the amplitude. Two or more periods that agree within 3 % make a sine, if a sine of
+/// that frequency leaves less than 2 % of the variance, or a square wave, if nine of ten samples
+/// are within a tenth of the amplitude of its two levels. Three or more periods that grow or shrink
+/// by 30 %, all in one direction, make a chirp.
 ///
 /// @param time_s  shape (n), increasing
 /// @param signal  shape (n), any unit

@@ -10,7 +10,7 @@
 
 namespace rigcal::datasets {
 
-/// Bytes that are not what they should be; what() says how, in words.
+/// Damaged bytes; what() says in words what is wrong.
 class DamagedBytes : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -23,7 +23,7 @@ class ByteStream {
   ByteStream& operator=(const ByteStream&) = delete;
   virtual ~ByteStream() = default;
 
-  /// How many bytes were read or skipped.
+  /// Number of bytes that were read or skipped.
   std::uint64_t position() const { return position_; }
 
   /// @throws DamagedBytes  there are fewer
@@ -48,7 +48,7 @@ class FileBytes : public ByteStream {
  public:
   FileBytes(std::ifstream& file, std::uint64_t begin, std::uint64_t bytes);
   std::size_t next(char* to, std::size_t bytes) override;
-  /// Reads nothing of what is skipped.
+  /// Skipped bytes are not read.
   void skip(std::uint64_t bytes) override;
   void finish() override;
 
@@ -57,13 +57,13 @@ class FileBytes : public ByteStream {
   std::uint64_t left_;
 };
 
-/// What a compressed range of a file inflates to.
+/// Inflated bytes of a compressed range of a file.
 class InflatedBytes : public ByteStream {
  public:
   InflatedBytes(std::ifstream& file, std::uint64_t begin, std::uint64_t bytes);
   ~InflatedBytes() override;
   std::size_t next(char* to, std::size_t bytes) override;
-  /// Also that the checksum is right and that nothing follows the compressed data.
+  /// Also checks that the checksum is right and that nothing follows the compressed data.
   void finish() override;
 
  private:

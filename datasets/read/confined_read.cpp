@@ -35,7 +35,7 @@ std::string read_confined(const std::filesystem::path& path, const ConfinedReade
     }
   };
   std::string text;
-  std::error_code unknown;  // a file that is gone is one that `read` refuses
+  std::error_code unknown;  // `read` reports a file that has disappeared
   const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
   const Confinement confinement = Confinement::of_file(unknown ? 0 : bytes);
   try {
@@ -56,7 +56,7 @@ std::string read_confined(const std::filesystem::path& path, const ConfinedReade
   return text.substr(1);
 }
 
-/// Takes the text up to the next NUL off its front.
+/// Takes the text before the next NUL off the front.
 std::string next_text(std::string_view& text) {
   const std::size_t end = std::min(text.find('\0'), text.size());
   std::string part(text.substr(0, end));
@@ -64,7 +64,7 @@ std::string next_text(std::string_view& text) {
   return part;
 }
 
-/// Labels as texts that end with a NUL each, and the numbers behind them.
+/// Packs the labels as texts that each end with a NUL, followed by the numbers.
 std::string packed(RecordTable table) {
   table.labels.resize(table.columns.size());
   std::string text;
@@ -89,7 +89,7 @@ RecordTable unpacked(std::string_view text, std::size_t columns) {
   return table;
 }
 
-/// Texts that end with a NUL each: name, unit, and what the format says of the column.
+/// Joins texts that end with a NUL each: name, unit, and the remark of the format about the column.
 std::string joined(const std::vector<RecordColumn>& columns) {
   std::string text;
   for (const RecordColumn& column : columns) {

@@ -29,10 +29,10 @@ constexpr std::array kReaders{
                  load_csv_record, "expected a header line"},
 };
 
-/// A format that is known, but not read.
+/// A known format that rigcal does not read.
 struct OtherFormat {
   std::string_view name;
-  std::string_view extensions;  ///< empty: known by its bytes alone
+  std::string_view extensions;  ///< empty: recognised by its bytes alone
   bool (*sniff)(std::string_view bytes);
   std::string_view instead;
 };
@@ -85,7 +85,7 @@ constexpr std::array kOtherFormats{
                 "the file in it (unxz)"},
 };
 
-/// Text files that a logger writes; but others are named so, too.
+/// Extensions of text files that loggers write; other text files have them, too.
 constexpr std::string_view kTextExtensions = ".txt .dat .lvm .tsv .asc";
 
 constexpr bool is_complete(const RecordReader& reader) {
@@ -102,7 +102,7 @@ std::string lower_extension(const std::filesystem::path& path) {
   return extension;
 }
 
-/// What is no regular file has no start: a pipe would give its bytes only once.
+/// A file that is not regular has no start: a pipe would give its bytes only once.
 FileStart start_of(const std::filesystem::path& path) {
   FileStart start{lower_extension(path), {}};
   std::error_code error;
@@ -140,7 +140,7 @@ bool has_extension(std::string_view extensions, const std::string& extension) {
   return found;
 }
 
-/// @throws InputError  the file is of a format that is known, but not read
+/// @throws InputError  the file has a known format that rigcal does not read
 void refuse_other_format(const std::filesystem::path& path, const FileStart& start) {
   const auto other =
       std::find_if(kOtherFormats.begin(), kOtherFormats.end(), [&](const OtherFormat& format) {

@@ -20,11 +20,11 @@ struct RecordReader {
   /// @throws InputError  file and place within it, what was found and what was expected
   /// @throws std::invalid_argument  the time column is not among the columns
   RecordTable (*load)(const std::filesystem::path& path, const RecordRequest& request);
-  std::string_view if_empty;  ///< what to do about a file that holds no columns
+  std::string_view if_empty;  ///< advice for a file without columns
 };
 
-/// The format of a file: the first of the table that takes it. CSV takes what no other does.
-/// @throws InputError  it is of a format that is known, but not read
+/// Format of a file: the first of the table that accepts it. CSV accepts what no other does.
+/// @throws InputError  the file has a known format that rigcal does not read
 const RecordReader& record_reader(const std::filesystem::path& path);
 
 /// Whether the name of a file is that of a recording.

@@ -7,7 +7,7 @@
 
 namespace rigcal::datasets {
 
-/// How a file begins, by which its format is known.
+/// Beginning of a file, which identifies its format.
 struct FileStart {
   std::string extension;  ///< in lower case, with its dot
   std::string bytes;      ///< the first 4096; fewer of a shorter file
@@ -15,20 +15,20 @@ struct FileStart {
 
 /// A column that a file offers.
 struct RecordColumn {
-  std::string name;      ///< as a campaign file asks for it
-  std::string unit;      ///< as the file tells it apart from the name; empty if it does not
+  std::string name;      ///< as requested in a campaign file
+  std::string unit;      ///< unit that the file gives separately from the name; else empty
   bool is_time = false;  ///< the format itself says so
-  /// A row or column of a matrix, which has no name of its own; the first may be the time.
+  /// A row or column of a matrix, without a name of its own; the first may be the time.
   bool is_matrix_line = false;
 
   bool operator==(const RecordColumn&) const = default;
 };
 
-/// Which columns of a file are wanted.
+/// Wanted columns of a file.
 struct RecordRequest {
   std::vector<std::string> columns;  ///< in the order of the result
   std::string time_column;           ///< among `columns`; checked to increase; may be empty
-  char separator = 0;                ///< of the columns of a text; 0: found by itself
+  char separator = 0;                ///< separator of a text; 0: detected
 };
 
 /// @throws std::invalid_argument  the time column is not among the columns
@@ -40,17 +40,17 @@ inline void require_time_column(const RecordRequest& request) {
                                 "' is not among the columns");
 }
 
-/// What a file says of a column that was asked for.
+/// Labels in a file for a column that was asked for.
 struct ColumnLabel {
-  std::string name;   ///< as it stands in the file, with its unit where that is part of it
-  std::string unit;   ///< as the file tells it apart from the name; empty if it does not
-  std::string place;  ///< where the file tells the unit: "Log!C2"; empty: in the name
-  long line = 0;      ///< of a text file, where the name stands; else 0
+  std::string name;   ///< name in the file, including the unit if that is part of it
+  std::string unit;   ///< unit that the file gives separately from the name; else empty
+  std::string place;  ///< where the file gives the unit: "Log!C2"; empty: in the name
+  long line = 0;      ///< line of the name in a text file; else 0
 };
 
 struct RecordTable {
   std::vector<std::vector<double>> columns;  ///< one per wanted name, of the same length
-  std::string warning;                       ///< what is doubtful about the file; mostly empty
+  std::string warning;                       ///< doubts about the file; mostly empty
   std::vector<ColumnLabel> labels{};         ///< one per wanted name, or none
 };
 

@@ -15,7 +15,7 @@ constexpr std::array<std::string_view, 28> kUnits{
     "s",   "ms",  "us",  "min", "V",  "mV",  "m", "cm", "mm",   "um",   "in", "bar", "mbar", "Pa",
     "kPa", "MPa", "psi", "N",   "kN", "lbf", "K", "C",  "degC", "degF", "mA", "A",   "inch", "hPa"};
 
-/// What is written for a unit, in lower case, and the unit.
+/// Common spellings of units, in lower case, with the unit they mean.
 constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c", "degC"},
                                 std::pair<std::string_view, std::string_view>{"deg c", "degC"},
                                 std::pair<std::string_view, std::string_view>{"deg f", "degF"},
@@ -29,11 +29,11 @@ constexpr std::array kSpellings{std::pair<std::string_view, std::string_view>{"c
                                 std::pair<std::string_view, std::string_view>{"kg/cm^2", "kgf/cm2"},
                                 std::pair<std::string_view, std::string_view>{"lbs", "lbf"}};
 
-/// Words behind which a lone A is a chamber, not amperes.
+/// After these words a lone A means a chamber, not amperes.
 constexpr std::array<std::string_view, 5> kChamberWords{"p", "pressure", "chamber", "druck",
                                                         "kammer"};
 
-/// Units that are words, or names of chambers and gauges, too.
+/// Units that are also words, or names of chambers and gauges.
 constexpr std::array<std::string_view, 6> kWords{"in", "min", "A", "at", "h", "d"};
 
 template <typename List>
@@ -63,7 +63,7 @@ bool is_unit(std::string_view text) {
   }
 }
 
-/// Whether it is a unit of a pure number, "1" or "-".
+/// Whether a unit is that of a pure number, "1" or "-".
 bool is_one(const std::string& unit) {
   try {
     return unit_conversion(unit, "1").scale == 1.0;
@@ -72,7 +72,7 @@ bool is_one(const std::string& unit) {
   }
 }
 
-/// The bracket that closes the one at `open`.
+/// Index of the bracket that closes the one at `open`.
 std::size_t closing(std::string_view name, std::size_t open) {
   const char left = name[open];
   const char right = left == '[' ? ']' : ')';
@@ -84,7 +84,7 @@ std::size_t closing(std::string_view name, std::size_t open) {
   return std::string_view::npos;
 }
 
-/// A text between underscores, blanks and brackets.
+/// Part of a name between underscores, blanks and brackets.
 struct Part {
   std::size_t begin = 0;
   std::size_t end = 0;
@@ -119,7 +119,7 @@ std::optional<UnitInName> in_brackets(std::string_view name) {
         before.empty() ? last
                        : last.substr(before.back().begin, before.back().end - before.back().begin);
     const std::string unit = unit_of_text(inside);
-    // A lone letter such as the "g" of a gauge pressure is a unit only where it is a usual one.
+    // A lone letter, such as the "g" of a gauge pressure, is a unit only if it is a common one.
     const bool is_letter =
         inside.size() == 1 && std::isalpha(static_cast<unsigned char>(inside[0])) != 0;
     const bool is_usual = !is_letter || is_among(kUnits, unit);
@@ -130,7 +130,7 @@ std::optional<UnitInName> in_brackets(std::string_view name) {
   return found;
 }
 
-/// Where the last part of "/run1/x", "Sheet1!x" or "log.signals(2).values" begins.
+/// Start of the last part of "/run1/x", "Sheet1!x" or "log.signals(2).values".
 std::size_t begin_of_last(std::string_view path) {
   std::size_t begin = path.starts_with('/') ? path.rfind('/') + 1 : 0;
   for (const char before : {'!', '.'})
@@ -139,7 +139,8 @@ std::size_t begin_of_last(std::string_view path) {
   return begin;
 }
 
-/// Of units in one name, those that may be words or names yield to others: "position in mm".
+/// Priority among several units in one name. Those that may be words or names come last: "position
+/// in mm".
 int weight_of(std::string_view unit) {
   if (unit == "pa" || is_among(kWords, unit)) return 0;
   return unit.size() == 1 ? 1 : 2;
@@ -151,8 +152,8 @@ bool is_number(std::string_view name, const Part& part) {
                      [](unsigned char c) { return std::isdigit(c) != 0; });
 }
 
-/// The last of those of most weight. Behind others: a last "pa" is no chamber. A unit that is a
-/// word, too, is one where nothing but a number follows it: not the "in" of "duty_in_pct".
+/// Returns the last unit of the highest weight. A "pa" that ends a name counts as a unit. A unit
+/// that is also a word counts only if nothing but a number follows: not the "in" of "duty_in_pct".
 std::optional<UnitInName> behind_a_word(std::string_view name) {
   const std::size_t first = begin_of_last(name);
   std::vector<Part> parts = name_parts(name.substr(first));

@@ -7,7 +7,7 @@
 
 namespace rigcal::datasets {
 
-/// What the model computes for a recorded channel; empty for those that only drive it.
+/// Model output for a recorded channel; empty for channels that only drive the model.
 std::optional<model::Output> model_output(Channel channel);
 
 }  // namespace rigcal::datasets

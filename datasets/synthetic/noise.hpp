@@ -34,7 +34,7 @@ std::vector<double> white_noise(RandomStream& stream, std::size_t samples, doubl
 std::vector<double> ar1_noise(RandomStream& stream, std::size_t samples, double sd,
                               double coefficient);
 
-/// The multiple of `step` that is nearest: what a converter of this step reads. Step > 0.
+/// The nearest multiple of `step`, as a converter with this step reads it. Step > 0.
 double quantised(double value, double step);
 
 }  // namespace rigcal::datasets

@@ -13,27 +13,28 @@ namespace rigcal::datasets {
 
 using WriteText = std::function<void(const std::filesystem::path&, std::string_view)>;
 
-/// What `synthesize` wrote.
+/// Files that `synthesize` wrote.
 struct SynthesisReport {
   std::filesystem::path campaign_file;
   int files = 0;
   long samples = 0;
 };
 
-/// Records of a known rig: simulates every condition of the campaign at its true values
-/// ([synthetic]), adds what [synthetic] asks for, and writes `campaign.toml`, `records/*.csv` and
-/// `truth.json` into `out`, each labelled as synthetic. The same seed gives the same bytes on any
-/// machine and for any number of threads; every repeat and channel has a random stream of its own.
+/// Records of a known rig. Simulates every condition of the campaign at its true values
+/// ([synthetic]), adds the noise that [synthetic] states, and writes `campaign.toml`,
+/// `records/*.csv` and `truth.json` into `out`, each labelled as synthetic. The same seed gives the
+/// same bytes on any machine and for any number of threads; every repeat and channel has its own
+/// random stream.
 ///
-/// @param write  takes each file, beneath `out`, and its text; from several threads at a time, the
-///               campaign file last
+/// @param write  receives the path of each file below `out` and its text, from several threads at a
+///               time and the campaign file last
 /// @throws InputError     no [synthetic] section, or a condition without duration and sample rate
 /// @throws NoResultError  a condition could not be simulated
 SynthesisReport synthesize(const Campaign& campaign, std::uint64_t seed,
                            const std::filesystem::path& out, int threads,
                            const WriteText& write = write_file_atomically);
 
-/// The files that synthesize() makes of a campaign, relative to its folder.
+/// Names of the files that synthesize() writes for a campaign, relative to its folder.
 std::vector<std::filesystem::path> synthetic_file_names(const Campaign& campaign);
 
 }  // namespace rigcal::datasets

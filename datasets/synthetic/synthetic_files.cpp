@@ -24,7 +24,7 @@ double in_file_unit(double value_si, const UnitConversion& to_si) {
   return (value_si - to_si.offset) / to_si.scale;
 }
 
-/// For whom the true value of one parameter holds.
+/// Scope of the true value of one parameter.
 struct TrueValue {
   Scope scope = Scope::rig;
   std::string level;  ///< leak level or condition; empty for the rig

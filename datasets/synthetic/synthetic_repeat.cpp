@@ -17,7 +17,7 @@ constexpr double kRoomTemperatureK = 293.15;
 
 using Channels = std::map<Channel, std::vector<double>>;
 
-/// Whether a force channel holds the load that acts on the rig, not what a load cell reads.
+/// Whether a force channel is the load on the rig, not the reading of a load cell.
 bool is_external_force(const Campaign& campaign, Channel channel) {
   return channel == Channel::force && campaign.channels.at(channel).role == ChannelRole::input;
 }
@@ -75,11 +75,12 @@ model::SimulationInputs inputs_with_ripple(const Campaign& truth, const Conditio
   return inputs;
 }
 
-/// Times of the run at the samples of a record that began `late_s` before it; the first instant of
-/// the run stands for all before it and is always there, because the simulation starts at it.
+/// Times of the run at the samples of a record that began `late_s` before it. The first instant of
+/// the run represents all times before it and is always included, because the simulation starts
+/// there.
 struct RunTimes {
   std::vector<double> run_s;        ///< increasing
-  std::vector<std::size_t> sample;  ///< for each sample of the record its entry in run_s
+  std::vector<std::size_t> sample;  ///< index in run_s for each sample of the record
 };
 
 RunTimes run_times(const std::vector<double>& time_s, double late_s) {
@@ -91,7 +92,7 @@ RunTimes run_times(const std::vector<double>& time_s, double late_s) {
   return times;
 }
 
-/// What perfect sensors would record.
+/// Readings of perfect sensors.
 Channels clean_channels(const Campaign& truth, const Condition& condition, const Record* record,
                         const std::vector<double>& time_s, const RepeatFate& fate) {
   auto values = values_in(truth, condition);

@@ -9,11 +9,11 @@
 
 namespace rigcal::datasets {
 
-/// What happened to one repeat of a synthetic condition, besides the noise of its channels.
+/// Disturbances of one repeat of a synthetic condition, apart from the noise of its channels.
 struct RepeatFate {
-  double late_s = 0.0;            ///< by how much the run starts after the record
-  double ripple_phase_rad = 0.0;  ///< of the supply pressure at time 0
-  Overrides varied;               ///< values that hold in this repeat alone
+  double late_s = 0.0;            ///< delay of the run's start after that of the record
+  double ripple_phase_rad = 0.0;  ///< phase of the supply pressure at time 0
+  Overrides varied;               ///< values of this repeat alone
 };
 
 struct SyntheticRepeat {
@@ -21,9 +21,9 @@ struct SyntheticRepeat {
   Repeat record;  ///< SI, as the sensors and converters give it
 };
 
-/// The campaign with the true values of [synthetic] in place of its own: those of the rig over its
-/// starts, those of a leak level over that level's. Values of a
-/// condition stay; a duration or sample rate that it lacks is that of [synthetic].
+/// The campaign with the true values of [synthetic] in place of its own: those of the rig replace
+/// its starts, those of a leak level replace that level's. Values of a condition stay; a missing
+/// duration or sample rate is taken from [synthetic].
 Campaign true_campaign(const Campaign& campaign);
 
 /// Channels that can be made: all declared ones but a reference that no controller follows.

@@ -2,10 +2,10 @@
 
 namespace rigcal::diagnosis {
 
-/// Whether a variance that is known with `freedom` degrees of freedom exceeds that of white noise
-/// beyond the upper quartile of chi-square. Where it does it counts, else the noise: at that level
-/// the choice between two variances leaves the coverage of an interval near 95 % whatever their
-/// true ratio is (Bancroft and Han, International Statistical Review 45, 1977).
+/// Whether a variance with `freedom` degrees of freedom exceeds that of white noise beyond the
+/// upper quartile of chi-square. If so, it is used, else that of the noise. At this level the
+/// choice between two variances keeps the coverage of an interval near 95 % for any true ratio
+/// (Bancroft and Han, International Statistical Review 45, 1977).
 bool exceeds_noise(double variance, double noise_variance, double freedom);
 
 }  // namespace rigcal::diagnosis

@@ -5,7 +5,7 @@
 
 namespace rigcal::diagnosis {
 
-/// What leaks at one coefficient, simulated, with its derivatives by the coefficient.
+/// Simulated leak at one coefficient, with its derivatives by the coefficient.
 struct LeakPoint {
   double coefficient = 0.0;
   double share = 0.0;               ///< see steady_leak()
@@ -35,10 +35,11 @@ class LeakCurve {
   std::vector<LeakPoint> points_;
 };
 
-/// The curve about an estimate: simulated at the estimate itself, so that its share is, and as far
-/// to both sides as the coefficient may be; from 0, where nothing leaks, if that is within.
+/// The curve about an estimate. It is simulated at the estimate itself, so that its share is exact,
+/// and at both ends of the range of the coefficient; from 0, without a leak, if that is in the
+/// range.
 ///
-/// @param reach  half the width of the interval that matters, above 0
+/// @param reach  half the width of the interval of interest, above 0
 LeakCurve curve_about(const LeakAt& leak_at, double coefficient, double reach);
 
 }  // namespace rigcal::diagnosis

@@ -12,15 +12,15 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Equally probable values of the coefficient, and of what blurs its share: probabilities of
-/// classes in steps of 1 / 6015.
+/// Number of equally probable values of the coefficient, and of the error of its share: class
+/// probabilities have a resolution of 1 / 6015.
 constexpr int kDraws = 401;
 constexpr int kBlurs = 15;
 /// Below this an error is that of the arithmetic.
 constexpr double kLeastShareError = 1e-7;
 
-/// The share given what is known of the coefficient: equally probable shares, each blurred by the
-/// error that comes from the rig's parameters.
+/// Distribution of the share for a given distribution of the coefficient: equally probable shares,
+/// each blurred by the error from the rig's parameters.
 class ShareDistribution {
  public:
   ShareDistribution(const LeakEstimate& estimate, double own_se, double rig_se,
@@ -78,10 +78,10 @@ class ShareDistribution {
 
 double squared(double x) { return x * x; }
 
-/// How probable a share is beforehand, but for a factor: 1 / (offset + share), the less the larger
-/// it is, without a step at any limit. The offset is that by which a normal machine is as probable
-/// as one with a slight leak: (offset + first)^2 = offset (offset + second). Where the second limit
-/// is less than twice the first no offset does that, and every share is as probable as any other.
+/// Prior density of a share, up to a factor: 1 / (offset + share), decreasing and without a step at
+/// any limit. The offset makes a normal machine as probable as one with a slight leak: (offset +
+/// first)^2 = offset (offset + second). If the second limit is less than twice the first, no offset
+/// does so, and every share is equally probable.
 class Prior {
  public:
   explicit Prior(const datasets::DiagnosisSettings& settings) {
@@ -108,8 +108,8 @@ std::array<double, kClassCount> class_probabilities(const ShareDistribution& sha
   return probability;
 }
 
-/// Of a leak that is not detected the upper limit is that of a distribution which is cut at 0: it
-/// is never 0, however far below zero the coefficient lies.
+/// Sets the 95 % interval of the coefficient. Without a detected leak the upper limit comes from
+/// the distribution truncated at 0, so it is above 0 however negative the estimate is.
 void set_interval(double half_width, LeakEstimate& estimate) {
   const double coefficient = estimate.coefficient;
   if (estimate.leak_detected || estimate.incompatible || !(estimate.standard_error > 0.0)) {

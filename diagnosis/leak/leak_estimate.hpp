@@ -14,40 +14,41 @@ namespace rigcal::diagnosis {
 using datasets::LeakClass;
 inline constexpr std::size_t kClassCount = datasets::kLeakClasses.size();
 
-/// What is known of the leak in one record.
+/// Estimate of the leak in one record.
 struct LeakEstimate {
   double coefficient = 0.0;     ///< signed, see LeakFit
-  double standard_error = 0.0;  ///< of it, rig parameters included
-  double freedom = 1.0;         ///< degrees of freedom of that error (Satterthwaite)
-  /// Of the coefficient, cut at 0 from below; where no leak is detected, from 0 to the upper limit
-  /// at 95 %, given that a leak is not negative. Not cut where it is incompatible.
+  double standard_error = 0.0;  ///< error of the coefficient, rig parameters included
+  double freedom = 1.0;         ///< degrees of freedom of the standard error (Satterthwaite)
+  /// 95 % interval of the coefficient, with its lower end at 0 or above. If no leak is detected it
+  /// goes from 0 to the upper limit, given that a leak is not negative. It is not cut at 0 if the
+  /// record is incompatible.
   std::pair<double, double> ci95{0.0, 0.0};
-  /// The coefficient lies below zero by more than its error allows, at the settings' rate of false
-  /// alarms: no leak makes such a record, so nothing is said of one.
+  /// The coefficient is negative beyond its error, at the settings' rate of false alarms. No leak
+  /// explains such a record, so no leak is reported.
   bool incompatible = false;
-  double share = 0.0;  ///< fraction of the servo flow, >= 0; above 1 none that can be
-  /// Given that a leak is not negative, within 0 and 1; where none is detected, from 0 to the upper
-  /// limit.
+  double share = 0.0;  ///< fraction of the servo flow, >= 0; above 1 it is impossible
+  /// 95 % interval of the share within 0 and 1, given that a leak is not negative. If no leak is
+  /// detected it goes from 0 to the upper limit.
   std::pair<double, double> share_ci95{0.0, 0.0};
   /// One-sided limit at 95 % where no leak is detected.
   std::optional<double> share_upper_limit;
   double share_slope = 0.0;  ///< d share / d coefficient
   double leak_flow_m3_per_s = 0.0;
-  std::array<double, kClassCount> probability{};  ///< of each class
+  std::array<double, kClassCount> probability{};  ///< probability of each class
   LeakClass most_probable = LeakClass::normal;
   double leak_score = 0.0;     ///< coefficient over its standard error
   bool leak_detected = false;  ///< at the settings' rate of false alarms
 
-  /// Whether the share is one: more than the servo flow cannot leak of it.
+  /// Whether the share is possible: no more than the whole servo flow can leak.
   bool has_share() const { return share <= 1.0; }
-  /// Whether it may be put into a class.
+  /// Whether the leak has a class.
   bool has_class() const { return !incompatible && has_share(); }
 };
 
-/// Error of the coefficient of one record: four parts that are independent of each other, scatter
-/// of the residuals (by clusters where the signal has misfit and the record shows it), variation
-/// between repeats beyond their white noise (over the root of their number for an average), the
-/// leak that healthy records seem to have, and the rig's parameters.
+/// Error of the coefficient of one record, from four independent parts: the residuals (by clusters
+/// if the signal has a lack of fit and the record shows it), variation between repeats beyond their
+/// white noise (divided by the root of their number for an average), the apparent leak of healthy
+/// records, and the rig's parameters.
 struct CoefficientError {
   double own_se = 0.0;  ///< without the rig's parameters
   double rig_se = 0.0;
@@ -62,9 +63,9 @@ struct CoefficientError {
 CoefficientError coefficient_error(const LeakFit& fit, const SignalErrors& errors, int repeats,
                                    int reference);
 
-/// The error of an average that is its own reference, from the spread between single repeats: of
-/// the difference between the mean of so many and that of as many as the reference has. Nothing
-/// where there are no repeats.
+/// Error of an average that is its own reference, from the variation between single repeats. It is
+/// the error of the difference between two means: one of `repeats`, one of `reference` repeats.
+/// Nothing if there is a single repeat.
 std::optional<CoefficientError> error_of_averages(const LeakFit& fit, const SignalErrors& errors,
                                                   int repeats, int reference);
 
@@ -81,8 +82,8 @@ LeakEstimate estimate_leak(double coefficient, const CoefficientError& error,
                            const LeakCurve& curve, double share_rig_se,
                            const datasets::DiagnosisSettings& settings);
 
-/// The smallest leak that is told from none: found in the settings' share of cases (`detection`)
-/// where no leak is taken for one in no more than `false_alarms` of them (Currie's detection limit,
+/// The smallest detectable leak: it is found in the settings' fraction of cases (`detection`), with
+/// at most `false_alarms` of records without a leak taken for leaking (Currie's detection limit,
 /// Anal. Chem. 40, 1968).
 struct DetectionLimit {
   double coefficient = 0.0;
@@ -92,7 +93,7 @@ struct DetectionLimit {
 
 /// Coefficient of the smallest leak.
 ///
-/// @param healthy  error of the coefficient of a record without a leak
+/// @param healthy  error of the coefficient for a record without a leak
 double detection_limit(const CoefficientError& healthy,
                        const datasets::DiagnosisSettings& settings);
 

@@ -23,8 +23,8 @@ using datasets::Condition;
 using datasets::Record;
 
 constexpr const char* kLeak = "leakage_coefficient";
-/// Of one leak and a few nuisance parameters, from the best of a scan: what takes more is told as a
-/// leak that did not converge.
+/// For one leak and a few nuisance parameters, from the best point of a scan. A fit that takes more
+/// is reported as not converged.
 constexpr int kIterations = 40;
 
 void erase_value(datasets::Overrides& overrides, int index) {
@@ -48,7 +48,7 @@ datasets::ParameterSetting free_leak(const Campaign& campaign, int index) {
 }
 
 /// Weighted residuals of a record and all derivatives, at the end of the fit; the priors of the
-/// unknowns stand apart.
+/// unknowns are separate.
 struct Linear {
   Eigen::MatrixXd jacobian;      ///< shape (residuals, unknowns), SI
   Eigen::MatrixXd rig_jacobian;  ///< shape (residuals, rig parameters), SI
@@ -93,7 +93,7 @@ Linear linearise(const calib::Problem& problem, const model::Simulation& run) {
   return {rows.leftCols(own), rows.middleCols(own, all - own), rows.col(all), {}, {}};
 }
 
-/// The R factor of the samples and priors, whose singular values tell what the unknowns are.
+/// The R factor of the samples and priors, whose singular values show what is determined.
 calib::Linearisation with_priors(const Linear& linear) {
   const Eigen::Index p = linear.jacobian.cols();
   const Eigen::Index samples = linear.jacobian.rows();
@@ -120,12 +120,12 @@ std::string in_words(const model::Simulation& run) {
                      model::to_string(run.status));
 }
 
-/// Everything that simulations at the end of the fit, with and without the leak, tell.
+/// Results of simulations at the end of the fit, with and without the leak.
 void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, int reference,
               const model::ParameterValues& values, const std::atomic<bool>* cancel, LeakFit& fit) {
   const calib::ProblemCondition& condition = problem.conditions.front();
   std::vector<int> free = condition.free;
-  std::vector<int> rig_columns;  // of the covariance, for each rig parameter that is free here
+  std::vector<int> rig_columns;  // in the covariance, for each rig parameter that is free here
   for (std::size_t j = 0; j < rig.indices.size(); ++j) {
     if (column_of(condition.free, rig.indices[j]) >= 0) continue;
     free.push_back(rig.indices[j]);
@@ -162,7 +162,8 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
   const Eigen::VectorXd left = linear.residual + linear.jacobian * step;
   const auto [covariance, freedom] =
       cluster_sandwich(linear.jacobian, left, bread, clusters_of(condition));
-  // Of the estimate's variance the white noise makes what the samples tell, and the priors theirs.
+  // White noise contributes to the variance of the estimate through the samples, priors through
+  // their own.
   const Eigen::VectorXd of_priors = linear.prior_weight.asDiagonal() * bread.col(leak);
   const double of_samples = std::max(0.0, bread(leak, leak) - of_priors.squaredNorm());
   const double noise_se =
@@ -175,9 +176,9 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
   // The mean of the healthy repeats has noise too, which the residuals show but is not the
   // record's.
   fit.noise_se = noise_se / std::sqrt(1.0 + (reference > 0 ? 1.0 / reference : 0.0));
-  // Whether the optimiser is content does not matter: the last step is taken here, by linear
-  // continuation, which a long one would overstretch. The scatter may be nothing where the record
-  // is its own reference, so the error that white noise alone gives is granted too.
+  // Convergence of the optimiser does not matter: the last step is taken here, by linear
+  // continuation, which must not be long. A record that is its own reference may have no residual,
+  // so the error of white noise alone is allowed, too.
   const double error = std::max({fit.white_se, fit.cluster_se, root.row(leak).norm()});
   if (values[kLeak] > 0.0 && std::abs(step(leak)) > error + 1e-3 * values[kLeak]) {
     fit.failure = fmt::format("the leak did not converge: a step of {:.2g} standard errors is left",
@@ -187,7 +188,7 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
 
   fit.rig_moves = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rig.indices.size()));
   if (!rig_columns.empty()) {
-    // What the rig's parameters change without a leak too is in the healthy reference already.
+    // Effects of the rig's parameters without a leak are already in the healthy reference.
     Eigen::MatrixXd rig_jacobian = linear.rig_jacobian;
     if (reference > 0) rig_jacobian -= linearise(problem, healthy).rig_jacobian;
     const Eigen::VectorXd weight = linear.jacobian * bread.col(leak);
@@ -215,7 +216,7 @@ calib::Problem problem_of(const LeakProblem& leak_problem, const Condition& cond
                              &leak_problem.values);
 }
 
-/// The condition with windows that hold only what the record covers.
+/// The condition with windows limited to the times of the record.
 Condition within(const Condition& condition, const Record& record,
                  const std::optional<datasets::TimeWindow>& covered) {
   Condition result = condition;
@@ -364,7 +365,7 @@ double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
                        double share_slope, double negligible) {
   if (rig.indices.empty()) return 0.0;
   Eigen::VectorXd moves = share_slope * fit.rig_moves;
-  if (fit.coefficient > negligible) {  // else nothing leaks, whatever the rig
+  if (fit.coefficient > negligible) {  // else the share is zero for any rig
     const std::vector<Record> records{average};
     const calib::Problem problem =
         problem_of(leak_problem, own_condition(leak_problem, condition), records);

@@ -16,14 +16,14 @@
 
 namespace rigcal::diagnosis {
 
-/// What an earlier fit says of the rig.
+/// Rig parameters of an earlier fit.
 struct RigFit {
   std::vector<datasets::FittedValue> values;  ///< fitted ones, without nuisance
   std::vector<int> indices;    ///< table rows of fitted values of scope rig that have an error
-  Eigen::MatrixXd covariance;  ///< of these, SI, shape (indices)^2
+  Eigen::MatrixXd covariance;  ///< covariance of these, SI, shape (indices)^2
 };
 
-/// The same of a fit that has just been made.
+/// The same from a fit in this process.
 RigFit rig_fit_of(const calib::Fit& fit);
 
 /// The campaign as a diagnosis sees it: the leakage coefficient is unknown in every condition, with
@@ -31,25 +31,26 @@ RigFit rig_fit_of(const calib::Fit& fit);
 /// parameters (offsets) stay unknown.
 struct LeakProblem {
   datasets::Campaign campaign;
-  std::vector<datasets::FittedValue> values;  ///< of the rig
+  std::vector<datasets::FittedValue> values;  ///< values of the rig
   int leak = 0;                               ///< table row of the leakage coefficient
-  const std::atomic<bool>* cancel = nullptr;  ///< ends what is simulated when it becomes true
+  const std::atomic<bool>* cancel = nullptr;  ///< ends the simulations when it becomes true
 
   LeakProblem(const datasets::Campaign& original, const RigFit& rig);
   /// The same with another upper bound of the coefficient.
   LeakProblem up_to(double coefficient) const;
-  /// The same for records, each the mean of `repeats`, that the mean of `reference` healthy repeats
-  /// corrected: what differs between repeats (ParameterSetting::between_repeats) does so in both.
+  /// The same for records that are each the mean of `repeats` and were corrected by the mean of
+  /// `reference` healthy repeats: differences between repeats (ParameterSetting::between_repeats)
+  /// occur in both.
   LeakProblem corrected_by(int reference, int repeats) const;
 };
 
 /// The leak that explains one record best.
 struct LeakFit {
   std::string failure;  ///< why there is none, in words; empty if there is one
-  /// Least-squares estimate. Where a leak that is not negative fits best at 0, the linear
-  /// continuation below it, so that the scatter about 0 is not cut off.
+  /// Least-squares estimate. If a leak of 0 fits best, it is the linear continuation below zero, so
+  /// that the distribution about 0 is not cut off.
   double coefficient = 0.0;
-  /// Standard errors of it from the residuals, with their degrees of freedom (see fit_leak()): by
+  /// Its standard errors from the residuals, with their degrees of freedom (see fit_leak()): by
   /// clusters of samples, and as white noise.
   double cluster_se = 0.0;
   int cluster_freedom = 1;
@@ -57,34 +58,33 @@ struct LeakFit {
   int white_freedom = 1;
   double noise_se = 0.0;  ///< the part of white_se that is the record's own, not its reference's
   double rig_se = 0.0;    ///< from the uncertainty of the rig's parameters
-  /// How the coefficient moves per unit of each of the rig's parameters, shape (RigFit::indices).
+  /// Change of the coefficient per unit of each of the rig's parameters, shape (RigFit::indices).
   Eigen::VectorXd rig_moves;
   double effect_m = 0.0;      ///< rms change of position per unit of the coefficient [m]
-  double parity_rms_m = 0.0;  ///< of record (corrected, if it was) minus healthy model
-  double misfit_rms_m = 0.0;  ///< of record minus leaking model
+  double parity_rms_m = 0.0;  ///< record (corrected, if it was) minus healthy model
+  double misfit_rms_m = 0.0;  ///< record minus leaking model
   double noise_rms_m = 0.0;   ///< part of it that is new in each sample
   bool ok() const { return failure.empty(); }
 };
 
-/// Fits leak and nuisance parameters to one record, all else being known.
+/// Fits leak and nuisance parameters to one record; everything else is known.
 ///
-/// Standard error: residuals are correlated in time, and what a model lacks comes back in every
-/// period, so that it does not average out over them. The samples are put into ten classes by their
-/// phase in the period (into ten stretches where there is none), the scores of each are summed over
-/// the whole record, and these sums are taken for independent: a sandwich by clusters, which is
-/// right for white noise and honest for a misfit that repeats.
+/// Standard error: residuals are correlated in time, and model errors return in every period, so
+/// that they do not average out over the periods. The samples are put into ten classes by their
+/// phase in the period (into ten sections of a record without a period). The scores of each class
+/// are summed over the whole record, and these sums count as independent. The result is a sandwich
+/// by clusters, which is right for white noise and allows for a model error that repeats.
 ///
-/// Beside it stands the error that white noise of the residuals' own scatter from sample to sample
-/// makes: ten sums are a poor estimate, and where a square wave tells its leak in one or two of the
-/// classes alone they are next to nothing at the least squares.
+/// A second standard error takes the change of the residuals from sample to sample as white noise.
+/// It is needed because ten sums are a poor estimate: if a square wave shows its leak in only one
+/// or two of the classes, their sums nearly vanish at the least squares.
 ///
-/// Rig parameters: C moves by -(J^T J)^-1 J^T J_rig per unit of each.
+/// Rig parameters: C changes by -(J^T J)^-1 J^T J_rig per unit of each.
 ///
-/// @param reference  how many healthy repeats had what the healthy model lacks taken off the
-/// record:
-///                   then the rig's parameters act through the difference that a leak makes alone;
-///                   0: none
-/// @param scan  of the same condition: where to start; may be null
+/// @param reference  number of healthy repeats whose residual was subtracted from the record; the
+///                   rig's parameters then act only through the effect of the leak; 0: none
+/// @param scan  of the same condition, gives the start; may be null
+/// @param covered  times of the record that count, within the condition's windows
 /// @param covered  times of the record that count, within the condition's windows
 LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig,
                  const datasets::Condition& condition, const datasets::Record& record,
@@ -109,18 +109,18 @@ LeakScan leak_scan_of(const LeakProblem& leak_problem, const datasets::Condition
 
 /// Share over the coefficient in one condition of the rig, about an estimate.
 ///
-/// @param coefficient  of the record; may be negative
-/// @param reach        half the width of the interval that matters, above 0
-/// @param memo         of the condition
+/// @param coefficient  estimate for the record; may be negative
+/// @param reach        half the width of the interval of interest, above 0
+/// @param memo         simulated leaks of the condition
 /// @throws NoResultError  as steady_leak()
 LeakCurve leak_curve_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
                         const datasets::Record& average, double coefficient, double reach,
                         LeakMemo& memo);
 
-/// Standard error of the share from the rig's parameters, the coefficient being fitted again: their
-/// own effect on it, and that of the coefficient which moves with them.
+/// Standard error of the share from the rig's parameters, with the coefficient fitted again. It
+/// combines their direct effect on the share with their effect through the coefficient.
 ///
-/// @param negligible  a coefficient of which the share is not worth simulating
+/// @param negligible  below this coefficient the leak is not simulated
 double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
                        const datasets::Condition& condition, const datasets::Record& average,
                        const LeakFit& fit, double share_slope, double negligible = 0.0);

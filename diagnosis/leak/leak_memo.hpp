@@ -7,11 +7,11 @@
 
 namespace rigcal::diagnosis {
 
-/// Leaks of one condition that were simulated: its records ask for the same ones, and each takes a
-/// second where the rig is slow to become periodic. Thread-safe.
+/// Cache of simulated leaks of one condition. Its records need the same leaks, and each simulation
+/// takes a second if the rig approaches its periodic state slowly. Thread-safe.
 class LeakMemo {
  public:
-  /// That of the coefficient; simulated where nobody has asked for it.
+  /// Returns the leak of a coefficient; simulates it at the first request.
   LeakPoint at(double coefficient, const LeakAt& simulate) {
     {
       const std::lock_guard lock(mutex_);

@@ -68,7 +68,8 @@ LeakScan scan_leaks(const calib::Problem& problem, const calib::ProblemCondition
     return simulate_leak(problem, condition, coefficient, cancel);
   };
   Candidate best = at(0.0);
-  // The coefficient says nothing without its area: the range begins where a thousandth leaks.
+  // The coefficient means nothing without its area, so the range begins where a thousandth of the
+  // flow leaks.
   double coefficient = kFirst;
   Candidate point = at(coefficient);
   while (point.share > 1e-3 && coefficient > 1e-12) point = at(coefficient *= 0.1);

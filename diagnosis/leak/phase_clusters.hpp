@@ -8,8 +8,8 @@
 
 namespace rigcal::diagnosis {
 
-/// The score of each is taken for independent, so that more would be correlated, and fewer leave
-/// few degrees of freedom (fit_leak()).
+/// The scores of the clusters count as independent: more clusters would be correlated, and fewer
+/// leave few degrees of freedom (fit_leak()).
 inline constexpr int kClusters = 10;
 
 /// The cluster of each sample that counts, from 0: by its phase in the period of a sine or square,
@@ -17,8 +17,8 @@ inline constexpr int kClusters = 10;
 std::vector<int> clusters_of(const calib::ProblemCondition& condition);
 
 /// Sandwich covariance of the unknowns from residuals that are dependent within a cluster, and its
-/// degrees of freedom: clusters that tell anything, less the unknowns, at least 1. Multiplied by
-/// clusters over degrees of freedom, because the residuals are those of a fit.
+/// degrees of freedom: clusters with any information minus unknowns, at least 1. It is multiplied
+/// by clusters over degrees of freedom, because the residuals are those of a fit.
 ///
 /// @param jacobian  shape (channels * samples, unknowns), channel after channel
 /// @param residual  shape (channels * samples), at the least squares

@@ -4,7 +4,7 @@
 
 namespace rigcal::diagnosis {
 
-/// Root mean square; 0 of nothing.
+/// Root mean square; 0 for an empty vector.
 double rms(const std::vector<double>& x);
 
 /// Standard deviation of the part that is independent from sample to sample, by the differences of

@@ -11,7 +11,7 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// Whether nothing but a generated wave drives the rig, so that there is a periodic state.
+/// Whether a generated wave is the only input that varies, so that there is a periodic state.
 bool has_periodic_state(const calib::ProblemCondition& condition) {
   const model::SimulationInputs& in = condition.inputs;
   return is_generated_wave(*condition.condition) && condition.condition->amplitude.has_value() &&

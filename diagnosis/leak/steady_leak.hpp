@@ -8,7 +8,7 @@
 
 namespace rigcal::diagnosis {
 
-/// What leaks in one condition at one leakage coefficient, and its derivatives.
+/// Leak in one condition at one leakage coefficient, with its derivatives.
 struct SteadyLeak {
   /// @param servo, leak  mean absolute flows [m3/s], with their slopes
   SteadyLeak(double servo, double leak, const Eigen::VectorXd& servo_slope,
@@ -22,19 +22,17 @@ struct SteadyLeak {
   double leak_flow_m3_per_s = 0.0;  ///< mean |leakage flow|
   Eigen::VectorXd share_slope;      ///< d share / d parameter, shape (free), SI
   Eigen::VectorXd flow_slope;       ///< d leakage flow / d parameter
-  bool is_periodic = false;         ///< of the periodic state, not of the record
+  bool is_periodic = false;         ///< for the periodic state, not the record
 };
 
-/// The one definition of a share: of a generated sine or square whose other inputs are constant it
-/// is that of the periodic state, from the same simulation as a leak table's
-/// (calib::periodic_flow), however few periods a record has. Where a record brings inputs of its
-/// own there is no periodic state, nor where the rig does not come to one; the flows are then
-/// averaged over the record
-/// (record_share.hpp).
+/// The one definition of a share. For a generated sine or square with constant other inputs it is
+/// that of the periodic state, from the same simulation as in a leak table (calib::periodic_flow),
+/// however few periods a record has. With recorded inputs, or if the rig does not become periodic,
+/// there is no periodic state; the flows are then averaged over the record (record_share.hpp).
 ///
-/// @param values  SI, the leakage coefficient included; above 0 where slopes are wanted
-/// @param free    table indices of the slopes that are wanted
-/// @throws NoResultError  the run fails, moves no oil, or has a single sample that counts
+/// @param values  SI, including the leakage coefficient, which must be above 0 for slopes
+/// @param free    table indices for the slopes
+/// @throws NoResultError  the run fails, moves no oil, or has a single sample in the windows
 SteadyLeak steady_leak(const calib::Problem& problem, const calib::ProblemCondition& condition,
                        const model::ParameterValues& values, std::span<const int> free,
                        const std::atomic<bool>* cancel = nullptr);

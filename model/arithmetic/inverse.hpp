@@ -5,15 +5,15 @@
 
 namespace rigcal::model {
 
-/// Inverse of a small matrix. Beyond four rows Eigen's goes through routines that are made for
-/// large ones; there it is Gauss and Jordan's elimination with pivots by rows, in half of the time
-/// or less. Not finite where the matrix is singular.
+/// Inverse of a small matrix. Beyond four rows Eigen calls routines for large matrices;
+/// Gauss-Jordan elimination with row pivots takes half of their time or less. Not finite if the
+/// matrix is singular.
 template <int N>
 Eigen::Matrix<double, N, N> inverse_of(const Eigen::Matrix<double, N, N>& matrix) {
   if constexpr (N <= 4) {
     return matrix.inverse();
   } else {
-    double row[N][2 * N];  // the matrix, and beside it what becomes its inverse
+    double row[N][2 * N];  // the matrix, and beside it its inverse in the making
     for (int i = 0; i < N; ++i) {
       for (int k = 0; k < N; ++k) {
         row[i][k] = matrix(i, k);

@@ -7,9 +7,8 @@
 namespace rigcal::model {
 
 /// N numbers that are added and multiplied together: the derivatives of a dual number. They fill
-/// vector registers, as wide as the instruction set that this is compiled for has them; what is
-/// left over of the last one is computed along and never read. Not initialised unless asked for, as
-/// a double.
+/// vector registers of the instruction set in use; surplus elements of the last register are
+/// computed but never read. Like a double, a pack is not initialised unless asked for.
 template <int N>
 struct Pack {
 #ifdef __AVX__
@@ -39,7 +38,7 @@ struct Pack {
   }
 };
 
-/// Replaces one block of a pack, which holds a whole number of them.
+/// Replaces one block of a pack whose size is a multiple of the block.
 template <int N, int M>
 void put(const Pack<N>& block, std::size_t index, Pack<M>& whole) {
   static_assert(M % N == 0 && N % Pack<N>::kLanes == 0);

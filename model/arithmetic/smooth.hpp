@@ -35,7 +35,7 @@ X clamp_symmetric(const X& x, const C& limit) {
   return x;
 }
 
-/// x with the band [-width, width] cut out: what an overlapped spool opens.
+/// x with the band [-width, width] cut out: opening of an overlapped spool.
 template <typename X, typename C>
 X dead_band(const X& x, const C& width) {
   if (value_of(x) > value_of(width)) return x - width;
@@ -43,7 +43,7 @@ X dead_band(const X& x, const C& width) {
   return x * 0.0;
 }
 
-/// x where positive, else zero: what a contact or an opened edge sees.
+/// x if positive, else zero: travel of a contact or an opened edge.
 template <typename X>
 X positive_part(const X& x) {
   return value_of(x) > 0.0 ? x : X(x * 0.0);

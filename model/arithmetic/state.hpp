@@ -39,9 +39,9 @@ const std::array<double, N>& values_of(const std::array<double, N>& x) {
 template <int N, int P>
 struct Linearisation {
   Values<N> f;
-  Values<N> f_t;                                                ///< by time
+  Values<N> f_t;                                                ///< derivatives by time
   std::array<Values<N>, static_cast<std::size_t>(N)> jacobian;  ///< [i][k] = d f_i / d x_k
-  Tangents<N, P> f_p;                                           ///< by each parameter
+  Tangents<N, P> f_p;                                           ///< derivatives by each parameter
 };
 
 /// y += a x.

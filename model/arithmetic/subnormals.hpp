@@ -6,9 +6,9 @@
 
 namespace rigcal::model {
 
-/// While it lives, numbers below 2.2e-308 count as zero in this thread. A sensitivity that does
-/// nothing but decay, as that to the initial state of a closed loop, gets there in seconds, and
-/// processors take a hundred times longer for such numbers.
+/// Treats numbers below 2.2e-308 as zero in this thread while it lives. A sensitivity that only
+/// decays, such as that to the initial state of a closed loop, becomes so small within seconds, and
+/// processors are a hundred times slower with such numbers.
 class SubnormalsAreZero {
  public:
 #ifdef __SSE2__
@@ -22,7 +22,7 @@ class SubnormalsAreZero {
 
 #ifdef __SSE2__
  private:
-  static constexpr unsigned kFlushToZero = 0x8040;  ///< results, and what they are computed from
+  static constexpr unsigned kFlushToZero = 0x8040;  ///< results, and the operands of computations
   unsigned before_;
 #endif
 };

@@ -44,7 +44,7 @@ class SizedEquations final : public Equations {
   }
 
   std::vector<double> initial() const override {
-    // A state in equilibrium holds the load that the parameter tells.
+    // A state in equilibrium depends on the load, which is a parameter.
     ParameterValues values = values_;
     values.set("external_force", inputs_.external_force_n.value);
     Sys system(layout_, values, {}, track(inputs_.drive, 1.0), std::nullopt,
@@ -128,7 +128,7 @@ class SizedEquations final : public Equations {
   }
 
  private:
-  /// Of one step from the importer: one that asks for more does not end.
+  /// Limit for one step of the importer, so that each one ends.
   static constexpr long kMostSteps = 5'000'000;
 
   /// Terms whose parameter an importer may change from zero are there from the beginning.
@@ -184,7 +184,7 @@ class SizedEquations final : public Equations {
   Sys system_;
 };
 
-/// By the first size that has room for all states.
+/// Uses the first size that has room for all states.
 template <typename Plant, int N, int... Larger>
 std::unique_ptr<Equations> sized(const ExportedRig& rig) {
   const Layout layout = layout_of(rig.rig, rig.values, {}, Plant::kStates, true);

@@ -24,7 +24,7 @@ struct RigInputs {
   Ramp tank_pressure_pa;
 };
 
-/// What co-simulation keeps between steps besides the states.
+/// Data that co-simulation keeps between steps in addition to the states.
 struct StepMemory {
   double planned_step_s = 0.0;  ///< 0: none yet
   std::vector<double> peak;     ///< shape (states): largest size of each so far
@@ -38,7 +38,7 @@ class Equations {
 
   virtual const Layout& layout() const = 0;
 
-  /// Sets parameters and inputs; the slopes of the inputs hold for `length_s` > 0.
+  /// Sets parameters and inputs; the slopes of the inputs are valid for `length_s` > 0.
   virtual void set(const ParameterValues& values, const RigInputs& inputs, double length_s) = 0;
 
   virtual std::vector<double> initial() const = 0;
@@ -64,7 +64,7 @@ std::unique_ptr<Equations> make_equations(const ExportedRig& rig);
 
 /// A state as the model description presents it.
 struct StateDescription {
-  std::string name;     ///< that of the output where it is one
+  std::string name;     ///< name of the output with the same value, if there is one
   std::string unit;     ///< SI, as in a ParameterSpec
   std::string meaning;  ///< one line
   double nominal;       ///< typical size; an importer's absolute tolerance rests on it

@@ -8,17 +8,17 @@
 
 namespace rigcal::model {
 
-/// A rig as it is handed to other simulators: what an FMU reads from its resources.
+/// A rig for other simulators, as an FMU reads it from its resources.
 struct ExportedRig {
-  std::string guid;  ///< of the model description that belongs to it
+  std::string guid;  ///< GUID of the model description
   Rig rig;
   ParameterValues values = ParameterValues::defaults(PlantKind::load_pressure);
-  double tolerance = 1e-6;  ///< of co-simulation, where the importer states none
+  double tolerance = 1e-6;  ///< for co-simulation, if the importer states none
 };
 
 /// Table indices of the parameters that an importer may change, in the order of the table: those of
-/// the plant, and the terms and controller gains that the rig has. Not what are inputs of the FMU,
-/// nor sensors, which stand beside the rig.
+/// the plant, and the terms and controller gains of the rig. Inputs of the FMU and sensors, which
+/// are not part of the rig, are excluded.
 std::vector<int> exported_parameters(const ExportedRig& rig);
 
 /// Whether a parameter may be changed while the rig runs: not initial values, nor the sampling time

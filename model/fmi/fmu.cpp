@@ -70,7 +70,7 @@ std::string folder_of(const char* uri) {
   return path;
 }
 
-/// For the types that no variable of this FMU has: integer, boolean and string.
+/// Answers for the types that no variable of this FMU has: integer, boolean and string.
 fmi2Status none(fmi2Component c, const char* function, std::size_t count) {
   return call(c, function, [&](FmuInstance&) {
     if (count > 0) throw std::runtime_error("every variable of this FMU is real");

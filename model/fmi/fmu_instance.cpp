@@ -15,7 +15,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A tick this close, in periods, is now: times that an importer adds up are rounded.
 constexpr double kSamePart = 1e-6;
 
-/// What times are rounded by.
+/// Rounding error of a time.
 double rounding_s(double time_s) {
   return 4.0 * std::numeric_limits<double>::epsilon() * std::abs(time_s);
 }
@@ -38,7 +38,7 @@ const char* words(Phase phase) {
   return "";
 }
 
-/// Not std::to_string, which writes a microvolt as zero.
+/// std::to_string would write a microvolt as zero.
 std::string digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.9g", value);
@@ -131,7 +131,7 @@ double FmuInstance::real(unsigned reference) {
     refresh();
     const std::size_t states = state_.x.size();
     std::vector<double> x = state_.x;
-    // An importer of co-simulation sees what the controller does with the inputs of this instant.
+    // In co-simulation the importer reads the controller's output for the inputs of this instant.
     if (state_.phase == Phase::stepping && tick_is_due(state_, state_.time_s))
       equations_->tick(x, 0.0);
     const auto is_in = [reference](unsigned first, std::size_t count) {
@@ -265,7 +265,7 @@ void FmuInstance::step(double time_s, double step_s) {
       equations_->tick(after.x, t);
       ++after.ticks;
     }
-    // A tick at the end of the step waits for the inputs that hold from then on.
+    // A tick at the end of the step waits for the inputs of the next step.
     const double tick_s = next_tick_s(after) - time_s;
     const double until = tick_s < step_s - slack_s(after, time_s) ? tick_s : step_s;
     equations_->advance(after.x, after.memory, t, until, after.tolerance);

@@ -11,17 +11,17 @@
 
 namespace rigcal::model {
 
-/// What an importer may do with an instance, in the words of the standard.
+/// State of an instance in the standard, which decides the allowed calls.
 enum class Phase {
   instantiated,
   initialization,
-  event,       ///< of model exchange
+  event,       ///< in model exchange
   continuous,  ///< likewise
-  stepping,    ///< of co-simulation
+  stepping,    ///< in co-simulation
   terminated,
 };
 
-/// All that changes while an instance lives; a copy is what fmi2GetFMUstate hands out.
+/// Everything that changes during the life of an instance; fmi2GetFMUstate returns a copy.
 struct InstanceState {
   Phase phase = Phase::instantiated;
   ParameterValues values;
@@ -29,7 +29,7 @@ struct InstanceState {
   double tolerance = 1e-6;
   double start_s = 0.0;
   double time_s = 0.0;
-  long ticks = 0;  ///< of a sampled controller, so far
+  long ticks = 0;  ///< ticks of a sampled controller so far
   std::vector<double> x;
   StepMemory memory;
 };
@@ -37,8 +37,8 @@ struct InstanceState {
 /// Refuses an importer's array of another length.
 void require_size(std::size_t count, std::size_t expected);
 
-/// One instance of an FMU, for either interface. A method that cannot do what the importer asks
-/// throws std::runtime_error with the reason, and leaves the instance as it was.
+/// One instance of an FMU, for either interface. If a method cannot do what the importer requests,
+/// it throws std::runtime_error with the reason and leaves the instance unchanged.
 class FmuInstance {
  public:
   /// @param guid  that of the importer's model description
@@ -80,7 +80,7 @@ class FmuInstance {
   /// Row in the table of parameters; nothing if no exported parameter has this reference.
   std::optional<std::size_t> parameter_row(unsigned reference) const;
   double next_tick_s(const InstanceState& state) const;
-  /// Within how much of a time a tick is at that time.
+  /// Time difference within which a tick counts as due.
   double slack_s(const InstanceState& state, double time_s) const;
   bool tick_is_due(const InstanceState& state, double time_s) const;
   /// Equations and states after a change of parameters or inputs, before something is computed.

@@ -41,15 +41,15 @@ void plant_indicators(const TwoChamberPlant::Coefficients<double>& p, const Pres
   const double extended_m = x[Plant::position] - Plant::retracted_stop(p, terms);
   indicators.push_back(extended_m);
   indicators.push_back(p.stroke_m - extended_m);
-  if (terms.hoses < 0) return;  // else each yields in the direction in which its pressure goes
+  if (terms.hoses < 0) return;  // else each hose yields in the direction of its pressure change
   indicators.push_back(dx[Plant::pressure_a]);
   indicators.push_back(dx[Plant::pressure_b]);
 }
 
 /// Limits of the controller's output and of the spool's rate.
 ///
-/// @param wanted_v   what the controller would give without its limit
-/// @param command_v  what the valve is told
+/// @param wanted_v   controller output before its limit
+/// @param command_v  command to the valve
 template <typename P, std::size_t N>
 void loop_indicators(const P& p, const Layout& layout, const std::array<double, N>& x,
                      double wanted_v, double command_v, std::vector<double>& indicators) {

@@ -1,5 +1,5 @@
-// Of the FMU's library alone, which holds libstdc++ and libgcc: what these ask of a glibc newer
-// than 2.34, so that it loads with an older one.
+// Only the library of the FMU contains this file. It replaces the functions newer than glibc 2.34
+// that the static libstdc++ and libgcc call, so that the library loads with an older glibc.
 #include <dlfcn.h>
 #include <link.h>
 
@@ -7,8 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 
-// glibc 2.35: in which loaded object an address lies. It is libgcc's unwinder that asks, which did
-// so by dl_iterate_phdr before.
+// glibc 2.35 added _dl_find_object(), which finds the loaded object that contains an address. The
+// unwinder of libgcc calls it; before, it used dl_iterate_phdr().
 #ifdef DLFO_EH_SEGMENT_TYPE
 
 namespace {
@@ -18,7 +18,7 @@ struct Search {
   dl_find_object* found;
 };
 
-/// 1, which ends the search, for the object that holds the address.
+/// Returns 1, which ends the search, for the object that contains the address.
 int look_into(dl_phdr_info* object, std::size_t /*size*/, void* data) {
   Search& search = *static_cast<Search*>(data);
   bool holds = false;
@@ -52,7 +52,7 @@ extern "C" __attribute__((visibility("hidden"))) int _dl_find_object(
 
 #endif
 
-// glibc 2.38: strtoul that takes "0b1", too. libstdc++ reads a variable of the environment by it.
+// Since glibc 2.38 strtoul() also accepts "0b1". libstdc++ parses an environment variable with it.
 #ifdef __GLIBC_PREREQ
 #if __GLIBC_PREREQ(2, 38)
 

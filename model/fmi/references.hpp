@@ -1,7 +1,7 @@
 #pragma once
 
-// Value references of an FMU: the numbers by which an importer names a variable. A model
-// description and what reads it agree by these.
+// Value references of an FMU: the numbers by which an importer identifies a variable. Model
+// description and instance share them.
 
 namespace rigcal::model {
 

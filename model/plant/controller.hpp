@@ -12,8 +12,9 @@ struct ControllerOutput {
   X limited{};
 };
 
-/// Puts the gains of a loop on another quantity where those of a loop on position are, since the
-/// controller computes the same with either: in V per unit of what it controls.
+/// Copies the gains of a force, pressure or acceleration loop to where the controller reads those
+/// of a position loop. The controller computes the same for all; the gains are in V per unit of the
+/// controlled quantity.
 template <typename P>
 void take_gains(Feedback feedback, P& p) {
   switch (feedback) {
@@ -37,16 +38,16 @@ void take_gains(Feedback feedback, P& p) {
   }
 }
 
-/// What the controller acts on.
+/// Error that the controller acts on.
 template <typename X>
 struct LoopError {
-  X error{};        ///< reference less what the loop controls, in the unit of that
+  X error{};        ///< reference minus controlled quantity, in the unit of that quantity
   X pressure_pa{};  ///< load pressure, where it is fed back
 };
 
 /// u = K_p e + I + K_d N (e - e_f) - K_dp P_L, then the limit.
 ///
-/// @param state    the whole state vector; `layout` says where integral and filter stand
+/// @param state  the whole state vector; `layout` has the indices of integral and filter
 template <typename X, typename State, typename P>
 ControllerOutput<X> controller_output(const LoopError<X>& loop, const State& state, const P& p,
                                       const Layout& layout) {
@@ -77,9 +78,9 @@ X integral_rate(const X& error, const ControllerOutput<X>& u, const P& p) {
   return error * p.ki_v_per_m_s + (u.limited - u.wanted) * anti_windup_rate(p);
 }
 
-/// One tick of the sampled controller: the filter by backward Euler, the output held until the next
-/// tick, the integral advanced by forward Euler with the same back-calculation, which reaches the
-/// limit within one period at the fastest and so cannot overshoot it.
+/// One tick of the sampled controller. The filter advances by backward Euler, the output is held
+/// until the next tick, and the integral advances by forward Euler with the same back-calculation.
+/// Back-calculation takes at least one period to reach the limit, so it cannot overshoot it.
 template <typename X, typename State, typename P>
 void controller_tick(const LoopError<X>& loop, State& state, const P& p, const Layout& layout) {
   const X& error = loop.error;

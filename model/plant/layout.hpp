@@ -11,7 +11,7 @@
 
 namespace rigcal::model {
 
-/// Optional terms that take part; an absent one costs nothing.
+/// Optional terms of a rig; an absent one costs nothing.
 struct PresentTerms {
   bool friction = false;        ///< Coulomb or breakaway friction was given
   bool stribeck = false;        ///< breakaway friction was given
@@ -22,13 +22,13 @@ struct PresentTerms {
   bool spool_shape = false;     ///< null shift or overlap: not zero, or free
   bool external_force = false;  ///< recorded, or not zero, or free
   bool varying_load = false;    ///< the load's gradient or curvature: not zero, or free
-  bool curved_load = false;     ///< its curvature is among them
+  bool curved_load = false;     ///< the load's curvature: not zero, or free
   bool null_opening = false;    ///< covered edges leak through an orifice
-  bool line_loss = false;       ///< the lines throttle too
+  bool line_loss = false;       ///< the lines throttle, too
   bool air = false;             ///< the bulk modulus falls at low pressure
-  bool external_leak = false;   ///< of either chamber: not zero, or free
-  int hoses = -1;               ///< where the states of hoses that yield begin; -1: rigid ones
-  int payload = -1;             ///< where the states of the second mass begin; -1: there is none
+  bool external_leak = false;   ///< for either chamber: not zero, or free
+  int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
+  int payload = -1;             ///< index of the first state of the second mass; -1: none
   bool valve_rate_limit = false;
   bool retracted_position = false;     ///< else half a stroke below zero
   bool initial_load_pressure = false;  ///< else the load pressure starts in equilibrium
@@ -36,15 +36,16 @@ struct PresentTerms {
   bool initial_pressure_b = false;
 };
 
-/// All that the program knows about a state: error control, solver and FMU follow from this row.
-/// Its rate is in the plant's derivative() or, beside those of the plant, in system.hpp.
+/// Everything that the program knows about a state. Error control, solver and FMU read this row.
+/// The rate of the state is in the plant's derivative() or, if the plant does not own it, in
+/// system.hpp.
 struct StateRow {
-  std::string_view name;     ///< that of the output where it is one
+  std::string_view name;     ///< name of the output with the same value, if there is one
   std::string_view unit;     ///< SI
   std::string_view meaning;  ///< one line
   double floor = 0.0;        ///< size below which it counts as zero in the error control
-  /// Typical size, of a pressure as a fraction of the supply's; an importer's absolute tolerance
-  /// rests on it.
+  /// Typical size; of a pressure as a fraction of the supply pressure. An importer derives its
+  /// absolute tolerance from it.
   double nominal = 0.0;
 };
 
@@ -52,7 +53,7 @@ struct StateRow {
 inline constexpr StateRow kPistonPosition{"position", "m", "position of the piston", 1e-6, 0.01};
 inline constexpr StateRow kPistonVelocity{"velocity", "m/s", "velocity of the piston", 1e-5, 0.1};
 
-// The states that a rig may have beside those of its plant.
+// States that a rig may have in addition to those of its plant.
 inline constexpr StateRow kHoseMemoryA{"hose_memory_a", "1",
                                        "strain memory of the hose of chamber A", 1e-3, 1.0};
 inline constexpr StateRow kHoseMemoryB{"hose_memory_b", "1",
@@ -69,14 +70,15 @@ inline constexpr StateRow kValveSignalRate{"valve_signal_rate", "V/s", "its rate
 inline constexpr StateRow kIntegral{"controller_integral", "V", "integral action", 1e-3, 1.0};
 inline constexpr StateRow kHeldOutput{"controller_held_output", "V",
                                       "output of the sampled controller", 1e-3, 1.0};
-/// The filtered error, in the unit of what the loop controls.
+/// Filtered error, in the unit of the controlled quantity.
 inline constexpr std::array<StateRow, kFeedbackCount> kFilteredError{
     StateRow{"controller_filtered_error", "m", "filtered error", 1e-6, 0.01},
     StateRow{"controller_filtered_error", "N", "filtered error", 0.1, 1e3},
     StateRow{"controller_filtered_error", "Pa", "filtered error", 100.0, 0.1},
     StateRow{"controller_filtered_error", "m/s2", "filtered error", 1e-3, 1.0}};
 
-/// Which states a rig has beside those of its plant, and where they stand in the state vector.
+/// The states that a rig has in addition to those of its plant, with their indices in the state
+/// vector.
 struct Layout {
   int plant_states = 0;
   int hoses = -1;       ///< strain memory of both hoses [1]
@@ -85,7 +87,7 @@ struct Layout {
   int valve_order = 0;  ///< 0: spool follows the command; 1, 2: lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
   bool pid = false;
-  Feedback feedback = Feedback::position;  ///< what the loop controls
+  Feedback feedback = Feedback::position;  ///< quantity that the loop controls
   bool pressure_feedback = false;          ///< the load pressure is fed back inside the loop
   int integral = -1;                       ///< integral action [V]
   int filter = -1;                         ///< filtered error, in the unit of `feedback`
@@ -94,20 +96,20 @@ struct Layout {
   int states = 0;
 
   static constexpr std::size_t kMostAdded = 12;
-  std::array<const StateRow*, kMostAdded> added{};  ///< the states behind those of the plant
+  std::array<const StateRow*, kMostAdded> added{};  ///< the states after those of the plant
 
   bool sampled() const { return held >= 0; }
-  /// Whether the loop sees the position of the piston and nothing else.
+  /// Whether the loop feeds back the position of the piston and nothing else.
   bool position_alone() const { return feedback == Feedback::position && !pressure_feedback; }
 
-  /// @return  where the state stands
+  /// @return  index of the state
   int add(const StateRow& row) {
     added.at(static_cast<std::size_t>(states - plant_states)) = &row;
     return states++;
   }
 };
 
-/// Size below which each state counts as zero; those that a rig does not have stay zero.
+/// Size below which each state counts as zero; 1 for the unused states.
 template <typename Plant, std::size_t N>
 std::array<double, N> state_floors(const Layout& layout) {
   std::array<double, N> floor;

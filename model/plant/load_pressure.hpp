@@ -21,7 +21,7 @@ struct LoadPressurePlant {
   enum State { position, velocity, load_pressure };
   template <typename T>
   using Parameters = LoadPressureParameters<T>;
-  /// Parameters, and what follows from them alone.
+  /// Parameters and quantities that depend only on them.
   template <typename C>
   struct Coefficients : Parameters<C> {
     C valve_conductance{};  ///< servo flow per spool travel and root of pressure
@@ -61,8 +61,8 @@ struct LoadPressurePlant {
     }
   }
 
-  /// Whether reversed inputs reverse the states and an output: all terms are odd functions but for
-  /// what acts in one direction; the chamber pressures trade places.
+  /// Whether reversed inputs reverse the states and an output. All terms are odd functions except
+  /// those that act in one direction only; the chamber pressures swap.
   static bool reversible(Output output, const PresentTerms& terms) {
     return !terms.external_force && !terms.curved_load && !terms.valve_offset &&
            output != Output::pressure_a && output != Output::pressure_b;
@@ -118,9 +118,9 @@ struct LoadPressurePlant {
     return {v, force * p.inverse_mass, flow * p.inverse_capacity};
   }
 
-  /// What the plant tells beside position and velocity. Its chamber pressures share the load
-  /// pressure equally; `force` is what a load cell in the rod reads: the force that the rod passes
-  /// to mass, damper and spring of the load, A P_L less the dry friction of the cylinder
+  /// Outputs of the plant other than position and velocity. Its chambers share the load pressure
+  /// equally. `force` is the reading of a load cell in the rod, the force that the rod transmits to
+  /// mass, damper and spring of the load: A P_L minus the dry friction of the cylinder
   /// (docs/model.md).
   template <typename X, std::size_t M, typename C>
   static X output(Output output, const std::array<X, M>& x, const PlantInput<X>& in,
@@ -160,8 +160,8 @@ struct LoadPressurePlant {
     return {C(0.0), C(0.0), C(0.0)};
   }
 
-  /// Initial state: recorded position and load pressure as their sensors mean them; where no
-  /// initial load pressure is given, the one that holds load and spring in equilibrium.
+  /// Initial state: recorded position and load pressure without the errors of their sensors. A load
+  /// pressure that is not given balances load and spring.
   template <typename C>
   static std::array<C, kStates> initial(const PlantInput<C>& /*in*/, const Coefficients<C>& p,
                                         const PresentTerms& terms) {

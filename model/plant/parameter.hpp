@@ -34,7 +34,7 @@ struct ParameterSpec {
   bool can_be_fitted = true;              ///< false where the model is not differentiable in it
 };
 
-/// A position in the list of plants (plants.hpp); those have a name here that other code asks for.
+/// Index in the list of plants (plants.hpp), for code that refers to a plant by name.
 enum class PlantKind { load_pressure, two_chamber };
 
 /// "load_pressure" -> PlantKind; empty if unknown.
@@ -56,7 +56,7 @@ struct ParameterValues {
   std::vector<double> value;  ///< shape (table size); defaults where not given
   std::vector<bool> given;    ///< shape (table size)
 
-  /// All defaults, nothing given.
+  /// All parameters at their defaults, none given.
   static ParameterValues defaults(PlantKind plant);
 
   /// @throws std::invalid_argument  unknown key

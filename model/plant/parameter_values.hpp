@@ -8,7 +8,7 @@
 
 namespace rigcal::model {
 
-/// One parameter of a plant: the member that holds its value and the row that describes it.
+/// One parameter of a plant: the member with its value and the row that describes it.
 template <typename Parameters, typename T>
 struct ParameterField {
   T Parameters::*member;
@@ -202,7 +202,7 @@ constexpr auto load_rows() {
   };
 }
 
-/// Dead time, sensors, and the initial motion: what the solver asks of every plant.
+/// Dead time, sensors and initial motion, which the solver needs of every plant.
 template <template <typename> class Parameters, typename T>
 constexpr auto sensor_rows() {
   using P = Parameters<T>;
@@ -247,7 +247,7 @@ constexpr auto sensor_rows() {
   };
 }
 
-/// What hydraulic plants share beside their motion.
+/// Parameters that hydraulic plants have in common, apart from their motion.
 template <template <typename> class Parameters, typename T>
 constexpr auto shared_rows() {
   return joined(oil_rows<Parameters, T>(), valve_rows<Parameters, T>(), load_rows<Parameters, T>(),

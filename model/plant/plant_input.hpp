@@ -9,7 +9,7 @@
 
 namespace rigcal::model {
 
-/// What acts on a plant at one instant; X carries time derivatives where they are wanted.
+/// Inputs of a plant at one instant; X carries time derivatives where they are needed.
 template <typename X>
 struct PlantInput {
   X spool_command_v;     ///< valve signal after its dynamics [V]
@@ -27,7 +27,7 @@ X friction(const X& v, const CommonParameters<C>& p, const PresentTerms& terms) 
                       p.friction_smoothing_m_per_s);
 }
 
-/// Load against positive travel [N]: the external one, and what it grows by along the travel.
+/// Load against positive travel [N]: the external force and the part that varies with the travel.
 template <typename X, typename C>
 X external_load(const X& x, const PlantInput<X>& in, const CommonParameters<C>& p,
                 const PresentTerms& terms) {
@@ -38,9 +38,9 @@ X external_load(const X& x, const PlantInput<X>& in, const CommonParameters<C>& 
   return load;
 }
 
-/// Acceleration of the second mass [m/s2]; its states are where `terms` says.
+/// Acceleration of the second mass [m/s2].
 ///
-/// @param position  index of the first mass's position, before its velocity
+/// @param position  index of the first mass's position; its velocity follows
 template <typename X, std::size_t M, typename C>
 X payload_acceleration(const std::array<X, M>& x, int position, const PresentTerms& terms,
                        const CommonParameters<C>& p) {

@@ -7,8 +7,8 @@
 namespace rigcal::model {
 namespace {
 
-/// A quantity is sampled this many times per lag at least: straight pieces are then good to 1e-3 of
-/// what passes through the sensor.
+/// Least number of samples per lag. Straight lines between them are accurate to 1e-3 of a signal
+/// that passes the sensor.
 constexpr double kTimesPerLag = 8.0;
 /// A lag shorter than this share of a sample is none.
 constexpr double kMostBetweenSamples = 256.0;

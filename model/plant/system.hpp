@@ -101,8 +101,8 @@ class System {
     }
   }
 
-  /// f and its derivatives for who looks for where the rig settles: a sampled controller, which
-  /// changes at its ticks alone, as if they never ended.
+  /// f and its derivatives for settle(). A sampled controller changes only at its ticks; its rates
+  /// are taken as the change of a tick over the sample time.
   Linearisation<N, P> linearise_settling(const Values<N>& x, double t) const {
     Linearisation<N, P> lin = linearise(x, t);
     if (!layout_.sampled()) return lin;
@@ -124,7 +124,7 @@ class System {
                     layout_);
   }
 
-  /// What a continuous controller wants and gives at x.
+  /// Output of a continuous controller at x, before and after its limit.
   ControllerOutput<double> control(const Values<N>& x, double t) const {
     const double drive = input_value(Plain{}, drive_, t, true);
     return controller_output(loop_error(Plain{}, x, drive, t), x, passive_, layout_);
@@ -165,7 +165,8 @@ class System {
     }
   }
 
-  /// State at the first sample, for Before::steady one to settle from; forget_hoses() is to follow.
+  /// State at the first sample. For Before::steady it is the point to settle from. Call
+  /// forget_hoses() afterwards.
   X initial(InitialState mode, Before before, double t) {
     const Coefficients<C>& p = parameters_of(ByParameters{});
     X states;
@@ -178,7 +179,7 @@ class System {
         given ? Plant::initial(in, p, layout_.terms) : Plant::rest(in, p, layout_.terms);
     for (std::size_t i = 0; i < plant.size(); ++i) states[i] = plant[i];
     while_it_waits_ = C(0.0);
-    // At rest a loop wants what it measures.
+    // At rest the reference equals the measured value.
     if (before == Before::rest && layout_.pid)
       while_it_waits_ = C(0.0) - loop_error(ByParameters{}, states, C(0.0), t).error;
     if (before == Before::steady) {
@@ -211,7 +212,7 @@ class System {
     return states;
   }
 
-  /// Puts the memory of hoses where they are when they came to their pressure in one go.
+  /// Sets the memory of the hoses to its value after an instantaneous rise to their pressure.
   void forget_hoses([[maybe_unused]] X& states, [[maybe_unused]] double t) const {
     [[maybe_unused]] const Coefficients<C>& p = parameters_of(ByParameters{});
     if constexpr (requires { p.hose_yield_pa; }) {
@@ -237,8 +238,8 @@ class System {
   }
 
  private:
-  // What a right-hand side is computed with: numbers alone, or numbers and their derivatives by the
-  // parameters, by a few of these, or by the states and time.
+  // Modes of computing a right-hand side: numbers alone, or numbers with their derivatives by all
+  // parameters, by a block of them, or by the states and time.
   struct Plain {
     using Number = double;
   };
@@ -255,7 +256,7 @@ class System {
   /// The derivatives by more parameters at a time do not stay in registers.
   struct ByBlock {
     using Number = Dual<kBlock>;
-    std::size_t block;  ///< of the parameters
+    std::size_t block;  ///< block of parameters
   };
   template <typename K>
   using Number = typename K::Number;
@@ -320,7 +321,7 @@ class System {
     }
   }
 
-  /// The drive before its first sample.
+  /// Value of the drive before its first sample.
   template <typename K>
   Number<K> drive_that_waits([[maybe_unused]] K by) const {
     if constexpr (std::is_same_v<K, ByParameters>) {
@@ -335,7 +336,7 @@ class System {
     }
   }
 
-  /// What a tick changes, per time from one to the next.
+  /// Change of the states at a tick, divided by the sample time.
   template <typename K>
   Numbers<K> tick_rates(K by, const Numbers<K>& x, double t) const {
     const auto& p = parameters_of(by);
@@ -373,7 +374,7 @@ class System {
     for (std::size_t k = 0; k < N; ++k) lin.jacobian[i][k] = f.derivative[k];
   }
 
-  /// By states and time, then by the parameters.
+  /// Linearises by the states and time first, then by the parameters.
   Linearisation<N, P> linearise_by_calls(const Values<N>& x, double t) const {
     const auto f = right_hand_side(ByStates{}, lifted(x), t);
     Linearisation<N, P> lin;
@@ -391,7 +392,7 @@ class System {
     return linearise_by_calls(x, t);
   }
 
-  /// What the valve is told: the held output, the controller's, or the recorded command.
+  /// Command to the valve: the held output, the controller's output, or the recorded command.
   template <typename K>
   Number<K> valve_command(K by, const Numbers<K>& x, const Number<K>& drive, double t) const {
     if (!layout_.pid) return drive;
@@ -405,7 +406,8 @@ class System {
     }
   }
 
-  /// What the controller acts on. The solver of the plant's states alone knows loops on position.
+  /// Error that the controller acts on. The solver that has only the plant's states supports
+  /// position loops alone.
   template <typename K>
   LoopError<Number<K>> loop_error(K by, const Numbers<K>& x, const Number<K>& drive,
                                   double t) const {
@@ -415,12 +417,13 @@ class System {
     return {drive - x[Plant::position], Number<K>(0.0)};
   }
 
-  /// By itself, so that loops on position stay as short as they are.
+  /// Not inlined, so that the code of position loops stays short.
   template <typename K>
   [[gnu::noinline]] LoopError<Number<K>> other_loop_error(K by, const Numbers<K>& x,
                                                           const Number<K>& drive, double t) const {
     const auto& p = parameters_of(by);
-    // Neither of these depends on the spool, so the command need not be known.
+    // Neither force nor load pressure nor acceleration depends on the spool, so the command is not
+    // needed.
     const PlantInput<Number<K>> in = plant_input(by, x, Number<K>(0.0), t);
     LoopError<Number<K>> loop{drive, Number<K>(0.0)};
     switch (layout_.feedback) {
@@ -501,9 +504,9 @@ class System {
     }
   }
 
-  /// The derivatives of controller and valve; the others are left as they are.
+  /// Writes the derivatives of controller and valve; the others stay unchanged.
   ///
-  /// @return  what the valve is told
+  /// @return  command to the valve
   template <typename K>
   Number<K> loop_rates(K by, const Numbers<K>& x, const Number<K>& drive, double t,
                        Numbers<K>& dx) const {
@@ -582,7 +585,7 @@ class System {
   std::optional<InputTrack> supply_pressure_;
   std::optional<InputTrack> tank_pressure_;
   int delay_direction_ = -1;
-  C while_it_waits_{0.0};  ///< the drive before its first sample
+  C while_it_waits_{0.0};  ///< value of the drive before its first sample
 };
 
 }  // namespace rigcal::model

@@ -67,7 +67,7 @@ X spring_and_damper(const X& travel_m, const X& rate_m_per_s, const C& frequency
          rate_m_per_s * (2.0 * damping_ratio * frequency_rad_per_s);
 }
 
-/// Load that varies with travel [N]: k_F x + c_F x^2.
+/// Load that varies with the travel [N]: k_F x + c_F x^2.
 template <typename X, typename C>
 X varying_load(const X& x, const C& gradient_n_per_m, const C& curvature_n_per_m2) {
   return (x * curvature_n_per_m2 + gradient_n_per_m) * x;
@@ -86,11 +86,11 @@ X leaking_opening(const X& y, const C& c) {
   return c * c / (c - y);
 }
 
-/// Opening of the one orifice that passes what an edge and a fixed orifice in series with it pass:
-/// 1 / o^2 = 1 / y^2 + 1 / l^2.
+/// Opening of one orifice that passes the flow of an edge in series with a fixed orifice: 1 / o^2 =
+/// 1 / y^2 + 1 / l^2.
 ///
 /// @param y  opening of the edge, >= 0
-/// @param l  opening of an edge that throttles as bores and lines do, > 0, in the unit of y
+/// @param l  opening that represents bores and lines, > 0, in the unit of y
 template <typename X, typename C>
 X series_opening(const X& y, const C& l) {
   using std::sqrt;
@@ -121,10 +121,10 @@ X absolute_pressure(const X& pressure_pa) {
 }
 
 /// Change of pressure after a turn over which a hose begins to yield [Pa]. The threads of a braid
-/// hold each other by dry friction, which grows with the pressure that presses them together.
+/// are locked by dry friction, which grows with the pressure that presses them together.
 ///
-/// @param constant_pa  what does not grow
-/// @param ratio        of what grows to the absolute pressure
+/// @param constant_pa  constant part
+/// @param ratio        ratio of the other part to the absolute pressure
 /// @source   B. Tondu and P. Lopez, Modeling and control of McKibben artificial muscle robot
 ///           actuators, IEEE Control Systems Magazine 20 (2000) 2, 15-38: the thread's friction
 template <typename X, typename C>
@@ -132,12 +132,12 @@ X hose_yield(const X& pressure_pa, const C& constant_pa, const C& ratio) {
   return absolute_pressure(pressure_pa) * ratio + constant_pa;
 }
 
-/// Share of a braided hose that yields to a change of pressure: none where the pressure turns, all
-/// of it once it has gone on in one direction.
+/// Fraction of a braided hose that yields to a change of pressure: none when the pressure turns,
+/// all of it after a long change in one direction.
 ///
-/// @param memory  z, from -1 (has yielded to falling pressure) to 1 (to rising): it follows as
+/// @param memory  z, from -1 (has yielded to falling pressure) to 1 (to rising); it follows
 ///                z' = (1 - share) p' / hose_yield()
-/// @param rises   the direction in which the pressure goes now
+/// @param rises   whether the pressure rises now
 /// @source   an operator of the kind of Bouc and Wen: Y.-K. Wen, Method for random vibration of
 ///           hysteretic systems, J. Engineering Mechanics Division 102 (1976) 249-263; the
 ///           exponent 2 from the records of docs/festo.md

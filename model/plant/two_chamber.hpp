@@ -13,10 +13,11 @@ namespace rigcal::model {
 
 /// Piston and both chamber pressures of a cylinder behind a valve of four metering edges.
 ///
-///   m v'  = A_A p_A - A_B p_B - b v - k x - F_dry(v) + F_stops - (m + m_2) g - F_ext(x) - m_2
-///   x_2'' p_A'  = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) - A_A v),  V_A = V_A0 + A_A (x -
-///   x_R) p_B'  = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + A_B v),  V_B = V_B0 + A_B (x_R
-///   + H - x)
+///   m v'  = A_A p_A - A_B p_B - b v - k x - F_dry(v) + F_stops - (m + m_2) g - F_ext(x)
+///           - m_2 x_2''
+///   p_A'  = beta(p_A) / V_A (Q_A - Q_leak - G_A (p_A - P_t) - A_A v)
+///   p_B'  = beta(p_B) / V_B (Q_leak - Q_B - G_B (p_B - P_t) + A_B v)
+///   V_A   = V_A0 + A_A (x - x_R),  V_B = V_B0 + A_B (x_R + H - x)
 ///
 /// Q_A flows from the valve into chamber A, Q_B from chamber B into the valve.
 struct TwoChamberPlant {
@@ -25,7 +26,7 @@ struct TwoChamberPlant {
   enum State { position, velocity, pressure_a, pressure_b };
   template <typename T>
   using Parameters = TwoChamberParameters<T>;
-  /// Parameters, and what follows from them alone.
+  /// Parameters and quantities that depend only on them.
   template <typename C>
   struct Coefficients : Parameters<C> {
     C edge_conductance{};  ///< flow of an edge per volt of opening and root of pressure
@@ -111,7 +112,7 @@ struct TwoChamberPlant {
             edge(out, p.gain_b_to_tank, p.overlap_b_to_tank_v, p_B, P_t, p, terms)};
   }
 
-  /// What the valve takes from the supply [m3/s].
+  /// Flow that the valve takes from the supply [m3/s].
   template <typename X, std::size_t M, typename C>
   static X supply_flow(const std::array<X, M>& x, const PlantInput<X>& in, const Coefficients<C>& p,
                        const PresentTerms& terms) {
@@ -193,7 +194,8 @@ struct TwoChamberPlant {
             flow_b / (take_b + yields[1] * p.hose_capacity_b_m3_per_pa)};
   }
 
-  /// Share of each hose that yields; a pressure goes where the flow into its chamber goes.
+  /// Fraction of each hose that yields; a pressure changes in the direction of the flow into its
+  /// chamber.
   template <typename X, std::size_t M>
   static std::array<X, 2> hose_shares(const std::array<X, M>& x, const X& toward_a,
                                       const X& toward_b, const PresentTerms& terms) {
@@ -227,8 +229,8 @@ struct TwoChamberPlant {
                            C(1.0));
   }
 
-  /// What the plant tells beside position and velocity. Servo and work flow are the means of both
-  /// chambers: Q_L = (Q_A + Q_B) / 2.
+  /// Outputs of the plant other than position and velocity. Servo and work flow are the means of
+  /// both chambers: Q_L = (Q_A + Q_B) / 2.
   template <typename X, std::size_t M, typename C>
   static X output(Output output, const std::array<X, M>& x, const PlantInput<X>& in,
                   const Coefficients<C>& p, const PresentTerms& terms) {
@@ -262,15 +264,16 @@ struct TwoChamberPlant {
     return X(0.0);
   }
 
-  /// State at rest: where x = 0 lies, or at the nearer stop; pressures that hold the load, their
-  /// sum that of supply and tank.
+  /// State at rest: at x = 0, or at the nearer stop. The pressures balance the load, and their sum
+  /// is that of supply and tank.
   template <typename C>
   static std::array<C, kStates> rest(const PlantInput<C>& in, const Coefficients<C>& p,
                                      const PresentTerms& terms) {
     return settled({C(0.0), C(0.0), C(0.0), C(0.0)}, in, p, terms, false, false);
   }
 
-  /// Initial state: what the sensors read, as far as it was read; missing pressures hold the load.
+  /// Initial state from the readings of the sensors, as far as there are any; missing pressures
+  /// balance the load.
   template <typename C>
   static std::array<C, kStates> initial(const PlantInput<C>& in, const Coefficients<C>& p,
                                         const PresentTerms& terms) {

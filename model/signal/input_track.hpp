@@ -7,13 +7,12 @@
 
 namespace rigcal::model {
 
-/// A signal as a simulation walks along it: the segment that holds now, and when it ends. Times
-/// count from the first sample, so that long time stamps cost no digits; the signal may be delayed
-/// by a dead time.
+/// A signal during a simulation: the current segment and its end. Times count from the first
+/// sample, so that long time stamps cost no digits. The signal may be delayed by a dead time.
 class InputTrack {
  public:
-  /// @param before    other than `hold`, it waits as long as the signal has not begun
-  /// @param begins_s  when it does, on its own clock
+  /// @param before    unless it is `hold`, the track waits until the signal begins
+  /// @param begins_s  time of the signal's first sample, on the signal's own clock
   InputTrack(Signal signal, double start_s, double delay_s, Before before = Before::hold,
              double begins_s = 0.0)
       : signal_(std::move(signal)), shift_s_(start_s - delay_s), begins_s_(begins_s) {
@@ -31,14 +30,14 @@ class InputTrack {
   double value(double t) const { return signal_.value(segment_, t + shift_s_); }
   SignalSample sample(double t) const { return signal_.sample(segment_, t + shift_s_); }
   double max_step() const { return signal_.max_step(); }
-  /// Whether the signal has yet to begin: value() and sample() are then of no use.
+  /// Whether the signal has not begun yet; value() and sample() must not be used then.
   bool waits() const { return waits_; }
   double first_value() const { return signal_.value(begins_s_); }
 
  private:
   Signal signal_;
-  double shift_s_ = 0.0;   ///< time of the signal at the first sample
-  double begins_s_ = 0.0;  ///< time of the signal at its own first sample
+  double shift_s_ = 0.0;   ///< signal time at the first sample of the simulation
+  double begins_s_ = 0.0;  ///< signal time at which the signal begins
   bool waits_ = false;
   std::size_t segment_ = 0;
 };

@@ -13,17 +13,17 @@ struct KnownPeriods {
   double sign;  ///< -1 where each period is the one before it with the other sign, else 1
 };
 
-/// Continues a column of samples: each period to come is the last one that is known, and so many
-/// times what that added to the one before it; every other one with the sign of `known`.
+/// Continues a column of samples. Each further period is the last known one plus a multiple of its
+/// change from the one before; every other one has the sign of `known`.
 ///
-/// @param share  shape (periods to come); where it is zero the period before is not looked at
+/// @param share  the multiples, shape (further periods); a period with zero ignores the change
 void continue_periods(const KnownPeriods& known, std::span<const double> share,
                       std::span<double> column);
 
-/// Adds to each period to come of a column so many times what the last known period of `values`
-/// added to the one before it; to every other one with the sign of `known`.
+/// Adds to each further period of a column a multiple of the change in the last known period of
+/// `values`; every other one has the sign of `known`.
 ///
-/// @param share  shape (periods to come)
+/// @param share  the multiples, shape (further periods)
 void add_changes(const KnownPeriods& known, std::span<const double> share,
                  std::span<const double> values, std::span<double> column);
 

@@ -36,7 +36,7 @@ std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
     const auto samples = next - times_s.begin();
     const Eigen::Index later = times.size() - samples;
     const auto excess = (times.tail(later) - times.head(later) - duration_s).abs();
-    // The last one first: it mostly tells.
+    // Checks the last one first, since it usually decides.
     if (excess(later - 1) <= same_s && excess.maxCoeff() <= same_s)
       return SampledPeriod{duration_s, static_cast<std::size_t>(samples), halves % 2 == 1};
   }

@@ -14,17 +14,17 @@ struct SampledPeriod {
   std::size_t samples = 0;
   bool reversed = false;  ///< the inputs with the other sign: an odd number of half periods
 
-  /// What repeats itself changes by this factor from one period to the next.
+  /// Factor of a periodic quantity from one period to the next.
   double sign() const { return reversed ? -1.0 : 1.0; }
 };
 
-/// The shortest whole number of periods of the drive after which a sample follows each sample (and
-/// a tick each tick of a controller with `tick_s`), as long as it is less than the record. Of half
-/// periods, where the drive is then what it was with the other sign and the rig is `reversible`.
+/// Finds the shortest whole number of periods of the drive after which every sample (and every tick
+/// of a controller with `tick_s`) has a counterpart, if that is shorter than the record. Half
+/// periods count if the drive then has the opposite sign and the rig is `reversible`.
 ///
-/// @param reversible  whether with reversed inputs the rig does all that it did, reversed
+/// @param reversible  whether reversed inputs reverse the response of the rig
 /// @param tick_s      sample time of the controller; empty if it has none
-/// @return            none if an input does not repeat itself, or the samples do not
+/// @return            none if an input or the samples are not periodic
 std::optional<SampledPeriod> sampled_period(const SimulationInputs& inputs,
                                             std::span<const double> times_s, bool reversible,
                                             std::optional<double> tick_s);

@@ -13,11 +13,11 @@ struct SignalSample {
   double slope = 0.0;
 };
 
-/// What a drive was before its first sample.
+/// Drive before its first sample.
 enum class Before {
-  hold,    ///< its first value; the rig is in its initial state all the same
-  rest,    ///< neutral: no command, or a reference at which the piston stands
-  steady,  ///< its first value, and the rig had settled at it
+  hold,    ///< its first value; the rig starts from its initial state
+  rest,    ///< neutral: no command, or the reference at which the piston rests
+  steady,  ///< its first value, at which the rig had settled
 };
 
 /// One period of a signal of amplitude 1, in pieces of equal length within which it is smooth. To
@@ -32,7 +32,7 @@ struct PeriodicShape {
 };
 
 /// A scalar function of time that is smooth between breakpoints. A simulation ends a step at every
-/// breakpoint and asks for values by segment, so that an edge is never smeared or leapt over.
+/// breakpoint and evaluates the signal by segment, so that no edge is smeared or skipped.
 class Signal {
  public:
   /// c for all t.
@@ -46,14 +46,15 @@ class Signal {
   /// A sin(phase) whose frequency goes from f0 to f1 over `sweep_s`, then stays at f1.
   static Signal chirp(double amplitude, double start_hz, double end_hz, double sweep_s,
                       bool logarithmic);
-  /// Samples held until the next one (zero-order hold), the first before its time too.
+  /// Each sample is held until the next one (zero-order hold); the first also applies before its
+  /// time.
   static Signal held(std::vector<double> time_s, std::vector<double> value);
   /// Samples joined by straight lines, constant outside.
   static Signal linear(std::vector<double> time_s, std::vector<double> value);
   /// offset + A sin(2 pi f t + phase).
   static Signal ripple(double offset, double amplitude, double frequency_hz, double phase_rad);
 
-  /// Segment that holds at time t; at a breakpoint the later one.
+  /// Segment at time t; the later one at a breakpoint.
   std::size_t segment_at(double t) const;
   /// End of a segment; infinity for the last.
   double segment_end(std::size_t segment) const;
@@ -61,11 +62,11 @@ class Signal {
   SignalSample sample(std::size_t segment, double t) const;
   /// Value alone, for less.
   double value(std::size_t segment, double t) const;
-  /// Value at t by the segment that holds there.
+  /// Value at t.
   double value(double t) const { return value(segment_at(t), t); }
   /// Time after which it repeats itself; 0 for a constant, none if it does not.
   std::optional<double> period_s() const;
-  /// Whether half a period later it is what it was with the other sign.
+  /// Whether the signal changes its sign after half a period.
   bool reverses() const;
   /// Longest step that cannot skip an oscillation; infinity if the segments are that.
   double max_step() const;

@@ -10,22 +10,22 @@
 
 namespace rigcal::model {
 
-/// Brings a state to where the rig settles at the inputs of its first sample: implicit Euler steps
-/// whose size grows until they are Newton's (pseudo-transient continuation; Kelley and Keyes,
-/// 1998). In an open loop the piston stays where it is, at the speed that the command gives it.
-/// What nothing brings back, such as the mean pressure behind edges that do not leak, stays as
-/// well. The sensitivities follow by the implicit function theorem.
+/// Moves a state to the point at which the rig settles, with the inputs of its first sample held
+/// constant. Implicit Euler steps grow until they are Newton steps (pseudo-transient continuation;
+/// Kelley and Keyes, 1998). In an open loop the piston keeps its position and gets the speed of its
+/// command. Quantities that nothing restores, such as the mean pressure behind edges that do not
+/// leak, keep their value, too. The sensitivities follow from the implicit function theorem.
 ///
 /// @param floor  size below which each state counts as zero
-/// @return       false if it does not settle
+/// @return       false if the rig does not settle
 template <typename Plant, int N, int P>
 [[gnu::cold]] bool settle(const System<Plant, N, P>& system, const Values<N>& floor,
                           State<N, P>& x) {
   constexpr double kFirstStep_s = 1e-6;
   constexpr double kLastStep_s = 1e3;
   constexpr double kGrowth = 3.0;
-  constexpr double kRise = 10.0;     // of the fastest rate, that a step may bring
-  constexpr double kSettled = 1e-9;  // change of a state, in its size or its floor
+  constexpr double kRise = 10.0;     // largest growth of the fastest rate in one step
+  constexpr double kSettled = 1e-9;  // change of a state, relative to its size and floor
   constexpr int kMostSteps = 400;
   using Matrix = Eigen::Matrix<double, N, N>;
   const auto free = [&system](std::size_t i) {

@@ -7,11 +7,11 @@
 
 namespace rigcal::model {
 
-/// Error of a step in units of the tolerance. Each state is measured against its own running peak,
-/// since velocity and pressure differ by 1e7; each sensitivity against its running peak too, but no
-/// finer than a small part of what the parameter's own size would move the state by. Both are in
-/// the step control: without the sensitivities they diverge where the states do not (paper.md).
-/// States that a rig does not have, where N has room for more, count for nothing.
+/// Error of a step in units of the tolerance. Each state is compared with its own running peak,
+/// since velocity and pressure differ by 1e7. Each sensitivity is compared with its running peak,
+/// too, but never more finely than a small fraction of the effect of the parameter on the state.
+/// Both control the step: otherwise sensitivities diverge where the states do not (paper.md).
+/// Unused states, where N has room for more, do not count.
 template <int N, int P>
 class ErrorNorm {
  public:
@@ -62,7 +62,7 @@ class ErrorNorm {
       }
       for (std::size_t j = 0; j < P && std::isfinite(worst); ++j) {
         const double column = sum[j];
-        if (!(column <= worst)) worst = column;  // nor is what is not a number
+        if (!(column <= worst)) worst = column;  // NaN fails as well
       }
     }
     return std::sqrt(worst / states_) / sensitivity_tolerance_;

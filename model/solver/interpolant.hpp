@@ -4,8 +4,8 @@
 
 namespace rigcal::model {
 
-/// The solution within one step: a polynomial of the fourth degree at most in s, which goes from 0
-/// to 1 along the step.
+/// The solution within one step: a polynomial of at most fourth degree in s, which runs from 0 to 1
+/// along the step.
 template <int N, int P>
 struct Interpolant {
   std::array<std::array<Active<P>, 5>, static_cast<std::size_t>(N)> coefficient;

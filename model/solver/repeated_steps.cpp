@@ -5,13 +5,14 @@
 namespace rigcal::model {
 namespace {
 
-// Of the step planned, whose error would be two thirds of what is allowed: a longer one would be
-// rejected, a shorter one wasted. One that was forced is worth taking if it is much shorter, since
-// that planned would be rejected again.
+// Limit relative to the planned step, whose error would be two thirds of the allowed one: a longer
+// step would be rejected, a shorter one wasted. A forced short step is accepted if it is much
+// shorter, since the planned one would be rejected again.
 constexpr double kLongest = 1.1;
 constexpr double kShortest = 0.7;
 constexpr double kShortestForced = 0.05;
-// So close, in steps or in time itself, an end a period ago is the present instant.
+// Two ends of steps a period apart are the same instant if they differ by less than this, in steps
+// or in time.
 constexpr double kSame = 1e-6;
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 

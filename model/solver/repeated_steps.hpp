@@ -10,9 +10,9 @@
 
 namespace rigcal::model {
 
-/// Where inputs are periodic, a step ends where one ended a period ago if that is about as far as
-/// the error control would go. So nothing is tried again that was rejected a period ago, and two
-/// periods differ by what the states do, not by where the steps happen to end.
+/// With periodic inputs a step ends where one ended a period ago, if that is close to the choice of
+/// the error control. Steps that were rejected a period ago are not tried again, and two periods
+/// differ only by their states, not by their steps.
 class RepeatedSteps {
  public:
   explicit RepeatedSteps(const std::optional<SampledPeriod>& period) {

@@ -37,8 +37,8 @@ struct Rodas4P {
       {1.638054557396973, -0.7373619806678748, 8.477918219238990, 15.99253148779520,
        -1.882352941176471}};
 
-  /// Where within a step the Jacobian of the sensitivities is taken: at its begin, its middle and
-  /// its end, with a parabola between.
+  /// Points of a step at which the Jacobian of the sensitivities is evaluated: its start, middle
+  /// and end, with a parabola between them.
   static constexpr std::size_t kNodes = 3;
   /// Weight of each node at a time c of the step.
   static constexpr std::array<double, kNodes> weights(double c) {

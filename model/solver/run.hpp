@@ -118,8 +118,8 @@ class Run {
     return std::clamp(h, 1e-9, std::max(1e-9, 1e-2 * span));
   }
 
-  /// The next breakpoint of an input, tick of the controller, look at the steady state, or end of
-  /// the run.
+  /// The next event: a breakpoint of an input, a tick of the controller, a check for the steady
+  /// state, or the end of the run.
   double next_event() {
     double stop =
         std::min({sample_time(times_s_.size() - 1), next_tick(), steady_state_.next_look_s()});
@@ -146,7 +146,7 @@ class Run {
       const double factor = step_factor(error);
       if (error <= 1.0) {
         ++result_->steps;
-        // A step cut short by an event says nothing against the longer step planned before.
+        // A step that an event cut short is no reason against the longer step planned before.
         h_ = cut_short ? std::max(h_, step * factor) : step * factor;
         if (after_jump_) h_after_jump_ = step * factor;
         after_jump_ = false;
@@ -195,7 +195,7 @@ class Run {
     return error;
   }
 
-  /// What the next step begins with: the linearisation, or the slope of the explicit method.
+  /// Prepares the next step: the linearisation, or the slope of the explicit method.
   void prepare_step() {
     if (implicit_ && !lin_known_) {
       lin_ = system_.linearise(values_of(x_), t_);
@@ -216,8 +216,8 @@ class Run {
     while (next_sample_ < times_s_.size() && at(sample_time(next_sample_), t_)) emit(x_, t_);
   }
 
-  /// Samples strictly between the present and the end of the step just done. The sample at t_new
-  /// itself waits: an event there may change what it reads.
+  /// Emits the samples strictly between the present and the end of the completed step. A sample at
+  /// t_new itself waits, since an event there may change its value.
   void emit_until(double t_new, const X& x_new) {
     const double last = t_new - same_instant_s_;
     std::size_t end = next_sample_;
@@ -286,7 +286,8 @@ class Run {
       slope_known_ = false;
       lin_known_ = lin_known_ && !others_jumped && system_.drive_stops_at_valve();
       if (lin_known_) system_.follow_drive(values_of(x_), t_, lin_);
-      // What the last jump needed, this one will too: saves a rejection at each recorded sample.
+      // The jump before this one needed such a short step, so this one will, too; this saves a
+      // rejection at each recorded sample.
       h_ = std::min(h_, h_after_jump_);
       after_jump_ = true;
     }
@@ -301,7 +302,7 @@ class Run {
     return end <= t || at(end, t);
   }
 
-  /// The rest of the run, from what it did in the last two periods.
+  /// Extrapolates the rest of the run from its last two periods.
   [[gnu::cold]] void go_on_as_foreseen() {
     const KnownPeriods known{next_sample_, steady_state_.samples(), steady_state_.sign()};
     const std::size_t to_come = (times_s_.size() - next_sample_ - 1) / known.samples + 1;
@@ -398,7 +399,7 @@ class Run {
   SteadyState<N, P> steady_state_;
   RepeatedSteps steps_;
   std::vector<C> observed_;
-  std::vector<std::size_t> observed_states_;  ///< what the outputs are made of
+  std::vector<std::size_t> observed_states_;  ///< states that the outputs depend on
   bool states_alone_ = true;                  ///< every output is a state
   std::vector<std::size_t> state_of_output_;  ///< then this one
   Rosenbrock<N, P> rosenbrock_;
@@ -409,10 +410,10 @@ class Run {
   bool lin_known_ = false;
   X slope_{};  ///< derivative at the present point, if explicit and known
   bool slope_known_ = false;
-  Simulation* result_ = nullptr;  ///< of the caller, for the time of one run
+  Simulation* result_ = nullptr;  ///< owned by the caller, for the time of one run
   int first_column_ = 0;
   int columns_ = 0;
-  double period_s_ = 0.0;  ///< of the sampled controller; infinite if continuous
+  double period_s_ = 0.0;  ///< sample time of the controller; infinite if continuous
   long ticks_ = 0;
   double h_max_ = 0.0;
   double t_ = 0.0;

@@ -94,10 +94,10 @@ void pass(const SizedRequest& request, int first, int count, Simulation& result)
   run(start, result, first, count);
 }
 
-/// The pass from column `first` on: with the first of the widths that has room for what is left, or
-/// the last.
+/// Computes the columns from `first` on, with the first width that has room for all of them, or the
+/// last width.
 ///
-/// @return  number of columns that had their turn
+/// @return  number of computed columns
 template <typename Plant, int N, int Width, int... Wider>
 int next_pass(const SizedRequest& request, int first, int left, Simulation& result) {
   if constexpr (sizeof...(Wider) > 0) {

@@ -15,7 +15,7 @@ struct SizedRequest {
   const Layout& layout;
   InitialState initial;
   Before before;
-  const Eigen::VectorXd* state;  ///< to go on from, in place of `initial`; null: none
+  const Eigen::VectorXd* state;  ///< start of the run instead of `initial`; null: none
   const ParameterValues& parameters;
   std::span<const int> free;
   const SimulationInputs& inputs;
@@ -26,7 +26,7 @@ struct SizedRequest {
   std::chrono::steady_clock::time_point started;  ///< from when max_seconds counts
 };
 
-/// What the solver is compiled for; `base` runs everywhere.
+/// Instruction set of a compiled solver; `base` runs everywhere.
 enum class InstructionSet { base, avx2 };
 
 /// @return  of this processor, the best that the solver is compiled for

@@ -12,14 +12,14 @@
 
 namespace rigcal::model {
 
-/// Tells when a run with periodic inputs has come so near to its periodic steady state that the
-/// rest of it is known: the states, with their sensitivities, are where they were a period ago; or
-/// each period adds a fixed share of what the one before it added, as where one slow mode is left
-/// (docs/decisions/0012). Where a period reverses the inputs, a period ago is meant with the other
-/// sign.
+/// Detects when a run with periodic inputs is so close to its periodic steady state that the rest
+/// of it is known. Either the states and their sensitivities repeat those of a period ago, or each
+/// period adds a fixed fraction of the change of the one before, as with a single slow mode
+/// (docs/decisions/0012). If a half period reverses the inputs, the states of the half period
+/// before are taken with the opposite sign.
 ///
-/// Looks a few times a period, at instants that are whole shares of a period before the end, so
-/// that the state at the end is one that was seen, or follows from one.
+/// It checks a few times per period, at instants that are whole fractions of a period before the
+/// end, so that the final state is one of the checked ones or follows from one.
 template <int N, int P>
 class SteadyState {
  public:
@@ -42,7 +42,7 @@ class SteadyState {
                            : std::numeric_limits<double>::infinity();
   }
 
-  /// Looks at the state at that instant.
+  /// Checks the state at this instant.
   ///
   /// @return  whether the rest of the run is known
   [[gnu::cold]] bool look(const X& x, const ErrorNorm<N, P>& norm) {
@@ -56,7 +56,7 @@ class SteadyState {
     seen_[phase] = next(x);
     change_[phase] = next(change);
     if (looks_ <= looks_a_period_) return false;
-    // A drift too slow to be told from none adds as much again in each period to come.
+    // A drift that is too slow to detect adds the same amount in each further period.
     reached_ = std::max(1.0, periods_left_) * size(change, norm) <= kSteady;
     if (reached_) return true;
     return looks_ > 2 * looks_a_period_ && follows(change, before, norm, phase == 0);
@@ -64,17 +64,17 @@ class SteadyState {
 
   /// Whether it is in its steady state; else it comes nearer by a fixed share in each period.
   bool reached() const { return reached_; }
-  /// What the next `periods` add, in shares of what the last one added.
+  /// Change over the next `periods`, in multiples of the last change.
   [[gnu::cold]] C growth(long periods) const {
     C sum(0.0);
     for (long k = 0; k < periods; ++k) sum = ratio_ * (sum + 1.0);
     return sum;
   }
-  std::size_t samples() const { return samples_; }  ///< of one period
-  double sign() const { return sign_; }             ///< of one period to the next
+  std::size_t samples() const { return samples_; }  ///< samples in one period
+  double sign() const { return sign_; }             ///< sign from one period to the next
   /// State at the end of the run, once the rest of it is known.
   [[gnu::cold]] X at_end() const {
-    // From the last look at this phase of a period on.
+    // Counts from the last check at this phase of a period.
     const long periods = std::lround(std::ceil(periods_left_));
     X x = seen_[0];
     if (!reached_) {
@@ -87,13 +87,13 @@ class SteadyState {
  private:
   /// A whole period: four for half of one, so that a step is cut short as often.
   static constexpr long kLooks = 8;
-  // By how many tolerances of a step the rest of the run may be off, if it is taken for the steady
-  // state, and if it is foreseen; sensitivities are off by more than the states in any run.
+  // Allowed error of the rest of the run, in tolerances of a step, if it is taken as steady and if
+  // it is extrapolated. Sensitivities always have larger errors than the states.
   static constexpr double kSteady = 1.0;
   static constexpr double kForeseen = 2.0;
   static constexpr double kLooserSensitivities = 10.0;
 
-  /// What a state of one period would be in the next one, if it repeated itself.
+  /// The state one period later in a periodic run.
   X next(X x) const {
     for (std::size_t i = 0; i < N; ++i) x[i] = x[i] * sign_;
     return x;
@@ -104,12 +104,12 @@ class SteadyState {
                     norm.of_sensitivities(change, change) / kLooserSensitivities);
   }
 
-  /// Whether all changes of a period are the same share of those of the period before.
+  /// Whether all changes in a period are the same fraction of those in the period before.
   ///
-  /// @param ends  whether the period does; only then it is told
+  /// @param ends  whether the period ends here; only then the answer is valid
   [[gnu::cold]] bool follows(const X& change, const X& before, const ErrorNorm<N, P>& norm,
                              bool ends) {
-    // So many times the present change is still to come.
+    // Multiple of the present change that is still to come.
     const double to_come = std::min(periods_left_, 1.0 / std::max(1.0 - value_of(ratio_), 1e-3));
     X missed = change;
     for (std::size_t i = 0; i < N; ++i) missed[i] = missed[i] - ratio_ * before[i];
@@ -131,7 +131,7 @@ class SteadyState {
 
   std::array<X, static_cast<std::size_t>(kLooks)> seen_{};    ///< next() of each phase
   std::array<X, static_cast<std::size_t>(kLooks)> change_{};  ///< next() of that since a period ago
-  C ratio_{0.0};  ///< of the changes in the last complete period to those in the one before it
+  C ratio_{0.0};  ///< ratio of the changes in the last complete period to those in the one before
   C along_{0.0};  ///< sums of this period, for the next one
   C square_{0.0};
   bool follows_ = false;

@@ -1,5 +1,6 @@
-// The model as a WebAssembly module, for pages that simulate (report/live). All that crosses its
-// border are numbers in arrays: WebAssembly has no other types. One simulation at a time.
+// The model as a WebAssembly module, for pages that simulate (report/live). WebAssembly functions
+// exchange only numbers, so every argument is a number or the address of an array of numbers. The
+// module runs one simulation at a time.
 
 #include <algorithm>
 #include <array>
@@ -15,15 +16,15 @@
 
 #include "model/simulate.hpp"
 
-// A member of a WebAssembly module that the page calls.
+// Exports a function to the page.
 #define RIGCAL_EXPORT(name) extern "C" __attribute__((export_name(#name)))
 
-/// Of the page: takes the message of what went wrong. The module is not to be used again.
+/// Provided by the page: receives the message of a failure. The module must not be used afterwards.
 extern "C" __attribute__((import_module("rigcal"), import_name("failed"))) void rigcal_failed(
     const char* message);
 
-// WebAssembly of these compilers unwinds no stack. What the model throws where a caller breaks its
-// contract goes to the page as a message, and ends the module.
+// WebAssembly of these compilers cannot unwind the stack. If the model throws because a caller
+// broke its contract, the page receives the message and the module ends.
 extern "C" void* __cxa_allocate_exception(std::size_t size) noexcept {
   return ::operator new(size);
 }
@@ -38,8 +39,9 @@ namespace {
 
 using namespace rigcal::model;
 
-/// Numbers of an input before its samples: kind, samples, amplitude, frequency and end frequency
-/// [Hz], sweep time [s], whether the sweep is logarithmic.
+/// An input begins with seven numbers: kind, number of samples, amplitude, frequency [Hz], end
+/// frequency [Hz], sweep time [s], and 1 for a logarithmic sweep. Times and values of the samples
+/// follow.
 constexpr std::size_t kInputNumbers = 7;
 enum class InputKind { constant, sine, square, chirp, held, linear };
 
@@ -76,7 +78,7 @@ Simulation last_run;
 
 }  // namespace
 
-/// Room for so many doubles.
+/// Allocates memory for `count` doubles.
 RIGCAL_EXPORT(allocate) double* allocate(std::size_t count) { return new double[count]; }
 RIGCAL_EXPORT(release) void release(const double* numbers) { delete[] numbers; }
 
@@ -87,13 +89,13 @@ RIGCAL_EXPORT(output_count) int output_count() { return static_cast<int>(kAllOut
 
 /// Simulates without sensitivities.
 ///
-/// @param rig      plant, controller, initial state and method by their enumerators; tolerance;
-/// most seconds
-/// @param values   shape (2, parameters): SI values, and 1 where they are given
-/// @param drive    as kInputNumbers says, then times and values of its samples; `force`, `supply`
-/// and `tank` likewise, or null
-/// @param outputs  shape (samples, outputs), column by column, SI; written where the result is ok
-/// @return         SimulationStatus, 0 where it is ok
+/// @param rig      enumerators of plant, controller, initial state and method; tolerance; time
+///                 limit [s]
+/// @param values   shape (2, parameters): SI values, and 1 for each that is given
+/// @param drive    an input as described at kInputNumbers; `force`, `supply` and `tank` likewise,
+///                 or null
+/// @param outputs  shape (samples, outputs), column by column, SI; written only if the result is ok
+/// @return         SimulationStatus; 0 is ok
 RIGCAL_EXPORT(simulate)
 int simulate_rig(const double* rig, const double* values, const double* drive, const double* force,
                  const double* supply, const double* tank, const double* times_s, int samples,
@@ -118,7 +120,7 @@ int simulate_rig(const double* rig, const double* values, const double* drive, c
   return static_cast<int>(last_run.status);
 }
 
-// Of the last simulation.
+// Details of the last simulation.
 RIGCAL_EXPORT(reason) const char* reason() { return last_run.reason.c_str(); }
 RIGCAL_EXPORT(failed_at_s) double failed_at_s() { return last_run.failed_at_s; }
 RIGCAL_EXPORT(steps) int steps() {

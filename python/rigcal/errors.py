@@ -15,7 +15,7 @@ class RigcalError(Exception):
 
 
 class InputError(RigcalError):
-    """A campaign, record or result file is wrong: str() says where, what was found and what was expected.
+    """A campaign, record or result file is wrong: str() gives the place, what was found and what was expected.
 
     Attributes:
         file: its path; of a key, what the message begins with

@@ -40,7 +40,7 @@ struct StoredRigEstimate {
   RIGCAL_DESCRIBE(key, name, unit, scope, level, value, ci95, identifiability)
 };
 
-/// How an estimate moved over the earlier results and this one.
+/// Course of an estimate over the earlier results and this one.
 struct StoredRigTrend {
   std::string key;
   std::string unit;
@@ -51,14 +51,14 @@ struct StoredRigTrend {
 struct StoredRig {
   std::string rig;       ///< its folder, relative to that of the batch
   std::string campaign;  ///< the campaign file
-  std::string folder;    ///< of its results, relative to that of the batch's
+  std::string folder;    ///< folder of its results, relative to that of the batch's
   std::optional<std::string> name;
   int exit_code = 0;
   bool unchanged = false;  ///< its result was there already
   double seconds = 0.0;
   std::optional<calib::FitStatus> status;
   std::optional<calib::Verdict> verdict;
-  std::string message;  ///< of the fit; or the error that left no result
+  std::string message;  ///< message of the fit; or the error that left no result
   bool synthetic = false;
   bool has_report = false;
   std::vector<std::string> reasons;  ///< why it is no PASS, in words
@@ -74,14 +74,14 @@ struct StoredRig {
 struct StoredBatch {
   std::string status = "done";  ///< or "stopped": rigs are left
   std::string schema = kBatchSchema;
-  std::string folder;  ///< whose rigs these are
+  std::string folder;  ///< folder of these rigs
   int exit_code = 0;   ///< the highest of the rigs
   std::vector<StoredRig> rigs;
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(status, schema, folder, exit_code, rigs, provenance)
 };
 
-/// How the run of one rig ended.
+/// End of the run of one rig.
 struct RigRun {
   std::string rig;
   std::filesystem::path campaign;
@@ -91,7 +91,7 @@ struct RigRun {
   double seconds = 0.0;
   std::string error;
   std::optional<Compared> result;   ///< its fit.json; empty where this run left none
-  std::vector<Compared> earlier;    ///< of the same rig, in any order
+  std::vector<Compared> earlier;    ///< earlier results of the same rig, in any order
   std::vector<std::string> unread;  ///< why earlier ones are left out
 };
 
@@ -112,7 +112,7 @@ inline bool has_converged(const StoredRig& rig) {
 /// "leakage_coefficient: +0.000966 per day (0.000694 to 0.00124): significant trend."
 std::string trend_sentence(const StoredRigTrend& trend);
 bool is_significant(const StoredRigTrend& trend);
-/// "mass_kg of rig": what a series is of.
+/// Name of a series: "mass_kg of rig".
 std::string trend_name(const StoredRigTrend& trend);
 
 /// "3 of 4 rigs: PASS 1, WARN 1, FAIL 1; 1 without a result".

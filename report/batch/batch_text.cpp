@@ -9,7 +9,7 @@
 namespace rigcal::report {
 namespace {
 
-/// What a table has room for: the first reason, or the message of a run that left no result.
+/// Short reason for a table: the first one, or the message of a run that left no result.
 std::string first_reason(const StoredRig& rig) {
   return rig.reasons.empty() ? "" : rig.reasons.front();
 }

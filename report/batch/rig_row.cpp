@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kWorstScores = 3;
 
-/// What could not be simulated first, then by verdict, then by the lowest rho2.
+/// Sort key: failed simulations first, then by verdict, then by the lowest rho2.
 std::pair<int, double> badness(const StoredRigScore& score) {
   const int rank = !score.failure.empty()                  ? 0
                    : score.verdict == calib::Verdict::fail ? 1
@@ -47,7 +47,7 @@ std::vector<StoredRigScore> worst_scores(const StoredFit& fit) {
   return scores;
 }
 
-/// What speaks against each aspect.
+/// Lists the reasons that keep each aspect from passing.
 std::vector<std::string> reasons_of(const StoredFit& fit) {
   std::vector<std::string> reasons;
   if (!fit.assessment) return reasons;
@@ -60,7 +60,7 @@ std::vector<std::string> reasons_of(const StoredFit& fit) {
   return reasons;
 }
 
-/// What a reader follows from one rig and day to another: no nuisance parameters.
+/// Whether a parameter is followed from one rig and day to another: all except nuisance parameters.
 bool is_shown(const StoredParameter& parameter) { return parameter.fitted && !parameter.nuisance; }
 
 std::vector<StoredRigEstimate> estimates(const StoredFit& fit) {
@@ -73,7 +73,7 @@ std::vector<StoredRigEstimate> estimates(const StoredFit& fit) {
   return list;
 }
 
-/// Of every estimate that two results or more have.
+/// Trends of all estimates that at least two results have.
 std::vector<StoredRigTrend> trends_of(const RigRun& run) {
   std::vector<Compared> results = run.earlier;
   results.push_back(*run.result);

@@ -10,7 +10,7 @@
 namespace rigcal::report {
 namespace {
 
-/// Last parts of the paths, as many as it takes to tell them apart.
+/// The last parts of the paths, as many as are needed to distinguish them.
 std::vector<std::string> short_names(const std::vector<std::filesystem::path>& folders) {
   std::vector<std::vector<std::string>> parts;
   std::size_t most = 1;

@@ -86,7 +86,7 @@ Table overlaid(const std::vector<ConditionSeries>& results, double frequency_hz)
   for (const datasets::ChannelInfo& about : datasets::channel_table()) {
     const auto* measured = first.find(curve_column("measured", about.name));
     if (measured == nullptr) continue;
-    if (samples.empty()) {  // those of the first channel serve all
+    if (samples.empty()) {  // the times of the first channel apply to all
       samples = extreme_samples(*measured, first_shown_sample(*time_s, frequency_hz));
       add("time_s", *time_s);
     }

@@ -19,7 +19,7 @@ namespace {
 using calib::Candidate;
 using datasets::Scope;
 
-/// Whether what the residuals are divided by is the same wherever it is known.
+/// Whether the divisors of the residuals are equal wherever they are known.
 bool same_weights(const std::vector<StoredWeight>& a, const std::vector<StoredWeight>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
     constexpr double kSame = 1e-9;
@@ -29,9 +29,9 @@ bool same_weights(const std::vector<StoredWeight>& a, const std::vector<StoredWe
   });
 }
 
-/// Where the fit estimated the noise of a channel: cost and logarithms at its likeliest standard
-/// deviation, the rms of the residual. (The fit itself stops to follow that within a tenth. Priors,
-/// a few residuals among many, do not count then.)
+/// If the fit estimated the noise of a channel, takes cost and logarithms at its maximum-likelihood
+/// standard deviation, the rms of the residual. (The fit itself approaches it only within a tenth.
+/// Priors, which are few among many residuals, are ignored.)
 void take_likeliest_noise(const std::vector<StoredWeight>& weights, Candidate& candidate) {
   constexpr double kLeastRms = 1e-12;  // SI; an exact fit must not be infinitely likely
   double cost = 0.0;
@@ -86,7 +86,7 @@ std::string obstacle(const Compared& a, const Compared& b) {
   return {};
 }
 
-/// The parameters of a fit, by what it does with them.
+/// The parameters of a fit, sorted by their role in it.
 struct Terms {
   std::map<std::string, Scope> free;  ///< by key
   std::map<std::string, std::pair<double, double>> bounds;
@@ -134,7 +134,7 @@ std::string not_contained(const StoredFit& smaller_result, const StoredFit& larg
   return {};
 }
 
-/// A model that contains another fits no worse, but for what simulations differ by.
+/// A model that contains another one fits at least as well, within the error of simulations.
 constexpr double kWorse = 2.0;
 
 StoredModelChoice choice_of(const Compared& first, const Compared& other) {

@@ -7,12 +7,12 @@
 
 namespace rigcal::report {
 
-/// Which model the records prefer, per result: nothing for the first, and for each other one its
-/// information criteria against the first. Where all that is free in one fit is free in the other
-/// too, and everything else is the same, the likelihood-ratio test with it. `reason` says why there
-/// is no number: other records or weights, a fit that did not converge.
+/// Which model the records prefer, per result: nothing for the first; for each other one its
+/// information criteria against the first. If all free parameters of one fit are free in the other,
+/// too, and everything else is equal, the likelihood-ratio test is added. `reason` explains a
+/// missing number: other records or weights, a fit that did not converge.
 ///
-/// @throws InputError  a result counts what cannot be
+/// @throws InputError  a result has impossible counts
 std::vector<std::optional<StoredModelChoice>> compared_models(const std::vector<Compared>& results);
 
 }  // namespace rigcal::report

@@ -34,15 +34,15 @@ std::optional<StoredEstimate> estimate_of(const StoredFit& fit,
   return estimate;
 }
 
-/// Whether a value is zero or not significantly different from it, so that nothing is a percentage
-/// of it.
+/// Whether a value is zero or not significantly different from it, so that percentages of it mean
+/// nothing.
 bool may_be_zero(const StoredEstimate& estimate) {
   if (estimate.value.value_or(0.0) == 0.0) return true;
   const Interval interval(estimate.ci95);
   return interval.ends && interval.ends->low <= 0.0 && interval.ends->high >= 0.0;
 }
 
-/// All but what is judged later, for all parameters together.
+/// The difference, except for the adjustment that needs all parameters together.
 std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate>& first,
                                               const std::optional<StoredEstimate>& other,
                                               bool same_records) {
@@ -57,7 +57,7 @@ std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate
   result.difference = difference;
   if (!may_be_zero(*first)) result.percent = 100.0 * (*other->value / *first->value - 1.0);
   if (!first->fitted && !other->fitted) return untested(kKnownInBoth);
-  // A known value has none.
+  // A known value has no error.
   const auto error = [](const StoredEstimate& estimate) {
     return metrics::EstimateError{estimate.standard_error.value_or(0.0),
                                   estimate.degrees_of_freedom.value_or(metrics::kManyDegrees)};

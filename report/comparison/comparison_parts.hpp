@@ -11,7 +11,7 @@
 
 namespace rigcal::report {
 
-// What a comparison is made of, and what its readers share.
+// Parts of a comparison, and functions that they share.
 
 inline constexpr double kSignificantLevel = 0.05;
 
@@ -21,22 +21,22 @@ inline constexpr const char* kKnownInBoth = "known in both";
 /// Converged or stopped: its numbers may be shown.
 inline bool is_usable(const StoredFit& fit) { return fit.status != calib::FitStatus::failed; }
 
-/// Files by hash of what a result was made from, but for the campaign file and an earlier fit.
+/// Input files of a result by hash, without the campaign file and an earlier fit.
 std::map<std::string, std::string> record_hashes(const StoredFit& fit);
-/// Whether two results were made from the same files or published numbers, at least in part: scored
-/// by them, if not fitted to them.
+/// Whether two results used at least one common file or published table, for fitting or for
+/// scoring.
 bool share_records(const Compared& a, const Compared& b);
-/// Whether the estimates of two results rest on the same data, at least in part: published numbers,
-/// or samples of a file (by SHA-256) that lie within windows of both. A file of a version that does
-/// not tell which records were fitted counts with all it was made from.
+/// Whether the estimates of two results used common data: a published table, or samples of one file
+/// (by SHA-256) within windows of both. Files of earlier versions do not name the fitted records;
+/// all inputs of such a file count as fitted.
 bool share_fitted_records(const Compared& a, const Compared& b);
 
 /// Estimates side by side, differences from the first.
 std::vector<StoredComparedParameter> compared_parameters(const std::vector<Compared>& results);
-/// Per result, nothing for the first, how many parameters that one of the two estimates were
-/// compared with the first, how many of these tested, and why the others were not, in words.
+/// For each result (nothing for the first): how many parameters that one of the two estimates were
+/// compared with the first, how many of these were tested, and why the others were not, in words.
 ///
-/// @param parameters  as compared_parameters() gives them, of `results` results
+/// @param parameters  of `results` results, from compared_parameters()
 std::vector<std::optional<StoredSignificance>> tested_parameters(
     const std::vector<StoredComparedParameter>& parameters, std::size_t results);
 
@@ -44,7 +44,7 @@ std::vector<std::optional<StoredSignificance>> tested_parameters(
 struct Change {
   std::string parameter, result;
   std::string by;           ///< "+1.2 %", or "+0.3 mm" where the first value may be zero
-  std::optional<double> p;  ///< for all parameters together; absent where it was not tested
+  std::optional<double> p;  ///< for all parameters together; absent if it was not tested
   std::string reason;       ///< why not
 };
 /// The significant ones first, the surest before the others; then the others, the largest in
@@ -59,7 +59,7 @@ std::vector<StoredComparedCondition> compared_conditions(const std::vector<Compa
 /// @param conditions  as compared_conditions() gives them, of `results`
 std::vector<StoredComparedMetric> compared_metrics(
     const std::vector<StoredComparedCondition>& conditions, const std::vector<Compared>& results);
-/// Which file went into which result.
+/// Files and the results that used them.
 std::vector<StoredComparedRecord> compared_records(const std::vector<Compared>& results);
 /// Estimates of the parameter of a key along dates and temperatures.
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key);
@@ -67,7 +67,7 @@ std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::stri
 /// A difference from the first result in percent; where that value is zero or not significantly
 /// different from it, in the unit. Empty where one has no value.
 std::string change_text(const StoredDifference& difference, const RowUnit& unit);
-/// Whether a parameter tells anything: some result estimates it, or known values differ.
+/// Whether a parameter is worth a row: a result estimates it, or known values differ.
 bool worth_a_row(const StoredComparedParameter& parameter);
 /// The unit in which the largest estimate of a parameter has few digits.
 RowUnit unit_of_estimates(const StoredComparedParameter& parameter);

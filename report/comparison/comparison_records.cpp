@@ -14,7 +14,7 @@ bool share_published_numbers(const Compared& a, const Compared& b) {
   });
 }
 
-/// Conditions that the estimates rest on; none where the file does not tell their records.
+/// Conditions that were fitted; none if the file does not name their records.
 std::vector<const StoredCondition*> fitted_conditions(const StoredFit& fit) {
   std::vector<const StoredCondition*> fitted;
   for (const StoredCondition& condition : fit.conditions) {
@@ -25,7 +25,7 @@ std::vector<const StoredCondition*> fitted_conditions(const StoredFit& fit) {
   return fitted;
 }
 
-/// Whether some time counts in both; without windows all of it does.
+/// Whether the windows of two conditions overlap. Without windows the whole record counts.
 bool overlap(const StoredCondition& a, const StoredCondition& b) {
   if (!a.windows_s || a.windows_s->empty() || !b.windows_s || b.windows_s->empty()) return true;
   for (const Range& one : *a.windows_s) {

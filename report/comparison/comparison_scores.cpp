@@ -87,7 +87,7 @@ std::vector<StoredComparedCondition> compared_conditions(const std::vector<Compa
               return e.id == condition.id && e.channel == name;
             });
         if (there) continue;
-        // As the first result that has the condition describes it.
+        // Describes it like the first result that has the condition.
         const auto first = std::find_if(results.begin(), results.end(), [&](const Compared& each) {
           return each.result.find(condition.id) != nullptr;
         });

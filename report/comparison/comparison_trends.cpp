@@ -28,7 +28,7 @@ std::optional<double> mean_over(const StoredFit& fit, const StoredParameter& par
   return count > 0 ? std::optional(sum / count) : std::nullopt;
 }
 
-/// What an estimate is of: those of equal name are points of one trend.
+/// Series of an estimate: estimates of equal name are points of one trend.
 std::string series_of(const StoredFit& fit, const StoredParameter& parameter) {
   const std::string level = parameter.level.value_or("");
   if (parameter.scope == Scope::rig) return "rig";
@@ -64,7 +64,7 @@ void find_trend(const std::vector<StoredTrendPoint>& points,
   metrics::Trend trend;
   try {
     trend = metrics::weighted_trend(x, y, errors);
-  } catch (const std::domain_error&) {  // of files that somebody has changed
+  } catch (const std::domain_error&) {  // possible in files that somebody has edited
     result.reason = "the errors of the estimates are too far apart for a line";
     return;
   }
@@ -82,7 +82,7 @@ void find_trend(const std::vector<StoredTrendPoint>& points,
 bool any_share_records(const std::vector<const Compared*>& results) {
   for (std::size_t i = 0; i < results.size(); ++i) {
     for (std::size_t j = i + 1; j < results.size(); ++j) {
-      // Several levels of one fit are told apart by their own records.
+      // Levels of one fit have separate records.
       if (results[i] != results[j] && share_fitted_records(*results[i], *results[j])) return true;
     }
   }
@@ -113,7 +113,7 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
 
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key) {
   std::vector<StoredSeries> list;
-  std::vector<std::vector<const Compared*>> sources;  // of each series
+  std::vector<std::vector<const Compared*>> sources;  // sources of each series
   for (const Compared& compared : results) {
     if (!is_usable(compared.result)) continue;
     for (const StoredParameter& parameter : compared.result.parameters) {

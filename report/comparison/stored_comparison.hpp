@@ -37,7 +37,7 @@ struct StoredEstimate {
   std::optional<double> value;
   bool fitted = false;
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of it
+  Later<std::optional<double>> degrees_of_freedom;  ///< for the standard error
   std::optional<Range> ci95;
   std::optional<calib::Identifiability> identifiability;
   bool at_bound = false;
@@ -50,9 +50,9 @@ struct StoredDifference {
   std::optional<double> difference;
   std::optional<double> percent;  ///< null where the first value may be zero
   std::optional<double> standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of it (Welch and Satterthwaite)
-  std::optional<double> p_value;                    ///< of this one alone
-  std::optional<double> p_value_of_all;             ///< for all parameters together (Holm)
+  Later<std::optional<double>> degrees_of_freedom;  ///< for this error (Welch and Satterthwaite)
+  std::optional<double> p_value;                    ///< for this parameter alone
+  std::optional<double> p_value_of_all;             ///< adjusted for all parameters (Holm)
   std::optional<bool> significant;
   std::optional<std::string> reason;  ///< why it is not tested
   RIGCAL_DESCRIBE(difference, percent, standard_error, degrees_of_freedom, p_value, p_value_of_all,
@@ -68,7 +68,7 @@ struct StoredComparedParameter {
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, estimates, differences)
 };
 
-/// How many parameters were compared with the first result, and what became of them.
+/// Number of parameters that were compared with the first result, tested and changed.
 struct StoredSignificance {
   int compared = 0, tested = 0, significant = 0;
   std::string text;
@@ -132,13 +132,13 @@ struct StoredComparedRecord {
   RIGCAL_DESCRIBE(file, sha256, in)
 };
 
-/// An estimate of a series, and where it lies.
+/// An estimate of a series, with its position.
 struct StoredTrendPoint {
   std::string result;
   std::optional<std::string> level;
   std::optional<double> day, temperature_k;
   std::optional<double> value, standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of the error
+  Later<std::optional<double>> degrees_of_freedom;  ///< for the error
   std::optional<Range> ci95;
   RIGCAL_DESCRIBE(result, level, day, temperature_k, value, standard_error, degrees_of_freedom,
                   ci95)
@@ -146,10 +146,10 @@ struct StoredTrendPoint {
 
 /// A line through the points, weighted by their errors.
 struct StoredTrend {
-  long points = 0;  ///< with an error, and a place
+  long points = 0;  ///< with an error and a position
   std::optional<double> slope, intercept, standard_error;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of the error of the slope
-  Later<std::optional<double>> widened;             ///< factor of it by scatter about the line
+  Later<std::optional<double>> degrees_of_freedom;  ///< for the slope's error
+  Later<std::optional<double>> widened;  ///< factor on that error by scatter about the line
   std::optional<Range> ci95;
   std::optional<double> p_value, reduced_chi_square;
   std::optional<bool> significant;

@@ -11,29 +11,29 @@
 
 #include "report/figure/svg.hpp"
 
-// A result as people read it, without a word on how it is drawn: render_html() and
-// render_terminal() alone know pages and terminals. Texts are plain; the renderers escape them.
+// A result as a document, independent of its output: only render_html() and render_terminal() know
+// about pages and terminals. Texts are plain; the renderers escape them.
 
 namespace rigcal::report::doc {
 
-/// What a result means to its reader: its colour and its mark, with words beside it always.
+/// Meaning of a result to its reader. It sets colour and mark; words always accompany it.
 enum class State { none, good, warn, bad };
 /// "○", "✓", "!", "✕"
 std::string_view mark(State state);
 /// Class of the style sheet: "none", "good", "warn", "bad".
 std::string_view css(State state);
 
-/// A number: as the file holds it, and in the digits that it deserves. quantity.hpp makes them.
+/// A number: the exact value, and the text with the digits that are significant (quantity.hpp).
 struct Quantity {
   std::optional<double> exact;
   std::string text = "–";
-  std::string unit = {};  ///< empty where there is none, or a column of its own has it
+  std::string unit = {};  ///< empty if there is none, or if another column shows it
 };
 struct Badge {
   State state = State::none;
   std::string words;
 };
-/// A badge as its mark alone; the words are for a screen reader.
+/// A badge without visible words; a screen reader reads them.
 struct Mark {
   State state = State::none;
   std::string words;
@@ -42,14 +42,14 @@ struct Link {
   std::string to;  ///< "#id", or a file
   std::string words;
 };
-/// Symbols, remarks.
+/// Symbols and remarks in a lighter colour.
 struct Soft {
   std::string words;
 };
 struct Strong {
   std::string words;
 };
-/// What is typed: a key, a command.
+/// Text that a user types: a key, a command.
 struct Code {
   std::string words;
 };
@@ -57,13 +57,13 @@ using Inline = std::variant<std::string, Quantity, Badge, Mark, Link, Soft, Stro
 using Line = std::vector<Inline>;
 using Lines = std::vector<Line>;
 
-/// One of several results in a cell or a gallery, coloured as a whole.
+/// One of several results in a cell or a gallery, with its own colour.
 struct Tile {
   Badge badge;
   Line line;
   Lines below = {};
-  std::string to = {};     ///< "#id" that it leads to
-  std::string title = {};  ///< what a pointer over it is told
+  std::string to = {};     ///< link to "#id"
+  std::string title = {};  ///< tooltip
   std::optional<Plot> picture = {};
 };
 
@@ -74,7 +74,7 @@ struct Cell {
   std::vector<Tile> tiles = {};        ///< in place of a line
   std::optional<Plot> picture = {};    ///< in place of a line, on the page alone
   std::optional<double> shade = {};    ///< -1 to 1: colour of the cell
-  std::optional<double> portion = {};  ///< 0 to 1: a bar that is filled so far, above `below`
+  std::optional<double> portion = {};  ///< 0 to 1: filled fraction of a bar above `below`
 
   Cell() = default;
   // NOLINTBEGIN(google-explicit-constructor): most cells are a text, a number or a line
@@ -89,26 +89,27 @@ struct Column {
   enum class Kind { text, number, unit, words };
   std::string title;
   Kind kind = Kind::text;
-  int spare = 0;           ///< the highest leaves a narrow terminal first; 0: never
-  std::string below = {};  ///< of the title, on the page
+  int spare = 0;  ///< the column with the highest number is the first that a narrow terminal omits;
+                  ///< 0: never
+  std::string below = {};  ///< second line of the title, on the page
 };
 
 struct Row {
   std::vector<Cell> cells;
-  std::vector<std::string> notes = {};  ///< reasons that hold for the whole row
+  std::vector<std::string> notes = {};  ///< reasons that apply to the whole row
   std::string id = {};
 };
 
 struct Table {
-  /// A matrix has tiles of equal width; a row of cards becomes one on a narrow screen.
+  /// A matrix has tiles of equal width; on a narrow screen each row of cards becomes a card.
   enum class Shape { list, cards, matrix };
-  std::string label;  ///< for screen readers; the caption where there is none
+  std::string label;  ///< for screen readers; the caption if there is none
   Line caption = {};
   Shape shape = Shape::list;
   std::string style = {};   ///< class of the style sheet
-  std::size_t heading = 0;  ///< column that names a row
-  std::size_t keys = 1;     ///< leading columns that every block of a narrow terminal repeats
-  std::string file = {};    ///< that has what a narrow terminal leaves out
+  std::size_t heading = 0;  ///< index of the column that names the row
+  std::size_t keys = 1;     ///< leading columns, repeated in every block of a narrow terminal
+  std::string file = {};    ///< file with the columns that a narrow terminal omits
   std::vector<Column> columns = {};
   std::vector<Row> rows = {};
 };
@@ -137,10 +138,10 @@ struct Heading {
 
 struct List {
   Lines items;
-  std::optional<State> state = {};  ///< of reasons and warnings: their colour
+  std::optional<State> state = {};  ///< colour of reasons and warnings
 };
 
-/// Names with values: of a test, a program, a range.
+/// Names with values, of a test, a program or a range.
 struct Facts {
   enum class Shape { table, grid };
   std::string label;
@@ -149,7 +150,7 @@ struct Facts {
   Shape shape = Shape::table;
 };
 
-/// A plot is made when it is drawn, so that those of a whole page are never in memory at once.
+/// A plot is made only when it is drawn, so that the plots of a page are never in memory together.
 struct Figure {
   std::function<Plot()> plot;
   std::string caption = {};
@@ -166,18 +167,18 @@ struct Tiles {
   std::vector<Tile> tiles;
 };
 
-/// The first thing of a page: its verdict in a word and in a sentence with numbers.
+/// The beginning of a page: the verdict as a badge, and a sentence with numbers.
 struct Verdict {
   Badge badge;
   Line sentence;
   Lines reasons = {};
-  std::size_t more = 0;  ///< reasons beside these
+  std::size_t more = 0;  ///< number of further reasons
 };
-/// What whoever signs has to know first.
+/// Everything that must be known before the result is signed.
 struct Doubts {
   Lines items;
 };
-/// Things that are judged apart, side by side.
+/// Aspects that are judged separately, side by side.
 struct Aspects {
   struct Aspect {
     Badge badge;
@@ -186,24 +187,24 @@ struct Aspects {
   };
   std::vector<Aspect> aspects;
 };
-/// Lines to sign on: what is signed for, and by whom.
+/// Lines for signatures: what each one certifies, and the name.
 struct Signatures {
   std::vector<std::pair<std::string, std::string>> rows;
 };
-/// What was typed to make a result.
+/// The command that produced a result.
 struct Command {
   std::string words;
 };
-/// Markup that something else has made.
+/// Markup from another renderer.
 struct Raw {
   std::string html;
 };
 
-/// A picture that a page may replace by one that zooms, of the series in its article.
+/// A picture that the page's script replaces by one with zoom, from the series of its article.
 struct LivePlot {
-  std::size_t number = 0;   ///< of the plot in the series
-  std::string file;         ///< that it is saved as
-  std::string description;  ///< what a screen reader says of it
+  std::size_t number = 0;   ///< index of the plot in the series
+  std::string file;         ///< file name for saving it
+  std::string description;  ///< text for screen readers
   std::string caption;
   std::function<Plot()> plot;
 };
@@ -218,14 +219,14 @@ using Block =
     std::variant<Paragraph, Heading, List, Facts, Table, Figure, Gallery, Tiles, Verdict, Doubts,
                  Aspects, Signatures, Command, Raw, LivePlot, LiveSeries, Fold, Article>;
 using Blocks = std::vector<Block>;
-/// What is opened by whoever wants it; on paper it is open.
+/// Content that the reader can unfold; it is printed unfolded.
 struct Fold {
   std::string summary;
   Blocks blocks;  // an initialiser here would need to know Block
   bool open = false;
   std::string style = {};  ///< class of the style sheet
 };
-/// One of several things of a section, which links lead to.
+/// Part of a section that links can point to.
 struct Article {
   std::string id;
   Line title;

@@ -6,8 +6,8 @@
 #include "calib/published/leak_table.hpp"
 #include "report/document/document.hpp"
 
-// Words of every state that a result can be in. Each is a switch without a default: a state without
-// words does not compile.
+// The words for every state of a result. Each function is a switch without a default, so a state
+// without words does not compile.
 
 namespace rigcal::report::doc {
 
@@ -17,9 +17,9 @@ Badge badge(calib::AspectState state);
 Badge badge(calib::Identifiability grade);
 Badge badge(calib::LeakGrade grade);
 Badge badge(datasets::LeakClass leak_class);
-/// Of an estimate.
+/// Badge of an estimate.
 ///
-/// @param judged  the search came to its end
+/// @param judged  whether the search converged
 Badge badge(const std::optional<calib::Identifiability>& grade, bool at_bound, bool judged);
 
 }  // namespace rigcal::report::doc

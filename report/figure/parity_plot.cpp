@@ -108,7 +108,7 @@ Plot parity_plot(const std::string& title, std::span<const double> measured,
     from = share;
     if (!shade.x.empty()) plot.traces.push_back(std::move(shade));
   }
-  // The lines lie on top of what they are compared with.
+  // The lines are drawn above the samples.
   std::rotate(plot.traces.begin(), plot.traces.begin() + 3, plot.traces.end());
   return plot;
 }

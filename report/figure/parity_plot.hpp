@@ -7,23 +7,22 @@
 
 namespace rigcal::report {
 
-/// Mean and standard deviation of what a model leaves of a measurement, over the samples that have
-/// both.
+/// Mean and standard deviation of measured minus simulated, over the samples that have both.
 struct ResidualMoments {
   std::size_t samples = 0;
-  double mean = 0.0;  ///< of measured minus simulated
+  double mean = 0.0;  ///< mean of measured minus simulated
   double sd = 0.0;    ///< population
 };
 ResidualMoments residual_moments(std::span<const double> measured,
                                  std::span<const double> simulated);
 
-/// Simulated against measured values, with the line of equality and, dashed, the limits between
-/// which 95 % of normal residuals lie: equality shifted by their mean, and 1.96 standard deviations
-/// to either side (Bland and Altman, Lancet 1986). Samples are drawn as the cells of a grid that
-/// they fall into, in three shades by how many share a cell, so that a long record takes no more
-/// room than a short one and a rare sample is as visible as the many.
+/// Simulated against measured values, with the line of equality and, dashed, the limits of 95 % of
+/// normal residuals: equality shifted by their mean, and 1.96 standard deviations to either side
+/// (Bland and Altman, Lancet 1986). Samples are drawn as cells of a grid in three shades by their
+/// number, so that a long record takes no more room than a short one, and a rare sample is as
+/// visible as frequent ones.
 ///
-/// @param title      what a screen reader says first
+/// @param title      first words for a screen reader
 /// @param measured   shape (n), SI; samples that are not finite are left out
 /// @param simulated  shape (n), SI
 /// @param unit       of the axes

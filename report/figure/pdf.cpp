@@ -20,12 +20,12 @@ namespace {
 constexpr double kPointsPerPixel = 0.75;
 constexpr float kBandOpacity = 0.22F;
 
-/// How figure.css draws a class.
+/// Drawing style of a class in figure.css.
 struct Ink {
   std::string_view style;
   unsigned rgb;
   double width;
-  std::array<HPDF_UINT16, 2> dash;  ///< points on and off; nothing where zero
+  std::array<HPDF_UINT16, 2> dash;  ///< points on and off; zero: solid
 };
 constexpr std::array kInks{
     Ink{"grid", 0xcccccc, 0.6, {}},     Ink{"level", 0x444444, 1.0, {3, 2}},
@@ -58,7 +58,7 @@ void make_searchable(std::string& document) {
   document.replace(begin, map.size(), map);
 }
 
-/// A document of one page, and the first error that the library tells of.
+/// A document of one page, and the first error that the library reports.
 class PdfPage {
  public:
   PdfPage(double width, double height) : height_(height) {

@@ -39,8 +39,8 @@ void widen(Axis& axis, const std::vector<double>& values, bool& any) {
 
 void leave_room(Axis& axis, double share) {
   const double span = axis.high - axis.low;
-  // On a logarithmic axis the value 1 lies at zero: what differs by rounding alone is constant
-  // there too.
+  // On a logarithmic axis the value 1 is at zero, where a series that differs by rounding alone is
+  // constant, too.
   const double size =
       std::max({std::abs(axis.high), std::abs(axis.low), axis.logarithmic ? 1.0 : 0.0});
   // A constant still needs an axis around it.
@@ -83,7 +83,7 @@ std::vector<Tick> ticks_of(const Axis& axis, int count) {
       }
       if (ticks.size() > 1) return ticks;
     }
-    // So short a stretch is as good as linear.
+    // So short an interval is nearly linear.
     ticks.clear();
     for (const double value :
          round_ticks(std::pow(10.0, axis.low), std::pow(10.0, axis.high), count))
@@ -249,7 +249,7 @@ void add_legend(const Plot& plot, std::vector<Shape>& shapes) {
 std::vector<double> round_ticks(double low, double high, int count) {
   std::vector<double> ticks;
   const double raw = (high - low) / std::max(1, count);
-  // Ticks closer than numbers of this size can tell would never reach the end.
+  // Ticks that are closer than the resolution of numbers of this size would never reach the end.
   constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
   if (!(raw > kRounding * std::max(std::abs(low), std::abs(high))) || !std::isfinite(raw))
     return ticks;

@@ -21,10 +21,10 @@ struct Shape {
   std::vector<Point> points;
   std::string text;  ///< at the first point
   Anchor anchor = Anchor::start;
-  double side = 0.0;  ///< of cells: squares about the points
+  double side = 0.0;  ///< side of cells: squares about the points
 };
 
-/// What a plot consists of, the lowest first: grid, ticks and labels, levels, traces, legend.
+/// The shapes of a plot from bottom to top: grid, ticks and labels, levels, traces, legend.
 std::vector<Shape> plot_scene(const Plot& plot);
 
 inline constexpr double kDotRadius = 2.2;

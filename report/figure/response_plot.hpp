@@ -11,7 +11,7 @@ namespace rigcal::report {
 /// Gain and phase of record and model against the same drive.
 struct ResponseCurves {
   std::string of;    ///< "position over reference"
-  std::string unit;  ///< of the gain; "1" where it has none
+  std::string unit;  ///< unit of the gain; "1" without one
   double si_per_unit = 1.0;
   std::vector<metrics::ResponsePoint> record;
   std::vector<metrics::ResponsePoint> model;
@@ -22,8 +22,8 @@ struct ResponseCurves {
 ResponseCurves coherent(const ResponseCurves& all);
 
 /// Gain (logarithmic) and phase over the logarithm of the frequency: the record as points with its
-/// 95 % intervals, the model as points joined by a line. Phases run on beyond 180 degrees where
-/// their neighbours lie there, so that a curve does not jump.
+/// 95 % intervals, the model as points joined by a line. Phases continue beyond 180 degrees like
+/// their neighbours, so that a curve does not jump.
 Plot gain_plot(const std::string& condition, const ResponseCurves& curves);
 Plot phase_plot(const std::string& condition, const ResponseCurves& curves);
 

@@ -12,8 +12,8 @@
 namespace rigcal::report {
 namespace {
 
-/// As "{:.1f}" writes it, but for a path of ten thousand points. What may be half way between two
-/// tenths is left to fmt, which knows all digits.
+/// Same text as "{:.1f}", but fast enough for a path of ten thousand points. Values that may be
+/// half way between two tenths are left to fmt, which knows all digits.
 void put_tenths(std::string& out, double value) {
   constexpr double kLargest = 1e9;
   constexpr double kNearHalf = 1e-3;
@@ -33,7 +33,7 @@ void put_tenths(std::string& out, double value) {
   out += static_cast<char>('0' + rounded % 10);
 }
 
-/// One decimal of a pixel tells more than a screen shows.
+/// A tenth of a pixel is finer than any screen.
 void put_path(std::string& out, const Shape& shape, const char* css, const char* end) {
   out += fmt::format("<path class=\"{}{}\" d=\"", css, shape.style);
   bool pen_down = false;

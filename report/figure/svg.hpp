@@ -6,7 +6,7 @@
 
 namespace rigcal::report {
 
-/// What a picture shows, in the units that its axes name.
+/// A trace of a picture, in the units of its axes.
 struct Trace {
   enum class Kind { line, points, bars, band, intervals, cells };
   std::string name;   ///< in the legend; none if empty
@@ -14,8 +14,8 @@ struct Trace {
   Kind kind = Kind::line;
   std::vector<double> x;
   std::vector<double> y;      ///< NaN: a gap
-  std::vector<double> upper;  ///< of a band or of intervals; `y` is the lower edge
-  double cell = 0.0;          ///< of cells: side of the squares about the points
+  std::vector<double> upper;  ///< for a band or intervals; `y` is the lower edge
+  double cell = 0.0;          ///< for cells: side of the squares about the points
 };
 
 /// A trace that has no points yet.
@@ -28,7 +28,7 @@ inline Trace empty_trace(Trace::Kind kind, std::string style, std::string name =
 }
 
 struct Plot {
-  std::string title;  ///< what a screen reader says first
+  std::string title;  ///< first words for a screen reader
   std::string x_label;
   std::string y_label;
   double width = 720.0;
@@ -44,7 +44,7 @@ struct Plot {
 
 /// A picture as SVG, coloured by the style sheet of the page. Every text is escaped.
 ///
-/// @param style_sheet  put inside, for a file that stands alone; none if empty
+/// @param style_sheet  included in a separate file; none if empty
 std::string svg(const Plot& plot, const std::string& style_sheet = {});
 
 /// Round numbers that divide [low, high] into about `count` parts.

@@ -129,8 +129,8 @@ Trace prediction_band(const TimePlot& plot, const std::vector<double>& time_s) {
   return band;
 }
 
-/// A band that follows a curve is drawn only where it is wider than the line; the script of the
-/// page shows it to whoever zooms in.
+/// Whether a band that follows a curve is drawn: only if it is wider than the line. The script of
+/// the page shows it after zooming in.
 bool shows_band(const TimePlot& plot) {
   constexpr double kLeastShare = 0.01;
   return plot.prediction_middle == nullptr ||
@@ -155,7 +155,7 @@ Plot picture(const TimePlot& plot, const Table& table, const std::string& condit
     trace.y = scaled(thinned(*line.values, thin), plot.si);
     result.traces.push_back(std::move(trace));
   }
-  // What is measured lies on top; the bands beneath all.
+  // Measured signals are on top, bands below everything.
   std::reverse(result.traces.begin(), result.traces.end());
   if (plot.prediction_sd != nullptr && shows_band(plot))
     result.traces.insert(result.traces.begin(), prediction_band(plot, time_s));

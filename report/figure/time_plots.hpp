@@ -35,8 +35,8 @@ struct TimePlot {
   const std::vector<double>* prediction_middle = nullptr;  ///< null: zero
 };
 
-/// What there is to be drawn: per channel the signals and the residual, flows, the valve command.
-/// Refers to the columns of the table.
+/// The plots for a table: per channel the signals and the residual, flows, the valve command. They
+/// refer to the columns of the table.
 std::vector<TimePlot> time_plots(const Table& table);
 
 /// The largest absolute value that is finite.
@@ -45,7 +45,7 @@ double largest(std::span<const double> values);
 /// The whole record as a static picture.
 Plot picture(const TimePlot& plot, const Table& table, const std::string& condition);
 
-/// What the plot tells, for those who cannot see it.
+/// Description of the plot for those who cannot see it.
 std::string description(const TimePlot& plot, const Table& table);
 
 /// The series of a condition for the script of the page.
@@ -56,7 +56,7 @@ class SeriesData {
 
   /// Adds a column and returns its number.
   std::size_t add(const std::vector<double>& values, double si);
-  /// The same at the points that are kept of another column.
+  /// Adds values at the points that are kept of another column.
   std::size_t add(const std::vector<double>& values, const std::vector<double>& extremes,
                   double si);
 

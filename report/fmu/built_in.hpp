@@ -5,7 +5,7 @@
 
 namespace rigcal::report {
 
-// What every FMU holds, built into the program.
+// Files of every FMU, built into the program.
 
 /// The sources by their paths within sources/, sorted.
 const std::map<std::string_view, std::string_view>& fmu_sources();

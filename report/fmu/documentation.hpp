@@ -8,8 +8,7 @@
 
 namespace rigcal::report {
 
-/// documentation/index.html: where the values come from, what the variables are, and how to compile
-/// the sources.
+/// documentation/index.html: origin of the values, the variables, and how to compile the sources.
 ///
 /// @param compile  the command
 std::string fmu_documentation(const FmuRequest& request, const std::vector<FmuVariable>& variables,

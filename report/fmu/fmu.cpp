@@ -16,8 +16,8 @@ extern "C" const char rigcal_fmu_library_end[];
 namespace rigcal::report {
 namespace {
 
-// Where an importer looks for the library. FMI 2.0 names those of Intel's processors; of others,
-// that of FMI 3.0.
+// Folder in which an importer searches the library. FMI 2.0 names those of Intel's processors; for
+// others the name of FMI 3.0 is used.
 #if defined(__x86_64__)
 constexpr const char* kPlatform = "linux64";
 #elif defined(__i386__)
@@ -36,7 +36,7 @@ std::vector<std::string> files_to_compile() {
   return names;
 }
 
-/// The GUID belongs to the content: what differs in a byte has another.
+/// The GUID depends on the content: any different byte gives another one.
 std::string guid_of(const std::vector<FmuFile>& files) {
   std::string all;
   for (const FmuFile& file : files) all += file.path + ":" + sha256_of_text(file.content) + "\n";

@@ -8,15 +8,15 @@
 
 namespace rigcal::report {
 
-/// What an FMU is made from.
+/// Content of an FMU.
 struct FmuRequest {
-  std::string name;        ///< of the rig, for people
+  std::string name;        ///< name of the rig, for people
   std::string identifier;  ///< for C: letters, digits and "_", no digit first
   model::ExportedRig rig;  ///< its GUID is filled in
-  double start_s = 0.0;    ///< of the default experiment
+  double start_s = 0.0;    ///< start of the default experiment
   double stop_s = 1.0;
   double step_s = 1e-3;
-  /// Where the values come from, for the documentation: label and words.
+  /// Origin of the values, for the documentation: label and words.
   std::vector<std::pair<std::string, std::string>> origin;
 };
 

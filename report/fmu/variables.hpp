@@ -15,7 +15,7 @@ struct FmuVariable {
   std::string name;
   unsigned reference = 0;
   Causality causality = Causality::local;
-  bool tunable = false;  ///< of a parameter: may change while the rig runs
+  bool tunable = false;  ///< for a parameter: may change while the rig runs
   std::string unit;
   std::string meaning;
   std::optional<double> start;

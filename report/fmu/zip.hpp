@@ -7,9 +7,9 @@
 
 namespace rigcal::report {
 
-/// A ZIP archive of files. The same files give the same bytes: no clock goes in.
+/// A ZIP archive of files. The same files give the same bytes, since it has no time stamps.
 ///
-/// @throws WriteError  libzip fails, in its words
+/// @throws WriteError  libzip fails (in its words)
 std::string zipped(const std::vector<FmuFile>& files);
 
 }  // namespace rigcal::report

@@ -16,9 +16,9 @@
 
 #include "report/json/json_node.hpp"
 
-// One description of each struct that a result file holds, of which writer, reader and schema
-// follow. The members' names are the keys, in this order; a name that C++ keeps for itself has "_"
-// at its end.
+// Each struct of a result file is described once; writer, reader and schema follow from that. The
+// names of the members are the keys, in this order. A name that is reserved in C++ has "_" at its
+// end.
 //
 //   struct Leak {
 //     std::string level;
@@ -39,7 +39,7 @@
 
 namespace rigcal::report {
 
-/// A value whose key is left out where there is none: rigs differ in what they have.
+/// A value whose key is omitted if there is none: rigs differ in what they have.
 template <typename T>
 struct Omittable : std::optional<T> {
   using std::optional<T>::optional;
@@ -54,7 +54,7 @@ struct Later : T {
   Later(T value) : T(std::move(value)) {}  // NOLINT(google-explicit-constructor): it is one
 };
 
-/// A struct whose keys stand among those of the one that holds it.
+/// A struct whose keys are among those of the struct that contains it.
 template <typename T>
 struct Inlined : T {
   Inlined() = default;
@@ -129,7 +129,7 @@ inline std::string key_of(const char* member) {
 
 }  // namespace described
 
-/// What JSON can hold of a number: nothing where it is not finite.
+/// A number for JSON: nothing if it is not finite.
 inline std::optional<double> finite(double value) {
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
@@ -181,9 +181,9 @@ Json json_of(const T& value) {
   }
 }
 
-/// Reads what json_of() wrote. Keys that the struct does not know are passed over.
+/// Reads what json_of() wrote. Unknown keys are ignored.
 ///
-/// @throws InputError  file and key of what is missing or of another kind, and what was expected
+/// @throws InputError  a key is missing or has another type (names file, key and what was expected)
 template <typename T>
 void read_into(const JsonNode& node, T& value) {
   using namespace described;
@@ -247,7 +247,7 @@ void read_into(const JsonNode& node, T& value) {
   }
 }
 
-/// The JSON schema (draft 7) of what json_of() writes for a type.
+/// The JSON schema (draft 7) of the output of json_of() for a type.
 template <typename T>
 Json schema_of() {
   using namespace described;

@@ -15,10 +15,10 @@ std::string text_of(const Json& json, const std::string& key);
 /// @throws InputError  always
 [[noreturn]] void refuse_json(const std::string& where, const Json::exception& error);
 
-/// Does work on foreign JSON; what is JSON but no result of this version is an error of the input.
+/// Runs work on foreign JSON. JSON that is no result of this version becomes an error of the input.
 ///
 /// @param where  the file or folder
-/// @throws InputError  a value is missing or of another kind
+/// @throws InputError  a value is missing or has another type
 template <typename Work>
 void with_json_errors(const std::string& where, const Work& work) {
   try {

@@ -20,11 +20,11 @@ namespace rigcal::report {
 
 using Json = nlohmann::ordered_json;
 
-/// One value of a result in JSON, with its place in words: every wrong one throws InputError, with
-/// the key, what was found and what was expected. Borrows the JSON.
+/// One value of a result in JSON, with its place in words. A wrong value throws InputError with the
+/// key, what was found and what was expected. Borrows the JSON.
 class JsonNode {
  public:
-  /// @param kind  what the file should be: "fit.json"
+  /// @param kind  expected kind of file: "fit.json"
   JsonNode(const Json& json, std::string file, std::string path, std::string kind)
       : json_(json), file_(std::move(file)), path_(std::move(path)), kind_(std::move(kind)) {}
 
@@ -54,7 +54,7 @@ class JsonNode {
     return result;
   }
 
-  /// A list of numbers; null stands for one that is not finite.
+  /// A list of numbers; null represents one that is not finite.
   std::vector<double> reals() const {
     if (!json_.is_array()) fail("a list");
     std::vector<double> result;
@@ -69,7 +69,7 @@ class JsonNode {
     return result;
   }
 
-  /// Keys and what they hold, in their order.
+  /// Keys with their values, in order.
   std::vector<std::pair<std::string, JsonNode>> members() const {
     if (!json_.is_object()) fail("an object");
     std::vector<std::pair<std::string, JsonNode>> result;

@@ -21,8 +21,8 @@ Location place_of_byte(const std::string& file, std::string_view text, std::size
           static_cast<long>(byte - line_start) + 1};
 }
 
-/// Goes over a text once, without taking it apart, and refuses what is beyond a limit. Whether it
-/// is JSON is for the parser to say.
+/// Scans a text once, without parsing it, and refuses what is beyond a limit. The parser decides
+/// whether it is JSON.
 class JsonScan {
  public:
   JsonScan(std::string_view text, const std::string& file, const JsonLimits& limits)
@@ -96,7 +96,7 @@ class JsonScan {
     return end;
   }
 
-  /// Of a number beyond the range of a double: whether it is too small, which is read as zero.
+  /// Whether a number beyond the range of a double is too small, and is therefore read as zero.
   static bool is_tiny(std::string_view number) {
     const std::size_t exponent = number.find_first_of("eE");
     if (exponent != std::string_view::npos) return number.substr(exponent + 1).front() == '-';
@@ -106,7 +106,7 @@ class JsonScan {
   std::string_view text_;
   const std::string& file_;
   const JsonLimits& limits_;
-  std::vector<std::size_t> keys_;  ///< so far, of each bracket that is open
+  std::vector<std::size_t> keys_;  ///< number of keys so far in each open bracket
   std::size_t values_ = 0;
   std::size_t comparisons_ = 0;
 };

@@ -15,7 +15,7 @@ struct DiagnosisResult {
   const diagnosis::Diagnosis& diagnosis;
   const std::vector<std::string>& reasons;  ///< why it was declined; empty if it was not
   const Provenance& provenance;
-  /// Of the leak table that gave the limits of the classes; empty where [diagnosis] did.
+  /// Limits of the leak table that gave the classes; empty if [diagnosis] gave them.
   std::vector<TableLimit> class_limits = {};
 };
 

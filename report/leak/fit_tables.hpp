@@ -18,7 +18,7 @@ struct TablesFitResult {
 /// fit.json of `fit-tables`, with the keys of a fit as far as they apply.
 StoredTablesFit stored(const TablesFitResult& result);
 
-/// Estimated values with intervals, what was left out, and the status.
+/// Estimated values with intervals, omitted numbers, and the status.
 std::string tables_fit_text(const TablesFitResult& result, const Style& style);
 
 }  // namespace rigcal::report

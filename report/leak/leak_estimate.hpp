@@ -14,8 +14,8 @@ inline constexpr double kInPercent = 100.0;
 /// Both ends times `scale`.
 Range scaled_ends(const std::pair<double, double>& range, double scale = 1.0);
 
-/// Coefficient, share, flow and class of a leak, of a record or of a state; nothing where there is
-/// no estimate (`ok` false).
+/// Coefficient, share, flow and class of a leak, for a record or a state; empty without an estimate
+/// (`ok` false).
 StoredLeak stored(const diagnosis::LeakEstimate& estimate,
                   const std::optional<datasets::LeakClass>& leak_class, bool ok);
 

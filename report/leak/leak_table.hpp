@@ -18,8 +18,8 @@ struct LeakTableResult {
   const datasets::LeakTableSettings& settings;
   const calib::LeakTable& table;
   const Provenance& provenance;
-  std::vector<std::string> notes = {};     ///< which values are those of a fit, in words
-  std::vector<std::string> warnings = {};  ///< what is doubtful about the values
+  std::vector<std::string> notes = {};     ///< which values come from a fit, in words
+  std::vector<std::string> warnings = {};  ///< doubts about the values
 };
 
 /// leak_table.json.
@@ -28,7 +28,7 @@ StoredLeakTable stored(const LeakTableResult& result);
 /// leak_table.csv: one row per signal and target.
 std::string leak_table_csv(const LeakTableResult& result);
 
-/// features.csv: one row per published level, what was printed beside what comes out.
+/// features.csv: one row per published level, printed beside computed numbers.
 std::string features_csv(const LeakTableResult& result);
 
 /// levels/<level>.csv: one period of the feature signal: time, reference, position, flows, and the

@@ -22,7 +22,7 @@ const ParitySignal* signal_of(const ParityResult& result, const ParityRecord& re
   return nullptr;
 }
 
-/// Whether a record exceeds a threshold; nothing where there is none.
+/// Whether a record exceeds a threshold; nothing without a threshold.
 std::optional<bool> exceeds(const std::optional<double>& threshold, double value) {
   return threshold ? std::optional(value > *threshold) : std::nullopt;
 }

@@ -28,11 +28,11 @@ StoredParity stored(const ParityResult& result);
 std::string parity_csv(const ParityResult& result);
 
 /// parity/<condition>.csv: time_s, the healthy model's position, and for each repeat the parity
-/// residual, the residual less what healthy records leave, and its moving root mean square. Empty
-/// fields where a sample does not count.
+/// residual, the residual minus that of healthy records, and its moving root mean square. Fields of
+/// samples outside the windows are empty.
 std::vector<ResultFile> parity_series(const ParityResult& result);
 
-/// parity.json, parity.csv and the series, and the page.
+/// Files that parity and its page may write.
 PlannedFiles planned_parity(const datasets::Campaign& campaign);
 
 }  // namespace rigcal::report

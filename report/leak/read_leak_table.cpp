@@ -28,7 +28,7 @@ TableLimit limit_of(const StoredLeakEntry& entry, const JsonNode& node) {
   return limit;
 }
 
-/// To the last digits that a file in between may cost.
+/// Equality up to the last digits, which a file in between may change.
 bool alike(double a, double b) {
   constexpr double kRounding = 1e-12;
   return a == b || std::abs(a - b) <= kRounding * std::max(std::abs(a), std::abs(b));

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::size_t kStillPoints = 1500;
 
-/// JSON that no HTML parser can take for markup.
+/// JSON that no HTML parser can mistake for markup.
 std::string for_script(const Json& json) {
   std::string text;
   for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace))
@@ -71,7 +71,7 @@ std::string still_figure(const LiveCase& shown, const std::string& title, const 
       title, escaped(shown.name), svg(plot));
 }
 
-/// What the page shows where no script runs, and on paper.
+/// Pictures for readers without scripts, and for print.
 std::string still_pictures(const LiveCase& shown, const model::Simulation& run) {
   constexpr std::array kPosition{StillLine{"position", "model", model::Output::position}};
   constexpr std::array kFlows{StillLine{"servo", "servo", model::Output::servo_flow},
@@ -86,7 +86,7 @@ std::string still_pictures(const LiveCase& shown, const model::Simulation& run) 
                       still_plot(shown, run, "Flow", "L/min", kLitrePerMinute, kFlows));
 }
 
-/// A template with {{name}} replaced by the HTML of that name.
+/// Replaces each {{name}} of a template by the HTML of that name.
 std::string filled(std::string_view text, const std::map<std::string_view, std::string>& html) {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
@@ -130,7 +130,7 @@ std::string explore_page(const datasets::Campaign& campaign, const std::vector<L
        {"inputs", inputs_html},
        {"live", live},
        {"style", fmt::format("{}{}{}", asset("report.css"), asset("uPlot.css"), asset("live.css"))},
-       // Its licence asks for its notice in every copy, which each page is.
+       // The licence of the plot library requires its notice in every copy, and each page is one.
        {"plot_library",
         fmt::format("/*! uPlot\n\n{}*/\n{}", asset("uPlot.LICENSE"), asset("uPlot.js"))},
        {"worker", std::string(asset("live_worker.js"))},

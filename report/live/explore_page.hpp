@@ -7,11 +7,11 @@
 
 namespace rigcal::report {
 
-/// A page that stands alone, with the rig in it: its curves follow whoever moves a value.
+/// Makes a self-contained page with the rig in it. Its curves follow every change of a value.
 ///
 /// @param cases   at least one; a still picture shows the first
-/// @param inputs  that the page rests on
-/// @throws InputError  the first case cannot be simulated: with its place
+/// @param inputs  files that the page is made from
+/// @throws InputError  the first case cannot be simulated (names its place)
 /// @throws UsageError  this program was built without the module
 std::string explore_page(const datasets::Campaign& campaign, const std::vector<LiveCase>& cases,
                          const std::string& command, const std::vector<InputFile>& inputs);

@@ -1,4 +1,4 @@
-// The live model of a page: controls, the worker that simulates, and curves that follow.
+// The live model of a page: controls, the worker that simulates, and the curves.
 "use strict";
 (() => {
   const rig = JSON.parse(document.getElementById("live-rig").textContent);
@@ -20,7 +20,7 @@
     $("problem").hidden = !text;
   };
 
-  // What the page is about: a case, the drive and the values of the parameters, all in SI.
+  // State of the page: case, drive and parameter values, all in SI.
   const rows = new Map(rig.parameters.map((row) => [row.index, row]));
   const byKey = new Map(rig.parameters.map((row) => [row.key, row]));
   const driven = rig.controller === 1 ? {name: "reference", unit: "mm", si: 1e-3, si_unit: "m"} : {name: "command", unit: "V", si: 1, si_unit: "V"};
@@ -42,7 +42,7 @@
     };
   };
 
-  // The state in the address: what differs from the case.
+  // State in the address: only the differences from the case.
   const driveKeys = ["waveform", "frequency", "amplitude", "duration", "end_frequency"];
   const address = () => {
     const chosen = caseOf(state.case);
@@ -82,7 +82,7 @@
     }, 250);
   };
 
-  // A control: a number in the unit of people, with a slider where it has a range.
+  // A control: a number in a readable unit, with a slider if it has a range.
   const toSlider = ({lower, upper, scale}, value) => {
     const v = Math.min(Math.max(value, lower), upper);
     if (scale === "log") return Math.log(v / lower) / Math.log(upper / lower);
@@ -201,13 +201,13 @@
     document.getElementById("live-waveform").value = state.waveform;
   };
 
-  // The request to the worker.
+  // Request to the worker.
   const kMostSamples = 20000;
   const sampleRate = () => {
     const chosen = caseOf(state.case);
     const wanted = Math.max(chosen.rate ?? 0, 40 * state.frequency, state.waveform === "chirp" ? 40 * state.end_frequency : 0);
     const most = Math.min(wanted || 1000, Math.max(5000, 40 * state.frequency * state.duration) / state.duration, kMostSamples / state.duration);
-    // A rate of few digits, so that the same can be asked of the command.
+    // The rate has few digits, so that it can be typed in the equivalent command.
     const step = 10 ** Math.floor(Math.log10(most));
     return [8, 5, 4, 2.5, 2, 1].map((times) => times * step).find((rate) => rate <= most * (1 + 1e-12));
   };
@@ -375,7 +375,7 @@
     window.rigcalLive = {request, answer, rig, drawn: (window.rigcalLive?.drawn ?? 0) + 1};
   };
 
-  // What makes `rigcal simulate` do the same.
+  // Command of `rigcal simulate` with the same result.
   const quoted = (text) => /^[A-Za-z0-9_./-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`;
   const commands = () => {
     const was = new Map(rig.campaign);

@@ -4,7 +4,7 @@
 
 namespace rigcal::report {
 
-/// The model as a WebAssembly module (model/wasm), compressed by gzip; empty where the program was
+/// The model as a WebAssembly module (model/wasm), compressed by gzip. Empty if the program was
 /// built without it.
 std::string_view live_module();
 

@@ -22,17 +22,17 @@ using datasets::Waveform;
 
 constexpr double kPeriodsShown = 4.0;
 constexpr double kSecondsOfNoPeriod = 10.0;
-/// More samples would neither be seen nor be drawn in time.
+/// More samples would not be visible, and would take too long to draw.
 constexpr double kMostMadeSamples = 5'000.0;
 constexpr double kSamplesOfAPeriod = 500.0;
-/// A known value without bounds can be moved by this factor.
+/// Without bounds, the slider of a known value reaches from a fifth of it to five times it.
 constexpr double kReach = 5.0;
-/// Beyond the leaks of the source paper, whose largest coefficient is 2.5.
+/// Above the leaks of the source paper, whose largest coefficient is 2.5.
 constexpr double kMostLeakage = 5.0;
 
 const char* const kLeak = "leakage_coefficient";
 
-/// Duration and sample rate where the campaign leaves them to the recording or to nobody.
+/// Fills in duration and sample rate of a generated drive where the campaign does not state them.
 void complete(Condition& condition) {
   if (condition.waveform == Waveform::recorded) return;
   const double frequency_hz = condition.frequency_hz.value_or(0.0);
@@ -52,11 +52,11 @@ LiveCase made_case(const Campaign& campaign, std::string name, Condition conditi
                    model::ParameterValues values) {
   complete(condition);
   SimulationTask task = simulation_task(campaign, condition, std::move(values));
-  task.condition = nullptr;  // the one that it was made of moves
+  task.condition = nullptr;  // the condition is moved below, so its address changes
   return {std::move(name), std::move(condition), std::move(task)};
 }
 
-/// The signals of the leak table, of which that of its features comes first.
+/// Adds the signals of the leak table; the signal of its features comes first.
 void add_leak_table(const Campaign& campaign, const datasets::LeakTableSettings& settings,
                     std::vector<LiveCase>& cases) {
   std::vector<datasets::LeakSignal> signals = settings.signals;
@@ -86,7 +86,7 @@ void add_leak_table(const Campaign& campaign, const datasets::LeakTableSettings&
   }
 }
 
-/// What a campaign assumes of its leak table, where it has one.
+/// Settings of the leak table, if the campaign has one.
 std::optional<datasets::LeakTableSettings> leak_table_of(const Campaign& campaign) {
   const bool periodic =
       std::any_of(campaign.conditions.begin(), campaign.conditions.end(),
@@ -97,7 +97,7 @@ std::optional<datasets::LeakTableSettings> leak_table_of(const Campaign& campaig
   return settings;
 }
 
-/// Where a slider goes, and how: "log", "linear", or "cubic", which reaches zero.
+/// Range of a slider and its scale: "log", "linear" or "cubic". The cubic scale includes zero.
 struct SliderRange {
   double lower = 0.0;
   double upper = 0.0;
@@ -110,7 +110,7 @@ SliderRange scaled_range(double lower, double upper) {
   return {lower, upper, "linear"};
 }
 
-/// None where neither the campaign nor the value says how far it may go.
+/// Empty if neither the campaign nor the value suggests a range.
 std::optional<SliderRange> slider_range(const datasets::ParameterSetting* setting,
                                         const model::ParameterSpec& spec, double value) {
   if (setting != nullptr && std::isfinite(setting->lower) && std::isfinite(setting->upper) &&
@@ -138,7 +138,7 @@ const char* group_of(const datasets::ParameterSetting* setting, model::Parameter
   return "";
 }
 
-/// Null for what JSON has no number for.
+/// Null for numbers that JSON cannot represent.
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json live_parameter(const Campaign& campaign, int index, double value) {
@@ -165,7 +165,7 @@ Json live_parameter(const Campaign& campaign, int index, double value) {
   return row;
 }
 
-/// [index, SI value] of what is given.
+/// List of [index, SI value] of the given parameters.
 Json given_values(const model::ParameterValues& values) {
   Json list = Json::array();
   for (std::size_t i = 0; i < values.value.size(); ++i) {
@@ -175,7 +175,7 @@ Json given_values(const model::ParameterValues& values) {
   return list;
 }
 
-/// Times of a recording, and what acted on the rig then: exact to 6e-8 of each value.
+/// Times and inputs of a recording, as 32-bit floats (relative error up to 6e-8).
 Json recorded_inputs(const Campaign& campaign, const SimulationTask& task) {
   const datasets::Channel channel = campaign.rig.controller == model::ControllerKind::pid
                                         ? datasets::Channel::reference
@@ -228,7 +228,8 @@ Json preset(std::string_view name, double coefficient) {
   return {{"name", name}, {"coefficient", coefficient}};
 }
 
-/// Leak levels as buttons: of a published table, else of the campaign, else of its synthetic truth.
+/// Leak levels for the buttons: of the published table, else of the campaign, else of its synthetic
+/// truth.
 Json presets_of(const Campaign& campaign,
                 const std::optional<datasets::LeakTableSettings>& leak_table) {
   Json list = Json::array();
@@ -261,7 +262,7 @@ Json classes_of(const datasets::DiagnosisSettings& settings) {
   return list;
 }
 
-/// Waveforms that an amplitude and a frequency describe, and that the module knows.
+/// Waveforms that amplitude and frequency describe, and that the module supports.
 Json waveforms_made() { return {"sine", "square", "chirp"}; }
 
 }  // namespace
@@ -313,7 +314,7 @@ Json live_rig(const Campaign& campaign, const std::vector<LiveCase>& cases) {
            {"cases", Json::array()},
            {"presets", presets_of(campaign, leak_table)},
            {"classes", classes_of(campaign.diagnosis)},
-           // What --set begins from: the rig as it is where no level and no condition changes it.
+           // Values that --set starts from: the rig without the changes of any level or condition.
            {"campaign", given_values(values_in(campaign, Condition()))}};
   rig["has_load_pressure"] = campaign.rig.plant == model::PlantKind::load_pressure;
   for (const model::Output output : model::kAllOutputs)

@@ -36,10 +36,11 @@ std::string nothing_found() {
 
 struct Parts {
   std::vector<Part> drawn;
-  std::vector<std::string> problems;  ///< results that are there but could not be drawn
+  std::vector<std::string> problems;  ///< results that exist but could not be drawn
 };
 
-/// What is there; what cannot be read is named on the page, unless it is all there is.
+/// Reads the results of a folder. Unreadable ones are named on the page; if there are no others, it
+/// is an error.
 Parts parts_of(const ResultFolder& folder) {
   Parts parts;
   std::exception_ptr first;
@@ -57,7 +58,7 @@ Parts parts_of(const ResultFolder& folder) {
   throw InputError({folder.where}, nothing_found());
 }
 
-/// A text as a string of a style sheet, where nothing in it has a meaning.
+/// Quotes a text as a string of a style sheet and escapes everything in it.
 std::string css_string(const std::string& text) {
   std::string result = "\"";
   for (const char c : text) {
@@ -69,7 +70,7 @@ std::string css_string(const std::string& text) {
   return result + "\"";
 }
 
-/// What stands at the foot of every sheet: whose report it is, and of which file.
+/// Style of the foot of every printed page: laboratory, report and source file.
 std::string foot_style(const Part& first, bool bad, const std::string& sha256) {
   std::string left;
   const auto add = [&](const std::string& text) {
@@ -89,7 +90,7 @@ std::string foot_style(const Part& first, bool bad, const std::string& sha256) {
       css_string(left), bad ? "#8f1607; font-weight: bold" : "#444", right);
 }
 
-/// Title, whose report it is, and its number.
+/// Adds the title, the laboratory and the report number.
 void add_top(const Part& first, bool synthetic, std::string& page) {
   const Identity& identity = first.identity;
   page += "<header class=\"top\"><div>\n<h1 id=\"title\">" + escaped(first.name) +
@@ -112,8 +113,8 @@ void add_top(const Part& first, bool synthetic, std::string& page) {
   page += "</header>\n";
 }
 
-/// What is signed: the verdict of the first result with what it rests on, then what the others
-/// found.
+/// Adds the page that is signed: the verdict of the first result with its evidence, then the
+/// verdicts of the others.
 void add_first_page(const Parts& parts, bool synthetic, const std::string& sha256,
                     std::string& page) {
   const Part& first = parts.drawn.front();
@@ -146,7 +147,7 @@ void add_first_page(const Parts& parts, bool synthetic, const std::string& sha25
 
 std::string page_of(const Parts& parts, const std::string& sha256) {
   const Part& first = parts.drawn.front();
-  // What cannot be used marks the page, wherever it stands.
+  // One unusable result marks the whole page.
   const bool bad = std::any_of(parts.drawn.begin(), parts.drawn.end(), [](const Part& part) {
     return part.verdict.badge.state == doc::State::bad;
   });
@@ -188,7 +189,7 @@ std::string page_of(const Parts& parts, const std::string& sha256) {
   }
   doc::render_html(provenance, page);
   doc::render_html(formulas_section(), page);
-  // The licence of the plot library asks for its notice in every copy, which each page is.
+  // The licence of the plot library requires its notice in every copy, and each page is one.
   page += fmt::format("</main>\n<script>/*! uPlot\n\n{}*/\n{}</script>\n<script>{}</script>\n",
                       asset("uPlot.LICENSE"), asset("uPlot.js"), asset("report.js"));
   return page + "</body>\n</html>\n";

@@ -19,10 +19,10 @@ namespace rigcal::report {
 std::string result_page(const ReadFile& read, const std::string& where, int threads,
                         const ReadTable& made = {});
 
-/// Every picture as a file of its own beneath figures/, as SVG and as PDF: <condition>_<plot>,
-/// leak_table, leak_levels, diagnosis, comparison_<parameter>, trend_<along>_<level>.
+/// Every picture as a separate file in figures/, as SVG and as PDF: <condition>_<plot>, leak_table,
+/// leak_levels, diagnosis, comparison_<parameter>, trend_<along>_<level>.
 ///
-/// @throws InputError  a file is missing, or is not what this version writes
+/// @throws InputError  a file is missing, or not in the format of this version
 std::vector<std::pair<std::filesystem::path, std::string>> result_figures(const ReadFile& read,
                                                                           const std::string& where);
 

@@ -15,7 +15,7 @@ namespace {
 
 using Kind = doc::Column::Kind;
 
-/// About one for each pixel of the width.
+/// About one point per pixel of the width.
 constexpr std::size_t kAveragePoints = 600;
 
 std::string offsets_text(const StoredRecord& record) {
@@ -30,7 +30,7 @@ bool is_measured(const std::string& channel) {
 
 void add_agreement_rows(const StoredRecord& record, doc::Table& table) {
   for (const auto& [channel, found] : record.channels) {
-    if (!is_measured(channel)) continue;  // a command is what it was told to be
+    if (!is_measured(channel)) continue;  // a command has no measurement error
     const std::optional<StoredNoiseFloor>& noise_floor = found.noise_floor;
     const auto floor = [&](double StoredNoiseFloor::*value) -> Number {
       return noise_floor ? std::optional((*noise_floor).*value) : std::nullopt;
@@ -45,7 +45,7 @@ void add_agreement_rows(const StoredRecord& record, doc::Table& table) {
   }
 }
 
-/// What is said of every record, with its condition.
+/// Texts about every record, with its condition.
 std::vector<std::string> texts_of(const StoredAverage& average,
                                   std::vector<std::string> StoredRecord::*texts) {
   std::vector<std::string> list;

@@ -12,9 +12,9 @@ namespace rigcal::report {
 /// Per output channel of a condition: the mean with the standard deviation of its repeats, and that
 /// standard deviation over time.
 std::vector<Figure> average_figures(const std::string& condition, const Table& series);
-/// Those of every condition.
+/// Figures of every condition.
 std::vector<Figure> average_figures(const AverageFiles& stored);
-/// By how much each repeat came later than their mean; no traces where there is but one.
+/// Delay of each repeat against their mean; no traces for a single repeat.
 Plot offset_plot(const StoredRecord& record);
 
 /// average.json: how the repeats of every condition agree.

@@ -15,7 +15,7 @@ namespace {
 using doc::Line;
 using Kind = doc::Column::Kind;
 
-/// What changed from the first result; nothing where there is nothing to say.
+/// Change from the first result; nothing if there is none to report.
 std::optional<doc::Line> change_line(const std::optional<StoredDifference>& difference,
                                      const RowUnit& unit) {
   if (!difference) return std::nullopt;
@@ -46,7 +46,7 @@ doc::Cell estimate_cell(const std::optional<StoredEstimate>& estimate, const Row
   return cell;
 }
 
-/// A column for each result, by its number and name.
+/// Adds a column for each result, with its number and name.
 void add_result_columns(const StoredComparison& comparison, Kind kind, doc::Table& table) {
   for (std::size_t i = 0; i < comparison.results.size(); ++i)
     table.columns.push_back({fmt::format("{} {}", i + 1, comparison.results[i].name), kind});
@@ -155,7 +155,7 @@ Plot trend_plot(const StoredSeries& series, const TrendAxis& axis) {
   return plot;
 }
 
-/// Whether the points lie at several places.
+/// Whether the points have different positions.
 bool differ(const StoredSeries& series, const TrendAxis& axis) {
   std::optional<double> first;
   for (const StoredTrendPoint& point : series.points) {
@@ -307,7 +307,7 @@ std::string change_sentence(const Change& change) {
                   : fmt::format("{}, not tested: {}", text, change.reason);
 }
 
-/// What the tests found, and how many parameters they left out.
+/// Results of the tests, and the number of parameters that were not tested.
 std::string significance_sentence(const StoredComparison& comparison) {
   long compared = 0;
   long tested = 0;
@@ -327,7 +327,7 @@ std::string significance_sentence(const StoredComparison& comparison) {
                      significant, compared - tested);
 }
 
-/// Every file, and the results that it was used for.
+/// Lists every file with the results that used it.
 doc::Section records_section(const StoredComparison& comparison) {
   doc::Table table{"Files and the results that they were used for"};
   table.style = "hashes";

@@ -22,7 +22,7 @@ std::string class_text(const std::optional<LeakClass>& leak_class) {
   return leak_class ? std::string(to_string(*leak_class)) : std::string();
 }
 
-/// A leak below zero: supply or valve are not as in the fit.
+/// Badge of a leak below zero: supply or valve differ from the fit.
 const doc::Badge kIncompatible{doc::State::bad, "incompatible with the model"};
 
 doc::Badge leak_badge(const StoredDiagnosedRecord& record) {
@@ -34,7 +34,7 @@ doc::Badge leak_badge(const StoredDiagnosedRecord& record) {
   return doc::badge(*record.leak.class_);
 }
 
-/// A value in a unit, its 95 % interval below.
+/// Cell with a value in a unit and its 95 % interval below.
 doc::Cell value_cell(const std::optional<double>& value, const std::optional<Range>& interval,
                      double si_per_unit = 1.0, int digits = 4) {
   doc::Cell cell{Line{doc::in_unit(value, si_per_unit, digits)}};
@@ -156,7 +156,7 @@ doc::Table confusion_table(const StoredAccuracy& method, const char* name) {
     for (std::size_t j = 0; j < counts.size(); ++j) {
       doc::Cell cell = doc::Cell(fmt::format("{}", counts[j]));
       const double fraction = static_cast<double>(counts[j]) / static_cast<double>(total);
-      cell.shade = i == j ? -fraction : fraction;  // blue is right
+      cell.shade = i == j ? -fraction : fraction;  // blue: correct
       row.cells.push_back(std::move(cell));
     }
     table.rows.push_back(std::move(row));
@@ -164,7 +164,7 @@ doc::Table confusion_table(const StoredAccuracy& method, const char* name) {
   return table;
 }
 
-/// Those of all; then of the records, each once.
+/// General warnings, then those of the records, each once.
 std::vector<std::string> diagnosis_warnings(const StoredDiagnosis& diagnosis) {
   std::vector<std::pair<std::string, std::string>> told;
   for (const StoredDiagnosedRecord& record : diagnosis.records) {

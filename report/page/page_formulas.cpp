@@ -11,7 +11,7 @@ struct Formula {
   const char* formula;
 };
 
-/// What the page shows beside the metrics of metrics/metric_table.hpp.
+/// Quantities of the page other than the metrics of metrics/metric_table.hpp.
 constexpr std::array kFormulas{
     Formula{"noise floor",
             "what a model equal to the true signal would score: rho2 = 1 - sigma^2 / var(y), sigma "

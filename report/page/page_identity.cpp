@@ -6,8 +6,8 @@
 namespace rigcal::report {
 namespace {
 
-/// "LVDT, serial number 4711, DKD 17, due 2027-01-31": all that is stated of a sensor. One that was
-/// overdue on the last day of the test is marked.
+/// Everything that is stated about a sensor: "LVDT, serial number 4711, DKD 17, due 2027-01-31". A
+/// sensor that was overdue on the last day of the test is marked.
 doc::Line sensor_line(const Json& sensor, const std::string& tested) {
   doc::Line line;
   for (const datasets::ReportField& field : datasets::kSensorFields) {
@@ -21,7 +21,7 @@ doc::Line sensor_line(const Json& sensor, const std::string& tested) {
     std::string words(field.label);
     words.front() = static_cast<char>(words.front() | 0x20);  // ASCII, to lower case
     words.append(" ").append(text);
-    // Days of ISO 8601 sort as text.
+    // ISO 8601 dates sort as text.
     const bool overdue = field.key == "due" && !tested.empty() && text.substr(0, 10) < tested;
     line.push_back(overdue ? doc::Inline(doc::Badge{doc::State::bad, words}) : doc::Inline(words));
   }
@@ -51,7 +51,7 @@ Identity identity_of(const Json& report) {
     add("Tested", first == last ? first : fmt::format("{} to {}", first, last));
   }
   for (const datasets::ReportField& field : datasets::kReportFields) {
-    // These stand at the top of the page, or are signed for at its foot.
+    // The top of the page and the signatures at its foot show these.
     if (field.key == "number" || field.key == "issued" || field.key == "laboratory" ||
         field.key == "customer" || field.key == "operator" || field.key == "approver")
       continue;
@@ -63,7 +63,7 @@ Identity identity_of(const Json& report) {
         channel.empty() ? std::string("Sensor") : "Sensor: " + spaced(channel),
         sensor_line(sensor, tested));
   }
-  // Somebody is to put their name to it.
+  // The person who signs for the test.
   const std::string tester = text_of(report, "operator");
   const std::string approver = text_of(report, "approver");
   if (!tester.empty() || !approver.empty())

@@ -18,7 +18,7 @@ using Kind = doc::Column::Kind;
 constexpr std::size_t kLevelPoints = 1200;
 /// Half an interval in parts of its middle, from which on its two ends are shown.
 constexpr double kWideInterval = 0.1;
-/// Classes of the style sheet for levels side by side, told apart without colour by their order.
+/// Style classes of levels side by side; their order distinguishes them without colour.
 constexpr std::array kLevelStyles{"model", "residual", "servo", "leak", "reference"};
 
 /// "0.1 Hz sine, 50.8 mm" of an entry or of the rig without a fault.
@@ -72,7 +72,7 @@ doc::Tile leak_tile(const StoredLeakEntry& entry) {
   return tile;
 }
 
-/// The share at the published coefficient, and what its rounding allows.
+/// Cell with the share at the published coefficient, and the range that its rounding allows.
 doc::Cell published_share_cell(const StoredLeakEntry& entry) {
   if (!entry.published_coefficient) return doc::Cell("–");
   doc::Cell cell{Line{doc::in_unit(entry.share_at_published_percent, 1.0, 3)}};
@@ -84,7 +84,7 @@ doc::Cell published_share_cell(const StoredLeakEntry& entry) {
 
 /// Signals by target shares, in the order of the file.
 ///
-/// @param cell_of  what is shown of an entry
+/// @param cell_of  makes the cell of an entry
 template <typename CellOf>
 void add_leak_rows(const std::vector<StoredLeakEntry>& entries, const std::vector<double>& targets,
                    CellOf cell_of, doc::Table& table) {
@@ -114,7 +114,7 @@ std::vector<double> targets_of(const std::vector<StoredLeakEntry>& entries) {
   return targets;
 }
 
-/// Computed over published coefficients; what is met lies on the line.
+/// Computed over published coefficients; a perfect agreement is on the line.
 Plot agreement_plot(const std::vector<StoredLeakEntry>& entries) {
   Plot plot;
   plot.title = "Computed over published leakage coefficients";
@@ -202,7 +202,7 @@ Plot levels_plot(const std::vector<std::pair<std::string, Table>>& levels) {
     trace.x = thinned_times(*time_s, *residual, thin);
     trace.y = thinned(*residual, thin);
     for (double& y : trace.y) {
-      y = -y;  // the file holds leaking minus healthy
+      y = -y;  // the file has leaking minus healthy
       size = std::max(size, std::abs(y));
     }
     plot.traces.push_back(std::move(trace));
@@ -227,7 +227,7 @@ Trace level_trace(const Table& table, const char* column, double factor) {
   return trace;
 }
 
-/// What the cylinder does of its reference at each level; the source paper's figures 8 and 10.
+/// Response of the cylinder to its reference at each level; the source paper's figures 8 and 10.
 Plot positions_plot(const std::vector<std::pair<std::string, Table>>& levels) {
   Plot plot;
   plot.title = "Position in percent of the amplitude of the reference, over one period";
@@ -297,7 +297,7 @@ std::string noted(const StoredLeakEntry& entry) {
   return fmt::format("{} at {:g} %: {}", drive_name(entry), entry.target_percent, entry.note);
 }
 
-/// What the published coefficients say of the computed ones.
+/// Compares the published coefficients with the computed ones.
 void add_published(const StoredLeakTable& table, const std::vector<double>& targets,
                    doc::Blocks& blocks) {
   if (table.summary.published == 0) return;

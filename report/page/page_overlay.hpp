@@ -10,8 +10,8 @@
 
 namespace rigcal::report {
 
-/// Per channel of overlay/<condition>.csv: what was measured under the models of all results, and
-/// what each leaves of it.
+/// For each channel of overlay/<condition>.csv: the measurement with the models of all results, and
+/// the residual of each.
 ///
 /// @param names  of the results, in the order of their numbers
 std::vector<Figure> overlay_figures(const std::string& condition, const Table& curves,
@@ -26,7 +26,7 @@ ComparisonFiles load_comparison_files(const ReadFile& read, const std::string& w
 doc::Verdict comparison_headline(const ComparisonFiles& files);
 std::vector<doc::Section> comparison_sections(const ComparisonFiles& files);
 std::vector<Figure> comparison_figures(const ComparisonFiles& files);
-/// Campaigns are those of its results.
+/// Adds a comparison; its campaigns are those of the compared results.
 void add_comparison(const ComparisonFiles& files, Part& part);
 
 }  // namespace rigcal::report

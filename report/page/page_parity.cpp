@@ -13,7 +13,7 @@ using doc::Line;
 using Kind = doc::Column::Kind;
 
 constexpr double kMillimetres = 1e3;
-constexpr std::size_t kPoints = 1200;  ///< of one line of a picture
+constexpr std::size_t kPoints = 1200;  ///< points in one line of a picture
 constexpr int kLengthDigits = 3;
 
 const StoredParitySignal* signal_of(const StoredParity& parity, const std::string& name) {
@@ -22,7 +22,7 @@ const StoredParitySignal* signal_of(const StoredParity& parity, const std::strin
   return nullptr;
 }
 
-/// What is told of the repeats of one condition together.
+/// Summary of the repeats of one condition.
 struct Summary {
   std::string condition, level;
   const StoredParitySignal* signal = nullptr;

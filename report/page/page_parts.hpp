@@ -16,9 +16,7 @@
 #include "report/store/table.hpp"
 #include "report/text/estimate_text.hpp"
 
-// What the templates of report/page/ show, section by section, from the stored results alone.
-// Texts are plain: the template engine escapes them. A key that ends in _html holds markup made
-// here.
+// Parts that the pages of several kinds of result share, from the stored results alone.
 
 namespace rigcal::report {
 
@@ -31,14 +29,14 @@ struct RowUnit {
   std::string name;
   double si = 1.0;
 };
-/// That of a parameter's value and of others like it.
+/// Unit for a parameter's value and similar ones.
 RowUnit row_unit(double value_si, std::string_view si_unit);
 inline RowUnit unit_of(const StoredParameter& p) { return row_unit(p.value.value_or(0.0), p.unit); }
 
-/// The farther end of the 95 % interval from the value, over the value: the end that no limit of
-/// the parameter has cut. Infinite where there is no interval, or the value is zero.
+/// Larger distance from the value to an end of the 95 % interval, divided by the value. The larger
+/// one is not cut by a bound. Infinite without an interval or for a value of zero.
 double relative_half_width(const StoredParameter& parameter);
-/// "± 2.1 %", "± 220 %"; "not determined" of what is more than ten times the value.
+/// "± 2.1 %", "± 220 %"; "not determined" beyond ten times the value.
 std::string half_width_text(double relative);
 
 /// Estimated, but not well.
@@ -59,47 +57,47 @@ std::string_view channel_unit(std::string_view channel);
 Plot ranked_points(const std::string& title, const std::string& y_label,
                    const std::vector<double>& values);
 
-/// Adds [low, high] of an estimate to intervals that are drawn in a unit of so much SI; nothing
-/// where an end is unknown.
+/// Adds [low, high] of an estimate to intervals that are drawn in a unit of this size in SI;
+/// nothing if an end is unknown.
 void add_interval(Trace& intervals, double x, const Interval& interval, double si_per_unit = 1.0);
 
 /// Adds a reason that leads to a section (`link` its id, or empty); only the first three are shown.
 void add_reason(doc::Verdict& verdict, const std::string& text, const std::string& link);
 
-/// The verdict on a result that looks for leaks and is not done, with the reasons that it gives.
+/// Verdict on an unfinished search for leaks, with its reasons.
 doc::Verdict verdict_without_result(LeakStatus status, const std::string& sentence,
                                     const std::vector<std::string>& reasons,
                                     const std::string& link);
 
-/// What the campaign states about the test and its report (`report` of a result).
+/// Statements of the campaign about the test and its report (`report` of a result).
 struct Identity {
   std::string number, issued, laboratory, customer, rig;  ///< empty where not stated
-  doc::Facts facts;  ///< the item and the method, then a row for each sensor
+  doc::Facts facts;  ///< item and method, then a row for each sensor
   doc::Signatures signatures;
 };
 Identity identity_of(const Json& report);
 
 /// Whether the search for the optimum came to its end, whatever was stopped after it.
 bool searched_to_the_end(const StoredFit& fit);
-/// Texts one below the other.
+/// Several texts as a list.
 ///
-/// @param state  of reasons and warnings: their colour
+/// @param state  colour, for reasons and warnings
 doc::List list_of(const std::vector<std::string>& texts, std::optional<doc::State> state = {});
-/// A plot that is already made, and what it says.
+/// A figure of an existing plot, with an explanation.
 doc::Figure figure_of(Plot plot, std::string caption = {}, std::string reading = {});
 /// "Mass" of "mass".
 std::string capitalised(std::string text);
 
-/// What made a result, under its name, and from which file it is drawn.
+/// Provenance of a result under its name, with the file that the page is made from.
 ///
-/// @param making  what a fit says of its own making
+/// @param making  details of a fit
 doc::Blocks provenance_blocks(const StoredProvenance& provenance, const std::string& name,
                               const std::string& file, const doc::Facts& making = {});
 doc::Facts making_of(const StoredFit& fit);
 doc::Facts making_of(const StoredTablesFit& fit);
 /// "rigcal 0.1.0 (17fc680)"
 std::string program_of(const StoredProvenance& provenance);
-/// How each number is computed.
+/// Section with the formula of each number.
 doc::Section formulas_section();
 
 /// The pictures of a condition, for the page and for files of their own.
@@ -108,14 +106,14 @@ struct Figure {
   Plot plot;
 };
 std::vector<Figure> condition_figures(const StoredCondition& condition, const Table& series);
-/// Those of the other results, likewise.
+/// Figures of the other results.
 std::vector<Figure> leak_table_figures(const LeakTableFiles& stored);
 std::vector<Figure> diagnosis_figures(const StoredDiagnosis& diagnosis);
 std::vector<Figure> parity_figures(const ParityFiles& stored);
 std::vector<Figure> comparison_figures(const StoredComparison& comparison);
 std::vector<Figure> batch_figures(const StoredBatch& batch);
 
-/// leak_table.json against what was published.
+/// Agreement of leak_table.json with the published numbers.
 doc::Verdict leak_table_headline(const LeakTableFiles& stored);
 std::vector<doc::Section> leak_table_sections(const LeakTableFiles& stored);
 

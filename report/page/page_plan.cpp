@@ -25,7 +25,7 @@ doc::Row percent_row(const StoredPlan& plan, const std::string& label,
   return row;
 }
 
-/// A column for each parameter.
+/// Table with a column for each parameter.
 doc::Table percent_table(const StoredPlan& plan, const char* label, const char* first) {
   doc::Table table{label};
   table.columns = {{first}};

@@ -6,11 +6,11 @@
 
 namespace rigcal::report {
 
-/// plan.json: what each record tells, or would tell, of each parameter.
+/// plan.json: information of each record, existing or planned, about each parameter.
 doc::Verdict plan_headline(const StoredPlan& plan);
 std::vector<doc::Section> plan_sections(const StoredPlan& plan);
-/// Per parameter: how much of the precision (one over the variance) of all records together each
-/// has by itself.
+/// For each parameter the fraction of the total information (1 / variance) that each record alone
+/// provides.
 std::vector<Figure> plan_figures(const StoredPlan& plan);
 
 }  // namespace rigcal::report

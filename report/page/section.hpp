@@ -7,7 +7,7 @@
 
 #include "report/page/page_parts.hpp"
 
-// A kind of result on the page: what is drawn of it, and from which file of a folder.
+// Kinds of results on the page, with their files and their sections.
 
 namespace rigcal::report {
 
@@ -15,34 +15,34 @@ namespace rigcal::report {
 struct ResultFolder {
   const ReadFile& read;
   std::string where;    ///< for messages
-  int threads = 1;      ///< that read series and draw
+  int threads = 1;      ///< threads for reading series and drawing
   ReadTable made = {};  ///< tables that this run has made, which need not be read back
 };
 
-/// What a result puts on the page.
+/// Part of a page from one result.
 struct Part {
   std::string link;  ///< id of its first section
   std::string name;  ///< "Calibration"
-  std::string file;  ///< that it is drawn from
+  std::string file;  ///< file that the part is made from
   std::string campaign;
   bool synthetic = false;
   Identity identity;
   doc::Verdict verdict;
-  doc::Blocks front;  ///< of page one, beneath the verdict
+  doc::Blocks front;  ///< for page one, below the verdict
   std::vector<doc::Section> sections;
   doc::Blocks provenance;
-  std::string program;                                   ///< that made it
-  std::vector<std::pair<std::string, std::string>> nav;  ///< id and name of its sections
+  std::string program;                                   ///< program that made the result
+  std::vector<std::pair<std::string, std::string>> nav;  ///< id and title of each section
 };
 
 struct Section {
   std::string name;                ///< "leak_table"
-  std::vector<std::string> files;  ///< any of which a folder with such a result has
+  std::vector<std::string> files;  ///< a folder with such a result has at least one of them
   std::function<Part(const ResultFolder&)> part;
   std::function<std::vector<Figure>(const ResultFolder&)> figures;
 };
 
-/// What a section is called: id and name of its first part.
+/// Id and title of the first part of a section.
 struct SectionTitle {
   const char* file;
   const char* section;
@@ -50,7 +50,7 @@ struct SectionTitle {
   const char* name;
 };
 
-/// What a file holds, without the series beside it.
+/// Content of a file, without the series beside it.
 template <typename Files>
 const auto& result_of(const Files& files) {
   if constexpr (requires { files.result; }) {
@@ -60,7 +60,7 @@ const auto& result_of(const Files& files) {
   }
 }
 
-/// What a result says of itself, whatever kind it is.
+/// Common data of any kind of result.
 template <typename Result>
 Part part_of(const Result& result, const char* link, const char* name, const std::string& file) {
   Part part;
@@ -74,9 +74,9 @@ Part part_of(const Result& result, const char* link, const char* name, const std
   return part;
 }
 
-/// A row of sections(), from functions that all take what the first of them has read.
+/// A row of sections(), from functions that all take the data that the first one has read.
 ///
-/// @param more  what this result says of itself beyond that; null where that is all
+/// @param more  further data of this kind of result; null if there are none
 template <typename Files>
 Section section(const SectionTitle& title, Files (*load)(const ReadFile&, const std::string&),
                 doc::Verdict (*verdict)(const Files&),

@@ -15,7 +15,7 @@ namespace rigcal::report {
 /// @throws InputError  a record is wrong, or there is none
 std::vector<datasets::Record> averaged_records(const datasets::Campaign& campaign);
 
-/// The files of write_average(), for HeldFolder::plan() before the work.
+/// Files that write_average() may write, for HeldFolder::plan() before the work.
 PlannedFiles planned_average(const datasets::Campaign& campaign);
 
 /// Writes averaged/<condition>.csv of each, repeatability.csv, average.json and the page.

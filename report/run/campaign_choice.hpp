@@ -9,11 +9,11 @@
 
 namespace rigcal::report {
 
-/// Which campaign is worked on, and what was changed in it.
+/// The chosen campaign, with changes from the command line.
 struct CampaignChoice {
   std::filesystem::path campaign;
-  std::filesystem::path data;     ///< where relative record paths start; empty: the file's folder
-  std::filesystem::path root;     ///< outside of this folder nothing is read; empty: no limit
+  std::filesystem::path data;     ///< base of relative record paths; empty: the file's folder
+  std::filesystem::path root;     ///< no file outside this folder is read; empty: no restriction
   std::vector<std::string> set;   ///< name="value unit"
   std::vector<std::string> free;  ///< exactly these are fitted; empty: the campaign's
 };
@@ -23,7 +23,7 @@ struct CampaignChoice {
 /// @throws InputError, UsageError
 datasets::Campaign load(const CampaignChoice& choice);
 
-/// What of it changes numbers, for the provenance.
+/// Choices that change numbers, for the provenance.
 std::vector<std::pair<std::string, std::string>> recorded(const CampaignChoice& choice);
 
 }  // namespace rigcal::report

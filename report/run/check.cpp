@@ -15,13 +15,13 @@
 namespace rigcal::report {
 namespace {
 
-/// What `check --json` prints.
+/// Output of `check --json`.
 struct StoredCheck {
   std::string campaign;
   bool synthetic = false;
   std::vector<StoredRecord> records;
   std::vector<std::string> without_record;
-  std::vector<std::string> warnings;  ///< of no single record
+  std::vector<std::string> warnings;  ///< warnings about the campaign as a whole
   RIGCAL_DESCRIBE(campaign, synthetic, records, without_record, warnings)
 };
 
@@ -32,8 +32,8 @@ Check check(const datasets::Campaign& campaign, const std::function<void(dataset
   told.campaign = campaign.name;
   told.synthetic = campaign.synthetic;
   std::vector<std::string> texts;               // per condition
-  std::vector<datasets::RecordLength> lengths;  // of those with a record
-  std::vector<std::size_t> places;              // of these, in `texts`
+  std::vector<datasets::RecordLength> lengths;  // lengths of those with a record
+  std::vector<std::size_t> places;              // their indices in `texts`
   for (const datasets::Condition& condition : campaign.conditions) {
     if (!condition.has_record()) {
       texts.push_back(fmt::format("{}: {}, no record\n", condition.id, to_string(condition.use)));

@@ -5,7 +5,7 @@
 namespace rigcal::report {
 namespace {
 
-/// Where nobody said how many starts to make and the campaign's ends at no minimum.
+/// Further starts if their number is not stated and the campaign's start ends away from a minimum.
 constexpr int kFurtherStarts = 3;
 
 }  // namespace

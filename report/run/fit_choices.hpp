@@ -17,7 +17,7 @@ inline constexpr int kMostThreads = 1024;
 inline constexpr int kMostStarts = 100'000;
 inline constexpr int kMostReplicates = 1'000'000;
 
-/// What can be asked of a fit beside its campaign.
+/// Options of a fit in addition to its campaign.
 struct FitChoices {
   std::optional<int> starts;
   std::uint64_t seed = 1;
@@ -28,7 +28,7 @@ struct FitChoices {
   std::optional<long> max_evaluations;
 };
 
-/// What the campaign says of a fit.
+/// Options of a fit from its campaign.
 ///
 /// @param cancel  ends it; borrowed
 calib::FitOptions fit_options(const datasets::Campaign& campaign, int threads,
@@ -37,16 +37,16 @@ calib::FitOptions fit_options(const datasets::Campaign& campaign, int threads,
 /// Enters the choices over those of the campaign.
 void apply(const FitChoices& choices, calib::FitOptions& settings);
 
-/// What a fit is made from.
+/// Provenance of a fit.
 ///
 /// @param settings  with the choices applied
-/// @return  of what its starts rest on; those of a result have recorded(choices) at their end
+/// @return  for the starts; that of a result has recorded(choices) at its end
 Provenance provenance_of_starts(const std::string& command, const CampaignChoice& choice,
                                 const FitChoices& choices, const calib::FitOptions& settings,
                                 const datasets::Campaign& campaign,
                                 const std::vector<datasets::Record>& records);
 
-/// Those choices beside the starts that put more into a result.
+/// The choices that add to a result without changing its starts.
 std::vector<std::pair<std::string, std::string>> recorded(const FitChoices& choices);
 
 }  // namespace rigcal::report

@@ -8,10 +8,10 @@
 
 namespace rigcal::report {
 
-/// Adds report.html before the last of `files`, the JSON that marks the result as whole. The page
-/// shows these files, and other results that lie in `out` already, as `report` would.
+/// Adds report.html before the last of `files`, the JSON that marks the result as complete. The
+/// page shows these files and other results that are already in `out`, as `report` would.
 ///
-/// @param made  the tables of this run's residuals/, where they are not among `files`
+/// @param made  the tables of this run's residuals/, if they are not among `files`
 void add_page(const std::filesystem::path& out, int threads, std::vector<ResultFile>& files,
               const ReadTable& made = {});
 

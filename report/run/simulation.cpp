@@ -77,7 +77,7 @@ std::vector<double> reference_of(const SimulationTask& task) {
 
 std::string simulation_file(const SimulationTask& task, const model::Simulation& simulation) {
   std::span<const model::Output> outputs = model::kAllOutputs;
-  // The last one is that of the second mass, which not every plant knows.
+  // The last output is that of the second mass, which some plants lack.
   const int payload = model::parameter_index(task.values.plant, "payload_mass");
   if (payload < 0 || !task.values.given[static_cast<std::size_t>(payload)])
     outputs = outputs.first(outputs.size() - 1);

@@ -12,7 +12,7 @@ namespace rigcal::report {
 
 /// A condition with all that its simulation needs.
 struct SimulationTask {
-  const datasets::Condition* condition = nullptr;  ///< of the campaign
+  const datasets::Condition* condition = nullptr;  ///< owned by the campaign
   model::Rig rig;
   model::ParameterValues values;
   model::SimulationInputs inputs;
@@ -20,22 +20,22 @@ struct SimulationTask {
   std::optional<datasets::Record> record;  ///< absent where the drive is made
 };
 
-/// @param values  that hold in the condition
-/// @throws InputError  its record cannot be read, or there is none where the waveform is recorded
+/// @param values  for the condition
+/// @throws InputError  its record cannot be read, or a recorded waveform has none
 SimulationTask simulation_task(const datasets::Campaign& campaign,
                                const datasets::Condition& condition, model::ParameterValues values);
-/// With the campaign's own values.
+/// The same with the campaign's own values.
 SimulationTask simulation_task(const datasets::Campaign& campaign,
                                const datasets::Condition& condition);
 
-/// How the campaign wants to be simulated.
+/// Simulation settings of the campaign.
 model::SimulationOptions simulation_options(const datasets::Campaign& campaign);
 
 /// Simulates each, every output of it; one that fails says so in its status.
 std::vector<model::Simulation> simulate(const std::vector<SimulationTask>& tasks,
                                         const model::SimulationOptions& options, int threads);
 
-/// The reference of the loop at the samples, SI; empty where no controller follows one.
+/// Reference of the loop at the samples, SI; empty without a controller.
 std::vector<double> reference_of(const SimulationTask& task);
 
 /// The file of `simulate`: <condition>.csv.

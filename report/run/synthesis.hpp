@@ -8,7 +8,7 @@
 
 namespace rigcal::report {
 
-/// Makes the records of a known rig, all of them or none, where no other files are in their way.
+/// Writes the records of a known rig, all or none, unless other files are in the way.
 ///
 /// @throws InputError, NoResultError  as datasets::synthesize()
 /// @throws WriteError, UsageError     as write_results()

@@ -14,8 +14,8 @@ namespace {
 using datasets::Campaign;
 using datasets::Use;
 
-/// Which of the records the earlier fit was estimated from: by their content, since names may stay
-/// where recordings are new ones.
+/// Finds the records that the earlier fit was estimated from, by their content, since new
+/// recordings may have old names.
 calib::Origin origin_of(const EarlierFit& earlier, const std::vector<datasets::Record>& records,
                         const Provenance& provenance) {
   const auto seen = [&](const FileState& file) {

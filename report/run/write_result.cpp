@@ -31,8 +31,8 @@ fs::path residual_file(const std::string& condition) {
   return fs::path("residuals") / (condition + ".csv");
 }
 
-/// What stands for the scores of a fit that failed before it scored anything: its residual files
-/// say so all the same.
+/// Replaces the scores of a fit that failed before it scored anything, so that its residual files
+/// say so, too.
 std::vector<calib::ConditionScore> unscored(const Result& result) {
   std::vector<calib::ConditionScore> scores;
   for (const datasets::Condition& condition : result.campaign.conditions) {
@@ -81,7 +81,7 @@ std::vector<ResultFile> files_of(const fs::path& out, int threads, const Result&
   if (result.kind == ResultKind::fit && stored.status != FitStatus::failed)
     files.push_back({"fitted.toml", fitted_toml(out, result)});
   name_files(residuals, files, stored.provenance);
-  // Last, so that whoever finds it finds the others too.
+  // Last, so that its presence means that the others are there.
   files.push_back({main_file(result.kind), json_text(json_of(stored))});
   add_page(out, threads, files, [&result](const fs::path& path) {
     for (const calib::ConditionScore& score : result.fit.conditions)

@@ -8,11 +8,11 @@
 
 namespace rigcal::report {
 
-/// The files of write_result() for a campaign, for HeldFolder::plan() before the work.
+/// Files that write_result() may write for a campaign, for HeldFolder::plan() before the work.
 PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign);
 
-/// Writes the files of a fit or validation. What an earlier one has left of them goes: the
-/// fitted.toml of one that did not fail, residuals of conditions that are no more.
+/// Writes the files of a fit or validation. Removes the leftovers of an earlier run: fitted.toml,
+/// and residuals of conditions that no longer exist.
 ///
 /// @param threads  that make the texts and draw the page
 /// @param stored   stored() of the result, to which the names of its files are added

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kSchema = "rigcal.checkpoint/1";
 
-/// What must be the same for a fit to go on.
+/// Data that must be equal for a fit to continue.
 Json identity(const Provenance& provenance) {
   Json json;
   json["version"] = std::string(version());
@@ -30,7 +30,7 @@ Json identity(const Provenance& provenance) {
   return json;
 }
 
-/// What a checkpoint cannot hold; what() says it in words.
+/// Invalid content of a checkpoint; what() describes it.
 class NoCheckpoint : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -162,7 +162,7 @@ bool is_checkpoint(const std::filesystem::path& file) {
 
 calib::Checkpoint read_checkpoint(const std::filesystem::path& file, const Provenance& provenance) {
   JsonLimits limits;
-  limits.number = std::numeric_limits<double>::max();  // a cost on the way may be anything
+  limits.number = std::numeric_limits<double>::max();  // an intermediate cost may be any number
   const Json json =
       read_json(file, "a checkpoint of rigcal fit, or a fit without --resume", limits);
   try {

@@ -8,16 +8,16 @@
 
 namespace rigcal::report {
 
-/// What `fit` keeps in its result folder between two starts.
+/// File that `fit` keeps in its result folder between two starts.
 inline constexpr const char* kCheckpointFile = "checkpoint.json";
 
-/// Hash of what must be the same for a fit to go on: inputs, options, seed and version.
+/// Hash of everything that must be equal for a fit to continue: inputs, options, seed and version.
 std::string fit_identity(const Provenance& provenance);
 
-/// A checkpoint with what its fit was made from; numbers read back to the same bits.
+/// Text of a checkpoint with the provenance of its fit. Numbers read back to the same bits.
 std::string checkpoint_text(const calib::Checkpoint& checkpoint, const Provenance& provenance);
 
-/// Whether a file is one, whole or not, of whatever fit.
+/// Whether a file is a checkpoint of any fit, complete or not.
 bool is_checkpoint(const std::filesystem::path& file);
 
 /// @param provenance  of the fit that is to go on

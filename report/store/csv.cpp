@@ -40,7 +40,7 @@ double at(std::span<const double> values, std::size_t i) {
   return i < values.size() ? values[i] : std::nan("");
 }
 
-/// Scatter of the repeats about their mean, shape (samples); empty where there is but one.
+/// Standard deviation of the repeats, shape (samples); empty for a single one.
 std::span<const double> sd_of(const Result& result, const std::string& condition,
                               datasets::Channel channel) {
   for (const datasets::Record& record : result.records) {

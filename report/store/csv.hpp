@@ -25,7 +25,7 @@ std::string scorecard_csv(const Result& result);
 /// sample counts, the drive (reference_m or command_v) and the simulated flows.
 std::string residuals_csv(const Result& result, const calib::ConditionScore& score);
 
-/// The same as it is read back.
+/// The same as a table, as it would be read back.
 Table residual_table(const Result& result, const calib::ConditionScore& score);
 
 /// averaged/<condition>.csv: time_s, and mean, sd and count of every channel.
@@ -34,11 +34,11 @@ std::string averaged_csv(const datasets::Record& record);
 /// repeatability.csv: one row per condition and channel; offsets of the repeats in their order.
 std::string repeatability_csv(const std::vector<datasets::Record>& records);
 
-/// <condition>.csv of `simulate`: time_s, the reference (closed loop), every output. A simulation
-/// that failed has no rows, and its first line says why.
+/// <condition>.csv of `simulate`: time_s, the reference (closed loop), every output. If the
+/// simulation failed there are no rows, and the first line gives the reason.
 ///
 /// @param reference  shape (samples), or empty in open loop
-/// @param outputs    of the first columns of simulation.outputs
+/// @param outputs    names for the first columns of simulation.outputs
 std::string simulation_csv(std::span<const double> time_s, std::string_view reference_name,
                            std::span<const double> reference,
                            std::span<const model::Output> outputs,

@@ -36,12 +36,12 @@ std::vector<fs::path> missing_folders(const fs::path& path) {
   return missing;
 }
 
-// A signal handler can reach nothing but a global.
+// A signal handler can access only globals.
 std::atomic<const std::vector<fs::path>*> made_now{nullptr};
 
 constexpr const char* kProbeFile = ".rigcal-probe";
 
-/// Of results in a message.
+/// Limit of files that a message names.
 constexpr std::size_t kMostFilesNamed = 8;
 
 std::string listed(const std::vector<std::string>& names) {
@@ -51,7 +51,7 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-/// The first folder on the way from `out` to a file that is a link; nothing where none is.
+/// First folder on the way from `out` to a file that is a link; nothing if none is.
 std::optional<fs::path> link_within(const fs::path& out, const fs::path& file) {
   fs::path inner;
   for (const fs::path& part : file.parent_path()) {
@@ -62,7 +62,7 @@ std::optional<fs::path> link_within(const fs::path& out, const fs::path& file) {
   return std::nullopt;
 }
 
-/// Whether a file can be read, is no link, and has this hash.
+/// Whether a file is readable, is no link, and has this hash.
 bool has_hash(const fs::path& file, const std::string& hash) {
   std::error_code unknown;
   try {
@@ -72,14 +72,14 @@ bool has_hash(const fs::path& file, const std::string& hash) {
   }
 }
 
-/// Before any work: no file takes the place of a folder.
+/// Refuses, before any work, to write a file where a folder is.
 void require_no_folder(const fs::path& file) {
   std::error_code unknown;
   if (fs::is_directory(fs::symlink_status(file, unknown)))
     throw WriteError(fmt::format("{}: cannot be written: is a folder", file.string()));
 }
 
-/// The manifest as it stands; nothing where it cannot be read, which only --force takes.
+/// Text of the current manifest; nothing if it cannot be read, which only --force allows.
 std::optional<std::string> manifest_there(const fs::path& out) {
   try {
     return files_in(out)(kManifestFile);
@@ -88,7 +88,7 @@ std::optional<std::string> manifest_there(const fs::path& out) {
   }
 }
 
-/// Puts a manifest back as it was, where that is possible: the longer one is as true.
+/// Restores a manifest if possible. If not, the longer one stays, which is true as well.
 void restore(const fs::path& manifest, const std::optional<std::string>& text) noexcept {
   try {
     if (text) {
@@ -101,8 +101,8 @@ void restore(const fs::path& manifest, const std::optional<std::string>& text) n
   }
 }
 
-/// What a fit keeps so that it can go on: it changes while a fit lasts, so that no manifest lists
-/// it.
+/// Whether a file keeps the state of a fit for --resume. It changes during a fit, so no manifest
+/// lists it.
 bool is_kept_state(const std::string& path, const fs::path& file) {
   if (path == kCheckpointFile) return is_checkpoint(file);
   return path == kKeptTasksFile && is_kept_tasks(file);
@@ -126,7 +126,7 @@ HeldFolder::Made::~Made() {
 HeldFolder::HeldFolder(const fs::path& out, Holding holding)
     : out_(out), holding_(std::move(holding)) {
   const fs::path folder = fs::absolute(out).lexically_normal();
-  std::error_code unknown;  // the probe tells
+  std::error_code unknown;  // the probe reports an error
   if (fs::exists(folder, unknown) && !fs::is_directory(folder, unknown))
     throw WriteError(fmt::format("--out {}: is a file; expected a folder", out.string()));
   {
@@ -135,7 +135,7 @@ HeldFolder::HeldFolder(const fs::path& out, Holding holding)
     made_now = &made_.folders;
     const fs::path probe = folder / kProbeFile;
     write_file_atomically(probe, "");
-    std::error_code ignored;  // what cannot be removed again does no harm
+    std::error_code ignored;  // a remaining probe does no harm
     fs::remove(probe, ignored);
   }
   descriptor_ = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -202,7 +202,7 @@ bool HeldFolder::is_as_written(const std::string& path, const std::string& comin
 }
 
 void HeldFolder::sweep(const fs::path& path) {
-  // Without the lock another run may be at it, on another machine even.
+  // Without the lock another run, even on another machine, may be using the file.
   if (!locked_ || !swept_.insert(path.generic_string()).second || link_within(out_, path)) return;
   remove_left_behind(out_ / path.parent_path(), {path.filename().string()});
 }
@@ -290,7 +290,7 @@ void ResultsInWriting::move_into_place() {
     left.push_back(file);
     if (std::find(going.begin(), going.end(), file.path) == going.end()) staying.push_back(file);
   }
-  // Whatever ends the process between two renames, the manifest lists what stands then.
+  // If the process ends between two renames, the manifest still lists every file that exists then.
   const fs::path manifest = held_.out_ / kManifestFile;
   const auto earlier = manifest_there(held_.out_);
   const Uninterrupted whole;

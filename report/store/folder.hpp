@@ -17,60 +17,60 @@ namespace rigcal::report {
 struct ResultFile {
   std::filesystem::path path;  ///< relative to the result folder
   std::string content;
-  std::string sha256 = {};  ///< empty: nobody has asked for it yet
+  std::string sha256 = {};  ///< empty: not computed yet
 };
 
-/// What a run may leave in its folder.
+/// Files that a run may write into its folder.
 struct PlannedFiles {
-  std::vector<std::filesystem::path> files;  ///< relative to the folder; not all need come
-  /// Of which nothing of an earlier run stays: "residuals".
+  std::vector<std::filesystem::path> files;  ///< relative to the folder; some may not be written
+  /// Folders from which all files of an earlier run are removed: "residuals".
   std::vector<std::filesystem::path> folders;
 };
 
-/// Who holds a folder of results, and on what terms.
+/// Verb that holds a folder of results, and its terms.
 struct Holding {
   std::string verb;
-  bool force = false;                 ///< replaces what is not rigcal's, or was changed since
-  std::string forced_by = "--force";  ///< what a user says to have that
+  bool force = false;  ///< also replace files that are not rigcal's, or that were changed
+  std::string forced_by = "--force";                  ///< what the user types for that, in messages
   std::function<void(const std::string&)> warn = {};  ///< may be empty
 };
 
-/// The folder of a run's results, which is this run's alone as long as the object lives. Makes it
-/// and tries whether files can be made in it, before any long work; a folder that it made and that
-/// is still empty in the end goes again. Where the file system has no locks it says so.
+/// Folder of a run's results, locked for this run while the object lives. The constructor makes the
+/// folder and tests whether it is writable, before any long work. A folder that it made is removed
+/// again if it is still empty at the end. A warning says if the file system has no locks.
 ///
-/// It knows by the folder's manifest what rigcal wrote there, and keeps all else: a file that the
-/// manifest does not list, or that was changed since, is not replaced. Links to folders inside it
-/// are not followed; it may be one itself.
+/// The folder's manifest lists the files that rigcal wrote. Any other file, and any listed file
+/// that was changed, is not replaced. Links to folders inside the folder are not followed; the
+/// folder itself may be a link.
 class HeldFolder {
  public:
   /// @throws WriteError  with path and reason
   /// @throws UsageError  another run holds it
-  /// @throws InputError  its manifest is none
+  /// @throws InputError  the file in the place of its manifest is none
   HeldFolder(const std::filesystem::path& out, Holding holding);
   HeldFolder(const HeldFolder&) = delete;
   HeldFolder& operator=(const HeldFolder&) = delete;
   ~HeldFolder();
 
-  /// As it was given.
+  /// The path as the user gave it.
   const std::filesystem::path& path() const { return out_; }
 
-  /// Says before the work what the run may write. What earlier runs left by these names, and in
-  /// these folders, goes with the run's results where it is not among them and is as rigcal wrote
-  /// it.
+  /// Announces, before the work, the files that the run may write. Files of earlier runs with these
+  /// names or in these folders are removed together with the run's results, if the run does not
+  /// replace them and they are unchanged.
   ///
   /// @throws UsageError, WriteError  as require_replaceable()
   void plan(PlannedFiles planned);
 
-  /// Refuses to replace what is not rigcal's, or was changed since, unless that is forced. A file
-  /// whose bytes are those that shall come is no loss.
+  /// Refuses to replace files that are not rigcal's or that were changed, unless forced. A file
+  /// with the same content as the new one may be replaced.
   ///
-  /// @throws UsageError  naming the files; or a folder on the way to one is a link
-  /// @throws WriteError  a folder has the name of one
+  /// @throws UsageError  names the files; or a folder on the way to one is a link
+  /// @throws WriteError  a folder has the name of a file
   void require_replaceable(const std::vector<ResultFile>& files);
 
-  /// Removes what the one that lives has made, if it is empty: for a handler of signals, which ends
-  /// the process before the destructor can. Safe within one.
+  /// Removes the folders that the living object has made, if they are empty. For a signal handler,
+  /// which ends the process before the destructor can run; safe within one.
   static void remove_if_empty();
 
  private:
@@ -93,7 +93,7 @@ class HeldFolder {
   int descriptor_ = -1;
   bool locked_ = false;
   std::vector<ManifestFile> listed_;
-  std::map<std::string, FileState> checked_;  ///< that may be replaced as they stand
+  std::map<std::string, FileState> checked_;  ///< state of the files that may be replaced
   std::set<std::string> swept_;
   PlannedFiles planned_;
 };
@@ -105,22 +105,22 @@ void require_inputs_kept(const std::filesystem::path& out,
                          const std::vector<std::filesystem::path>& results,
                          const std::vector<InputFile>& inputs);
 
-/// Result files on their way: each is written beside its place when it is added, so that it need
-/// not stay in memory until the last one is known, and all are moved there together with the
-/// manifest that lists them, so that a full disk leaves the files of an earlier run as they were.
+/// Writes result files in two steps. add() writes each file next to its target, so that it need not
+/// stay in memory. Then all are moved together with the manifest that lists them, so that a full
+/// disk leaves the files of an earlier run unchanged.
 class ResultsInWriting {
  public:
-  /// @param held, inputs  of the run; both outlive the object
+  /// @param held, inputs  folder and inputs of the run; both outlive the object
   ResultsInWriting(HeldFolder& held, const std::vector<InputFile>& inputs)
       : held_(held), inputs_(inputs) {}
 
-  /// @param file  its hash is made where it has none
+  /// @param file  its hash is computed if it is missing
   /// @throws WriteError  with path and reason
-  /// @throws UsageError  it would replace one of `inputs`, or what the folder keeps
+  /// @throws UsageError  the file would replace one of `inputs`, or a file that must be kept
   void add(const ResultFile& file);
 
-  /// And takes away what earlier runs left of the planned files.
-  /// @throws WriteError  with path and reason; the earlier set is whole then
+  /// Moves all files to their targets and removes the remaining planned files of earlier runs.
+  /// @throws WriteError  with path and reason; the earlier files are complete then
   void move_into_place();
 
  private:
@@ -134,7 +134,8 @@ class ResultsInWriting {
 /// first is moved there, so that a full disk leaves the files of an earlier run as they were.
 ///
 /// @throws WriteError  with path and reason
-/// @throws UsageError  a file would replace one of `inputs`, or what the folder keeps; then none is
+/// @throws UsageError  a file would replace one of `inputs`, or a file that must be kept; then none
+///                     is written
 ///                     written
 void write_results(HeldFolder& held, const std::vector<ResultFile>& files,
                    const std::vector<InputFile>& inputs);

@@ -5,8 +5,8 @@
 
 namespace rigcal::report {
 
-/// `report` of a result: what [report] of the campaign states about the test, and between which
-/// dates its records were taken; null where nothing is known.
+/// `report` of a result: the statements of the campaign's [report] about the test, and the first
+/// and last date of its records; null if nothing is known.
 Json identity_json(const datasets::Campaign& campaign);
 
 }  // namespace rigcal::report

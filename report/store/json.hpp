@@ -26,32 +26,33 @@ std::string json_line(const Json& json);
 /// The parameter table of a plant.
 Json parameters_json(model::PlantKind plant);
 
-/// What `validate` needs of an earlier fit.
+/// Data of an earlier fit for `validate`.
 struct EarlierFit {
   calib::FitStatus status = calib::FitStatus::failed;
   std::string message;
-  std::vector<datasets::FittedValue> values;  ///< of the fitted parameters, without nuisance
-  std::vector<datasets::FittedValue> known;   ///< of the others, scope rig
+  std::vector<datasets::FittedValue> values;  ///< fitted parameters, without nuisance
+  std::vector<datasets::FittedValue> known;   ///< the others, scope rig
   std::vector<std::pair<std::string, datasets::Use>> conditions;  ///< id and use of each scored
   std::vector<std::string> input_hashes;                          ///< SHA-256
-  /// As the fit judged them; not assessed where it says nothing.
+  /// As the fit judged them; not assessed if its file says nothing.
   calib::Aspect adequacy;
   calib::Aspect parameters;
   Validity validity;
-  std::optional<Validity> validated;            ///< what it was validated on
-  std::optional<calib::EstimateSpread> spread;  ///< of `values`; none where it did not converge
+  std::optional<Validity> validated;            ///< ranges of the validation
+  std::optional<calib::EstimateSpread> spread;  ///< for `values`; none if the fit did not converge
   std::vector<int> indices;  ///< table rows of the fitted values of scope rig that have an error
-  /// Of these, SI, shape (indices)^2: the larger of standard and robust error, and the correlation.
+  /// Covariance of these, SI, shape (indices)^2: the larger of standard and robust error, and the
+  /// correlation.
   Eigen::MatrixXd covariance;
 };
 
 /// Reads fit.json strictly.
 ///
-/// @throws InputError  file (and line:column where it is no JSON, or the key where it is not what a
-///                     fit.json holds), what was found and what was expected; a fit that failed
+/// @throws InputError  file (and line:column if it is not JSON, or the key if it is no fit.json),
+///                     what was found and what was expected; a fit that failed
 EarlierFit read_fit(const std::filesystem::path& file, model::PlantKind plant);
 
-/// The same of what is read already.
+/// The same for JSON that is already parsed.
 ///
 /// @param name  for messages
 EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKind plant);

@@ -16,18 +16,18 @@ namespace {
 
 constexpr std::size_t kMostBytes = std::size_t{1} << 30U;
 
-/// What tells one job of one fit from every other.
+/// Name that identifies one job of one fit.
 std::string name_of(const std::string& fit, const FarmJob& job) {
   return sha256_of_text(to_bytes(fit, job.name, job.state, job.count));
 }
 
-/// An entry: its length and its hash, then what it holds.
+/// An entry: its length and its hash, then its content.
 std::string entry_of(const std::string& job, std::size_t index, const std::string& bytes) {
   const std::string content = to_bytes(job, static_cast<std::uint64_t>(index), bytes);
   return fmt::format("{:016x}{}", content.size(), sha256_of_text(content)) + content;
 }
 
-// Digits at the beginning of an entry.
+// Number of digits at the beginning of an entry.
 constexpr std::size_t kLength = 16;
 constexpr std::size_t kHash = 64;
 

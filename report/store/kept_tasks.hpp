@@ -10,21 +10,20 @@
 
 namespace rigcal::report {
 
-/// Where a fit keeps the results of replicates, profiles, folds, and of starts in several
+/// File in which a fit keeps the results of replicates, profiles, folds, and of starts in several
 /// processes.
 inline constexpr const char* kKeptTasksFile = "checkpoint.tasks";
 
-/// Whether a file is one of these, whole or cut short.
+/// Whether a file contains kept tasks, complete or truncated.
 bool is_kept_tasks(const std::filesystem::path& file);
 
-/// A farm that keeps every result in a file as soon as it is there, so that a run which is killed
-/// loses no more than the tasks it was at. Each entry carries its hash: one that is half written,
-/// and whatever follows it, counts as not there. A result is known by the hash of what it was made
-/// from (inputs, options, seed, version, and the state of its job), so that those of another fit
-/// are of no effect.
+/// A farm that writes every result to a file at once, so that a killed run loses only its
+/// unfinished tasks. Each entry has its hash: an incomplete entry, and everything after it, is
+/// ignored. A result is identified by the hash of its inputs (files, options, seed, version, and
+/// the state of its job), so that results of another fit have no effect.
 class KeptTasks final : public TaskFarm {
  public:
-  /// @param farm        what runs the tasks; borrowed
+  /// @param farm        runs the tasks; borrowed
   /// @param provenance  of the fit
   /// @param resume      false: begins anew
   /// @throws InputError  the file cannot be read
@@ -35,7 +34,7 @@ class KeptTasks final : public TaskFarm {
   int rank() const override { return farm_.rank(); }
   int processes() const override { return farm_.processes(); }
 
-  /// How many results of an earlier run there are.
+  /// Number of results of an earlier run.
   std::size_t found() const { return found_; }
   /// Removes the file, once the results of the fit are written.
   void remove();

@@ -24,20 +24,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a folder that has no manifest: more files are no results.
+/// Limit of files in a folder without a manifest; a folder with more is not searched further.
 constexpr std::size_t kMostFiles = 10'000;
-/// Of a file: where its head is.
+/// Size of the part of a file that is searched.
 constexpr std::size_t kHeadBytes = std::size_t{1} << 16;
 
 constexpr std::array kResults{"fit",        "validation", "leak_table", "diagnosis", "parity",
                               "comparison", "batch",      "average",    "plan"};
 
-/// What files of a name look like; `name` may be an extension alone.
+/// Recognises result files by their content; `name` may be an extension alone.
 struct Look {
   std::string_view folder;
   std::string_view name;
-  std::string_view has;   ///< both are in their heads
-  std::string_view also;  ///< in pages and archives anywhere
+  std::string_view has;   ///< must occur in the head
+  std::string_view also;  ///< must occur in the head; in pages and archives anywhere
 };
 
 constexpr std::array kLooks{
@@ -66,13 +66,13 @@ constexpr std::array kLooks{
     Look{"figures", ".pdf", "%PDF-", "Haru"},
 };
 
-/// A regular file, and no link to one.
+/// Whether a path is a regular file, and not a link to one.
 bool is_plain_file(const fs::path& path) {
   std::error_code unknown;
   return fs::is_regular_file(fs::symlink_status(path, unknown));
 }
 
-/// Names of the plain files of a folder, in their order; none of one that is a link.
+/// Sorted names of the plain files of a folder; none if the folder is a link.
 std::vector<std::string> plain_files(const fs::path& folder, bool link_taken) {
   std::error_code error;
   std::vector<std::string> names;
@@ -95,7 +95,7 @@ std::string head_of(const fs::path& file, std::size_t bytes) {
 
 bool looks_like(const Look& look, const fs::path& file) {
   const std::string head = head_of(file, kHeadBytes);
-  // Of a page the styles come first.
+  // A page begins with its styles, so the text may be far from its head.
   const bool far = look.name == "report.html" || look.name == ".fmu" || look.name == ".pdf";
   const std::string whole =
       far && !look.also.empty() ? read_file(file, JsonLimits().bytes, "a result") : head;
@@ -110,7 +110,7 @@ bool has_a_result_look(const fs::path& folder, const fs::path& path) {
   });
 }
 
-/// The provenance of a result in JSON; nothing where there is none, or it is none.
+/// Provenance of a result in JSON; nothing if the file is missing or is no such result.
 std::optional<StoredProvenance> provenance_in(const fs::path& folder, const std::string& kind) {
   const fs::path file = folder / (kind + ".json");
   if (!is_plain_file(file)) return std::nullopt;
@@ -122,7 +122,7 @@ std::optional<StoredProvenance> provenance_in(const fs::path& folder, const std:
     read_into(JsonNode(json, file.string(), "", kind + ".json")["provenance"], provenance);
     return provenance;
   } catch (const InputError&) {
-    return std::nullopt;  // somebody else's
+    return std::nullopt;  // a file of another program
   }
 }
 
@@ -165,7 +165,7 @@ std::vector<ManifestFile> manifest_files(const fs::path& folder) {
 }
 
 std::vector<ManifestFile> rigcal_files(const fs::path& folder) {
-  std::map<std::string, std::set<std::string>> named;  // hashes by path: results may share files
+  std::map<std::string, std::set<std::string>> named;  // hashes by path; results may share files
   std::vector<ManifestFile> files;
   for (const char* kind : kResults) {
     const auto provenance = provenance_in(folder, kind);
@@ -187,7 +187,7 @@ std::vector<ManifestFile> rigcal_files(const fs::path& folder) {
         if (hashes == named.end() || hashes->second.contains(hash))
           files.push_back({path, hash, ""});
       } catch (const InputError&) {
-        // It cannot be read: who would replace it is told.
+        // A file that cannot be read is not listed; whoever would replace it gets an error.
       }
     }
   }

@@ -13,32 +13,32 @@ inline constexpr const char* kManifestSchema = "rigcal.manifest/1";
 
 /// A file that rigcal wrote.
 struct ManifestFile {
-  std::string path;  ///< relative to the folder, with "/"
+  std::string path;  ///< relative to the folder, with "/" as separator
   std::string sha256;
-  std::string verb;  ///< that wrote it; empty: a version before there were manifests
+  std::string verb;  ///< verb that wrote it; empty: a version without manifests
   RIGCAL_DESCRIBE(path, sha256, verb)
 };
 
-/// rigcal-manifest.json: which files of a folder are rigcal's, each as it was written. A path
-/// stands twice, as it was and as it shall be, while a run puts its files in their places.
+/// rigcal-manifest.json: the files of a folder that rigcal wrote, with their hashes. While a run
+/// moves its files, a path is listed twice: with the old hash and with the new one.
 struct StoredManifest {
   std::string schema = kManifestSchema;
-  std::string version;  ///< of rigcal, which wrote it
+  std::string version;  ///< version of rigcal
   std::vector<ManifestFile> files;
   RIGCAL_DESCRIBE(schema, version, files)
 };
 
-/// In the order of their paths.
+/// Text of a manifest with its files sorted by path.
 std::string manifest_text(const std::vector<ManifestFile>& files);
 
-/// The files of a folder's manifest; where there is none, those that rigcal_files() finds.
+/// Files in the manifest of a folder, or those of rigcal_files() if there is no manifest.
 ///
-/// @throws InputError  it is no manifest of this version, or names a file outside the folder
+/// @throws InputError  not a manifest of this version, or one that names a file outside the folder
 std::vector<ManifestFile> manifest_files(const std::filesystem::path& folder);
 
-/// Results of versions that wrote no manifest. A file that `provenance.files` of a result names is
-/// one if it has its hash; any other if it has a name that rigcal gives and begins as what rigcal
-/// writes by that name. A campaign.toml is none: people edit it.
+/// Finds results of versions that wrote no manifest. A file that the `provenance.files` of a result
+/// names counts if it has the stated hash. Any other file counts if both its name and its content
+/// are those of a rigcal result. A campaign.toml never counts, since users edit it.
 std::vector<ManifestFile> rigcal_files(const std::filesystem::path& folder);
 
 }  // namespace rigcal::report

@@ -23,16 +23,16 @@ std::string machine();
 
 /// A file that a result depends on.
 struct InputFile {
-  std::string path;  ///< as it was opened
+  std::string path;  ///< path used to open it
   std::string sha256;
   RIGCAL_DESCRIBE(path, sha256)
 };
 
-/// What a result was made from, and how: enough to make it again.
+/// Origin of a result: enough to make it again.
 struct Provenance {
   std::string command;  ///< the command line
   std::uint64_t seed = 1;
-  std::vector<std::pair<std::string, std::string>> options;  ///< that change numbers
+  std::vector<std::pair<std::string, std::string>> options;  ///< those that change numbers
   std::vector<InputFile> inputs;
 };
 

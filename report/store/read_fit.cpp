@@ -35,8 +35,8 @@ Validity validity_of(const StoredValidity& stored) {
   return validity;
 }
 
-/// Of a parameter that the fit could not determine: its whole interval counts, or its bounds, else
-/// what it is unsure of would be left out.
+/// Error of a parameter that the fit could not determine, from its whole interval, or from its
+/// bounds; otherwise its uncertainty would be left out.
 double undetermined_error(const StoredParameter& p, const JsonNode& node) {
   std::optional<std::pair<double, double>> ci95;
   if (p.ci95) ci95.emplace(p.ci95->low, p.ci95->high);
@@ -58,7 +58,7 @@ double half_in_errors(const StoredParameter& p, double error) {
   return 0.5 * (p.ci95->high - p.ci95->low) / error;
 }
 
-/// Correlations of any parameters can be no others.
+/// Refuses a matrix that is no correlation matrix.
 void require_correlations(const StoredCorrelation& stored, const JsonNode& matrix) {
   constexpr double kRounding = 1e-6;
   const auto size = static_cast<Eigen::Index>(stored.names.size());
@@ -70,18 +70,18 @@ void require_correlations(const StoredCorrelation& stored, const JsonNode& matri
     for (std::size_t j = 0; j < row.size(); ++j)
       all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = row[j];
   }
-  // What is not known of one says nothing against the others.
+  // Parameters without correlations are left out of the check.
   std::vector<Eigen::Index> known;
   for (Eigen::Index i = 0; i < size; ++i)
     if (std::isfinite(all(i, i))) known.push_back(i);
   if (known.empty()) return;
   const Eigen::MatrixXd part = all(known, known);
-  if (!part.allFinite()) return;  // what is used of it is asked for where it is
+  if (!part.allFinite()) return;  // missing correlations are reported where they are needed
   const bool valid = (part - part.transpose()).cwiseAbs().maxCoeff() <= kRounding &&
                      (part.diagonal().array() - 1.0).abs().maxCoeff() <= kRounding &&
                      part.cwiseAbs().maxCoeff() <= 1.0 + kRounding;
-  // No eigenvalue is below minus this; thousands of conditions have as many parameters, of which
-  // all eigenvalues would take minutes.
+  // Cholesky succeeds if no eigenvalue is below minus the shift. Computing all eigenvalues would
+  // take minutes for the parameters of thousands of conditions.
   Eigen::MatrixXd shifted = part;
   shifted.diagonal().array() += kRounding * static_cast<double>(part.rows());
   if (valid && Eigen::LLT<Eigen::MatrixXd>(shifted).info() == Eigen::Success) return;

@@ -22,8 +22,8 @@ struct Result {
   const Provenance& provenance;
 };
 
-/// Status of a result as its files tell it. A fit that claims to have converged but holds a value
-/// that is not finite has failed.
+/// Status of a result in its files. A fit that claims to have converged but has a value that is not
+/// finite has failed.
 inline calib::FitStatus status_of(const calib::Fit& fit) {
   if (fit.status == calib::FitStatus::converged && !fit.usable()) return calib::FitStatus::failed;
   return fit.status;

@@ -6,13 +6,13 @@
 #include "report/store/folder.hpp"
 #include "report/store/stored.hpp"
 
-// The files of one run belong together: the result in JSON names the others with their SHA-256, and
-// who reads them back refuses what another run has left in their place.
+// The files of one run belong together. The result in JSON lists the others with their SHA-256, and
+// readers refuse files of another run in their place.
 
 namespace rigcal::report {
 
-/// `provenance.files`: path and SHA-256 of each of `files`, in their order. The files keep their
-/// hashes, too.
+/// Fills `provenance.files` with path and SHA-256 of each of `files`, in their order, and stores
+/// the hashes in `files`, too.
 void name_files(std::vector<ResultFile>& files, StoredProvenance& provenance);
 /// @param named  of files that are written already, which come first
 void name_files(std::vector<InputFile> named, std::vector<ResultFile>& files,

@@ -15,7 +15,7 @@
 namespace rigcal::report {
 namespace {
 
-/// Of a table. One of 20 columns has two million rows then.
+/// Limit of a table; one of 20 columns then has two million rows.
 constexpr std::size_t kMostTableBytes = std::size_t{512} << 20;
 
 std::string path_in(const std::string& where, const std::string& name) {
@@ -29,8 +29,8 @@ Json parsed(const ReadFile& read, const std::string& where, const std::string& n
   return parse_json(*text, path_in(where, name));
 }
 
-/// The id of a condition, by which its file is found: whoever made the result, that is no way
-/// elsewhere.
+/// The id of a condition is the name of its file, so it must not lead to another folder, whoever
+/// made the result.
 void require_id(const std::string& id, const char* key, const std::string& file) {
   if (datasets::is_condition_id(id)) return;
   throw InputError({file}, fmt::format("key '{}' of a condition: found \"{}\", expected {}", key,
@@ -43,7 +43,7 @@ void require_length(std::size_t found, std::size_t expected, const char* list,
   throw InputError({file}, fmt::format("{}: found {} entries, expected {}", list, found, expected));
 }
 
-/// What a page draws over each other.
+/// Requires equal lengths of curves that a page draws over each other.
 void require_matching(const StoredCurves& curves, const std::string& file) {
   for (const auto& [condition, channels] : curves.conditions) {
     for (const auto& [channel, found] : channels) {
@@ -179,7 +179,7 @@ StoredPlan load_plan(const ReadFile& read, const std::string& where) {
   auto plan = load<StoredPlan>(read, where, "plan.json");
   for (StoredPlannedRecord& record : plan.records) {
     for (auto* list : {&record.sd_alone, &record.sd_without}) {
-      if (list->empty()) list->resize(plan.parameters.size());  // nothing is known of the record
+      if (list->empty()) list->resize(plan.parameters.size());  // nothing is known about the record
       require_length(list->size(), plan.parameters.size(), "sd_alone or sd_without of a record",
                      path_in(where, "plan.json"));
     }

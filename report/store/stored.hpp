@@ -27,7 +27,7 @@ namespace rigcal::report {
 
 using Json = nlohmann::ordered_json;
 
-/// The text of a result file by its path in the result folder; nothing where there is none.
+/// The text of a result file by its path in the result folder; nothing if there is none.
 using ReadFile = std::function<std::optional<std::string>(const std::filesystem::path&)>;
 
 /// The table of a result file by its path in the result folder; null where there is none.
@@ -45,12 +45,12 @@ struct Calibration {
   std::function<std::shared_ptr<const Table>(std::size_t)> series;
 };
 
-/// Where a fit and a validation lie in one folder, the one to which residual_tests.json belongs; a
-/// fit to published tables has nothing beside it.
+/// Loads a fit or validation. If a folder has both, it is the one that residual_tests.json belongs
+/// to; a fit to published tables has no further files.
 ///
-/// @param threads  read the series
-/// @param made     tables that this run has made, whose text need not be read back; each is asked
-///                 for when it is wanted, so that they are not in memory at once
+/// @param threads  for reading the series
+/// @param made     tables from this run, which need not be read back; each is requested only when
+///                 it is needed, so that they are not in memory together
 std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read,
                                                             const std::string& where, int threads,
                                                             const ReadTable& made = {});

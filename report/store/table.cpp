@@ -15,7 +15,7 @@ namespace rigcal::report {
 namespace {
 
 constexpr std::size_t kMostColumns = 10'000;
-/// Of a double's shortest text, such as -2.2250738585072014e-308.
+/// Longest shortest text of a double, such as -2.2250738585072014e-308.
 constexpr std::size_t kLongestNumber = 24;
 
 std::vector<std::string> split(std::string_view line) {
@@ -38,7 +38,8 @@ const std::vector<double>* Table::find(std::string_view name) const {
 std::string csv_of(const Table& table) {
   std::string text = fmt::format("{}\n", fmt::join(table.names, ","));
   const std::size_t rows = table.columns.empty() ? 0 : table.columns.front().size();
-  // Most of the time of a result's files goes here: so a row is written in place, and compiled.
+  // Writing tables takes most of the time for a result's files, so a row is written in place, and
+  // the format is compiled.
   std::vector<char> row(table.columns.size() * (kLongestNumber + 1));
   for (std::size_t i = 0; i < rows; ++i) {
     char* at = row.data();
@@ -54,7 +55,7 @@ std::string csv_of(const Table& table) {
 
 Table parse_table(std::string_view text, const std::string& file) {
   Table table;
-  std::size_t time = 0;  // column of the instants, if there is one
+  std::size_t time = 0;  // index of the time column, if there is one
   double before_s = -std::numeric_limits<double>::infinity();
   long line_number = 0;
   while (!text.empty()) {

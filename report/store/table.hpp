@@ -15,16 +15,16 @@ struct Table {
   const std::vector<double>* find(std::string_view name) const;
 };
 
-/// A header and a row for each sample: numbers that read back to the same bits, nothing where there
-/// is none.
+/// A header and a row for each sample. Numbers read back to the same bits; a missing number is
+/// empty.
 std::string csv_of(const Table& table);
 
 /// Reads a CSV file as the result writers of this project make them: lines of comment (#), one line
 /// of names, then numbers.
 ///
 /// @param file  named in errors
-/// @throws InputError  file, line and column of a field that is no number, of an instant (time_s)
-///                     that does not come after the one before it, or of a row of other length
+/// @throws InputError  a field is no number, a time (time_s) does not increase, or a row has
+///                     another number of fields: names file, line and column
 Table parse_table(std::string_view text, const std::string& file);
 
 }  // namespace rigcal::report

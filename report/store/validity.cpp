@@ -38,7 +38,7 @@ std::optional<Range> range_of(const Record* record, Channel channel) {
   return range;
 }
 
-/// Value that holds in a condition, fitted or known; the narrower scope wins.
+/// Value in a condition, fitted or known; the narrower scope wins.
 double value_in(const Campaign& campaign, const Condition& condition, const calib::Fit& fit,
                 std::string_view key) {
   const int index = model::parameter_index(campaign.rig.plant, key);
@@ -49,13 +49,13 @@ double value_in(const Campaign& campaign, const Condition& condition, const cali
     if (p.scope == datasets::Scope::leak_level && p.level != condition.leak_level) continue;
     if (p.scope == datasets::Scope::condition && p.level != condition.id) continue;
     narrowest = p.scope;
-    // What cannot be told from zero covers zero, not 8.8e-07.
+    // A value that is not distinguishable from zero counts as zero, not as 8.8e-07.
     value = p.identifiability == calib::Identifiability::bounded ? 0.0 : p.value;
   }
   return value;
 }
 
-/// How far a range may leave what is covered before it matters, as a share of the bound it leaves.
+/// How far a range may exceed the covered one before it matters, as a fraction of the bound.
 constexpr double kSlack = 0.1;
 
 void compare(std::vector<std::string>& result, std::string_view what, std::string_view unit,

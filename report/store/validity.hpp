@@ -17,7 +17,7 @@ namespace rigcal::report {
 /// @param unit  SI
 std::string in_words(const Range& range, std::string_view unit);
 
-/// What the conditions of a fit cover; a range is empty where no condition tells it.
+/// Ranges covered by the conditions of a fit; a range is empty if no condition gives it.
 struct Validity {
   std::optional<Range> frequency_hz;
   std::optional<Range> amplitude;  ///< half of peak to peak of the drive: [m], or [V] in open loop
@@ -27,17 +27,17 @@ struct Validity {
   std::vector<std::string> leak_levels;
 };
 
-/// What the conditions of one use cover, with the values of `fit` where it has them.
+/// Ranges covered by the conditions of one use, with the values of `fit` if it has them.
 ///
-/// @param records  those that were compared; where a condition states no amplitude, or its supply
-///                 was recorded, its record tells
+/// @param records  those that were compared; they give the amplitude if a condition does not state
+///                 it, and the supply if it was recorded
 Validity coverage(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
                   const calib::Fit& fit, const std::vector<datasets::Use>& uses);
 
-/// In words and in readable units, each way in which `asked` leaves `covered`, what was fitted, by
-/// more than 10 % of the bound.
+/// Lists, in words and readable units, each way in which `asked` exceeds `covered`, the fitted
+/// range, by more than 10 % of the bound.
 ///
-/// @param validated  what the fit was validated on, to be named beside; null: nothing
+/// @param validated  range of the validation, named in addition; null: none
 std::vector<std::string> outside(const Validity& asked, const Validity& covered,
                                  const Validity* validated = nullptr);
 

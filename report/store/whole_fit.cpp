@@ -37,7 +37,7 @@ std::optional<StoredFit> whole_fit(const std::filesystem::path& folder,
         files_stand(folder, fit.provenance))
       return fit;
   } catch (const InputError&) {
-    // What cannot be read is made anew.
+    // Unreadable results are made again.
   }
   return std::nullopt;
 }

@@ -8,9 +8,9 @@
 
 namespace rigcal::report {
 
-/// The fit that a folder holds already, where it is whole and would be made again as it is: by the
-/// same version, from inputs of the same content, with the same seed and options, not stopped
-/// before its end, and each file that it names is there as it was written.
+/// The fit in a folder, if it is complete and would be the same again: by the same version, from
+/// inputs of the same content, with the same seed and options, not stopped, and with each listed
+/// file present and unchanged.
 std::optional<StoredFit> whole_fit(const std::filesystem::path& folder,
                                    const Provenance& provenance);
 

@@ -14,13 +14,13 @@ namespace {
 constexpr int kLeastDigits = 2;
 constexpr int kMostDigits = 7;
 constexpr int kUnknownDigits = 6;
-/// Powers of ten of the leading digit between which a number is written out.
+/// Numbers with a leading digit between these powers of ten are written without an exponent.
 constexpr int kWrittenFrom = -3;
 constexpr int kWrittenTo = 5;
 
 struct Rounded {
   std::string text;
-  double step = 0.0;  ///< of its last digit
+  double step = 0.0;  ///< place value of the last digit
 };
 
 double number_of(const std::string& text) {
@@ -29,13 +29,13 @@ double number_of(const std::string& text) {
   return value;
 }
 
-/// Power of ten of the leading digit; 0.1 may have become 0.0999999999.
+/// Power of ten of the leading digit, corrected for a 0.1 that is stored as 0.0999999999.
 int power_of(double value) {
   constexpr double kRounding = 1e-9;
   return static_cast<int>(std::floor(std::log10(std::abs(value)) + kRounding));
 }
 
-/// A value that is not zero, rounded to so many significant digits.
+/// Rounds a value that is not zero to a number of significant digits.
 Rounded rounded(double value, int digits) {
   std::string text = fmt::format("{:.{}e}", value, digits - 1);
   const int power = std::stoi(text.substr(text.find('e') + 1));
@@ -46,7 +46,7 @@ Rounded rounded(double value, int digits) {
 }
 
 bool holds(const Range& allowed, double value) {
-  constexpr double kRounded = 1e-12;  // relative, by a change of the unit
+  constexpr double kRounded = 1e-12;  // relative error after a change of unit
   return value >= allowed.low - kRounded * std::abs(allowed.low) &&
          value <= allowed.high + kRounded * std::abs(allowed.high);
 }
@@ -66,7 +66,7 @@ std::string matched(double value, double uncertainty, const Range& allowed) {
     found = rounded(value, digits);
     if (holds(allowed, number_of(found.text))) return found.text;
   }
-  // Beside its bound by less than these digits tell: the next number on its side.
+  // With any number of digits the rounded value is beyond a bound. Takes the next number inside.
   for (const double side : {-0.5, 0.5}) {
     const double inward = value + side * found.step;
     if (inward == 0.0) continue;

@@ -6,8 +6,8 @@
 
 namespace rigcal::report {
 
-/// Each warning once, in the order of its first appearance, with the records that it holds for: all
-/// of a few by name, of many their number and the first ones.
+/// Each warning once, in the order of its first appearance, with its records: their names if they
+/// are few, else their number and the first ones.
 ///
 /// @param told  name of a record, and a warning about it
 std::vector<std::string> gathered_by_text(

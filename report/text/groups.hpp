@@ -12,7 +12,7 @@ namespace rigcal::report {
 
 /// Agreement of one channel over several conditions.
 struct GroupScore {
-  int conditions = 0;  ///< that have a score
+  int conditions = 0;  ///< number of those with a score
   metrics::Agreement mean;
   metrics::Agreement worst;  ///< metric by metric
 };

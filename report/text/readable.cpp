@@ -15,7 +15,7 @@ struct Relative {
   ReadableUnit unit;
 };
 
-/// Largest first within an SI unit; the last takes what is smaller still.
+/// Largest first within an SI unit; the last one also serves smaller values.
 constexpr std::array kRelatives{
     Relative{"Pa", {"GPa", 1e9}},    Relative{"Pa", {"MPa", 1e6}},
     Relative{"Pa", {"kPa", 1e3}},    Relative{"Pa", {"Pa", 1.0}},
@@ -36,7 +36,7 @@ ReadableUnit readable_unit(double value_si, std::string_view si_unit) {
   ReadableUnit found{si_unit == "1" ? std::string_view{} : si_unit, 1.0};
   for (const Relative& relative : kRelatives) {
     if (relative.si_unit != si_unit) continue;
-    // Zero has no size of its own.
+    // Zero has no size.
     if (value_si == 0.0) return {si_unit, 1.0};
     found = relative.unit;
     if (std::abs(value_si) >= 0.9999999 * found.si) break;

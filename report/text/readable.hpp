@@ -18,15 +18,14 @@ ReadableUnit readable_unit(double value_si, std::string_view si_unit);
 /// "6.2 MPa", "0.35", "-": `digits` significant digits; "-" where the value is not finite.
 std::string readable(double value_si, std::string_view si_unit, int digits = 6);
 
-/// A value to the last of the two significant digits of its uncertainty (GUM, 7.2.6), where what is
-/// smaller than that means nothing: 0.0004 with 0.1 is "0.00".
+/// Rounds a value to the last of the two significant digits of its uncertainty (GUM, 7.2.6).
+/// Smaller digits are dropped: 0.0004 with 0.1 is "0.00".
 ///
-/// @param uncertainty  in the unit of the value: standard error, or half width of an interval;
-/// above
-///                     zero
+/// @param uncertainty  standard error, or half width of an interval, in the unit of the value;
+///                     above zero
 std::string to_uncertainty(double value, double uncertainty);
 
-/// So many decimals, and never "-0.00".
+/// Number with `decimals` decimals, never "-0.00".
 std::string fixed(double value, int decimals);
 
 /// Agreement such as rho2 as a fraction with four decimals; "> 0.9999" where these would claim that

@@ -5,7 +5,7 @@
 
 #include "metrics/residual_tests.hpp"
 
-// What the tests of a residual found, in words.
+// Results of residual tests in words.
 
 namespace rigcal::report {
 

@@ -36,8 +36,7 @@ std::string coloured(Verdict verdict, const Style& style) {
   return coloured(std::string(to_string(verdict)), code, style);
 }
 
-/// The channel that speaks most against the model: by the verdict on its limits, then by the lowest
-/// rho2; null where none was compared.
+/// The channel that is worst by the verdict on its limits, then by rho2; null if none was compared.
 const calib::ChannelScore* worst_channel(const calib::ConditionScore& condition) {
   const auto badness = [&](const calib::ChannelScore& score) {
     const bool known = score.agreement && std::isfinite(score.agreement->rho2);
@@ -59,8 +58,8 @@ std::set<Channel> compared_channels(const calib::Fit& fit) {
 
 std::string percent(double value) { return fmt::format("{:.3f}", value); }
 
-/// How much a condition speaks against the model: those without a score, then by verdict, then by
-/// how much of a tolerance they use, or by their error where there are no limits.
+/// Sort key of a condition, larger for a worse one. Conditions without a score come last; the
+/// others are sorted by verdict, then by used tolerance, or by error if there are no limits.
 std::tuple<bool, Verdict, double> gravity_of(const calib::ConditionScore& score) {
   const bool lost = !score.failure.empty() || !score.not_scored.empty();
   double used = 0.0;
@@ -72,7 +71,7 @@ std::tuple<bool, Verdict, double> gravity_of(const calib::ConditionScore& score)
   return {lost, score.verdict.value_or(Verdict::pass), used};
 }
 
-/// All conditions in their order, or the worst where there is no room for all.
+/// All conditions in order, or the worst ones if there is not enough room.
 std::vector<const calib::ConditionScore*> shown_conditions(const calib::Fit& fit,
                                                            std::size_t most) {
   std::vector<const calib::ConditionScore*> shown;
@@ -84,13 +83,13 @@ std::vector<const calib::ConditionScore*> shown_conditions(const calib::Fit& fit
   return shown;
 }
 
-/// What a table that is cut leaves out; empty where that is nothing.
+/// Says what a cut table omits; empty if nothing.
 std::string more_text(std::size_t all, std::size_t most, const char* what) {
   if (all <= most) return {};
   return fmt::format("  and {} {} (--verbose shows all)\n", all - most, what);
 }
 
-/// @param several  channels were compared, so that each row names its own
+/// @param several  whether several channels were compared, so that each row names its channel
 TextTable condition_table(const Result& result, bool several, std::size_t most,
                           const Style& style) {
   std::vector<TextTable::Column> columns{{"condition"},
@@ -133,7 +132,7 @@ TextTable condition_table(const Result& result, bool several, std::size_t most,
   return table;
 }
 
-/// Of each group the channel with the lowest rho2.
+/// Table with the worst channel, by rho2, of each group.
 TextTable group_table(const std::vector<Group>& gathered, bool several, std::size_t most) {
   std::vector<TextTable::Column> columns{{"by"}, {"group"}, {"conditions", Align::right, 2}};
   if (several) columns.push_back({"channel"});
@@ -164,7 +163,7 @@ TextTable group_table(const std::vector<Group>& gathered, bool several, std::siz
   return table;
 }
 
-/// What a narrow terminal does not show.
+/// Names what a narrow terminal omits.
 std::string narrow_note(const TextTable& table, const char* file, const Style& style) {
   const std::vector<std::string> left_out = table.left_out(style.columns);
   if (left_out.empty()) return {};
@@ -174,7 +173,7 @@ std::string narrow_note(const TextTable& table, const char* file, const Style& s
          "\n";
 }
 
-/// @param judged  the search came to its end
+/// @param judged  whether the search converged
 std::string identifiability_text(const calib::FittedParameter& p, bool judged, const Style& style) {
   using calib::Identifiability;
   if (!judged) return coloured("not judged", "33", style);
@@ -205,10 +204,10 @@ double error_of(const calib::FittedParameter& p) {
              : p.standard_error.value_or(0.0);
 }
 
-/// One line per reason, led by all that it holds for; "all" where that is more than one and every
-/// one.
+/// One line per reason, with the names of the parameters that it applies to; "all" if it applies to
+/// all of several parameters.
 ///
-/// @param most  lines
+/// @param most  number of lines
 std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& reasons,
                        std::size_t parameters, std::size_t most, std::size_t columns) {
   std::string text;
@@ -216,7 +215,7 @@ std::string foot_notes(const std::vector<std::pair<std::string, std::string>>& r
   for (std::size_t i = 0; i < reasons.size() && told < most; ++i) {
     const auto same = [&](const auto& other) { return other.second == reasons[i].second; };
     const auto here = reasons.begin() + static_cast<std::ptrdiff_t>(i);
-    if (std::any_of(reasons.begin(), here, same)) continue;  // told already
+    if (std::any_of(reasons.begin(), here, same)) continue;  // shown already
     ++told;
     std::vector<std::string> whose;
     for (const auto& reason : reasons) {
@@ -254,8 +253,8 @@ std::string metric_text(const std::string& metric, double value) {
                                             : fmt::format("{} {}", metric, agreement_text(value));
 }
 
-/// The three conditions that are farthest from what is asked for: those without a score, then by
-/// the share of the tolerance that they use; where there are no limits, by their errors.
+/// The three worst conditions: those without a score, then by the used fraction of their tolerance,
+/// or by their errors if there are no limits.
 std::vector<std::string> worst_conditions(const calib::Fit& fit) {
   constexpr std::size_t kShown = 3;
   constexpr double kWithoutScore = std::numeric_limits<double>::infinity();
@@ -297,7 +296,7 @@ std::vector<std::string> worst_conditions(const calib::Fit& fit) {
   return worst;
 }
 
-/// By which rule scores were compared with limits; nothing where none were.
+/// Decision rule of the comparison with limits; empty if there was none.
 std::string rule_text(const Result& result) {
   const auto& scores = result.fit.conditions;
   const bool judged = std::any_of(scores.begin(), scores.end(),
@@ -311,7 +310,7 @@ const char* mark_of(AspectState state) {
   return calib::is_against(state) ? "-" : "+";
 }
 
-/// What must be known before any verdict; empty for a result that was finished.
+/// What the user must know before any verdict; empty for a finished result.
 std::string unfinished_text(const calib::Fit& fit, const Style& style) {
   if (fit.status == FitStatus::converged) return {};
   const bool stopped = fit.status == FitStatus::stopped;
@@ -320,8 +319,8 @@ std::string unfinished_text(const calib::Fit& fit, const Style& style) {
          (stopped ? stopped_sentence(fit.stopped_in) : std::string(kNoUsableResult));
 }
 
-/// Where a text tells the reason of a parameter, which the table of parameters tells already: its
-/// grade in place of that; nothing where it tells none.
+/// Replaces the reason of a parameter in a text by its grade, since the table of parameters shows
+/// the reason. Nothing if the text has no such reason.
 std::optional<std::string> without_reason(const calib::Fit& fit, const std::string& text) {
   for (const calib::FittedParameter& parameter : fit.parameters) {
     if (!parameter.fitted || parameter.reason.empty()) continue;
@@ -333,12 +332,12 @@ std::optional<std::string> without_reason(const calib::Fit& fit, const std::stri
   return std::nullopt;
 }
 
-/// State of an aspect; what speaks against it, the gravest first; then what speaks for it.
+/// State of an aspect; the reasons against it, the gravest first; then the reasons for it.
 ///
 /// @param most  reasons of one state
 std::string aspect_text(std::string_view name, const calib::Aspect& aspect, const calib::Fit& fit,
                         std::size_t most, const Style& style) {
-  const std::size_t shown = std::min<std::size_t>(3, most);  // the files hold all
+  const std::size_t shown = std::min<std::size_t>(3, most);  // the result files list all
   std::string text = fmt::format("  {}: {}\n", name, state_text(aspect.state, style));
   std::map<AspectState, std::size_t> told;
   for (const calib::Reason& reason : aspect.reasons) {
@@ -388,8 +387,8 @@ std::string parameters_text(const Result& result, const Style& style, std::size_
                   {"bounds", Align::right, 2},
                   {"identifiability"}},
                  2);
-  std::vector<std::pair<std::string, std::string>> reasons;  // whose, why
-  // Errors and intervals are those of a minimum, at which a search that was stopped is not.
+  std::vector<std::pair<std::string, std::string>> reasons;  // parameter and reason
+  // Errors and intervals hold at a minimum only, which a stopped search has not reached.
   const bool judged = result.fit.status != FitStatus::stopped || result.fit.has_converged();
   std::vector<const calib::FittedParameter*> fitted;
   for (const calib::FittedParameter& p : result.fit.parameters)
@@ -460,7 +459,7 @@ std::string reasons_text(const Result& result, const Style& style, std::size_t m
   const auto say = [&](const std::string& line, std::size_t indent) {
     text += wrapped(line, style.columns, indent) + "\n";
   };
-  // Where nothing was estimated nothing converged.
+  // Without estimation there is no convergence.
   const bool only_scored = status == FitStatus::converged && fit.starts.empty();
   const std::string word =
       coloured(only_scored ? "done" : std::string(to_string(status)), code, style);

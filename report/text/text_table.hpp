@@ -19,7 +19,7 @@ std::string wrapped(std::string_view line, std::size_t columns, std::size_t inde
 /// Every line of a text wrapped, further lines two blanks deeper than its own.
 std::string wrapped_lines(std::string_view text, std::size_t columns);
 
-/// Rows of texts as aligned columns: texts to the left, columns that hold numbers to the right.
+/// Rows of texts as aligned columns: texts to the left, numbers to the right.
 class TextTable {
  public:
   enum class Align { left, right };
@@ -29,7 +29,7 @@ class TextTable {
     int spare = 0;  ///< the highest is left out first where there is no room; 0: never
   };
 
-  /// @param keys  leading columns that tell what a row is of
+  /// @param keys  number of leading columns that identify a row
   explicit TextTable(std::vector<Column> columns, std::size_t keys = 1)
       : columns_(std::move(columns)), keys_(keys) {}
   /// @param row  shape (columns); line ends and other control characters become blanks
@@ -41,21 +41,20 @@ class TextTable {
   /// Title line, unless no column has a title, and rows; two blanks between columns, without blanks
   /// at line ends.
   ///
-  /// @param columns  of the terminal: what can be spared is left out until the lines fit; what is
-  /// still
-  ///                 too wide follows in further blocks, each with the keys; 0: all as it
-  ///                 is
+  /// @param columns  of the terminal: columns that can be spared are omitted until the lines fit;
+  ///                 if they are still too wide, further blocks follow, each with the keys; 0: no
+  ///                 limit
   std::string text(std::size_t columns = 0) const;
-  /// Of the widest line.
+  /// Width of the widest line.
   std::size_t width() const;
-  /// Titles of what text() leaves out.
+  /// Titles of the columns that text() omits.
   std::vector<std::string> left_out(std::size_t columns) const;
 
  private:
   std::vector<std::size_t> widths() const;
   /// Whether each column is shown.
   std::vector<bool> shown(std::size_t columns) const;
-  /// Shown columns that stand side by side, the keys in every block.
+  /// The shown columns in blocks, the keys in each.
   std::vector<std::vector<std::size_t>> blocks(std::size_t columns) const;
 
   std::vector<Column> columns_;

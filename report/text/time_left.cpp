@@ -8,7 +8,7 @@
 namespace rigcal::report {
 namespace {
 
-constexpr double kLeastShare = 0.05;  ///< of all work, before which nothing is foretold
+constexpr double kLeastShare = 0.05;  ///< fraction of all work before there is an estimate
 constexpr double kMostOfStart = 0.95;
 
 }  // namespace
@@ -23,7 +23,7 @@ void TimeLeft::note(int start, double relative_change) {
     share_ = 0.0;
   }
   const double change = std::abs(relative_change);
-  // A start's first iteration has changed nothing yet.
+  // The first iteration of a start has no change yet.
   if (!(change > 0.0) || !std::isfinite(change)) return;
   const double share = std::log(std::min(1.0, change)) / std::log(tolerance_);
   share_ = std::max(share_, std::min(share, kMostOfStart));

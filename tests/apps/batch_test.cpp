@@ -105,7 +105,7 @@ TEST_CASE("batch: a second one makes only what has changed", "[apps]") {
   CHECK(batch["rigs"][2]["unchanged"] == false);
   CHECK(folder.read("out/bench_1/fit.json") == first);
   CHECK(folder.has("out/lab/bench_3/scorecard.csv"));
-  // Other intervals are asked for.
+  // The options request other intervals.
   REQUIRE(folder.run({"batch", "lab_a", "--out", "out", "--resume", "--profiles", "--quiet"})
               .exit_code == 0);
   CHECK(batch_of(folder, "out")["rigs"][0]["unchanged"] == false);

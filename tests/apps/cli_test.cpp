@@ -561,7 +561,7 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
     CHECK_FALSE(folder.has("val/fitted.toml"));
     CHECK_THAT(validation.out, Contains("rigcal.validation/1"));
     check_complete(validation.out);
-    // Its band is the fit's, from what fit.json tells of errors and correlations.
+    // Its band equals the fit's, from errors and correlations in fit.json.
     const auto theirs = column(folder.read("out/residuals/square.csv"), "prediction_sd_position_m");
     const auto ours = column(folder.read("val/residuals/square.csv"), "prediction_sd_position_m");
     REQUIRE(theirs.size() == ours.size());

@@ -55,7 +55,7 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
     CHECK_FALSE(record["undecided"].get<bool>());
     const bool is_healthy_mean = record["condition"] == "sine" && record["repeat"].is_null();
     CHECK(record["is_reference"] == is_healthy_mean);
-    if (is_healthy_mean) {  // its leak is zero by construction: nothing is said of it
+    if (is_healthy_mean) {  // its leak is zero by construction
       CHECK(record["leak_detected"].is_null());
       CHECK(record["ci95"].is_null());
       CHECK(record["class"].is_null());
@@ -76,7 +76,7 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   CHECK_THAT(outcome.out, Contains("State of the machine") && Contains("open: "));
   CHECK(result["accuracy"] == 1.0);
   CHECK(result["confusion"]["counts"][0][0] == 3);
-  // The mean of three is known better than one, but it is known no better than that.
+  // The limit of the mean of three is below that of one repeat, but of the same order.
   const json& smallest = result["smallest_leak_l_per_min"][0];
   CHECK(smallest["averaged"].get<double>() > 0.2 * smallest["single"].get<double>());
   CHECK_THAT(outcome.out, Contains("supply and oil are taken as on the day of the healthy"));

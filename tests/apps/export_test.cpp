@@ -461,7 +461,7 @@ TEST_CASE("export: the model description keeps the rules of the standard", "[app
   CHECK(listed("InitialUnknowns") == initial);
   CHECK(derivatives.size() == 3);
   CHECK_THAT(text_of(fmu.folder() / "resources" / "rig.txt"), Contains("guid " + fmu.guid()));
-  // The C++ library within must not stand in for that of the importer.
+  // The linked C++ library must not replace that of the importer.
   const FmuLibrary library(fmu.library());
   if (!kSanitized) CHECK_THROWS(library.function<void()>("_ZNSt6locale7classicEv"));
 }

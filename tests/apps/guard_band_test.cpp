@@ -99,7 +99,7 @@ TEST_CASE("fit: what a certificate states of a sensor counts, or is told", "[app
   };
   CHECK(judged("uncertainty = \"0.002 mm (k = 2)\"\n").exit_code == 0);
   const double small = uncertainty("sine");
-  // As large as the motion: by the guard band nothing is shown to keep its limit.
+  // The uncertainty is as large as the motion: with the guard band no limit is kept.
   const Outcome large = judged("uncertainty = \"20 mm (k = 2)\"\n");
   CHECK(large.exit_code == 1);
   CHECK_THAT(large.out, Catch::StartsWith("verdict: WARN by guard band"));
@@ -112,7 +112,7 @@ TEST_CASE("fit: what a certificate states of a sensor counts, or is told", "[app
              Catch::Contains("warning: the uncertainty of the sensor of position"));
 
   const std::string dates = "calibrated = 2024-01-31\ndue = 2025-01-31\n";
-  CHECK(judged(dates).exit_code == 0);  // nobody says when the tests were
+  CHECK(judged(dates).exit_code == 0);  // the campaign states no dates of tests
   const Edits tested{{"use = \"validate\"", "use = \"validate\"\ndate = 2026-02-26"}};
   const Outcome overdue = judged(dates, tested);
   CHECK(overdue.exit_code == 1);
@@ -149,7 +149,7 @@ TEST_CASE("fit: a channel that is compared and not judged is a reservation", "[a
   CHECK_THAT(silent.out, Catch::StartsWith("verdict: WARN") &&
                              Catch::Contains("no limit judges load_pressure in 2 conditions"));
   CHECK_FALSE(result_of(folder, "out/fit.json").contains("not_judged"));
-  // A comparison gives no tick to what nobody judged.
+  // A comparison marks as passed only what was judged.
   REQUIRE(folder.run({"fit", "twin/campaign.toml", "--out", "two", "--quiet"}).exit_code == 0);
   REQUIRE(folder.run({"compare", "out", "two", "--out", "both", "--quiet"}).exit_code == 0);
   const Json compared = result_of(folder, "both/comparison.json");

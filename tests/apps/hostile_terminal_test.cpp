@@ -9,7 +9,7 @@ namespace {
 
 using Catch::Contains;
 
-/// Whether a terminal does no more with it than show it.
+/// Whether a terminal can only display a text.
 bool is_harmless(const std::string& text) {
   const auto acts = [](char c) {
     const auto byte = static_cast<unsigned char>(c);

@@ -158,7 +158,7 @@ TEST_CASE("leak-table: of a fitted rig, whatever the campaign assumes", "[apps]"
   CHECK_THAT(folder.read("out/report.html"), Contains("from the fit") && Contains("<small>±"));
   CHECK_THAT(folder.read("out/leak_table.csv"), Contains("ci95_low,ci95_high"));
 
-  // The same file without the fit: the guess holds, and that is said.
+  // The same file without the fit: the guess is used, and a warning says so.
   const auto [warned, guessed] = table("fit/fitted.toml", {});
   CHECK(guessed["entries"][0]["coefficients_ci95"][0].is_null());
   CHECK(guessed["entries"][0]["coefficients"] != fitted["entries"][0]["coefficients"]);

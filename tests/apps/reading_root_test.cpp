@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kSecret = "swordfish:1:2";
 
-/// A campaign in `lab/rig` that reads a file of another folder.
+/// Writes a campaign to `lab/rig` that reads a file of another folder.
 void write_in_lab(const CommandFolder& folder, const std::string& repeats) {
   write_campaign(folder, {{"records/sine_*.csv", repeats}});
   fs::create_directories(folder.work() / "lab/rig");
@@ -91,7 +91,7 @@ TEST_CASE("records: what stands in files elsewhere is not shown", "[apps]") {
   CHECK(outcome.exit_code == 2);
   CHECK_THAT(outcome.err,
              Contains("secret.txt") && Contains("is not shown") && !Contains("swordfish"));
-  // Whoever runs the command may point at the folder.
+  // The user of the command may choose this folder with --data.
   const Outcome pointed = folder.run({"check", "lab/rig/campaign.toml", "--data", "lab/rig"});
   CHECK_THAT(pointed.err, !Contains("swordfish"));
   write_campaign(folder, {{"records/sine_*.csv", "secret.txt"}});

@@ -69,6 +69,6 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
   broken.erase("status");
   CHECK_FALSE(violations(broken, "result").empty());
   broken = fit;
-  broken["of"] = "published tables";  // whose results have other keys
+  broken["of"] = "published tables";  // results of these have other keys
   CHECK_FALSE(violations(broken, "result").empty());
 }

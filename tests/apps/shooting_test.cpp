@@ -34,7 +34,7 @@ TEST_CASE("fit: multiple shooting leads to the same values, whatever the threads
     REQUIRE(fitted.exit_code == 0);
   }
   CHECK(parameters_of(folder, "shooting1") == parameters_of(folder, "shooting3"));
-  // What stands in the campaign stands in the one with the fitted values.
+  // The file with the fitted values keeps the other keys of the campaign.
   CHECK_THAT(folder.read("shooting1/fitted.toml"), Contains("shooting_interval"));
   const json single = parameters_of(folder, "single");
   const json shooting = parameters_of(folder, "shooting1");

@@ -12,7 +12,7 @@ using rigcal::test::write_twin;
 
 namespace {
 
-/// What commands are told of the terminal while it lives.
+/// Sets the terminal width that commands see while it lives.
 class Columns {
  public:
   explicit Columns(const char* columns) { ::setenv("COLUMNS", columns, 1); }

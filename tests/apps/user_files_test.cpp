@@ -11,7 +11,7 @@
 #include "tests/apps/cli_fixture.hpp"
 #include "tests/apps/schema.hpp"
 
-// What a user keeps in a folder that results go into.
+// Files of a user in a folder that results are written to.
 
 using namespace rigcal::test;
 using Catch::Contains;
@@ -21,7 +21,7 @@ namespace {
 
 const std::string kManifest = "out/rigcal-manifest.json";
 
-/// A verb, and one of the files that it writes.
+/// A verb and one of the files that it writes.
 struct Verb {
   CommandFolder::Arguments arguments;
   std::string file;
@@ -56,7 +56,7 @@ const std::vector<Verb> kVerbs{
     {{"compare", "one", "two"}, "comparison.json"},
 };
 
-/// A rig with its records, two fits, and a folder of rigs.
+/// Makes a rig with records, two fits, and a folder of rigs.
 void prepare(const CommandFolder& folder) {
   REQUIRE(write_twin(folder).exit_code == 0);
   REQUIRE(folder
@@ -89,7 +89,7 @@ std::map<std::string, std::string> content(const CommandFolder& folder, const st
   return texts;
 }
 
-/// Exit 2 with a word about `file`, and everything as it was.
+/// Expects exit code 2, a message about `file`, and unchanged files.
 void check_kept(const CommandFolder& folder, const Verb& verb, const std::string& words) {
   const auto before = content(folder, "out");
   const Outcome outcome = run(folder, verb);
@@ -128,13 +128,13 @@ TEST_CASE("user files: no verb replaces what it has not written, but for --force
     }
     CHECK(listed);
 
-    // Its own results are no obstacle, but for those that were changed.
+    // Its own results are replaced, except those that were changed.
     CHECK(run(folder, verb).exit_code == forced.exit_code);
     folder.write(file, folder.read(file) + " ");
     check_kept(folder, verb, verb.file + ": changed since rigcal wrote it");
     CHECK(run(folder, verb, {"--force"}).exit_code == forced.exit_code);
 
-    // As a version left them that wrote no manifest. A draft, which people fill in, is kept.
+    // Without a manifest, as earlier versions left it. A draft is kept, since users edit it.
     std::filesystem::remove(folder.work() / kManifest);
     if (verb.arguments[0] == "init") {
       check_kept(folder, verb, "campaign.toml: not written by rigcal");
@@ -183,7 +183,7 @@ TEST_CASE("user files: several verbs share a folder, again and again", "[apps]")
                                folder.work() / "demo/validation.json",
                                std::filesystem::copy_options::overwrite_existing);
   }
-  // The copy is nobody's result there, and in nobody's way but that of a validation.
+  // Only a validation would replace the copy, and there it counts as a foreign file.
   const Outcome outcome = folder.run({"validate", "demo/campaign.toml", "--out", "demo"});
   CHECK(outcome.exit_code == 2);
   CHECK_THAT(outcome.err, Contains("validation.json: not written by rigcal"));

@@ -325,7 +325,7 @@ TEST_CASE("fit: records without noise converge to the truth", "[calib]") {
   Twin twin = small_twin();
   twin.noise_sd_m = 0.0;
   const auto records = twin.records(64, 128.0, 3, model::InitialState::rest, false);
-  double tolerance = 0.1e-6 / std::sqrt(64.0);  // what a noise of 1e-6 asks for
+  double tolerance = 0.1e-6 / std::sqrt(64.0);  // tolerance for a noise of 1e-6
   SECTION("the tolerance follows the noise") {}
   SECTION("the campaign fixes the tolerance") {
     tolerance = 1e-6;

@@ -32,7 +32,7 @@ struct Twin {
   datasets::Campaign truth;
   std::map<std::string, double> level_leakage;  ///< true leakage coefficient of each leak level
   double noise_sd_m = 5e-5;
-  double tolerance = 1e-9;  ///< of the simulations that make the records
+  double tolerance = 1e-9;  ///< for the simulations that make the records
   std::map<std::string, std::pair<int, double>> offsets;  ///< condition -> parameter, true value
 
   Twin() {

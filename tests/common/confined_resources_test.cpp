@@ -18,7 +18,7 @@ using rigcal::run_confined;
 
 namespace {
 
-/// A lower limit of this process, for as long as it lives.
+/// Lowers a limit of this process while the object lives.
 class LowerLimit {
  public:
   LowerLimit(decltype(RLIMIT_AS) resource, rlim_t most) : resource_(resource) {
@@ -39,7 +39,7 @@ class LowerLimit {
 
 TEST_CASE("confined: a process that cannot be made is no fault of the work", "[common]") {
   std::exception_ptr thrown;
-  {  // no longer: the sanitizers need files to look at an object
+  {  // a short scope: the sanitizers need to open files
     const LowerLimit files(RLIMIT_NOFILE, 0);
     try {
       run_confined([] { return std::string("never"); }, {});
@@ -65,7 +65,7 @@ TEST_CASE("confined: what the system ends is no fault of the work", "[common]") 
 }
 
 TEST_CASE("confined: a lower limit of memory is no fault of the work", "[common]") {
-  if (rigcal::test::kSanitized) return;  // AddressSanitizer needs terabytes of addresses
+  if (rigcal::test::kSanitized) return;  // AddressSanitizer needs terabytes of address space
   const auto take = []() -> std::string {
     if (std::malloc(std::size_t{256} << 20) == nullptr) std::abort();
     return "got it";

@@ -29,7 +29,7 @@ using rigcal::run_confined;
 TEST_CASE("confined: the text comes back, whatever its size", "[common]") {
   CHECK(run_confined([] { return std::string(); }, {}).empty());
   CHECK(run_confined([] { return std::string("a\0b", 3); }, {}) == std::string("a\0b", 3));
-  const std::string large(10'000'000, 'x');  // more than a pipe holds
+  const std::string large(10'000'000, 'x');  // larger than the buffer of a pipe
   CHECK(run_confined([&] { return large; }, {}) == large);
 }
 

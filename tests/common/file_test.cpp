@@ -178,7 +178,7 @@ TEST_CASE("read_file: all bytes of a regular file, up to a limit", "[common]") {
   CHECK(read_file(folder.write("empty", ""), 0, "a test").empty());
   CHECK_THROWS_WITH(read_file(file, 4, "a test"),
                     Contains("file: has 5 bytes; expected a test of at most"));
-  // Its size is told as zero; it has to be read to its end.
+  // The system reports its size as zero, so it has to be read to its end.
   CHECK(read_file("/proc/self/status", 1 << 20, "a test").find("Name:") == 0);
   CHECK_THROWS_AS(read_file("/proc/self/status", 10, "a test"), InputError);
 }

@@ -17,14 +17,14 @@ TEST_CASE("printable: what a terminal would obey is shown", "[common]") {
            Row{"\u009b2J", "\\u009B2J"},  // C1 in UTF-8
            Row{"\x9b"
                "2J",
-               "\\x9B2J"},  // and as a byte
+               "\\x9B2J"},  // as a byte
            Row{"\u0080\u009f\u00a0", "\\u0080\\u009F\u00a0"},
            Row{"gpj\u202exslx", "gpj\\u202Exslx"},
            Row{"\u202a\u2066\u2069\u200e\u200f\u061c",
                "\\u202A\\u2066\\u2069\\u200E\\u200F\\u061C"},
            Row{"\u2028", "\\u2028"},
-           Row{"\xff\xc0\xaf\xed\xa0\x80", "\\xFF\\xC0\\xAF\\xED\\xA0\\x80"},  // no UTF-8
-           Row{"\xe2\x82", "\\xE2\\x82"},                                      // cut short
+           Row{"\xff\xc0\xaf\xed\xa0\x80", "\\xFF\\xC0\\xAF\\xED\\xA0\\x80"},  // not UTF-8
+           Row{"\xe2\x82", "\\xE2\\x82"},                                      // truncated
            Row{"\xf4\x90\x80\x80", "\\xF4\\x90\\x80\\x80"},                    // beyond Unicode
        })
     CHECK(printable(row.text) == row.shown);

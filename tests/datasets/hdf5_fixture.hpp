@@ -76,8 +76,8 @@ class Hdf5Writer {
     H5Tclose(memory);
   }
 
-  /// A vector of `rows` doubles in chunks, of which only the first numbers are written.
-  /// @param fill  what HDF5 gives for the others; nothing: its own zero
+  /// A chunked vector of `rows` doubles with only the first ones written.
+  /// @param fill  value that HDF5 returns for the others; nothing: HDF5's default of zero
   void partly_written(const std::string& path, const std::vector<double>& values, hsize_t rows,
                       hsize_t chunk, const double* fill = nullptr) const {
     const hid_t plan = checked(H5Pcreate(H5P_DATASET_CREATE));

@@ -70,10 +70,10 @@ struct Endings {
   std::size_t refused = 0;
 };
 
-/// What becomes of a file with every `step`-th byte changed in each of several ways.
+/// Reads a file with every `step`-th byte changed in each of several ways, and counts the results.
 ///
-/// @param name    of the damaged file, whose extension tells the format
-/// @param ending  of reading a file: Ending(path)
+/// @param name    name of the damaged file, whose extension selects the format
+/// @param ending  reads a file: Ending(path)
 template <typename Read>
 Endings damage(const TemporaryFolder& folder, const std::string& name, const std::string& whole,
                std::size_t step, const std::vector<unsigned char>& changes, const Read& ending) {

@@ -43,13 +43,13 @@ inline XlsxFixtureCell cell(const std::string& text) {
   return {fmt::format("<c r=\"@\" t=\"inlineStr\"><is><t>{}</t></is></c>", text)};
 }
 inline XlsxFixtureCell cell(const char* text) { return cell(std::string(text)); }
-/// "@" stands for the address.
+/// "@" is replaced by the address.
 inline XlsxFixtureCell raw_cell(const std::string& xml) { return {xml}; }
 inline XlsxFixtureCell no_cell() { return {}; }
 
 using XlsxRows = std::vector<std::vector<XlsxFixtureCell>>;
 
-/// "AB" of column 27, from 0; written down apart from the code that reads it.
+/// Letters of a column counted from 0: "AB" for 27. Written independently of the reader.
 inline std::string column_letters(std::size_t column) {
   std::string letters(1, static_cast<char>('A' + column % 26));
   return column < 26 ? letters : column_letters(column / 26 - 1) + letters;

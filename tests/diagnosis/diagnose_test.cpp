@@ -100,8 +100,9 @@ TEST_CASE("diagnose: every repeat and average in its class, by the true shares",
   REQUIRE(found.signals.front().smallest_leak);
   CHECK(found.signals.front().smallest_leak->share > 0.0);
   CHECK(found.signals.front().smallest_leak->share < 0.02);
-  // Of means of three the error is that of a repeat times sqrt(1/3 + 1/3) over sqrt(1 + 1/2): their
-  // limit is less than that of a repeat, but of its size. An average less itself has none.
+  // The error for a mean of three is that of one repeat times sqrt(1/3 + 1/3) / sqrt(1 + 1/2). Its
+  // limit is lower than that of a repeat, but of the same order. An average minus itself has no
+  // error.
   REQUIRE(found.signals.front().smallest_single_leak);
   const double of_average = found.signals.front().smallest_leak->coefficient;
   const double of_single = found.signals.front().smallest_single_leak->coefficient;
@@ -194,7 +195,7 @@ TEST_CASE("diagnose: another fault is not called a leak", "[diagnosis]") {
     REQUIRE_FALSE(record.warnings.empty());
     CHECK_THAT(record.warnings.front(), Catch::StartsWith("not explained by a leak"));
   }
-  // Dry friction loses motion much as a leak does: what it does otherwise is told of.
+  // Dry friction loses motion like a leak; its other effects cause a warning.
   for (const auto& record : found_with("coulomb_friction", 3000.0)) {
     CAPTURE(record.fit.parity_rms_m, record.fit.misfit_rms_m, record.estimate.share);
     REQUIRE_FALSE(record.warnings.empty());
@@ -242,7 +243,7 @@ TEST_CASE("diagnose: a record of one sample is told to be too short", "[diagnosi
     CHECK_FALSE(record.fit.ok());
     CHECK_THAT(record.fit.failure, Catch::Contains("one sample counts"));
   }
-  // Two tell a flow over a time.
+  // Two samples define a flow over a time.
   const Diagnosis two =
       diagnosis::diagnose(campaign, records_of(campaign, 1, 2), known_rig(campaign), {});
   for (const auto& record : two.records)

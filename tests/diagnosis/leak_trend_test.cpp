@@ -49,7 +49,7 @@ TEST_CASE("leak_trends: two dates are no trend, and said so", "[diagnosis]") {
 }
 
 TEST_CASE("leak_trends: the line through three dates, in their order", "[diagnosis]") {
-  // 4 degrees of freedom at the ends, which alone have weight in the slope: 8 of their sum.
+  // Only the two ends have weight in the slope; with 4 degrees of freedom each, their sum has 8.
   const LeakTrend trend =
       only_trend({on("2026-01-11", 0.5, 0.03, 4.0), on("2026-01-01", 0.3, 0.03, 4.0),
                   on("2026-01-06", 0.4, 0.01, 1.0)});
@@ -57,7 +57,7 @@ TEST_CASE("leak_trends: the line through three dates, in their order", "[diagnos
   CHECK(trend.last_day - trend.first_day == 10);
   CHECK_THAT(trend.coefficient_per_day, WithinRel(0.02, 1e-9));
   CHECK_THAT(trend.share_per_day, WithinRel(0.004, 1e-9));
-  // Error 0.03 sqrt(2) / 10 per day; quantile 97.5 % of t with 8 degrees.
+  // Error 0.03 sqrt(2) / 10 per day; 97.5 % quantile of t with 8 degrees of freedom.
   CHECK_THAT(trend.share_per_day_ci95.second - trend.share_per_day,
              WithinRel(0.2 * 0.003 * std::sqrt(2.0) * 2.306004135, 1e-6));
   CHECK(trend.significant);

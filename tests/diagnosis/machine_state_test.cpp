@@ -54,7 +54,7 @@ TEST_CASE("pooled_leak: an error that all members share does not average out", "
   CHECK_THAT(same.error.own_se, WithinRel(0.1, 1e-12));
   CHECK_THAT(same.error.rig_se, WithinRel(0.3, 1e-12));
   CHECK_THAT(same.rig_moves(0), WithinRel(1.0, 1e-12));
-  // Two that the rig moves in opposite directions tell their mean without it.
+  // Two members that the rig moves in opposite directions determine their mean without it.
   const auto opposite =
       diagnosis::pooled_leak({member(0.4, 0.01, 1e6, 1.0), member(0.6, 0.01, 1e6, -1.0)}, rig);
   CHECK_THAT(opposite.coefficient, WithinRel(0.5, 1e-12));

@@ -1,4 +1,4 @@
-"""Every name in the last column of docs/glossary.md stands in the sources, so that the glossary cannot outlive them."""
+"""Every name in the last column of docs/glossary.md occurs in the sources, so that the glossary stays up to date."""
 import pathlib
 import re
 import sys

@@ -1,4 +1,4 @@
-"""scripts/docs runs what a document shows, and finds broken links. usage: site_test.py"""
+"""scripts/docs runs the commands of a document, and finds broken links. usage: site_test.py"""
 import os
 import pathlib
 import subprocess

@@ -6,8 +6,8 @@
 #include "report/store/json.hpp"
 #include "report/store/stored/stored_fit.hpp"
 
-// Prints the scores of a simulation that is off by one throughout, as results hold them and as the
-// page shows them.
+// Prints the scores of a simulation with a constant error of one, in the format of result files and
+// of the page.
 
 int main() {
   const std::vector<double> measured{0.0, 10.0, 20.0, 10.0};

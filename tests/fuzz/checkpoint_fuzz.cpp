@@ -12,8 +12,8 @@ using namespace rigcal;
 
 namespace {
 
-/// What a checkpoint says of the fit that it belongs to: it holds version and revision, which no
-/// corpus can know. Inputs hold a text in its place.
+/// Identity of the fit that a checkpoint belongs to. It includes version and revision, which no
+/// corpus can know, so inputs have a placeholder.
 const std::string& fit_identity() {
   static const std::string text =
       report::parse_json(report::checkpoint_text({}, {}), "identity").at("fit").dump();

@@ -62,7 +62,7 @@ inline void mutate_json(Json& json, std::mt19937& random) {
     case 0:
       value = odd_value(random);
       break;
-    case 1:  // a copy, since one may hold the other
+    case 1:  // a copy, since one may contain the other
       value = Json(other);
       break;
     case 2:

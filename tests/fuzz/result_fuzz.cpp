@@ -31,7 +31,7 @@ void read_or_refuse(Attempt attempt) {
   }
 }
 
-/// A fit whose residuals were tested, so that their curves are drawn.
+/// A fit with residual tests, so that their curves are drawn.
 std::string tested_fit() {
   auto fit = test::stored_result();
   fit["conditions"][0]["residual_tests"]["position"] = json_of(StoredResidualTests());
@@ -40,7 +40,7 @@ std::string tested_fit() {
 
 }  // namespace
 
-/// A fit.json, or another result in JSON or a table, is read by all that reads such, or is refused.
+/// Gives a fit.json, another result in JSON or a table to every reader; each reads or refuses it.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(fuzz::text_of_bytes(data, size));
   const auto file = fuzz::scratch_file("fit.json", text);
@@ -57,7 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   for (const std::string& kind : kinds) {
     const auto read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
       if (path == kind) return text;
-      // What lies beside what is read is whole.
+      // The files beside the tested one are undamaged.
       const bool of_fit = kind == "residual_tests.json" || kind == "residuals/sine.csv";
       if (path == "fit.json" && of_fit) return tested_fit();
       if (path == "residual_tests.json" &&

@@ -184,8 +184,8 @@ TEST_CASE("agreement: 1e7 samples on an offset of 1e9 as in integer arithmetic",
 }
 
 TEST_CASE("rho2: its distance from 1 keeps all digits", "[metrics]") {
-  // A residual of 1e-6, 1e-9 of the signal; 1 - rho2 itself holds 1e-4 of 1e-12 and nothing of
-  // 1e-18.
+  // A residual of 1e-6, 1e-9 of the signal; 1 - rho2 itself resolves 1e-12 to 1e-4, and 1e-18 not
+  // at all.
   const double noise = GENERATE(1e-6, 1e-9);
   const double offset = GENERATE(0.0, 1e3);
   const Values measured = normal_values(1000, offset, 1.0, 3);

@@ -124,9 +124,10 @@ TEST_CASE("agreement_uncertainty: a sensor's gain and offset", "[metrics]") {
   const auto offset = agreement_uncertainty(with, truth);
   CHECK_THAT(offset->maximum_error, WithinRel(1.959964 * 0.02, 1e-5));
   CHECK_THAT(offset->rmse, WithinRel(1.959964 * 0.02, 1e-5));  // the same at every sample
-  // rho2 is blind to a constant: the error goes from -0.02 at one end of the range to 0.02.
+  // rho2 is blind to a constant, so the offset goes from -0.02 at one end of the range to 0.02 at
+  // the other.
   CHECK_THAT(offset->rho2, WithinRel(1.959964 * std::pow(0.02 / 0.98, 2.0), 1e-2));
-  with.offset_sd = 20.0;  // more than the signal
+  with.offset_sd = 20.0;  // larger than the signal
   CHECK(agreement_uncertainty(with, truth)->rho2 > 0.9);
   with.offset_sd = 0.02;
   with.gain_sd = 0.01;

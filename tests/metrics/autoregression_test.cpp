@@ -28,7 +28,7 @@ TEST_CASE("autoregression: its autocovariances are those of the closed form", "[
   const auto first = autocovariance(Autoregression{{0.8}, 2.0}, 3);
   for (std::size_t h = 0; h < first.size(); ++h)  // 1e-12: rounding
     CHECK_THAT(first[h], WithinRel(2.0 / (1.0 - 0.64) * std::pow(0.8, h), 1e-12));
-  // Second order: Yule and Walker's equations hold.
+  // Second order: Yule and Walker's equations are satisfied.
   const std::vector<double> phi{0.5, -0.3};
   const auto gamma = autocovariance(Autoregression{phi, 1.0}, 4);
   CHECK_THAT(gamma[0], WithinAbs(phi[0] * gamma[1] + phi[1] * gamma[2] + 1.0, 1e-12));
@@ -72,7 +72,7 @@ TEST_CASE("autoregression: constant, empty and short series give a white model",
 
 TEST_CASE("autoregression: of a series that repeats itself the model stays within bounds",
           "[metrics]") {
-  // Two partial autocorrelations tell a sine; the rest is rounding over what is all but zero.
+  // Two partial autocorrelations describe a sine; the rest is rounding divided by nearly zero.
   std::vector<double> sine(3001);
   for (std::size_t t = 0; t < sine.size(); ++t)
     sine[t] = std::sin(2.0 * 3.14159265358979 * static_cast<double>(t) / 10.0);

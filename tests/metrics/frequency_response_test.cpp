@@ -238,7 +238,7 @@ TEST_CASE("broadband_response: a sweep through a pure delay, with drift", "[metr
     ++within;
   }
   CHECK(within > 6);
-  // Beyond the sweep the drive has no power to tell anything with.
+  // Beyond the sweep the drive has no power.
   CHECK(points.back().frequency_hz < 100.0);
 }
 

@@ -52,7 +52,7 @@ TEST_CASE("mean_absolute: of a sine is 2/pi, with a square-law error wherever th
     const double mean = mean_absolute(t, sine(t, 2.0, phase_rad));
     // (2 pi / 100)^2 / 12 = 3.3e-4 of the trapezoidal rule.
     CHECK_THAT(mean, WithinRel(4.0 / std::numbers::pi, 4e-4));
-    CHECK(mean < 4.0 / std::numbers::pi);  // chords lie inside the arc
+    CHECK(mean < 4.0 / std::numbers::pi);  // chords are inside the arc
   }
 }
 

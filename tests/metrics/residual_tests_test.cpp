@@ -189,8 +189,8 @@ TEST_CASE("residual_tests: a test without power is no pass", "[metrics]") {
   CHECK(tests.autocorrelation.outcome == TestOutcome::failed);
   CHECK(tests.periodogram.outcome == TestOutcome::failed);
 
-  // 50 white samples tell offsets, trends and correlations of half a standard deviation, but not
-  // the tails of a distribution; 16 tell no spectrum either.
+  // 50 white samples can show offsets, trends and correlations of half a standard deviation, but
+  // not the tails of a distribution; 16 cannot show a spectrum either.
   const ResidualTests some = residual_tests(white(50, 12), white(50, 13), 0.001);
   CHECK(some.drift.outcome == TestOutcome::passed);
   CHECK(some.cross_correlation->outcome == TestOutcome::passed);
@@ -206,7 +206,7 @@ TEST_CASE("effective_sample_size: closed form of a geometric decay", "[metrics]"
   std::vector<double> rho(1000, 0.0);
   for (std::size_t k = 0; k < rho.size(); ++k) rho[k] = std::pow(0.5, static_cast<double>(k));
   CHECK_THAT(effective_sample_size(rho), Catch::WithinRel(1000.0 / 3.0, 1e-12));
-  // Only what lies before the first that is not positive counts.
+  // Only values before the first that is not positive count.
   rho[2] = 0.0;
   CHECK_THAT(effective_sample_size(rho), Catch::WithinRel(500.0, 1e-12));
   // The first within 1.96 / sqrt(1000) = 0.06198: white.

@@ -42,7 +42,7 @@ TEST_CASE("significance: sign test counts tails of a fair coin", "[metrics]") {
 
 TEST_CASE("significance: a difference by few degrees of freedom is one of Student's t",
           "[metrics]") {
-  // Quantiles 97.5 % of t with 2 and 5 degrees, to their printed digits.
+  // 97.5 % quantiles of t with 2 and 5 degrees of freedom, as printed in tables.
   CHECK_THAT(difference_p_value(4.302652730 * 0.2, {0.2, 2.0}), WithinRel(0.05, 1e-8));
   CHECK_THAT(difference_p_value(-2.570581836 * 0.2, {0.2, 5.0}), WithinRel(0.05, 1e-8));
   CHECK_THROWS_AS(difference_p_value(1.0, {1.0, 0.0}), std::invalid_argument);
@@ -50,10 +50,10 @@ TEST_CASE("significance: a difference by few degrees of freedom is one of Studen
   const EstimateError both = error_of_difference({3.0, 4.0}, {4.0, 9.0});
   CHECK_THAT(both.standard_error, WithinRel(5.0, 1e-15));
   CHECK_THAT(both.freedom, WithinRel(625.0 / (81.0 / 4.0 + 256.0 / 9.0), 1e-12));
-  // A value that is known exactly adds none.
+  // An exactly known value adds no uncertainty.
   CHECK_THAT(error_of_difference({3.0, 4.0}, {}).freedom, WithinRel(4.0, 1e-12));
   CHECK(error_of_difference({3.0}, {4.0}).freedom == kManyDegrees);
-  // Whatever the unit.
+  // The result does not depend on the unit.
   for (const double unit : {1e-150, 1e-90, 1e90, 1e150}) {
     CAPTURE(unit);
     CHECK_THAT(error_of_difference({3.0 * unit, 4.0}, {4.0 * unit, 9.0}).freedom,
@@ -63,8 +63,8 @@ TEST_CASE("significance: a difference by few degrees of freedom is one of Studen
 
 namespace {
 
-/// An estimate as a fit of conditions with few repeats has it: the mean over conditions, its error
-/// by the spread of the repeats of each, with the freedom of Satterthwaite.
+/// An estimate as in a fit of conditions with few repeats: the mean over conditions, with the
+/// standard error from the repeats of each, and Satterthwaite's degrees of freedom.
 struct Drawn {
   double value = 0.0;
   EstimateError error;
@@ -109,10 +109,10 @@ TEST_CASE("significance: equal rigs of few repeats are told apart in 5 % of case
     found_by_normal += difference_p_value(a.value - b.value, {both.standard_error}) < 0.05 ? 1 : 0;
   }
   CAPTURE(repeats, found, found_by_normal);
-  // 200 expected, standard deviation 14; fewer of two repeats, where the freedom is an estimate
-  // too.
+  // Expected are 200, with a standard deviation of 14; fewer for two repeats, where the degrees of
+  // freedom are estimated, too.
   CHECK(found > (repeats == 2 ? 40 : 120));
   CHECK(found < 260);
-  // The normal distribution does not know that the errors are uncertain.
+  // The normal distribution ignores the uncertainty of the errors.
   if (repeats == 2) CHECK(found_by_normal > 400);
 }

@@ -94,8 +94,8 @@ TEST_CASE("golden: residual tests", "[metrics]") {
   // 1.3581, printed with four digits.
   CHECK_THAT(spectrum.limit, WithinRel(value("periodogram_limit"), 1e-4));
   check_value(spectrum.frequency_hz.front(), golden(name + ".periodogram_lowest")[0]);
-  // The last of an even number of samples' lines stands for one frequency, not for two: which
-  // moves the others by half its share of the power; the most here is 3 %.
+  // With an even number of samples the last line represents one frequency, not two. This moves the
+  // others by half its fraction of the power, here at most 3 %.
   CHECK_THAT(spectrum.density.front(), WithinRel(golden(name + ".periodogram_lowest")[1], 0.04));
   check_value(spectrum.median_frequency_hz, value("periodogram_median_hz"));
   check_value(spectrum.peak_frequency_hz, golden(name + ".periodogram_peak")[0]);

@@ -17,9 +17,9 @@ using Errors = std::vector<EstimateError>;
 
 constexpr int kTrials = 4000;
 
-/// How often, of kTrials, a trend is significant at 5 %: points at 0, 1, 2 and so on with an error
-/// of 1, a day effect of this standard deviation that no error tells, and a slope of so many of its
-/// standard errors.
+/// Fraction of kTrials in which a trend is significant at 5 %. Points at 0, 1, 2 and so on have an
+/// error of 1, a day effect of this standard deviation that the errors do not include, and a slope
+/// of this many of its standard errors.
 double share_found(std::size_t points, double day_sd, double slope_in_errors) {
   std::mt19937_64 random(4);
   std::normal_distribution<double> normal;
@@ -60,7 +60,7 @@ TEST_CASE("trend: the exact line where the points lie on one", "[metrics]") {
 
 TEST_CASE("trend: few false alarms where the errors tell the scatter", "[metrics]") {
   const std::size_t points = GENERATE(3U, 4U, 5U);
-  // Some of these are widened needlessly, so a little fewer than 5 %.
+  // Some of these are widened needlessly, so slightly fewer than 5 %.
   const double found = share_found(points, 0.0, 0.0);
   CAPTURE(points, found);
   CHECK(found > 0.02);
@@ -68,7 +68,7 @@ TEST_CASE("trend: few false alarms where the errors tell the scatter", "[metrics
 }
 
 TEST_CASE("trend: a day effect that no error tells makes few false alarms", "[metrics]") {
-  // Three points show it with one degree of freedom only.
+  // Three points leave one degree of freedom for the scatter.
   struct Case {
     std::size_t points;
     double most;
@@ -88,31 +88,32 @@ TEST_CASE("trend: a steep line is found from three points on", "[metrics]") {
 }
 
 TEST_CASE("trend: the scatter of many points tells errors that are stated too small", "[metrics]") {
-  const double found = share_found(8, std::sqrt(8.0), 0.0);  // three times too small
-  // 5 % expected, standard deviation 0.35 %.
+  const double found = share_found(8, std::sqrt(8.0), 0.0);  // errors three times too small
+  // Expected is 5 %, with a standard deviation of 0.35 %.
   CHECK(found > 0.036);
   CHECK(found < 0.064);
 }
 
 TEST_CASE("trend: points off the line widen it by Birge's ratio, tested by t with n - 2",
           "[metrics]") {
-  // 0, 6, 0, 6 errors: about the line 1.2 x + 1.2 chi-square 28.8 of 2 degrees.
+  // 0, 6, 0, 6 errors: about the line 1.2 x + 1.2 chi-square is 28.8, with 2 degrees of freedom.
   const Trend trend = weighted_trend(Values{0, 1, 2, 3}, Values{0, 6, 0, 6}, Errors(4, {1.0}));
   CHECK_THAT(trend.slope, WithinRel(1.2, 1e-12));
   CHECK_THAT(trend.chi_square, WithinRel(28.8, 1e-12));
   CHECK_THAT(trend.widened, WithinRel(std::sqrt(14.4), 1e-12));
   CHECK(trend.freedom == 2.0);
   CHECK_THAT(trend.slope_standard_error, WithinRel(std::sqrt(14.4 / 5.0), 1e-12));
-  // t = 0.7071; its tail of 2 degrees is 1/2 - t / (2 sqrt(2 + t^2)).
+  // t = 0.7071; its tail with 2 degrees of freedom is 1/2 - t / (2 sqrt(2 + t^2)).
   CHECK_THAT(trend.p_value, WithinRel(1.0 - std::sqrt(0.5 / 2.5), 1e-9));
 }
 
 TEST_CASE("trend: errors of few degrees of freedom are those of t", "[metrics]") {
-  // Points on a line: 1 and 4 degrees at the ends, the middle has no weight in the slope.
+  // Points on a line, 1 and 4 degrees of freedom at the ends; the middle one has no weight in the
+  // slope.
   const Trend trend =
       weighted_trend(Values{0, 1, 2}, Values{0, 1, 2}, Errors{{0.3, 4.0}, {0.5, 1.0}, {0.3, 4.0}});
   CHECK_THAT(trend.freedom, WithinRel(8.0, 1e-9));
-  // Quantile 97.5 % of t with 8 degrees, to its printed digits.
+  // 97.5 % quantile of t with 8 degrees of freedom, as printed in tables.
   CHECK_THAT(trend.ci95_high - trend.slope,
              WithinRel(2.306004135 * trend.slope_standard_error, 1e-8));
 }

@@ -60,7 +60,7 @@ class Mutant:
     name: str  # unique in its layer
     what: str  # what is broken, in words
     file: str
-    function: str = ""  # all that are defined by this name in the file; the whole file if empty
+    function: str = ""  # every function of this name in the file; empty: the whole file
     original: str = ""
     mutated: str | None = None
     equivalent: str = ""  # why no test can tell, if none can
@@ -130,12 +130,12 @@ class Token:
 
 
 def tokens_of(code):
-    """Those of a text without comments; white space and line breaks do not count."""
+    """Returns the tokens of a text without comments, ignoring white space and line breaks."""
     return [Token(m[0], *m.span()) for m in TOKEN.finditer(code)]
 
 
 def closing(tokens, i):
-    """The bracket that closes tokens[i], or the end of the tokens."""
+    """Returns the index of the bracket that closes tokens[i], or the end of the tokens."""
     depth = 0
     for j in range(i, len(tokens)):
         depth += (tokens[j].text in OPEN) - (tokens[j].text in CLOSE)
@@ -145,7 +145,7 @@ def closing(tokens, i):
 
 
 def definition_end(tokens, i):
-    """The brace that ends the function whose name is tokens[i], or None where that only uses the name."""
+    """Returns the index of the brace that ends the function with the name tokens[i]; None if this is no definition."""
     if i + 1 == len(tokens) or tokens[i + 1].text != "(":
         return None
     i, initialises = closing(tokens, i + 1) + 1, False
@@ -164,7 +164,7 @@ def definition_end(tokens, i):
 
 
 def functions_of(tokens):
-    """(name, its index, the index of the brace that ends it) of every function that is defined among the tokens."""
+    """Returns (name, index of the name, index of the closing brace) of every function that the tokens define."""
     found = []
     for i, token in enumerate(tokens):
         if re.fullmatch(r"[A-Za-z_]\w*", token.text) and token.text not in NO_FUNCTIONS:
@@ -175,14 +175,14 @@ def functions_of(tokens):
 
 
 def sequences(wanted, tokens, begin, end):
-    """Where the texts stand among tokens[begin:end]."""
+    """Returns the indices at which the texts occur in tokens[begin:end]."""
     first, count = wanted[0], len(wanted)
     return [i for i in range(begin, end - count + 1)
             if tokens[i].text == first and [t.text for t in tokens[i:i + count]] == wanted]
 
 
 def nearest(wanted, tokens, begin, end, code):
-    """The stretch of tokens[begin:end] most like the texts, as "line 12: text"."""
+    """Returns the part of tokens[begin:end] most similar to the texts, as "line 12: text"."""
     count = min(len(wanted), end - begin)
     matcher = difflib.SequenceMatcher(autojunk=False)
     matcher.set_seq2(wanted)
@@ -202,7 +202,7 @@ def told(first, last, code):
 
 
 def find(mutant, tokens, functions, code):
-    """The only place of the original in its function, or in the file where none is given: its first token."""
+    """Returns the first token of the only occurrence of the original in its function, or in the file if none is given."""
     wanted = [t.text for t in tokens_of(mutant.original)]
     bodies = [(i, end) for name, i, end in functions if name == mutant.function]
     whole = [(0, len(tokens))]
@@ -226,14 +226,14 @@ def find(mutant, tokens, functions, code):
 
 
 def changed(mutant, tokens, at):
-    """What differs, in the source whose tokens match the original from `at` on: (begin, end, what stands there instead)."""
+    """Returns the change as (begin, end, replacement) in the source, whose tokens match the original from `at` on."""
     original, mutated = tokens_of(mutant.original), tokens_of(mutant.mutated)
     least = min(len(original), len(mutated))
     front = next((i for i in range(least) if original[i].text != mutated[i].text), least)
     back = next((i for i in range(least - front) if original[-1 - i].text != mutated[-1 - i].text), least - front)
     last, last_mutated = len(original) - back, len(mutated) - back
     instead = mutant.mutated[mutated[front].begin:mutated[last_mutated - 1].end] if front < last_mutated else ""
-    if front == last:  # nothing goes, something comes
+    if front == last:  # a pure insertion
         begin = tokens[at + front].begin if front < len(original) else tokens[at + front - 1].end
         return begin, begin, f" {instead} "
     return tokens[at + front].begin, tokens[at + last - 1].end, instead
@@ -249,7 +249,7 @@ def is_assignment(text, i):
 
 
 def balanced(text, begin, end):
-    """The range, grown until it holds both of each pair of brackets."""
+    """Returns the range, extended until it contains both of each pair of brackets."""
     closed = opened = 0
     for c in text[begin:end]:
         if c in OPEN:
@@ -268,7 +268,7 @@ def balanced(text, begin, end):
 
 
 def expression_around(text, begin, end):
-    """The smallest complete expression that holds text[begin:end], or None where that takes a statement.
+    """Returns the smallest complete expression that contains text[begin:end], or None if that needs a statement.
 
     It ends at brackets, commas, assignments and the parts of ?:, unless the changed text has those itself.
     """
@@ -297,7 +297,7 @@ def expression_around(text, begin, end):
                 start -= 1
                 depth += (text[start] in CLOSE) - (text[start] in OPEN)
             if c == "}" and not re.match(r"[\w>]", text[start - 1]):
-                break  # of a block, not of an initialiser
+                break  # the brace belongs to a block, not to an initialiser
             if BEFORE_A_CONDITION.search(text[:start]):
                 break
             left = start
@@ -402,7 +402,7 @@ def rendered(code, places, begin, end):
 
 
 def without_constexpr(code, places):
-    """A constant whose value is mutated is one of run time: (begin, end, what stands there instead), the last first."""
+    """Turns a constant with a mutated value into one of run time: (begin, end, replacement), the last first."""
     edits = set()
     for place in places:
         match = re.search(r"\b(inline |static |)constexpr (?=[^;()]*$)", code[:place.begin])

@@ -1,11 +1,11 @@
-"""What the linker made: hardened, and asking for no more than is promised. usage: binaries_test.py BUILD"""
+"""Checks that the binaries are hardened and need no newer libraries than documented. usage: binaries_test.py BUILD"""
 import pathlib
 import re
 import subprocess
 import sys
 import unittest
 
-BUILD = pathlib.Path()  # from the command line
+BUILD = pathlib.Path()  # set by the command line
 FMU_GLIBC = (2, 34)  # docs/export.md
 
 

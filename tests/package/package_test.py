@@ -1,4 +1,4 @@
-"""What `cmake --install` leaves is what a project finds and a user reads. usage: package_test.py BUILD COMPILER"""
+"""`cmake --install` installs everything for projects and readers. usage: package_test.py BUILD COMPILER"""
 import json
 import pathlib
 import re
@@ -84,7 +84,7 @@ class Installed(unittest.TestCase):
                 self.assertIn(f"\n  {part}: {licence}; ", text)
                 if package.startswith("npm:") or pathlib.Path(f"/usr/share/doc/{package}/copyright").is_file():
                     self.assertIn(f"\n======== {part}\n", text)
-            self.assertIn("Leon Sorokin", text)  # of uPlot
+            self.assertIn("Leon Sorokin", text)  # the notice of uPlot
 
     def test_the_spdx_list_names_what_is_linked_and_what_is_compiled_in(self):
         if not shutil.which("dpkg-query"):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Do two fits of the same records, by different compilers, estimate the same? To 1e-6 of the value; or to 0.002 of its standard
-error, within which the search ends. usage: same_estimates.py FIT.JSON FIT.JSON
+"""Compares the estimates of two fits of the same records by different compilers. They may differ by 1e-6 of the value, or by
+0.002 standard errors, the precision of the search. usage: same_estimates.py FIT.JSON FIT.JSON
 """
 import json
 import sys

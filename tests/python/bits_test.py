@@ -44,9 +44,9 @@ class Pair:
 
 
 def files_in(folder: pathlib.Path) -> dict[str, str]:
-    """Texts of all files, without what two runs of the same thing differ in: the call, and the time that it took."""
+    """Returns the texts of all files without the call and the run time, in which two equal runs differ."""
     files = {str(file.relative_to(folder)): file.read_text() for file in folder.rglob("*") if file.is_file()}
-    manifest = json.loads(files["rigcal-manifest.json"])  # whose hashes differ by the same
+    manifest = json.loads(files["rigcal-manifest.json"])  # its hashes differ for the same reasons
     files["rigcal-manifest.json"] = str([(each["path"], each["verb"]) for each in manifest["files"]])
     for name in ("fit.json", "validation.json", "average.json"):
         if name not in files:
@@ -55,7 +55,7 @@ def files_in(folder: pathlib.Path) -> dict[str, str]:
         call = result["provenance"]["command"]
         files[name] = without(files[name], f'"command": {json.dumps(call)}')
         page = html.unescape(files["report.html"])
-        page = re.sub(r"(SHA-256 (?:of [a-z.]+ )?)[0-9a-f]{8,16}", r"\1", page)  # of what differs
+        page = re.sub(r"(SHA-256 (?:of [a-z.]+ )?)[0-9a-f]{8,16}", r"\1", page)  # hashes of files that differ
         files["report.html"] = page = without(page, f"<pre><code>{call}</code></pre>")
         if name == "average.json":
             continue
@@ -149,7 +149,7 @@ def test_what_is_printed(pair: Pair) -> None:
 
 
 def same(ours: float | None, theirs: float | None) -> bool:
-    """Equal in every bit; JSON has null for what is no finite number."""
+    """Equal in every bit; JSON has null for a number that is not finite."""
     if theirs is None:
         return ours is None or not math.isfinite(ours)
     return ours == theirs
@@ -287,7 +287,7 @@ def test_every_number_of_records_and_simulations(campaign: rigcal.Campaign, data
         assert simulation.status == "ok"
         assert np.array_equal(simulation.time_s, columns["time_s"])
         assert np.array_equal(simulation.reference_m, columns["reference_m"])
-        # A file leaves out the second mass where the rig has none.
+        # A file omits the second mass if the rig has none.
         assert columns.keys() - {"time_s", "reference_m"} == simulation.signals.keys() - {"payload_acceleration_m_per_s2"}
         for name, signal in simulation.signals.items():
             assert np.array_equal(signal, columns[name]) if name in columns else not signal.any(), name

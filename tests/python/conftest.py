@@ -15,7 +15,7 @@ RIGCAL = os.environ["RIGCAL"]
 
 
 def command(*arguments: object, cwd: pathlib.Path | None = None) -> str:
-    """Runs the command, whatever its verdict, and returns what it prints."""
+    """Runs the command, whatever its verdict, and returns its output."""
     done = subprocess.run([RIGCAL, *map(str, arguments)], cwd=cwd, capture_output=True, text=True, check=False)
     assert done.returncode in (0, 1), done.stderr
     return done.stdout

@@ -1,4 +1,4 @@
-"""Bad input becomes an exception that says what was wrong and where, never a crash."""
+"""Bad input causes an exception that names the error and its place, never a crash."""
 
 from __future__ import annotations
 

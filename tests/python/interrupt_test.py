@@ -1,4 +1,4 @@
-"""A fit lets other threads of Python run, tells how far it is, and ends on Ctrl-C with what it found."""
+"""A fit lets other Python threads run, reports its progress, and ends on Ctrl-C with the best result so far."""
 
 from __future__ import annotations
 

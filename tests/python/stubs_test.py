@@ -1,4 +1,4 @@
-"""The stubs say what the module has: names, arguments, defaults, and the types of what comes back."""
+"""The stubs match the module: names, arguments, defaults, and types of returned values."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ NO_LOCKS = "file system without locks"
 
 
 def work(campaign, earlier):
-    """Every verb that writes, and what of its files is compared."""
+    """Returns every verb that writes, with the compared parts of its files."""
     by_fit = ["--fit", earlier / "fit" / "fit.json"]
     return {
         "synthesize": (["synthesize", SMALL_RIG, "--seed", "1", "--quiet"], None),

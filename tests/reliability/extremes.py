@@ -1,5 +1,5 @@
-"""Numbers that no rig has: every quantity of a campaign in turn is nothing, negative, tiny or huge. Each verb reads it or
-refuses it, within limits of time and memory. The keys come from the program itself, so a new one is tried from the start."""
+"""Tries numbers that no rig has: each quantity of a campaign in turn is zero, negative, tiny or huge. Each verb must read or
+refuse it, within limits of time and memory. The program itself lists the keys, so new keys are included."""
 import concurrent.futures
 import os
 import re
@@ -12,7 +12,8 @@ WHOLE = ("0", "-1", "1000000000000", "9223372036854775807")
 CPU_S = 60
 BYTES = 3 << 30
 
-# Tables and their entries; each key that a table may have is found by asking, see known_keys().
+# Tables and their entries. The keys that each table accepts are found at run time, see
+# known_keys().
 RIG = {
     "": {"schema": '"rigcal.campaign/1"', "name": '"extremes"'},
     "rig": {"model": '"load_pressure"'},
@@ -56,7 +57,7 @@ amplitude = "4 mm"
 use = "validate"
 repeats = ["records/{waveform}_*.csv"]
 """ for waveform, more in (("square", ""), ("chirp", 'end_frequency = "3 Hz"\nsweep_time = "2 s"\n')))
-# Waveforms whose frequencies end loops of their own.
+# Waveforms whose frequencies determine the length of a loop.
 WAVEFORMS = ("square", "triangle", "chirp")
 
 
@@ -64,12 +65,12 @@ VERBS = ("check", "average", "simulate", "fit", "validate", "plan", "leak-table"
 
 
 def text_of(table=None, key=None, value=None, base=RIG):
-    """The campaign with one entry that is another, or new."""
+    """Returns the campaign with one entry changed or added."""
     text = ""
     for name, entries in base.items():
         changed = {**entries, key: value} if name == table else entries
         if name:
-            text += f"\n[{name}]\n"  # "[condition]" is one of a list
+            text += f"\n[{name}]\n"  # "[condition]" is an array of tables
         text += "".join(f"{each} = {content}\n" for each, content in changed.items() if content is not None)
     return text + OTHER_CONDITIONS
 
@@ -89,7 +90,7 @@ class Study:
         base.write_text(text_of())
         must(rigcal, ["synthesize", base, "--seed", "1", "--out", self.twin, "--quiet"])
         must(rigcal, ["fit", base, "--data", self.twin, "--out", folder / "fit", "--quiet"])
-        self.limits_memory = b"__asan_init" not in rigcal.read_bytes()  # which takes terabytes of addresses
+        self.limits_memory = b"__asan_init" not in rigcal.read_bytes()  # AddressSanitizer takes terabytes of address space
 
     def arguments(self, verb, campaign, out):
         common = [verb, campaign, "--data", self.twin, "--out", out, "--threads", "1", "--quiet"]
@@ -114,14 +115,14 @@ class Study:
         return code, err.decode(errors="replace")
 
     def known_keys(self, table):
-        """What the table may hold, by the message about a key that it may not."""
+        """Returns the keys that a table accepts, from the message about an unknown key."""
         _, message = self.ended("check", text_of(table, "zzz", "1"), "ask")
         found = re.search(r"'zzz'.*\(known: (.*)\)", message)
         names = re.findall(r"[a-z][a-z0-9_]*", found.group(1)) if found else []
         return list(dict.fromkeys([*names, *RIG[table]]))
 
     def values(self, table, key):
-        """Values to try, by the message about a value of no kind; none for texts and tables."""
+        """Returns the values to try, from the message about a value of a wrong type; none for texts and tables."""
         _, message = self.ended("check", text_of(table, key, "[[[]]]"), "ask")
         if quantity := re.search(r'a text "number unit" such as "1.5 ([^"]*)"', message):
             return [f'"{number} {quantity.group(1)}"' for number in NUMBERS]
@@ -164,7 +165,7 @@ def study(rigcal, folder, size):
 
     runs = [(change, verb) for change in changes for verb in VERBS]
     if size == "small":
-        runs = runs[::97]  # coprime to the numbers of verbs and values, so that each meets each
+        runs = runs[::97]  # coprime to the numbers of verbs and values, so that all combinations occur
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for verb, what, (code, err) in pool.map(attempt, [(k, *each) for k, each in enumerate(runs)]):
             rows[verb].ended(code, what)

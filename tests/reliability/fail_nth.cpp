@@ -4,14 +4,15 @@
 // RIGCAL_FAIL=KIND:N  the N-th call of a kind fails; 0: none does
 //   memory            operator new
 //   malloc            malloc() and its kin, called by the program itself (Eigen) or a library in C
-//   locks             every flock(), without a number: as on NFS without its daemon
-//   files             opens to write, writes, syncs, closes, renames, links or makes a folder
+//   locks             every flock(), without a number: as on NFS without its lock daemon
+//   files             opening to write, writing, syncing, closing, renaming, linking, making a
+// folder
 // RIGCAL_COUNT=FILE   where they are counted at the end, in this order
 //
-// Counting begins with main(), whose first call is mallopt(): what fails before it is not the
-// program's. UDUNITS-2 is left out: it does not look whether it was given memory, and crashes or
-// forgets units. OpenSSL is: 3.5 waits for itself for ever where memory runs out while it begins.
-// So are glibc, libstdc++ and the loader, which make do or end the program.
+// Counting begins with main(), whose first call is mallopt(): failures before that are not the
+// program's. UDUNITS-2 is exempt: it does not check its allocations, and crashes or loses units. So
+// is OpenSSL: version 3.5 deadlocks if memory runs out during its initialisation. So are glibc,
+// libstdc++ and the loader, which recover or end the program.
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -171,7 +172,7 @@ int rename(const char* from, const char* to) {
   return file_call_fails(EIO) ? -1 : real(from, to);
 }
 
-// By another name, since <fcntl.h> has a struct of that name.
+// Under another name, since <fcntl.h> has a struct of that name.
 int lock_file(int descriptor, int operation) asm("flock");
 int lock_file(int descriptor, int operation) {
   static const auto real = next<int(int, int)>("flock");

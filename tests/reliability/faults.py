@@ -22,7 +22,7 @@ def places(count, most):
 
 
 def repeatable(folder):
-    """The hashes of what two runs write alike: neither the time that a fit took nor what holds its hash."""
+    """Returns the hashes of the files that two runs write alike: not those with the time that a fit took, or with its hash."""
     return {path: hash_ for path, hash_ in content(folder).items()
             if path not in ("fit.json", "report.html", "rigcal-manifest.json")}
 

@@ -1,5 +1,5 @@
-"""Files that are damaged: a byte changed, the end cut off, something put in, a value of a result replaced. Each is read, or
-refused with its name. A result names its files by their hashes, which are made right, else no parser would see them."""
+"""Damages files: changes a byte, cuts off the end, inserts bytes, replaces a value of a result. The program must read each file
+or refuse it by name. A result lists the hashes of its files; they are corrected, so that the parsers see the damage."""
 import hashlib
 import json
 import random
@@ -23,7 +23,7 @@ ODD = [None, True, "", "text", [], {}, [1.0], [None, None], 0, -1, 1, 0.5, 1e6, 
 
 
 def values_of(node, place=()):
-    """Places of all values of a JSON text."""
+    """Yields the places of all values of a JSON text."""
     yield place
     children = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
     for key, child in children:
@@ -31,7 +31,7 @@ def values_of(node, place=()):
 
 
 def replaced(data, rounds):
-    """Texts of a JSON in which one value is another, or gone, evenly over its values."""
+    """Yields texts of a JSON with one value replaced or removed, evenly over its values."""
     random.seed(len(data))
     places = [place for place in values_of(json.loads(data)) if place]
     for k in range(rounds):
@@ -52,7 +52,7 @@ def replaced(data, rounds):
 
 
 def cells_replaced(data, rounds):
-    """Texts of a table in which one cell is empty or another."""
+    """Yields texts of a table with one cell emptied or replaced."""
     random.seed(len(data))
     rows = data.split(b"\n")
     for k in range(rounds):
@@ -65,7 +65,7 @@ def cells_replaced(data, rounds):
 
 
 def make_right(result, file):
-    """The hash of a file of the result in fit.json."""
+    """Corrects the hash of a result file in fit.json."""
     fit = json.loads((result / "fit.json").read_text())
     for each in fit["provenance"]["files"]:
         if result / each["path"] == file:
@@ -74,7 +74,7 @@ def make_right(result, file):
 
 
 def behind_hashes(rigcal, folder, fit, rounds):
-    """Files that fit.json names, and fit.json by its values."""
+    """Damages the files that fit.json lists, and the values of fit.json."""
     other = folder / "other"
     shutil.copytree(fit, other)
     diagnose = ["diagnose", folder / "twin" / "campaign.toml", "--fit", fit / "fit.json", "--out", folder / "diagnosis",

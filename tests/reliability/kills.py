@@ -32,7 +32,7 @@ def killed_fits(rigcal, folder, kills):
     if comparable(parts / "fit.json") != comparable(folder / "whole" / "fit.json"):
         row.is_wrong("another fit.json than that of the fit that was not killed")
     for each in left_behind(folder):
-        # What a killed process could not remove, the next one of the same folder has.
+        # The next run in the folder removes the files that a killed process left.
         row.is_wrong(f"left {each}")
     return row
 

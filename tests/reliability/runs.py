@@ -70,7 +70,7 @@ def must(rigcal, arguments):
 
 
 def comparable(file):
-    """A result in JSON without what may differ between two runs of the same."""
+    """Returns a result in JSON without the parts that may differ between two equal runs."""
     result = json.loads(file.read_text())
     for key in ("wall_seconds", "provenance"):
         result.pop(key, None)

@@ -29,7 +29,7 @@ def verbs(source, twin, fit):
 
 
 def study(rigcal, folder, size):
-    """A row for each verb. The small study waits longer, as what else runs beside it may slow it down."""
+    """Returns a row for each verb. The small study waits longer, as other processes may slow it down."""
     limit_s = 20.0 if size == "small" else WITHIN_S
     twin, fit = folder / "twin", folder / "fit"
     source = SMALL_RIG if size == "small" else DEMO

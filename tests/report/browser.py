@@ -15,7 +15,7 @@ def chromium():
 
 
 class Browser:
-    """One page. Keeps what it complains of (`problems`) and every address it asks for (`requests`)."""
+    """One page. Records its errors (`problems`) and every address that it requests (`requests`)."""
 
     FLAGS = [
         "--headless", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The model in a page against the command, in headless Chromium: live_test.py RIGCAL SOURCES. Exit code 77: no browser, or a
-program without the model for pages."""
+"""Compares the model in a page with the command, in headless Chromium. usage: live_test.py RIGCAL SOURCES. Exit code 77: no
+browser, or a program without the model for pages."""
 
 import base64
 import csv
@@ -14,7 +14,8 @@ import tempfile
 
 from browser import Browser, chromium
 
-# Everything that a shipped rig has, in one: two chambers, hoses, a second-order valve, friction, a delay, a lag, a sampled loop.
+# A rig with every feature that the shipped rigs have: two chambers, hoses, second-order valve,
+# friction, delay, lag, sampled loop.
 TWO_CHAMBER = """schema = "rigcal.campaign/1"
 name = "</script><b>rig</b> & \\"more\\""
 [rig]
@@ -95,7 +96,7 @@ def simulated(browser):
 
 
 def moved(browser, script):
-    """Runs a script that changes a value, and waits for the curves."""
+    """Runs a script that changes a value and waits for the curves."""
     was = simulated(browser)
     browser.run(script)
     browser.wait_for(f"window.rigcalLive.drawn > {was}", f"no curve follows {script}")
@@ -107,7 +108,7 @@ def type_in(label, value):
 
 
 def compare(browser, rigcal, campaign, what):
-    """Does what the page says that makes `simulate` do the same; every output agrees to 1e-6 of its peak."""
+    """Runs the `simulate` command that the page shows; every output must agree to 1e-6 of its peak."""
     text = browser.run("document.getElementById('live-text').textContent")
     condition, _, command = text.partition("# Then:\n")
     live = campaign.with_name("live.toml")
@@ -125,7 +126,7 @@ def compare(browser, rigcal, campaign, what):
     check(len(page["times"]) == len(native["time_s"]), f"{what}: {len(page['times'])} samples, {len(native['time_s'])} of the command")
     worst = 0.0
     for name, live_values in page["outputs"].items():
-        if name not in native:  # what the rig lacks
+        if name not in native:  # an output that the rig lacks
             check(not any(live_values), f"{what}: {name}, which the command does not write")
             continue
         peak = max(map(abs, native[name])) or 1.0
@@ -146,7 +147,7 @@ def the_papers_rig(rigcal, sources, folder):
     with Browser(1440, 1000) as browser:
         browser.open(page)
         simulated(browser)
-        # The tolerance is in the address, as all else that differs.
+        # The address contains the tolerance, like every other difference.
         browser.run("location.hash = '#tolerance=1e-9&duration=10&frequency=1'")
         browser.wait_for("window.rigcalLive.request.tolerance === 1e-9", "the address changes nothing")
         campaign.write_text(campaign.read_text() + "\n[simulation]\ntolerance = 1e-9\n")
@@ -159,15 +160,15 @@ def the_papers_rig(rigcal, sources, folder):
         moved(browser, "(() => { const s = document.getElementById('live-waveform'); s.value = 'square'; s.dispatchEvent(new Event('change')); })()")
         compare(browser, rigcal, campaign, "a square")
         browser.wait_for("location.hash.includes('mass=120')", "the mass in the address")
-        # A fraction gives the coefficient, and the coefficient that fraction.
+        # A fraction sets the coefficient, and that coefficient gives the fraction.
         moved(browser, "(() => { const f = document.getElementById('live-fraction'); f.value = 20; f.dispatchEvent(new Event('change')); })()")
         browser.wait_for("Math.abs(window.rigcalLive.answer.flows.fraction - 0.2) < 1e-4", "20 % of the servo flow")
-        # What cannot be simulated is said, and the next value heals it.
+        # The page reports a rig that cannot be simulated; the next valid value recovers it.
         browser.run(type_in("mass", -1))
         check(browser.run("document.getElementById('live-of-mass').checkValidity()") is False, "a negative mass is taken")
         moved(browser, "document.getElementById('live-reset').click()")
         check(browser.run("document.getElementById('live-problem').hidden"), "a problem is left")
-        # Every field has a name; the numbers are said.
+        # Every field has a label, and assistive technology is told the numbers.
         unnamed = browser.run("[...document.querySelectorAll('#live input, #live select')].filter((n) => !n.labels.length && !n.getAttribute('aria-label')).length")
         check(unnamed == 0, f"{unnamed} fields without a name")
         browser.wait_for("document.getElementById('live-said').textContent.includes('servo flow')", "nothing is said")

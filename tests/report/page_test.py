@@ -91,7 +91,7 @@ def rigcal(binary, folder, *arguments):
 
 
 def values(page, selector):
-    """Exact numbers that the page carries beside what it shows."""
+    """Returns the exact numbers that the page contains beside the shown text."""
     return page.run(f"[...document.querySelectorAll({json.dumps(selector)})].map(d => d.value)")
 
 
@@ -107,7 +107,7 @@ def check_sections(page, sections=SECTIONS):
 
 
 def check_access(page):
-    """What a screen reader goes by: captions, scopes, names of pictures and of what has the focus."""
+    """Checks the data for screen readers: captions, scopes, names of pictures and of focusable elements."""
     missing = page.run("""[
       ...[...document.querySelectorAll('table')].filter(t => !t.closest('.uplot') && !t.caption?.textContent.trim()),
       ...[...document.querySelectorAll('th')].filter(h => !h.closest('.uplot') && !h.scope),
@@ -148,7 +148,7 @@ def check_paper(page):
 
 
 def check_narrow(page):
-    """On a phone every estimate stands with its interval and its grade, and nothing has to be scrolled to."""
+    """Checks that a phone shows every estimate with its interval and its grade, without scrolling sideways."""
     page.size(400)
     page.wait_for("innerWidth === 400", "400 px")
     rows = page.run("""[...document.querySelectorAll('.parameters tbody tr:not(.note)')].map(row => {
@@ -181,7 +181,7 @@ def check_agreement(page, channels):
 
 
 def check_printed(page, folder, words):
-    """The printed page holds these words, whatever the screen shows."""
+    """Checks that the printed page contains these words, whatever the screen shows."""
     if shutil.which("pdftotext") is None:
         return
     page.pdf(folder / "page.pdf")
@@ -191,7 +191,7 @@ def check_printed(page, folder, words):
 
 
 def check_first_sheet(page, folder):
-    """What is signed is on the first sheet, and the foot of every sheet says whose it is."""
+    """Checks that the signed part is on the first page and that the foot of every page names the report."""
     if shutil.which("pdftotext") is None:
         return
     page.pdf(folder / "page.pdf")
@@ -299,7 +299,7 @@ def check_bad(binary, work):
             check(page.run("document.title").startswith(word + " "), f"{folder}: title")
             check(page.run("document.querySelector('.verdict .word').textContent").split()[-1] == word, folder)
             check(page.run("document.body.className") == "bad", f"{folder}: the page is marked")
-            # A failed fit has no condition to be seen.
+            # A failed fit has no conditions to show.
             check_sections(page, [s for s in SECTIONS if folder != "failed" or s != "overview"])
             check_printed(page, work, [word])
             check_widths(page)
@@ -376,7 +376,7 @@ def check_average(binary, work):
 
 
 def check_plan(binary, work):
-    """What each record tells: numbers of plan.json."""
+    """Checks the information of each record: numbers of plan.json."""
     check(rigcal(binary, work, "plan", "twin/campaign.toml", "--out", "planned") == 0, "plan")
     path = work / "planned" / "report.html"
     plan = json.loads((work / "planned" / "plan.json").read_text())
@@ -405,7 +405,7 @@ def check_model_choice(binary, work):
 
 
 def check_comparison(binary, work):
-    """The estimates of both fits side by side, and what lies together in one folder on one page."""
+    """Checks that the estimates of both fits are side by side, and that the results of one folder share a page."""
     check(rigcal(binary, work, "compare", "good", "healthy", "--out", "both") == 0, "compare")
     path = work / "both" / "report.html"
     compared = json.loads((work / "both" / "comparison.json").read_text())

@@ -22,7 +22,7 @@ struct ComparedJson {
   operator report::Compared() const { return report::compared_of(result, file, name); }
 };
 
-/// A small result, as fit.json holds it.
+/// A small result, as in fit.json.
 inline nlohmann::ordered_json stored_result() {
   return nlohmann::ordered_json::parse(R"({
     "status": "converged", "schema": "rigcal.fit/1", "verdict": "PASS", "message": "converged",

@@ -53,7 +53,7 @@ class Scripts(unittest.TestCase):
         self.programs.mkdir()
 
     def run_script(self, name, *arguments, fails=False):
-        """What it prints; where it is to fail, what it says on standard error."""
+        """Returns its output; if it has to fail, its standard error."""
         path = f"{self.programs}:{os.environ['PATH']}"
         environment = {key: value for key, value in os.environ.items() if key != "RIGCAL"} | {"PATH": path}
         done = subprocess.run([self.tree / "scripts" / name, *arguments], cwd=self.tree, capture_output=True, text=True,
@@ -131,7 +131,7 @@ class Scripts(unittest.TestCase):
         self.assertTrue(self.run_script("resume-study", "2", "3").endswith("killed 2 times: the same\n"))
 
     def test_setup(self):
-        # On a system that it does not know.
+        # On an unknown system.
         shutil.copy(ROOT / "scripts" / "setup", self.tree / "scripts" / "setup")
         system = self.tree / "os-release"
         system.write_text("ID=fedora\nVERSION_CODENAME=\n")

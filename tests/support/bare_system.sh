@@ -1,6 +1,6 @@
-# A bare Debian to try things in, beside the system that runs. For scripts of bash to source.
+# Functions of bash scripts that make a bare Debian system in a folder, and run commands in it.
 
-# Why none can be made here; nothing where one can.
+# Prints why no such system can be made here; nothing if one can.
 no_bare_system() {
   if [ "$(id -u)" != 0 ]; then
     echo "it needs root for a chroot"
@@ -11,8 +11,8 @@ no_bare_system() {
   fi
 }
 
-# make_bare_system SUITE ROOT: that release of Debian in the folder ROOT, from where this machine takes its Debian and by
-# its settings. Fails, and says why, where the packages cannot be had.
+# make_bare_system SUITE ROOT: installs that release of Debian in the folder ROOT, from the same mirror and with the
+# same settings as this machine. Fails with the reason if the packages are not available.
 make_bare_system() (
   set -euo pipefail
   suite=$1 root=$2
@@ -29,7 +29,7 @@ make_bare_system() (
   apt-config dump | grep -E '^Acquire::' >"$made/apt.conf" || true  # proxies and authorities
   mmdebstrap --quiet --variant=minbase --aptopt="$made/apt.conf" --dpkgopt=force-unsafe-io "$suite" "$root" "${files[@]}" \
     >"$made/told" 2>&1 || { cat "$made/told" >&2; exit 1; }
-  # What a network of one's own asks for.
+  # Settings that a private network needs.
   for folder in apt/apt.conf.d apt/auth.conf.d; do
     [ ! -d "/etc/$folder" ] || cp -a "/etc/$folder/." "$root/etc/$folder/"
   done
@@ -42,8 +42,8 @@ make_bare_system() (
   fi
 )
 
-# inside ROOT COMMAND...: runs it there. What is mounted for it ends with it, as does every process that it started.
-# With $read_only_folder that folder is at /srv of the same name.
+# inside ROOT COMMAND...: runs a command there. Its mounts and all processes that it started end with it. The folder
+# $read_only_folder, if set, is mounted at /srv with the same name.
 inside() {
   read_only_folder=${read_only_folder:-} unshare --mount --pid --fork --kill-child bash -c '
     set -e

@@ -57,7 +57,7 @@ class CommandFolder {
     return finish(start(arguments, out));
   }
 
-  /// Runs the command, sends `signal` once its stderr holds `sign`, and waits for the end.
+  /// Runs the command, sends `signal` once its stderr contains `sign`, and waits for the end.
   Outcome run_and_signal(const Arguments& arguments, const std::string& sign, int signal) const {
     const pid_t process = start(arguments, {});
     for (int tries = 0; tries < 6000 && text_of(err_file()).find(sign) == std::string::npos;
@@ -68,8 +68,8 @@ class CommandFolder {
     return finish(process);
   }
 
-  /// Runs the command and kills it once a file of its working folder holds `sign`; returns how it
-  /// ended, which is by itself if it was faster.
+  /// Runs the command and kills it once a file of its working folder contains `sign`; returns how
+  /// it ended, which may be by itself if it was faster.
   Outcome run_and_kill(const Arguments& arguments, const std::string& file,
                        const std::string& sign) const {
     const pid_t process = start(arguments, {});

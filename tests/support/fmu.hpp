@@ -218,7 +218,7 @@ class ExchangeRun {
           RIGCAL_FMI2(library, fmi2GetContinuousStates)(run_.component, x_.data(), x_.size()));
   }
 
-  /// @param drive  called before the derivatives are asked for at a time
+  /// @param drive  called before the derivatives at a time are requested
   template <typename Drive>
   void advance(double from, double to, int steps, const Drive& drive) {
     const double h = (to - from) / steps;

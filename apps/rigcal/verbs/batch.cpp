@@ -56,7 +56,7 @@ report::Compared read_fit_of(const fs::path& folder) {
   return report::load_compared_file(folder / "fit.json", folder.string());
 }
 
-/// What earlier batches found of a rig; `unread` says what could not be read.
+/// Adds the results of earlier batches for a rig; `unread` lists those that could not be read.
 void add_earlier(const BatchRequest& options, report::RigRun& run) {
   for (const fs::path& batch : options.earlier) {
     const fs::path folder = batch / run.folder;

@@ -36,7 +36,7 @@ struct DiagnoseRequest {
   std::vector<std::string> healthy;
 };
 
-/// Where each record leaves what the fit covers, which is asked with the leak that was found.
+/// Warns of records outside the range of the fit, which is checked with the leak that was found.
 void warn_of_validity(const Campaign& campaign, const report::Validity& covered,
                       diagnosis::Diagnosis& found) {
   const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
@@ -52,13 +52,13 @@ void warn_of_validity(const Campaign& campaign, const report::Validity& covered,
     own.value = std::max(0.0, record.estimate.coefficient);
     own.fitted = true;
     report::Validity asked = report::coverage(alone, {}, values, {alone.conditions.front().use});
-    // How large the leak is, is the question; a fit to healthy records covers none.
+    // The leak is the unknown here, and a fit to healthy records covers none.
     asked.leakage_coefficient.reset();
     for (const std::string& text : report::outside(asked, covered)) record.warnings.push_back(text);
   }
 }
 
-/// What is doubtful about the recordings: with the average that rests on one, or once for many.
+/// Warns of doubtful recordings: beside the average of a single one, or once for many.
 void warn_of_recordings(const std::vector<datasets::Record>& averages,
                         diagnosis::Diagnosis& found) {
   for (const auto& warning : gathered_doubts(averages)) {
@@ -106,7 +106,7 @@ void warn_of_absent(const std::vector<report::TableLimit>& limits, const Campaig
                     fmt::join(absent, "; ")));
 }
 
-/// What the fit doubts about itself holds for every leak that rests on it.
+/// Doubts of the fit about itself apply to every leak that is based on it.
 void warn_of_fit(const report::EarlierFit& fit, diagnosis::Diagnosis& found) {
   if (fit.status == calib::FitStatus::stopped)
     found.warnings.push_back("the fit was stopped before it converged: " + fit.message);

@@ -48,8 +48,8 @@ std::optional<ExitCode> made_before(const FitRequest& options,
   return exit_code_of(result->status, result->verdict, options.choices.strict);
 }
 
-/// The same fit in a process that leads nothing: it makes tasks of the one that does, and goes on
-/// with the same results.
+/// The same fit in a process that does not lead: it works on the leader's tasks, and continues with
+/// the same results.
 void help(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
           const FitRequest& options, const report::Provenance& searched, TaskFarm& processes,
           calib::FitOptions settings) {
@@ -83,11 +83,11 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   }
   report::PlannedFiles planned = report::planned_result(report::ResultKind::fit, campaign);
   planned.files.emplace_back(report::kKeptTasksFile);
-  // With --resume the checkpoint is read, which refuses a foreign one with its reason.
+  // With --resume the checkpoint is read, and a foreign one is refused with the reason.
   if (!options.resume) planned.files.emplace_back(report::kCheckpointFile);
   held.plan(std::move(planned));
 
-  // What is made beside the starts does not change them.
+  // Bootstrap, profiles and cross-validation do not change the starts.
   CheckpointFile checkpoint(options.common.out, searched);
   ThreadFarm threads;
   report::KeptTasks tasks(invocation.processes != nullptr ? *invocation.processes : threads,
@@ -100,7 +100,7 @@ ExitCode run_fit(const FitRequest& options, const Invocation& invocation) {
   if (settings.starts > 1)
     settings.checkpoint = [&](const calib::Checkpoint& reached) { checkpoint.keep(reached); };
 
-  give_freed_memory_back();  // of the single repeats
+  give_freed_memory_back();  // memory of the single repeats
   calib::Fit fit;
   {
     FitProgress progress(options.common.print.quiet,

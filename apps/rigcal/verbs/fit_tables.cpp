@@ -26,7 +26,8 @@ ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invoca
   const LeakTableInput input = load_leak_table(options);
   const Kept kept;
   report::HeldFolder held(options.out, holding("fit-tables", options.force, options.print));
-  // Where the fit does not converge, the tables of an earlier run would contradict this one.
+  // If the fit does not converge, the tables of an earlier run are removed: they would contradict
+  // this one.
   report::PlannedFiles planned = planned_leak_table(input.settings);
   for (const char* file : {"fit.json", "parameters.csv", "fitted.toml"})
     planned.files.emplace_back(file);

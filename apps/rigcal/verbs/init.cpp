@@ -32,7 +32,7 @@ std::size_t count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// A folder stands for the recordings in it, in the order of their names.
+/// A folder means the recordings in it, in the order of their names.
 std::vector<std::filesystem::path> with_folders_opened(
     const std::vector<std::filesystem::path>& paths) {
   std::vector<std::filesystem::path> files;
@@ -55,7 +55,7 @@ std::vector<std::filesystem::path> with_folders_opened(
       if (datasets::may_be_recording(entry.path())) files.push_back(entry.path());
       if (datasets::has_other_format_name(entry.path())) unread.push_back(entry.path());
     }
-    // Their reader says what to do with them.
+    // The reader of these formats explains what to do with them.
     if (files.size() == before) files.insert(files.end(), unread.begin(), unread.end());
     if (files.size() == before) {
       throw UsageError(fmt::format("{}: this folder holds no {} file; expected recordings",

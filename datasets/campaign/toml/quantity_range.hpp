@@ -2,39 +2,39 @@
 
 namespace rigcal::datasets {
 
-/// What a quantity of a campaign may be, in SI. It keeps out what no rig has, and what would make a
-/// loop or an allocation that it sizes endless.
+/// Accepted range of a quantity in a campaign file, in SI. It excludes values that no rig has, and
+/// sizes that would make a loop or an allocation endless.
 struct QuantityRange {
   double lower = 0.0;
   double upper = 0.0;
 };
 
-/// Of a drive or ripple. Above it the edges of a square come closer than instants can be told
-/// apart.
+/// Frequencies of a drive or ripple. Above the limit the edges of a square wave come closer
+/// together than the resolution of time.
 inline constexpr QuantityRange kFrequencies_hz{1e-6, 1e5};
-/// As above, where zero counts too: the start of a linear chirp.
+/// The same including zero, for the start of a linear chirp.
 inline constexpr QuantityRange kFrequenciesFromZero_hz{0.0, 1e5};
 inline constexpr QuantityRange kSampleRates_hz{1e-6, 1e8};
-/// A length of time: a microsecond to 30 years.
+/// Durations: a microsecond to 30 years.
 inline constexpr QuantityRange kDurations_s{1e-6, 1e9};
-/// An instant; records count from 1970 at most.
+/// Instants; time stamps may count from 1970.
 inline constexpr QuantityRange kInstants_s{-1e10, 1e10};
 inline constexpr QuantityRange kJitters_s{0.0, 1e3};
-/// In m or V.
+/// Amplitudes of a drive in m or V.
 inline constexpr QuantityRange kAmplitudes{1e-9, 1e6};
-inline constexpr QuantityRange kLoadAmplitudes{1e-6, 1e9};  ///< of forces and pressures
+inline constexpr QuantityRange kLoadAmplitudes{1e-6, 1e9};  ///< forces and pressures
 inline constexpr QuantityRange kFlows_m3_per_s{1e-15, 1e3};
 inline constexpr QuantityRange kTemperatures_k{0.0, 1e4};
-/// Standard deviations, steps and ripples in the unit of a channel; zero: none.
+/// Standard deviations, steps and ripples in the unit of a channel; zero means none.
 inline constexpr QuantityRange kDisturbances{0.0, 1e12};
 /// Standard deviations by which residuals are divided.
 inline constexpr QuantityRange kStandardDeviations{1e-15, 1e12};
-/// Standard deviations of a parameter: those of a laminar leak are small.
+/// Standard deviations of a parameter; those of a laminar leak are small.
 inline constexpr QuantityRange kParameterDeviations{1e-25, 1e12};
-/// Factors, of either sign, and offsets in a channel's unit.
+/// Factors of either sign, and offsets in a channel's unit.
 inline constexpr QuantityRange kSizes{1e-15, 1e15};
 
-/// Of a condition without a record: about as many as a file may hold.
+/// Samples of a condition without a record: about as many as a file may contain.
 inline constexpr double kMostSamples = 1e7;
 
 }  // namespace rigcal::datasets

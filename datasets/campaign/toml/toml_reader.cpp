@@ -87,7 +87,7 @@ std::string described(const toml::node& node) {
   return "a date or time";
 }
 
-/// "6.2 MPa" -> "MPa", and empty if no number stands in front.
+/// "6.2 MPa" -> "MPa"; empty if there is no number in front.
 std::string_view unit_part(std::string_view text) {
   const auto begin = std::min(text.find_first_not_of(" \t+"), text.size());
   double number = 0.0;

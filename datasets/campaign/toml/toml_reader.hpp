@@ -32,8 +32,8 @@ std::string toml_key(std::string_view key);
 /// A number as an exact TOML float or a part of a quantity: reading it again gives the same bits.
 std::string toml_number(double value);
 
-/// One value of a TOML file together with its place: converts itself, and says what is wrong and
-/// where if it cannot. Borrows the parsed file.
+/// One value of a TOML file with its place. It converts itself; an error says what is wrong and
+/// where. Borrows the parsed file.
 class TomlNode {
  public:
   /// @param path  full key as the user would write it: "rig.parameters.mass"
@@ -64,11 +64,11 @@ class TomlNode {
   int integer(int lowest, int highest) const;
   /// Text "number unit" in `unit` ("1": a plain number instead).
   double quantity(std::string_view unit) const;
-  /// The same, within a range.
+  /// Quantity within a range.
   double quantity(std::string_view unit, QuantityRange range) const;
   /// Like quantity(), of a difference: "2 degC" is 2 K.
   double difference(std::string_view unit) const;
-  /// The same, within a range: standard deviations, steps.
+  /// Difference within a range: standard deviations, steps.
   double difference(std::string_view unit, QuantityRange range) const;
   /// Plain number within a range.
   double number(QuantityRange range) const;
@@ -89,18 +89,18 @@ class TomlNode {
   // Tables.
 
   std::optional<TomlNode> find(std::string_view key) const;
-  /// @throws InputError  the key is missing; `expected` says what belongs there
+  /// @throws InputError  the key is missing; `expected` describes its value
   TomlNode require(std::string_view key, const std::string& expected) const;
   /// Keys and values in the order of the file.
   std::vector<std::pair<std::string, TomlNode>> entries() const;
   /// @throws InputError  not a table, or it has a key that is not among `known`, naming the nearest
   void allow_only(const std::vector<std::string>& known) const;
-  /// As allow_only, for one key; `what` names its kind ("channel").
+  /// Like allow_only() for one key; `what` names its kind ("channel").
   [[noreturn]] void fail_unknown(std::string_view key, std::string_view what,
                                  const std::vector<std::string>& known) const;
   /// The same value under another name in messages.
   TomlNode renamed(std::string path) const { return {*node_, file_, std::move(path)}; }
-  /// The same value with a remark behind every message about it.
+  /// The same value with a remark after every message about it.
   TomlNode noted(const std::string& note) const {
     TomlNode result = *this;
     result.note_ = " (" + note + ")";

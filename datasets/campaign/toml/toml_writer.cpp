@@ -18,7 +18,7 @@ struct Entry {
   const toml::node* node;
 };
 
-/// Line and column of a key; what came from no file has line 0 and goes last.
+/// Line and column of a key; a key that is not from the file has line 0 and comes last.
 std::pair<std::size_t, std::size_t> place(const toml::key& key) {
   const auto begin = key.source().begin;
   return {begin.line == 0 ? std::numeric_limits<std::size_t>::max() : begin.line, begin.column};

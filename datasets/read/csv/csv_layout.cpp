@@ -38,8 +38,8 @@ bool is_number(std::string_view text, char separator) {
 /// dSPACE writes "trace_values" before its first row, and nothing before the others.
 bool is_label(std::string_view text) { return text.empty() || text == "trace_values"; }
 
-/// Number of fields of a row of numbers; 0 if it is none. Its first may be a label; a last one that
-/// is empty, a comment that nobody wrote, does not count.
+/// Number of fields in a row of numbers; 0 for any other line. The first field may be a label. An
+/// empty last field is an unused comment and does not count.
 std::size_t width_of_row(std::string_view line, char separator) {
   if (!is_plain_text(line)) return 0;
   const auto fields = fields_of(line, separator);
@@ -61,8 +61,8 @@ bool is_unit_text(std::string_view text) {
   return text.empty() || text == "-" || text == "%" || !unit_of_text(text).empty();
 }
 
-/// The names of a line, if there is one for each field of a row, and perhaps one of a comment.
-/// A line of names may be a comment itself.
+/// Names in a line, if there is one for each field of a row and at most one more for comments. The
+/// line itself may be a comment.
 std::vector<CsvName> names_in(std::string_view line, char separator, std::size_t width) {
   if (!is_plain_text(line)) return {};
   line = trimmed_line(line);
@@ -85,14 +85,14 @@ bool are_units(const std::vector<CsvName>& names) {
                      [](const CsvName& name) { return is_unit_text(name.full); });
 }
 
-/// The nearest line above that is not blank; as many as there are lines: none.
+/// Nearest line above that is not blank; lines.size() if there is none.
 std::size_t line_above(std::span<const std::string> lines, std::size_t line) {
   while (line > 0)
     if (!trimmed_line(lines[--line]).empty()) return line;
   return lines.size();
 }
 
-/// Names and units above the first row of numbers.
+/// Finds names and units above the first row of numbers.
 std::optional<CsvLayout> layout_above(std::span<const std::string> lines, std::size_t data,
                                       char separator, std::size_t width) {
   const std::size_t above = line_above(lines, data);

@@ -11,28 +11,29 @@
 
 namespace rigcal::datasets {
 
-/// Where names, units and numbers stand in a text of columns.
+/// Position of names, units and numbers in a text of columns.
 struct CsvLayout {
   std::size_t header = 0;  ///< line of the names, from 0
-  std::size_t data = 0;    ///< the first row of numbers
+  std::size_t data = 0;    ///< first line of numbers
   char separator = ',';
   std::vector<CsvName> names;
-  bool last_may_lack = false;      ///< rows may end before the last column, a comment
-  std::vector<std::string> units;  ///< of a row between the two, one per name; empty: no such row
+  bool last_may_lack = false;      ///< the last column is a comment that rows may omit
+  std::vector<std::string> units;  ///< from the row of units, one per name; empty: no such row
 };
 
-/// Finds them in a text whose first line is not simply its header: below lines of text (loggers,
-/// LabVIEW's .lvm, dSPACE), in columns between blanks, with a row of units, or with the names in a
-/// comment right above the numbers. The numbers begin where two lines (or the last one) hold as
-/// many fields, all of them numbers; the names stand right above them, one for each, none a number.
+/// Finds the layout of a text whose first line is not simply its header. Names may follow lines of
+/// text (loggers, LabVIEW's .lvm, dSPACE), be separated by blanks, have a row of units below them,
+/// or be in a comment directly above the numbers. The numbers begin at the first of two lines (or
+/// at the last line) that have equally many fields, all of them numbers. The names are directly
+/// above, one for each field, none of them a number.
 ///
-/// @param lines      how the text begins, without line ends
-/// @param is_whole   whether that is all of it
+/// @param lines      beginning of the text, without line ends
+/// @param is_whole   whether `lines` is the whole text
 /// @param separator  0: any of tab, ';', ',' and blanks
 std::optional<CsvLayout> find_layout(std::span<const std::string> lines, bool is_whole,
                                      char separator);
 
-/// Whether a line is a row of numbers under a header of so many names.
+/// Whether a line has one number for each of `names` columns.
 bool is_row_of_numbers(std::string_view line, char separator, std::size_t names);
 
 }  // namespace rigcal::datasets

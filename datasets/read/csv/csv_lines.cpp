@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-// A second thread gains nothing here, and errors of the source would have to cross it.
+// A second thread would not be faster, and would have to pass on exceptions of the source.
 #define CSV_IO_NO_THREAD
 // Its file names are cut to 255 bytes on purpose.
 #if defined(__GNUC__) && !defined(__clang__)
@@ -43,15 +43,15 @@ FilePtr open_text(const std::filesystem::path& path, std::size_t max_bytes) {
                                         bytes, max_bytes));
   FilePtr file(std::fopen(path.c_str(), "rb"));
   if (!file) throw InputError(where, "cannot be opened: " + reason(errno));
-  std::setvbuf(file.get(), nullptr, _IONBF, 0);  // LineReader asks for blocks of megabytes
+  std::setvbuf(file.get(), nullptr, _IONBF, 0);  // LineReader reads in blocks of megabytes
   return file;
 }
 
-/// Feeds LineReader, and stops what it would let pass: read errors (it takes them for the end),
-/// NUL bytes (they cut its lines short), UTF-16, files without end.
+/// Feeds LineReader, and detects what it would accept: read errors (it takes them for the end), NUL
+/// bytes (they cut its lines short), UTF-16, endless files.
 class TextSource : public io::ByteSourceBase {
  public:
-  /// @param had_no_last_newline  told by the time that the last line is read; outlives the source
+  /// @param had_no_last_newline  set by the time the last line is read; outlives the source
   TextSource(const std::filesystem::path& path, std::size_t max_bytes, bool& had_no_last_newline)
       : where_{path.string()},
         max_bytes_(max_bytes),
@@ -65,8 +65,8 @@ class TextSource : public io::ByteSourceBase {
     check(std::string_view(buffer, count));
     bytes_ += count;
     if (count > 0) ends_with_newline_ = buffer[count - 1] == '\n';
-    // Of a last line without its end, LineReader looks one byte too far: at what the buffer held
-    // before. So every last line gets an end.
+    // For a last line without line end LineReader reads one byte too many, from the old content of
+    // the buffer. So every last line gets a line end.
     if (count < wanted && bytes_ > 0 && !ends_with_newline_) {
       buffer[count++] = '\n';
       ends_with_newline_ = true;

@@ -6,8 +6,8 @@
 
 namespace rigcal::datasets {
 
-/// The lines of a text file, one at a time, by fast-cpp-csv-parser's LineReader. Holds a window
-/// of at most 48 MB, whatever the size of the file.
+/// The lines of a text file, one at a time, by fast-cpp-csv-parser's LineReader. Its window has at
+/// most 48 MB, whatever the size of the file.
 class CsvLines {
  public:
   /// @param max_bytes  larger files are refused, at once if the size is known beforehand

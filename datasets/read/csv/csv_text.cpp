@@ -53,7 +53,7 @@ bool is_utf8(std::string_view text) {
   return true;
 }
 
-/// The text in UTF-8; what is not, is taken for Latin-1, which loggers on Windows write.
+/// The text in UTF-8. Other text is taken for Latin-1, which loggers on Windows write.
 std::string as_utf8(std::string_view text) {
   if (is_utf8(text)) return std::string(text);
   std::string result;
@@ -123,7 +123,7 @@ std::vector<CsvName> header_names(std::string_view header, char separator) {
   CsvFields fields(header, separator);
   for (CsvField field; fields.next(field);) {
     std::string full = as_utf8(unquoted(field.text));
-    // Between blanks a unit in brackets is a word of its own.
+    // With blanks as separators a unit in brackets is a field of its own.
     const bool is_unit = separator == ' ' && !names.empty() && brackets_at_end(full) == 0;
     if (is_unit) {
       full = names.back().full + " " + full;

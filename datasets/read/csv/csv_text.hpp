@@ -14,8 +14,8 @@ struct CsvField {
   std::size_t begin = 0;  ///< in bytes from the start of the line
 };
 
-/// Walks over the fields of a line. A separator between double quotes separates nothing; the
-/// quotes stay part of the text. As separator a blank stands for any number of blanks and tabs.
+/// Walks over the fields of a line. A separator between double quotes is text, and the quotes stay
+/// part of it. A blank as separator means any number of blanks and tabs.
 class CsvFields {
  public:
   CsvFields(std::string_view line, char separator) : line_(line), separator_(separator) {}
@@ -31,16 +31,16 @@ class CsvFields {
   bool done_ = false;
 };
 
-/// Name of a column: as it stands in the header (without quotes), and without its unit.
+/// Name of a column: as in the header (without quotes), and without its unit.
 struct CsvName {
   std::string full;   ///< "x [mm]"
   std::string plain;  ///< "x"
 };
 
-/// Of a field of a header.
+/// Name in a field of a header.
 CsvName header_name(std::string_view field);
 
-/// Names by which columns can be asked for: without unit where that tells them apart.
+/// Names for requesting columns: without unit if that is unambiguous.
 std::vector<std::string> short_names(const std::vector<CsvName>& names);
 
 /// The column of this name, with its unit or without; `second` is another of the same name, for
@@ -58,13 +58,13 @@ char find_separator(std::string_view header);
 /// Names of all columns of a header.
 std::vector<CsvName> header_names(std::string_view header, char separator);
 
-/// The number a field holds, or nothing if it holds anything else. Locale-independent; "inf",
-/// "nan", numbers beyond the range of a double, and a thousands separator are no numbers here.
+/// The number in a field, or nothing for any other text. Locale-independent; "inf", "nan", numbers
+/// beyond the range of a double, and a thousands separator are no numbers here.
 ///
-/// @param decimal_comma  whether "1,5" counts too
+/// @param decimal_comma  whether "1,5" counts, too
 std::optional<double> csv_number(std::string_view text, bool decimal_comma);
 
-/// Text for a message: shortened, with '?' for what cannot be printed.
+/// Text for a message: shortened, with '?' for unprintable characters.
 std::string shown(std::string_view text);
 
 /// Character position, from 1, of a byte of a UTF-8 line.

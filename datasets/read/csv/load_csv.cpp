@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::size_t kMostColumns = 10'000;
 
-constexpr std::size_t kMostHeadLines = 500;  // looked through for the header
+constexpr std::size_t kMostHeadLines = 500;  // lines that are searched for the header
 constexpr std::size_t kMostHeadBytes = 4'000'000;
 
 struct Header {
@@ -32,17 +32,17 @@ struct Header {
   long line = 0;
   char separator = ',';
   std::vector<CsvName> names;
-  std::vector<std::string> units{};  ///< of a row of their own, one per name; empty: none
+  std::vector<std::string> units{};  ///< from the row of units, one per name; empty: no such row
   long units_line = 0;
-  bool last_may_lack = false;  ///< rows may end before the last column, a comment
+  bool last_may_lack = false;  ///< the last column is a comment that rows may omit
 };
 
-/// The lines of a file, of which the first may be looked at before they have their turn.
+/// Lines of a file, with a view of the first ones in advance.
 class HeadedLines {
  public:
   explicit HeadedLines(CsvLines& lines) : lines_(lines) {}
 
-  /// Lines from the next one on, as far as they fit.
+  /// Up to `count` lines from the beginning, within the limits of the head.
   const std::vector<std::string>& look_ahead(std::size_t count) {
     std::size_t bytes = 0;
     for (const std::string& line : head_) bytes += line.size();
@@ -55,7 +55,7 @@ class HeadedLines {
     }
     return head_;
   }
-  /// Whether what was looked at goes to the end of the file.
+  /// Whether look_ahead() has reached the end of the file.
   bool ended() const { return ended_; }
 
   /// The next line; null after the last.
@@ -68,7 +68,7 @@ class HeadedLines {
     if (text != nullptr) ++number_;
     return text;
   }
-  /// Of the line that next() gave last, from 1.
+  /// Number of the line that next() returned last, from 1.
   long number() const { return number_; }
 
  private:
@@ -94,7 +94,8 @@ std::string_view separator_name(char separator) {
 
 // ---- Header --------------------------------------------------------------------------------
 
-/// Whether the first line is the header, as in most files: rows of as many numbers follow it.
+/// Whether the first line is the header, as in most files: a row of equally many numbers follows
+/// it.
 bool header_comes_first(const std::vector<std::string>& lines, char separator) {
   const auto is_wanted = [](const std::string& line) { return !is_comment(line); };
   const auto header = std::find_if(lines.begin(), lines.end(), is_wanted);
@@ -107,7 +108,7 @@ bool header_comes_first(const std::vector<std::string>& lines, char separator) {
   return is_row_of_numbers(*row, by, names) && !is_row_of_numbers(*header, by, names);
 }
 
-/// Below lines of text, between blanks, or above a row of units; nothing where it is none of that.
+/// Finds a header below lines of text, between blanks or above a row of units; none in other files.
 std::optional<Header> unusual_header(HeadedLines& lines, const std::string& file, char separator) {
   if (header_comes_first(lines.look_ahead(10), separator)) return std::nullopt;
   const auto& head = lines.look_ahead(kMostHeadLines);
@@ -189,7 +190,7 @@ std::size_t find_column(const Header& header, const std::string& wanted) {
 
 // ---- Rows ----------------------------------------------------------------------------------
 
-/// A column of the file that goes to a column of the table.
+/// A column of the file and its column of the table.
 struct Wanted {
   std::size_t field;
   std::size_t target;
@@ -256,7 +257,7 @@ class RowReader {
     if (header_.separator == ' ') return false;
     const char* at = line.data();
     const char* const end = at + line.size();
-    std::size_t length = 0;  // of the last wanted field
+    std::size_t length = 0;  // length of the last wanted field
     auto next = wanted_.begin();
     auto value = values_.begin();
     for (std::size_t field = 0; field < header_.names.size(); ++field) {
@@ -270,7 +271,8 @@ class RowReader {
       if (error != std::errc{} || !std::isfinite(*value)) return false;
       length = static_cast<std::size_t>(rest - at);
       const bool tells_sign = header_.separator != ',' && (point_line_ == 0 || comma_line_ != 0);
-      if (tells_sign && std::find(at, rest, '.') != rest) return false;  // to be noted
+      // note_decimal_sign() has to see a decimal point.
+      if (tells_sign && std::find(at, rest, '.') != rest) return false;
       at = rest;
       for (const double number = *value; next != wanted_.end() && next->field == field; ++next) {
         *value = number;
@@ -286,7 +288,7 @@ class RowReader {
     return true;
   }
 
-  /// Takes any row, or says what is wrong with it.
+  /// Reads any row, or reports what is wrong with it.
   void read_any(std::string_view line, long line_number) {
     std::size_t count = 0;
     auto next = wanted_.begin();
@@ -368,7 +370,7 @@ class RowReader {
                     shown(field.text), shown(name), header_.separator == ',' ? "" : " or -1,5e-3"));
   }
 
-  /// "1.234" among decimal commas is a thousand more than among decimal points.
+  /// Refuses a file with decimal commas and points: "1.234" could be a thousand times larger.
   void note_decimal_sign(std::string_view line, long line_number, const CsvField& field) {
     const bool has_comma = field.text.find(',') != std::string_view::npos;
     const bool has_point = field.text.find('.') != std::string_view::npos;
@@ -402,11 +404,11 @@ class RowReader {
   const Header& header_;
   const CsvRequest& request_;
   std::vector<Wanted> wanted_;
-  std::vector<double> values_;  ///< of the row being read, in the order of wanted_
+  std::vector<double> values_;  ///< values of the row being read, in the order of wanted_
   CsvTable table_;
   std::size_t rows_ = 0;
-  long comma_line_ = 0;  ///< that has the first decimal comma; 0: none
-  long point_line_ = 0;  ///< likewise, of a file that may have decimal commas
+  long comma_line_ = 0;  ///< line of the first decimal comma; 0: none
+  long point_line_ = 0;  ///< likewise of the first decimal point
   long last_line_ = 0;   ///< 0: the last column is not wanted
   std::size_t last_length_ = 0;
   std::size_t shortest_length_ = std::numeric_limits<std::size_t>::max();

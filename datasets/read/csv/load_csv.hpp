@@ -9,7 +9,7 @@
 
 namespace rigcal::datasets {
 
-/// Which columns of a file are wanted, and how its text is laid out.
+/// Wanted columns of a file, and the layout of its text.
 struct CsvRequest {
   std::vector<std::string> columns;  ///< header names, in the order of the result
   char separator = 0;                ///< 0: found from the header (',' ';' or tab)
@@ -28,32 +28,32 @@ struct CsvTable {
 
 /// Reads the wanted columns of a CSV file, strictly.
 ///
-/// Header in the first line that is not a comment ("#..."), or where find_layout() sees it: below
-/// lines of text, between blanks, above a row of units. A unit in the header may stand behind the
-/// name ("x [mm]", "x (mm)") and is not part of it. CRLF, a byte-order mark and a missing final
-/// newline are accepted; with ';' or tab as separator a decimal comma is accepted too. Everything
-/// else that is not a finite number in a wanted column is an error, as are a wrong count of
-/// columns, an empty field, time that does not increase, and a binary file. Columns that are not
-/// wanted are counted but not converted. A name may be asked for with its unit, too, and must be
-/// where only the unit tells two columns apart. At most 12 million numbers are read (96 MB).
+/// The header is the first line that is not a comment ("#..."), or is found by find_layout(): below
+/// lines of text, between blanks, above a row of units. A unit may follow the name ("x [mm]", "x
+/// (mm)") and is not part of it. CRLF, a byte-order mark and a missing final newline are accepted;
+/// with ';' or tab as separator a decimal comma is accepted, too. Anything else in a wanted column
+/// that is not a finite number is an error, as are a wrong number of columns, an empty field, time
+/// that does not increase, and a binary file. Columns that are not wanted are counted but not
+/// converted. A requested name may include its unit, and must where only the unit distinguishes two
+/// columns. At most 12 million numbers are read (96 MB).
 ///
 /// @throws InputError  file:line:column, what was found and what was expected; the column is the
 ///                     position of the field in characters, from 1
 /// @throws std::invalid_argument  time_column is not among the columns
 CsvTable load_csv(const std::filesystem::path& path, const CsvRequest& request);
 
-/// Header names of a CSV file, for messages: without units, except where only the
-/// unit tells two columns apart.
+/// Header names of a CSV file, for messages: without units, unless only the unit distinguishes two
+/// columns.
 ///
 /// @throws InputError  as load_csv
 std::vector<std::string> csv_header(const std::filesystem::path& path, char separator = 0);
 
-/// Header names as they stand in the file, with their units.
+/// Header names as in the file, with their units.
 ///
 /// @throws InputError  as load_csv
 std::vector<std::string> csv_full_header(const std::filesystem::path& path, char separator = 0);
 
-/// As the table of readers asks for them (record_reader.hpp).
+/// Functions with the signature of the table of readers (record_reader.hpp).
 std::vector<RecordColumn> csv_record_columns(const std::filesystem::path& path);
 RecordTable load_csv_record(const std::filesystem::path& path, const RecordRequest& request);
 

@@ -9,13 +9,13 @@
 namespace rigcal::datasets {
 
 /// Texts of an attribute, trimmed: one, or those of a vector. None if there is no such attribute,
-/// if it is no text, or if a text is longer than 40 bytes or holds control characters.
+/// if it is no text, or if a text is longer than 40 bytes or has control characters.
 std::vector<std::string> hdf5_texts(hid_t object, const char* attribute);
 
 /// A number of an attribute, of any real type; nothing if there is no such attribute.
 std::optional<double> hdf5_number(hid_t object, const char* attribute);
 
-/// The numbers of an attribute, at most 1000; none if it holds something else; nothing if there is
+/// Reads the numbers of an attribute, at most 1000. Empty if it has no numbers; nothing if there is
 /// no such attribute.
 std::optional<std::vector<double>> hdf5_numbers(hid_t object, const char* attribute);
 

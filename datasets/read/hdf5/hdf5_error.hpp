@@ -6,7 +6,7 @@
 
 namespace rigcal::datasets {
 
-/// Why HDF5 could not do what it was last asked for: the outermost entry of its error stack.
+/// Reason for the last failure of HDF5: the outermost entry of its error stack.
 inline std::string hdf5_reason() {
   std::string reason = "no reason given";
   H5Ewalk2(

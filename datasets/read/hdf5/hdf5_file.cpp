@@ -50,7 +50,7 @@ herr_t note_link(hid_t /*group*/, const char* name, const H5L_info_t* info, void
   return 0;
 }
 
-/// What a type is instead of numeric, in words; empty if it is numeric.
+/// Kind of a type that is not numeric, in words; empty if it is numeric.
 std::string kind_of(hid_t type) {
   switch (H5Tget_class(type)) {
     case H5T_INTEGER:
@@ -108,7 +108,7 @@ std::vector<std::string> units_of(hid_t object) {
   return {};
 }
 
-/// A name that can stand in a campaign file and on a terminal.
+/// Whether a name can be used in a campaign file and on a terminal.
 bool is_printable(const std::string& name) {
   return std::all_of(name.begin(), name.end(),
                      [](char c) { return static_cast<unsigned char>(c) >= ' ' && c != '\x7f'; });
@@ -135,8 +135,8 @@ std::size_t dims_of_dataset(const Hdf5Series& series) {
   return series.dims.size() - series.cell_dims;
 }
 
-/// Which numbers of a selection are wanted: it consists of cells of `width` numbers each, of which
-/// numbers first, first + stride, ... count.
+/// Wanted numbers of a selection of cells with `width` numbers each: first, first + stride, ...
+/// count.
 struct CellChoice {
   std::size_t cells = 1;
   std::size_t width = 1;
@@ -191,8 +191,8 @@ Hdf5Id number_type(hid_t dataset, const Hdf5Series& series) {
   return type;
 }
 
-/// What a cell of the series is to be converted to: numbers of a native type, in an array or in a
-/// table of one member where they stand so in the file.
+/// Type in memory for a cell of the series: numbers of a native type, in an array or in a table of
+/// one member like those in the file.
 Hdf5Id type_in_memory(const Hdf5Series& series, hid_t native, std::size_t bytes) {
   const std::vector<hsize_t> shape(
       series.dims.begin() + static_cast<std::ptrdiff_t>(dims_of_dataset(series)),
@@ -207,17 +207,17 @@ Hdf5Id type_in_memory(const Hdf5Series& series, hid_t native, std::size_t bytes)
   return table;
 }
 
-/// How numbers are packed, by the conventions for climate and forecast metadata (CF 1.11, 2.5.1 and
-/// 8.1), which netCDF files and others follow: value = factor * number + offset.
+/// Packing of numbers by the conventions for climate and forecast metadata (CF 1.11, 2.5.1 and
+/// 8.1), which netCDF files and others use: value = factor * number + offset.
 struct Packing {
   double factor = 1.0;
   double offset = 0.0;
-  bool is_given = false;        ///< else numbers stay as they are, to the last bit
-  std::vector<double> missing;  ///< numbers that stand for none
+  bool is_given = false;        ///< false: numbers are returned unchanged
+  std::vector<double> missing;  ///< numbers that mark a missing value
 };
 
-/// What HDF5 gives for what was never written, where the file says it; nothing of a zero, which may
-/// be meant.
+/// Value that HDF5 returns for elements that were never written, if the file sets it. Zero is
+/// ignored, since it may be a real value.
 std::optional<double> own_fill_value(hid_t dataset) {
   const Hdf5Id plan(H5Dget_create_plist(dataset), H5Pclose);
   H5D_fill_value_t kind = H5D_FILL_VALUE_UNDEFINED;
@@ -252,11 +252,11 @@ Hdf5File::Hdf5File(const std::filesystem::path& path) : name_(path.string()) {
 void Hdf5File::fail(const std::string& message) const { throw InputError({name_}, message); }
 
 void Hdf5File::list_group(hid_t group, const std::string& path, std::vector<haddr_t>& above) {
-  // A reference to an object is its address, which H5Oget_info tells by another type in each
-  // version.
+  // The address of an object comes from a reference, since H5Oget_info returns it in another type
+  // in each version.
   hobj_ref_t address{};
   if (H5Rcreate(&address, group, ".", H5R_OBJECT, -1) < 0 || above.size() >= kDeepestGroup) return;
-  if (std::find(above.begin(), above.end(), address) != above.end()) return;  // a circle
+  if (std::find(above.begin(), above.end(), address) != above.end()) return;  // a cycle of links
   above.push_back(address);
   list_clocks(group, path, true);
   Links links;
@@ -412,7 +412,7 @@ std::vector<double> Hdf5File::unpacked(hid_t dataset, std::vector<double> values
   if (const auto fill = own_fill_value(dataset)) packing.missing.push_back(*fill);
   const Hdf5Id type(H5Dget_type(dataset), H5Tclose);
   if (H5Tget_class(type.get()) == H5T_FLOAT && H5Tget_size(type.get()) == sizeof(float)) {
-    // -999.9 as the attribute has it is another number than what such a dataset keeps of it.
+    // A dataset of floats stores -999.9 rounded, so the attribute is rounded likewise.
     for (double& each : packing.missing)
       if (std::abs(each) <= static_cast<double>(std::numeric_limits<float>::max()))
         each = static_cast<double>(static_cast<float>(each));
@@ -465,7 +465,7 @@ std::vector<double> Hdf5File::numbers(const Hdf5Series& series, const Hdf5Line& 
   std::vector<double> values = is_float    ? read_raw(double{}, H5T_NATIVE_DOUBLE)
                                : is_signed ? read_raw(std::int64_t{}, H5T_NATIVE_INT64)
                                            : read_raw(std::uint64_t{}, H5T_NATIVE_UINT64);
-  // The attributes of a table say nothing of its columns.
+  // The attributes of a table do not apply to its single columns.
   return series.member.empty() ? unpacked(dataset.get(), std::move(values), column) : values;
 }
 

@@ -42,7 +42,7 @@ struct Hdf5Series {
   /// Shape, in the order that h5dump and h5py print: that of the dataset, and behind it that of the
   /// arrays in its cells, if these are arrays.
   std::vector<std::size_t> dims;
-  std::size_t cell_dims = 0;       ///< how many of `dims` are those of the cells
+  std::size_t cell_dims = 0;       ///< number of `dims` that belong to the cells
   std::string kind;                ///< what it is, if no numbers: "a text"; else empty
   std::vector<std::string> units;  ///< one for all, one per line of the last dimension, or none
 
@@ -53,7 +53,7 @@ struct Hdf5Series {
 /// Equidistant samples, described by an attribute: "/run1/position@wf_increment".
 struct Hdf5Clock {
   std::string path;
-  std::string series;  ///< whose samples it counts; empty: the attribute is that of a group
+  std::string series;  ///< series whose samples it counts; empty: the attribute belongs to a group
   double start_s = 0.0;
   double step_s = 0.0;  ///< 0: `rate_hz` is given
   double rate_hz = 0.0;
@@ -78,11 +78,12 @@ class Hdf5File {
   const std::vector<Hdf5Series>& series() const { return series_; }
   const std::vector<Hdf5Clock>& clocks() const { return clocks_; }
 
-  /// Numbers of a series whose kind is empty, unpacked by `scale_factor` and `add_offset` of its
-  /// dataset.
-  /// @throws InputError  damaged, never written or in part only, missing by `_FillValue`,
-  ///                     `missing_value` or the dataset's own fill value, compressed by an unknown
-  ///                     filter, stored in another file, or an integer that a double cannot hold
+  /// Returns the numbers of a series whose kind is empty, unpacked by `scale_factor` and
+  /// `add_offset` of its dataset.
+  /// @throws InputError  damaged; not or only partly written; missing by `_FillValue`,
+  ///                     `missing_value` or the dataset's own fill value; compressed by an unknown
+  ///                     filter; stored in another file; or an integer that a double cannot
+  ///                     represent
   std::vector<double> numbers(const Hdf5Series& series, const Hdf5Line& line,
                               const std::string& column) const;
 

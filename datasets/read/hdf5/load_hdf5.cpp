@@ -37,7 +37,7 @@ std::size_t long_dimensions(const Hdf5Series& series) {
       std::count_if(series.dims.begin(), series.dims.end(), [](std::size_t n) { return n != 1; }));
 }
 
-/// "(:,3)" as subscripts from 0, none for a colon; nothing if it is not of this form.
+/// "(:,3)" as subscripts from 0, none for a colon; nothing if it has another form.
 std::optional<std::vector<std::optional<std::size_t>>> parsed_subscripts(std::string_view text) {
   std::vector<std::optional<std::size_t>> subscripts;
   if (text.size() < 3 || text.front() != '(' || text.back() != ')') return std::nullopt;
@@ -122,7 +122,7 @@ class Hdf5Columns {
     return nullptr;
   }
 
-  /// The series with the longest path that begins the column; what follows is its brackets.
+  /// The series with the longest path at the start of the column; its brackets follow.
   const Hdf5Series& series_of(const std::string& wanted, const std::string& column) const {
     const Hdf5Series* found = nullptr;
     for (const Hdf5Series& series : file_.series()) {
@@ -168,7 +168,7 @@ class Hdf5Columns {
     return values;
   }
 
-  /// As an attribute tells it: of all, or of this line of a matrix.
+  /// Unit from the attributes: one for the whole dataset, or the one of this line of a matrix.
   static std::string unit_of(const Hdf5Series& series, const Hdf5Line& line) {
     if (series.units.size() == 1) return series.units[0];
     if (series.dims.size() != 2) return {};

@@ -65,8 +65,8 @@ Table read_columns(MatSource& source, const std::vector<std::string>& columns) {
   return table;
 }
 
-/// Whether a file of version 7.3 is one of plain HDF5 behind MATLAB's header, as Python's packages
-/// write it: matio knows none of its arrays, and MATLAB's own store of objects is not there.
+/// Whether a file of version 7.3 is plain HDF5 behind MATLAB's header, as Python's packages write
+/// it: matio recognises none of its arrays, and MATLAB's own store of objects is absent.
 bool is_from_elsewhere(const MatSource& source, const std::filesystem::path& path) {
   const auto& arrays = source.variables();
   if (std::any_of(arrays.begin(), arrays.end(),

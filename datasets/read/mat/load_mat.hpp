@@ -11,9 +11,9 @@ namespace rigcal::datasets {
 /// Whether a file is to be read as a MAT file: by its name (.mat) or its first bytes.
 bool is_mat_file(const FileStart& start);
 
-/// Which columns of a MAT file are wanted.
+/// Wanted columns of a MAT file.
 struct MatRequest {
-  std::vector<std::string> columns;  ///< as MATLAB names them (mat_path.hpp), order of the result
+  std::vector<std::string> columns;  ///< MATLAB names (mat_path.hpp), in the order of the result
   std::string time_column;           ///< among `columns`; checked to increase; may be empty
 };
 
@@ -23,11 +23,11 @@ struct MatRequest {
 /// "x", "log.time", "log.signals(2).values", "data(:,3)". Arrays of one element are vectors too;
 /// dimensions of length 1 do not count. Every real number class is accepted. Everything else is an
 /// error: complex, sparse, text, cells, objects (a timeseries is one), NaN and infinity, integers
-/// that a double cannot hold, time that does not increase, vectors of different lengths, files
+/// that a double cannot represent, time that does not increase, vectors of different lengths, files
 /// that end early or whose compressed data are damaged. At most 12 million numbers are read.
 ///
-/// Version 5 is read by a reader of our own. Version 7.3 is read by HDF5 in a process of its own,
-/// with limits of memory and time, because a damaged file can crash it or let it run for ever.
+/// Version 5 has its own reader here. HDF5 reads version 7.3 in a separate process with limits of
+/// memory and time, because a damaged file can crash it or keep it busy forever.
 ///
 /// @return             one vector per column, of the same length
 /// @throws InputError  file, column and element, what was found and what was expected
@@ -41,7 +41,7 @@ std::vector<std::vector<double>> load_mat(const std::filesystem::path& path,
 /// @throws InputError  as load_mat
 std::vector<std::string> mat_columns(const std::filesystem::path& path);
 
-/// As the table of readers asks for them (record_reader.hpp).
+/// Functions with the signature of the table of readers (record_reader.hpp).
 std::vector<RecordColumn> mat_record_columns(const std::filesystem::path& path);
 RecordTable load_mat_record(const std::filesystem::path& path, const RecordRequest& request);
 

@@ -10,17 +10,17 @@ namespace rigcal::datasets {
 
 enum class MatKind { number, text, cell, structure, sparse, function, object, empty };
 
-/// What a MAT file says of an array; its numbers stay in the file.
+/// Description of an array in a MAT file; its numbers stay in the file.
 struct MatArray {
   std::string name;
   MatKind kind = MatKind::empty;
   bool is_complex = false;
   std::vector<std::size_t> dims;
-  std::vector<std::string> field_names;  ///< of a structure
-  /// Of a structure, shape (elements x field names): an element's fields stand together.
+  std::vector<std::string> field_names;  ///< for a structure
+  /// For a structure, shape (elements x field names); the fields of an element are adjacent.
   std::vector<MatArray> fields;
 
-  /// Where its reader finds the numbers, in terms of that reader.
+  /// Place of the numbers, in terms of the reader.
   std::uint64_t place = 0;
   std::uint32_t storage = 0;
   std::size_t variable = 0;
@@ -51,14 +51,14 @@ class MatSource {
   virtual const std::string& name() const = 0;
   virtual const std::vector<MatArray>& variables() const = 0;
 
-  /// @param array   of variables(), of real numbers; the selection lies within it
+  /// @param array   one of variables(), of real numbers; the selection is within it
   /// @param column  its name in messages
-  /// @throws InputError  damaged, or an integer that a double cannot hold
+  /// @throws InputError  damaged, or an integer that a double cannot represent
   virtual std::vector<double> numbers(const MatArray& array, const MatSelection& selection,
                                       const std::string& column) = 0;
 };
 
-/// Whether a double can hold a number; not so 64-bit integers beyond 2^53.
+/// Whether a double can represent a number, which is not the case for 64-bit integers beyond 2^53.
 template <typename Number>
 bool is_exact_as_double(Number number) {
   if constexpr (std::is_integral_v<Number> && sizeof(Number) == 8) {

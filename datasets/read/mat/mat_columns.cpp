@@ -194,7 +194,7 @@ class ColumnOfMat {
   const std::string& column_;
 };
 
-/// Adds what could be read of an array.
+/// Adds the readable columns of an array.
 void list_columns_of(const MatArray& array, const std::string& path, int depth,
                      std::vector<std::string>& columns) {
   if (depth > kDeepestListing) return;

@@ -9,14 +9,14 @@
 
 namespace rigcal::datasets {
 
-/// How to save what only MATLAB can read, in words.
+/// Advice for saving what only MATLAB can read.
 inline constexpr std::string_view kHowToSaveMat =
     "of a timeseries save its numbers: t = ts.Time; x = squeeze(ts.Data); save file.mat t x; or "
     "log to a \"Structure With Time\"";
 
 /// One column of a MAT file, by its name in MATLAB (mat_path.hpp).
 ///
-/// @param values_so_far  numbers that were already taken from the file; it counts against the limit
+/// @param values_so_far  numbers already read from the file; it counts against the limit
 /// @throws InputError  file, column and element, what was found and what was expected
 std::vector<double> read_mat_column(MatSource& source, const std::string& column,
                                     std::size_t values_so_far);

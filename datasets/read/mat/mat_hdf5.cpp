@@ -48,7 +48,7 @@ struct Hdf5Source::Open {
   std::string name;
   std::unique_ptr<mat_t, CloseMat> file;
   std::vector<std::unique_ptr<matvar_t, FreeVariable>> roots;
-  std::vector<matvar_t*> arrays;  ///< by MatArray::place
+  std::vector<matvar_t*> arrays;  ///< indexed by MatArray::place
   std::vector<MatArray> variables;
 
   [[noreturn]] void fail(const std::string& message) const { throw InputError({name}, message); }

@@ -55,7 +55,7 @@ enum MatClass : std::uint32_t {
 
 constexpr std::uint32_t kComplexFlag = 0x0800;
 
-/// Bytes of one number, 0 of what is no number.
+/// Bytes per number; 0 for types that are no numbers.
 std::size_t bytes_of(std::uint32_t storage) {
   switch (storage) {
     case kInt8:
@@ -86,13 +86,13 @@ Number swapped_bytes(Number value) {
   return value;
 }
 
-/// A data element: what it is and where its data stand in the stream.
+/// A data element: its type, and the position of its data in the stream.
 struct DataElement {
   std::uint32_t type = 0;
   std::uint64_t begin = 0;
   std::uint64_t bytes = 0;
-  std::uint64_t next = 0;             ///< where the element behind it begins
-  std::array<char, 4> held_in_tag{};  ///< its data, if they stand in the tag
+  std::uint64_t next = 0;             ///< start of the next element
+  std::array<char, 4> held_in_tag{};  ///< its data, if they are stored in the tag
   bool is_held_in_tag = false;
 };
 
@@ -110,7 +110,7 @@ class Level5Parser {
       throw DamagedBytes(fmt::format("more than {} arrays in the file", kMostArrays));
     MatArray array;
     array.variable = variable_;
-    if (stream_.position() == end) return array;  // what MATLAB writes of an empty field
+    if (stream_.position() == end) return array;  // MATLAB writes an empty field like this
     const DataElement flags_at = element(end);
     if (flags_at.type != kUint32 || flags_at.bytes != 8)
       throw DamagedBytes("an array without its flags");
@@ -157,7 +157,7 @@ class Level5Parser {
     element.begin = begin + kTagBytes;
     if (element.bytes > end - element.begin)
       throw DamagedBytes("an element that is longer than what it stands in");
-    // Elements begin at multiples of eight bytes; some writers leave out what fills up the last.
+    // Elements begin at multiples of eight bytes; some writers omit the padding of the last one.
     element.next = std::min(end, element.begin + (element.bytes + 7) / 8 * 8);
     return element;
   }
@@ -194,7 +194,7 @@ class Level5Parser {
     if (position > stream_.position()) stream_.skip(position - stream_.position());
   }
 
-  /// Reads an element and what fills it up.
+  /// Reads an element and its padding.
   std::string content(const DataElement& element, std::uint64_t most_bytes) {
     if (element.bytes > most_bytes)
       throw DamagedBytes(fmt::format("a description of {} bytes", element.bytes));
@@ -309,7 +309,7 @@ std::vector<double> selected(ByteStream& stream, bool swapped, const MatSelectio
   std::vector<double> values;
   values.reserve(selection.count);
   std::size_t left = selection.count == 0 ? 0 : (selection.count - 1) * selection.stride + 1;
-  std::size_t next = 0;  // of the block, the number that is wanted next
+  std::size_t next = 0;  // index in the block of the next wanted number
   while (left > 0) {
     block.resize(std::min(left, kBlock));
     stream.read(block.data(), block.size() * sizeof(Number));

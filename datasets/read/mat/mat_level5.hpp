@@ -11,10 +11,10 @@
 
 namespace rigcal::datasets {
 
-/// Reads MAT files of level 5 (also "v6", "v7"), strictly, after "MAT-File Format" of The
-/// MathWorks: nothing that the file says of itself is believed before it is checked against what
-/// contains it. Every variable is read to its end once, which finds what is cut off and, in
-/// compressed ones, what is damaged. Memory is limited by the numbers that are asked for.
+/// Reads MAT files of level 5 (also "v6", "v7"), strictly, by "MAT-File Format" of The MathWorks.
+/// Every size in the file is checked against its container before it is used. Every variable is
+/// read to its end once, which detects truncation and, in compressed variables, damage. The
+/// requested numbers limit the memory.
 class Level5Source : public MatSource {
  public:
   /// @throws InputError  not a regular file of this kind, damaged, more than 200 000 arrays, or
@@ -28,7 +28,7 @@ class Level5Source : public MatSource {
                               const std::string& column) override;
 
  private:
-  /// Where a variable stands in the file.
+  /// Position of a variable in the file.
   struct Range {
     std::uint64_t begin = 0;
     std::uint64_t bytes = 0;

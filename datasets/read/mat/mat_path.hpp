@@ -16,10 +16,10 @@ struct MatStep {
   bool operator==(const MatStep&) const = default;
 };
 
-/// Parses what MATLAB would call a column: "x", "log.time", "log.signals(2).values(:,1)".
-/// Subscripts count from 1; only the last step may hold a colon, and one only.
+/// Parses a column in MATLAB's notation: "x", "log.time", "log.signals(2).values(:,1)". Subscripts
+/// count from 1; only the last step may have a colon, and only one.
 ///
-/// @throws std::invalid_argument  what is wrong, in words
+/// @throws std::invalid_argument  the problem, in words
 std::vector<MatStep> parse_mat_path(const std::string& text);
 
 }  // namespace rigcal::datasets

@@ -19,13 +19,13 @@ std::vector<RecordColumn> xlsx_record_columns(const std::filesystem::path& path)
 
 /// Reads columns of an .xlsx workbook, strictly.
 ///
-/// The first row of a sheet that holds something, and does not begin with "#", is its header; a row
-/// of nothing but units may follow. A column is asked for by its name in the header, with its unit
-/// or without ("x [mm]", "x"), on the first sheet or on that which is named, "Sheet2!x". Numbers
-/// are read as stored, not as displayed, whatever the locale; a formula counts as its last result.
-/// Everything else in a wanted column is an error: a gap before its last
-/// row, text, truth values, errors such as #DIV/0!, dates and times of day, merged cells, time that
-/// does not increase, columns of different lengths. At most 12 million numbers are read.
+/// The first row of a sheet that is not empty and does not begin with "#" is its header; a row of
+/// units may follow. A column is requested by its name in the header, with or without its unit
+/// ("x [mm]", "x"), on the first sheet or on a named one, "Sheet2!x". Numbers are read as stored,
+/// not as displayed, whatever the locale; a formula counts as its last result. Everything else in a
+/// wanted column is an error: a gap before its last row, text, truth values, errors such as
+/// #DIV/0!, dates and times of day, merged cells, time that does not increase, columns of different
+/// lengths. At most 12 million numbers are read.
 ///
 /// libzip and Expat run in a child process with limits on memory and time.
 ///
@@ -33,7 +33,7 @@ std::vector<RecordColumn> xlsx_record_columns(const std::filesystem::path& path)
 /// @throws std::invalid_argument  the time column is not among the columns
 RecordTable load_xlsx_record(const std::filesystem::path& path, const RecordRequest& request);
 
-/// What a workbook without columns lacks.
+/// Advice for a workbook without columns.
 inline constexpr std::string_view kHowToSaveXlsx =
     "expected a sheet with names in its first row and numbers below them";
 

@@ -18,7 +18,7 @@
 namespace rigcal::datasets {
 namespace {
 
-// Excel's own limits, and bounds of what parts may inflate to.
+// Excel's own limits, and limits of the inflated size of parts.
 constexpr std::size_t kMostRows = 1'048'576;
 constexpr std::size_t kMostSheetColumns = 16'384;
 constexpr std::size_t kLongestCell = 32'767 * 4;
@@ -61,13 +61,13 @@ std::string resolved(const std::string& from, std::string_view target) {
   return path.lexically_normal().generic_string();
 }
 
-/// Where the description of a part's references stands.
+/// Path of the description of a part's references.
 std::string relations_of(const std::string& part) {
   const std::filesystem::path path(part);
   return (path.parent_path() / "_rels" / (path.filename().string() + ".rels")).generic_string();
 }
 
-// ---- What the small parts say --------------------------------------------------------------
+// ---- Small parts ---------------------------------------------------------------------------
 
 struct Relation {
   std::string kind;  ///< "worksheet"
@@ -133,7 +133,7 @@ class SharedTextsHandler : public XmlHandler {
   std::size_t bytes_ = 0;
 };
 
-/// Which styles of cells show a date.
+/// Finds the cell styles that show a date.
 class StylesHandler : public XmlHandler {
  public:
   void start(std::string_view element, const XmlAttributes& attributes) override {
@@ -196,7 +196,7 @@ class SheetHandler : public XmlHandler {
     finish_cell();
   }
 
-  /// Rows or cells of another program would be missing from the record.
+  /// Refuses rows or cells of an unknown namespace, which would be missing from the record.
   void foreign() override {
     if (in_table_ && !in_extension_) fail("or a cell behind it is of no known kind");
   }
@@ -348,7 +348,7 @@ XlsxBook::XlsxBook(const std::filesystem::path& path) : archive_(path) {
     const auto found = parts.find(id);
     if (found == parts.end() || found->second.kind != "worksheet") continue;
     const std::string part = resolved(workbook, found->second.target);
-    // Each would be read as if it were one more.
+    // A part that is listed twice would be read as two sheets.
     const auto same = std::find_if(sheets_.begin(), sheets_.end(),
                                    [&](const Sheet& each) { return each.part == part; });
     if (same != sheets_.end())

@@ -10,19 +10,19 @@
 
 namespace rigcal::datasets {
 
-/// What a cell holds; a formula counts as its last result. It has none (no_result) where the
-/// program that wrote it computed nothing: no value, an empty one (openpyxl), or 0 in a workbook
-/// that is to be computed when it is opened (`fullCalcOnLoad`; XlsxWriter).
+/// Kind of a cell's content; a formula counts as its last result. There is no result (no_result) if
+/// the program that wrote the formula did not compute it: no value, an empty one (openpyxl), or 0
+/// in a workbook that is to be computed when it is opened (`fullCalcOnLoad`; XlsxWriter).
 enum class XlsxKind { number, date, text, truth, error, no_result };
 
 struct XlsxCell {
   std::size_t row = 0;     ///< from 1
   std::size_t column = 0;  ///< from 1
   XlsxKind kind = XlsxKind::number;
-  std::string text;  ///< as it is stored
+  std::string text;  ///< as stored
 };
 
-/// Cells displayed as one, of which only the first holds a value.
+/// Cells displayed as one; only the first has a value.
 struct XlsxMerged {
   std::string range;  ///< "B2:B4"
   std::size_t first_row = 0, first_column = 0, last_row = 0, last_column = 0;
@@ -60,9 +60,9 @@ class XlsxBook {
  private:
   XlsxArchive archive_;
   std::vector<Sheet> sheets_;
-  std::vector<std::string> texts_;  ///< that cells share
+  std::vector<std::string> texts_;  ///< texts that cells share
   bool is_to_be_computed_ = false;  ///< when it is opened (`fullCalcOnLoad`)
-  std::vector<bool> shows_a_date_;  ///< by the number of a cell's style
+  std::vector<bool> shows_a_date_;  ///< indexed by the style of a cell
 };
 
 }  // namespace rigcal::datasets

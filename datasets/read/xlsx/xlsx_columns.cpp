@@ -66,7 +66,7 @@ std::string kind_text(const XlsxCell& cell) {
 
 /// The header of a sheet, and the units below it.
 struct SheetHeader {
-  std::size_t row = 0;             ///< 0: the sheet holds nothing
+  std::size_t row = 0;             ///< 0: the sheet is empty
   std::vector<CsvName> names;      ///< by column; empty where the header has a gap
   std::vector<std::string> units;  ///< by column; empty: no row of units
   bool has_number = false;
@@ -142,7 +142,7 @@ struct SheetColumn {
   std::string name;  ///< in its header
 };
 
-/// "Sheet2!x", "'My sheet'!x"; what names no sheet is a column of the first.
+/// "Sheet2!x", "'My sheet'!x"; without a sheet it is a column of the first.
 SheetColumn place_of(const XlsxBook& book, const std::string& column) {
   for (std::size_t at = column.find('!'); at != std::string::npos; at = column.find('!', at + 1)) {
     std::string name = column.substr(0, at);
@@ -173,7 +173,7 @@ class SheetReader {
               const std::string& time_name)
       : book_(book), sheet_(sheet), names_(std::move(names)), time_name_(time_name) {}
 
-  /// One column per name, of the same length.
+  /// Returns one column per name, all of the same length.
   RecordTable read(std::size_t most_values) {
     most_values_ = most_values;
     HeaderFinder finder;
@@ -322,7 +322,7 @@ class SheetReader {
   std::size_t count_ = 0;
   std::map<std::string, std::size_t> columns_;         ///< by name
   std::map<std::size_t, std::vector<double>> values_;  ///< by column
-  std::size_t first_row_ = 0;                          ///< of numbers; 0: not known yet
+  std::size_t first_row_ = 0;                          ///< first row of numbers; 0: not known yet
   std::size_t next_row_ = 0;
   std::size_t row_ = 0;
   std::optional<std::pair<std::size_t, std::size_t>> gap_;  ///< the first cell that is missing

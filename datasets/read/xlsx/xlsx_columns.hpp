@@ -7,7 +7,7 @@
 
 namespace rigcal::datasets {
 
-/// What load_xlsx.hpp promises, in this process.
+/// The functions of load_xlsx.hpp in this process.
 ///
 /// @throws InputError
 std::vector<RecordColumn> list_xlsx_columns(const std::filesystem::path& path);

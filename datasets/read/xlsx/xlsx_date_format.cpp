@@ -20,7 +20,7 @@ bool is_date_format(std::string_view code) {
       i = code.find('"', i + 1);
       if (i == std::string_view::npos) return false;
     } else if (c == '\\' || c == '_' || c == '*') {
-      ++i;  // the next character stands for itself
+      ++i;  // the next character is a literal
     } else if (c == '[') {
       const std::size_t end = code.find(']', i);
       if (end == std::string_view::npos) return false;

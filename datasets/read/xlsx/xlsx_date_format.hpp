@@ -7,7 +7,7 @@ namespace rigcal::datasets {
 /// Whether a number format of Excel shows dates or times of day: "dd.mm.yyyy", "[h]:mm:ss.000".
 bool is_date_format(std::string_view code);
 
-/// Of a format that Excel knows by its number (ECMA-376, part 1, 18.8.30).
+/// For a format that Excel knows by its number (ECMA-376, part 1, 18.8.30).
 bool is_date_format(long number);
 
 }  // namespace rigcal::datasets

@@ -16,11 +16,11 @@
 namespace rigcal::datasets {
 namespace {
 
-/// Of a tag or comment. With every block Expat reads one that is not closed again from its
-/// beginning, so that one of 64 MB would take 20 s.
+/// Limit for a tag or comment. With every block Expat reads an unfinished one again from its
+/// beginning, so one of 64 MB would take 20 s.
 constexpr std::int64_t kMostTagBytes = std::int64_t{1} << 20;
 
-// Expat 2.9 wants its calls of 64 bits, which 2.5 has not.
+// From Expat 2.9 on the functions with 64 bits are used; Expat 2.5 lacks them.
 #if XML_MAJOR_VERSION > 2 || XML_MINOR_VERSION >= 9
 std::uint64_t current_line(XML_Parser parser) { return XML_GetCurrentLineNumber64(parser); }
 std::int64_t current_byte(XML_Parser parser) { return XML_GetCurrentByteIndex64(parser); }
@@ -29,7 +29,7 @@ std::uint64_t current_line(XML_Parser parser) { return XML_GetCurrentLineNumber(
 std::int64_t current_byte(XML_Parser parser) { return XML_GetCurrentByteIndex(parser); }
 #endif
 
-/// Stands between the address of a namespace and a name, both in what Expat passes on.
+/// Separates the namespace from the name in the strings that Expat passes.
 constexpr char kBehindNamespace = '|';
 
 std::string_view without_namespace(std::string_view name) {
@@ -42,14 +42,14 @@ std::string_view namespace_of(std::string_view name) {
   return end == std::string_view::npos ? std::string_view() : name.substr(0, end);
 }
 
-/// What Expat calls. Exceptions wait here until it has returned.
+/// Callbacks of Expat. Exceptions are kept here until it has returned.
 struct Listener {
   XML_Parser parser = nullptr;
   XmlHandler* handler = nullptr;
   std::exception_ptr error;
   bool has_document_type = false;
-  std::optional<std::string> own_namespace{};  ///< that of the part's outermost element
-  int foreign_depth = 0;  ///< elements that are open from the first of another namespace on
+  std::optional<std::string> own_namespace{};  ///< namespace of the part's outermost element
+  int foreign_depth = 0;  ///< number of open elements, counted from the first of another namespace
 
   template <typename Call>
   void guarded(Call call) {
@@ -143,8 +143,8 @@ void read_xml(const XlsxArchive& archive, const std::string& part, std::uint64_t
   archive.read(part, most_bytes, [&](std::string_view block) {
     parse(block, false);
     given += static_cast<std::int64_t>(block.size());
-    // -1 while there is none, and where Expat (2.6 and later) waits for more of what it began to
-    // read.
+    // The position is -1 before the first token, and while Expat (2.6 and later) waits for the rest
+    // of a token.
     if (const std::int64_t now = current_byte(parser.get()); now >= 0) begin = now;
     if (given - begin > kMostTagBytes)
       throw InputError({archive.name()},

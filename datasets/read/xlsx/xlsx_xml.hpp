@@ -9,7 +9,7 @@
 
 namespace rigcal::datasets {
 
-/// Attributes of an element, by their names without a namespace; one that has none comes first.
+/// Attributes of an element by their name without namespace; a name that had none comes first.
 class XmlAttributes {
  public:
   explicit XmlAttributes(const char** pairs) : pairs_(pairs) {}
@@ -21,9 +21,9 @@ class XmlAttributes {
   const char** pairs_;
 };
 
-/// Receives the elements of a part, in their order: those of the namespace of its outermost
-/// element, which Excel and others abbreviate differently. What other programs added in namespaces
-/// of their own is passed over with all that it holds.
+/// Receives the elements of a part in order. Only those in the namespace of its outermost element
+/// count, whatever prefix the file uses for it. Elements that other programs add in their own
+/// namespaces are skipped with their content.
 class XmlHandler {
  public:
   XmlHandler() = default;
@@ -34,7 +34,7 @@ class XmlHandler {
   virtual void start(std::string_view element, const XmlAttributes& attributes) = 0;
   virtual void end(std::string_view /*element*/) {}
   virtual void text(std::string_view /*text*/) {}
-  /// Here an element of another namespace is passed over.
+  /// Called where an element of another namespace is skipped.
   virtual void foreign() {}
   /// The rest of the part is not wanted.
   virtual bool is_done() const { return false; }

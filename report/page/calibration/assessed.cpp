@@ -73,7 +73,8 @@ std::string correlation_words(const StoredCorrelation& correlation) {
 }
 
 doc::Section assessment_section(const StoredFit& fit) {
-  constexpr std::size_t kShown = 3;  // against; the rest is counted, and stands in the sections
+  // Reasons against; the others are counted here and listed in the sections.
+  constexpr std::size_t kShown = 3;
   doc::Section section{"assessment", "Assessment"};
   if (fit.assessment) {
     section.blocks.emplace_back(doc::reading(

@@ -8,7 +8,7 @@
 #include "report/document/document.hpp"
 #include "report/store/stored.hpp"
 
-// What was judged of a fit or validation, in words.
+// The assessment of a fit or validation in words.
 
 namespace rigcal::report {
 
@@ -24,25 +24,25 @@ inline constexpr std::array kAspects{
     AspectName{&StoredAssessment::adequacy, "Adequacy of the model", "Adequacy", "conditions"},
     AspectName{&StoredAssessment::parameters, "Parameters", "Parameters", "parameters"}};
 
-/// Id of what shows the evidence for a reason.
+/// Id of the section with the evidence for a reason.
 ///
-/// @param section  that of its aspect
+/// @param section  section of the reason's aspect
 std::string evidence_of(const StoredFit& fit, const StoredReason& reason, const char* section);
 
-/// Whether an aspect names a reason of this code.
+/// Whether an aspect has a reason of this code.
 bool names_reason(const StoredFit& fit, StoredAspect StoredAssessment::*aspect,
                   std::string_view code);
 
-/// The aspects that did not pass: "independent validation: not assessed".
+/// Lists the aspects that did not pass: "independent validation: not assessed".
 std::string open_aspects(const StoredFit& fit);
 
-/// What a decision rule means for who reads the verdict (ISO/IEC 17025, 7.8.6).
+/// Explains a decision rule to the reader of the verdict (ISO/IEC 17025, 7.8.6).
 std::string rule_words(datasets::DecisionRule rule);
 
-/// How well estimates are told apart; those without a number are left out.
+/// Describes how strongly estimates are correlated; estimates without a number are omitted.
 std::string correlation_words(const StoredCorrelation& correlation);
 
-/// Every reason of every aspect, and how the search ended.
+/// Section with the reasons of every aspect and the end of the search.
 doc::Section assessment_section(const StoredFit& fit);
 
 }  // namespace rigcal::report

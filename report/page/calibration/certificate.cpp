@@ -27,7 +27,7 @@ using calib::Verdict;
 using doc::Line;
 using doc::State;
 
-/// Rows of page one; what is beyond them is counted.
+/// Rows on page one; further ones are only counted.
 constexpr std::size_t kSignals = 8;
 constexpr std::size_t kValues = 12;
 constexpr std::size_t kDoubts = 9;
@@ -36,12 +36,12 @@ std::string plural(std::size_t count, const std::string& noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
 }
 
-/// A score that has a limit.
+/// A signal with a limit.
 struct Judged {
   const StoredCondition* condition = nullptr;
-  std::size_t number = 0;  ///< of the condition
+  std::size_t number = 0;  ///< index of the condition
   std::string channel;
-  const StoredLimitCheck* check = nullptr;  ///< that which uses most of its tolerance
+  const StoredLimitCheck* check = nullptr;  ///< the check that uses most of its tolerance
 
   double used() const {
     if (check == nullptr || !check->value || !check->tolerance_used) return HUGE_VAL;
@@ -51,7 +51,7 @@ struct Judged {
   Verdict verdict() const { return check != nullptr ? check->verdict : Verdict::fail; }
 };
 
-/// Every signal that is judged, those that the fit has not seen first, then the worst.
+/// All judged signals: held-back ones first, then by how bad they are.
 std::vector<Judged> judged_signals(const StoredFit& fit) {
   std::vector<Judged> signals;
   for (std::size_t i = 0; i < fit.conditions.size(); ++i) {
@@ -79,7 +79,7 @@ std::vector<Judged> judged_signals(const StoredFit& fit) {
   return signals;
 }
 
-/// Estimates that are signed for; nuisance parameters are not.
+/// Estimates on the certificate; nuisance parameters are left out.
 std::vector<const StoredParameter*> signed_estimates(const StoredFit& fit) {
   std::vector<const StoredParameter*> found;
   for (const StoredParameter& p : fit.parameters)
@@ -94,7 +94,7 @@ std::string tolerance_words(const std::vector<Judged>& signals) {
   return fmt::format("with at most {} of the permitted error", calib::tolerance_used_text(used));
 }
 
-/// Adds how many signals the model reproduces, and how well its parameters are known.
+/// Adds to a sentence how many signals the model reproduces and how well its parameters are known.
 void add_numbers(const StoredFit& fit, Line& sentence) {
   const std::vector<Judged> signals = judged_signals(fit);
   if (!signals.empty()) {
@@ -159,7 +159,7 @@ doc::Verdict failed_verdict(const StoredFit& fit) {
   return {{State::bad, "FAIL"}, std::move(sentence)};
 }
 
-/// A reason with where its evidence is, and how many others are of its kind.
+/// A reason with a link to its evidence, and the number of similar ones.
 Line doubt_line(const StoredFit& fit, const StoredReason& reason, const char* section,
                 std::size_t others) {
   Line line{doc::Link{"#" + evidence_of(fit, reason, section), reason.words}};
@@ -167,8 +167,7 @@ Line doubt_line(const StoredFit& fit, const StoredReason& reason, const char* se
   return line;
 }
 
-/// Every kind of doubt, the gravest first: what the aspects say against the result or note, and
-/// what was warned of.
+/// One doubt of each kind, the gravest first: reasons against the result, notes, and warnings.
 doc::Doubts doubts_of(const StoredFit& fit) {
   doc::Doubts doubts;
   std::vector<std::pair<AspectState, Line>> found;
@@ -177,7 +176,7 @@ doc::Doubts doubts_of(const StoredFit& fit) {
       const std::vector<StoredReason>& reasons = ((*fit.assessment).*aspect.aspect).reasons;
       for (std::size_t i = 0; i < reasons.size(); ++i) {
         const StoredReason& reason = reasons[i];
-        // The values that count as exact stand beneath the table that rests on them.
+        // The table of values names these below it.
         if (reason.state == AspectState::pass || reason.code == "exact_values") continue;
         const auto same = [&](const StoredReason& other) {
           return other.code == reason.code && other.state == reason.state;
@@ -220,7 +219,7 @@ doc::Doubts doubts_of(const StoredFit& fit) {
   return doubts;
 }
 
-/// Half the interval, where it is as wide on both sides; nothing where it is not, or unknown.
+/// Half width of a symmetric interval; nothing for an asymmetric or missing one.
 std::optional<double> expanded_uncertainty(const StoredParameter& p) {
   constexpr double kSymmetric = 0.01;
   const auto ends = doc::Interval(p.ci95).ends;
@@ -231,7 +230,7 @@ std::optional<double> expanded_uncertainty(const StoredParameter& p) {
   return 0.5 * (above + below);
 }
 
-/// U over the standard error that it rests on.
+/// U divided by the standard error from which it follows.
 std::optional<double> coverage_factor(const StoredParameter& p) {
   const auto half = expanded_uncertainty(p);
   const auto error = interval_error(p);
@@ -258,7 +257,7 @@ doc::Row value_row(const StoredParameter& p, bool judged) {
            doc::badge(p.identifiability, p.at_bound, judged)}};
 }
 
-/// "k = 1.96", "k = 1.96 to 2.1"; empty where no U has one.
+/// "k = 1.96", "k = 1.96 to 2.1"; empty if no value has a U.
 std::string coverage_words(const std::vector<const StoredParameter*>& found) {
   double least = HUGE_VAL;
   double largest = 0.0;
@@ -274,12 +273,12 @@ std::string coverage_words(const std::vector<const StoredParameter*>& found) {
   return low == high ? fmt::format("k = {}, ", low) : fmt::format("k = {} to {}, ", low, high);
 }
 
-/// The calibrated values; a validation that estimated nothing has none.
+/// Adds the calibrated values. A validation that estimated nothing has none.
 void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
   std::vector<const StoredParameter*> found = signed_estimates(fit);
   if (found.empty()) return;
   const std::size_t more = found.size() > kValues ? found.size() - kValues : 0;
-  // The least certain are seen wherever the table ends.
+  // The table is cut, so the least certain values come first.
   if (more > 0)
     std::stable_sort(found.begin(), found.end(), [](const auto* a, const auto* b) {
       return relative_half_width(*a) > relative_half_width(*b);
@@ -316,9 +315,9 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
     blocks.emplace_back(doc::Paragraph{std::move(notes), doc::Paragraph::Tone::source});
 }
 
-/// What the model leaves of a record, against what its limit allows.
+/// Residual of a whole record against the band that its limit allows.
 Plot residual_strip(const Judged& signal, const std::vector<double>& residual, double allowed) {
-  constexpr std::size_t kColumns = 250;  // pixels
+  constexpr std::size_t kColumns = 250;  // width in pixels
   Plot plot;
   plot.title = fmt::format("Measured minus model, {} of {}, whole record", spaced(signal.channel),
                            signal.condition->id);
@@ -333,7 +332,8 @@ Plot residual_strip(const Judged& signal, const std::vector<double>& residual, d
     band.upper = {allowed, allowed};
     plot.traces.push_back(std::move(band));
   }
-  // From the least to the largest in each column: no peak is lost, and none is drawn that is not.
+  // Each pixel column has one bar from the least to the largest residual, so all peaks are visible
+  // and no false ones appear.
   Trace bars = empty_trace(Trace::Kind::line, "residual");
   for (std::size_t i = 0; i < kColumns; ++i) {
     const std::size_t begin = i * residual.size() / kColumns;
@@ -354,7 +354,7 @@ Plot residual_strip(const Judged& signal, const std::vector<double>& residual, d
   return plot;
 }
 
-/// Samples of a channel that count, of one column.
+/// Finite samples of one column of a channel that lie within the windows.
 std::vector<double> counted_samples(const Table& series, const std::string& column) {
   const auto* values = series.find(column);
   const auto* in_window = series.find("in_window");
@@ -379,7 +379,7 @@ std::string signal_words(const StoredCondition& condition) {
   return text;
 }
 
-/// "rho2 0.9987 ± 0.0002, limit 0.99" of the check that decides.
+/// Adds the score of the deciding check: "rho2 0.9987 ± 0.0002, limit 0.99".
 void add_score(const Judged& signal, doc::Cell& cell) {
   const StoredLimitCheck& check = *signal.check;
   cell.line = {spaced(check.metric) + " ", doc::score(check.metric, check.value)};
@@ -526,7 +526,7 @@ void add_aspects(const StoredFit& fit, doc::Blocks& blocks) {
   blocks.emplace_back(std::move(aspects));
 }
 
-/// What one quantity was, where the model was fitted and where it was validated.
+/// Range of one quantity in the fitted conditions and in the validation.
 std::string coverage_text(const std::optional<Range>& fitted, const std::optional<Range>& validated,
                           std::string_view unit) {
   if (!validated || (fitted && fitted->low == validated->low && fitted->high == validated->high))
@@ -536,7 +536,7 @@ std::string coverage_text(const std::optional<Range>& fitted, const std::optiona
                      in_words(*validated, unit));
 }
 
-/// By which rule, and where the model may be used: of one that is not validated, what was tried.
+/// Adds the decision rule and the range of validity; without a validation, the tested range.
 void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
   if (!fit.acceptance.empty()) {
     const auto rule = fit.decision.value_or(datasets::DecisionRule::simple);
@@ -549,7 +549,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
   const auto add = [&](std::optional<Range> StoredValidity::*range, const char* name,
                        std::string_view unit) {
     const std::optional<Range>& fitted = fit.validity.*range;
-    // A validation covers both at once.
+    // The ranges of a pure validation are in `validity` already.
     const std::optional<Range> validated =
         fit.schema == kFitSchema && fit.validated ? (*fit.validated).*range : std::nullopt;
     if (fitted || validated)
@@ -590,7 +590,7 @@ doc::Verdict fit_verdict(const StoredFit& fit) {
     if (stopped) add_reason(verdict, fit.message, "starts");
     return verdict;
   }
-  // After FAIL: a limit that is broken stays broken, whatever else was not finished.
+  // FAIL comes first: a broken limit stays broken, whatever was not finished.
   if (stopped) return unfinished({State::warn, "STOPPED"}, stopped_sentence(*fit.stopped_in));
   if (fit.verdict) {
     doc::Verdict verdict{doc::badge(*fit.verdict), {}};

@@ -6,32 +6,31 @@
 #include "report/document/document.hpp"
 #include "report/store/stored.hpp"
 
-// The sections of a fit or validation beneath its first page.
+// The sections of a fit or validation after its first page.
 
 namespace rigcal::report {
 
-/// Three numbers, and measurement and model of every condition as a small picture; nothing where
+/// Three numbers, and a small picture of measurement and model for every condition. Nothing if
 /// nothing was scored.
 std::optional<doc::Section> overview_section(const Calibration& stored);
-/// Per channel: signals by leak levels, then means by groups.
+/// For each channel, scores by signal and leak level, then group means.
 ///
-/// @param unfinished  the search did not come to its end
+/// @param unfinished  the search did not converge
 doc::Section scores_section(const StoredFit& fit, bool unfinished);
-/// @param judged  whether a search came to its end, so that there are grades
+/// @param judged  whether a search converged, so that estimates have grades
 doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
                                 const StoredCorrelation& correlation, bool judged);
-/// One article for each condition: what it is, its scores, its plots and residual tests.
+/// One article for each condition: its description, scores, plots and residual tests.
 doc::Section conditions_section(const Calibration& stored, int threads);
-/// How far the estimates can be trusted: singular values, profiles, bootstrap, lack of fit,
-/// predictions.
+/// Evidence on the estimates: singular values, profiles, bootstrap, lack of fit, predictions.
 doc::Section identifiability_section(const StoredFit& fit);
-/// Its first part: singular values of the Jacobian, and what they say.
+/// Adds the singular values of the Jacobian with an explanation.
 void add_singular_values(const StoredFit& fit, doc::Blocks& blocks);
 doc::Section starts_section(const StoredFit& fit);
 /// Failures and warnings.
 doc::Section warnings_section(const StoredFit& fit);
 
-/// What the residuals of the channels of a condition show, with the curves behind it.
+/// Adds residual tests and curves for the channels of a condition.
 void add_residual_tests(const StoredCondition& condition, const StoredChannelCurves* curves,
                         doc::Blocks& blocks);
 

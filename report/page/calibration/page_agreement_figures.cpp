@@ -19,7 +19,8 @@ namespace {
 
 /// Fewer make neither a histogram nor a spectrum.
 constexpr std::size_t kLeastSamples = 64;
-/// Of a periodic drive; where they do not divide a period, one has a sample fewer than another.
+/// Samples per period of a periodic drive; if they do not divide a period, their number varies by
+/// one.
 constexpr double kLeastPerPeriod = 10.0;
 
 struct Drive {
@@ -45,7 +46,7 @@ bool all_finite(std::span<const double> values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
 }
 
-/// Interval between samples; nothing where it varies by more than rounding.
+/// Interval between samples; nothing if it varies by more than rounding.
 std::optional<double> equal_steps(std::span<const double> time_s) {
   const double step = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
   if (!(step > 0.0)) return std::nullopt;

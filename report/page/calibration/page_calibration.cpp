@@ -10,7 +10,7 @@
 namespace rigcal::report {
 namespace {
 
-/// The verdict on a fit to published tables, which has no records.
+/// Verdict on a fit to published tables, which has no records.
 doc::Verdict tables_verdict(const StoredTablesFit& fit) {
   using calib::FitStatus;
   if (fit.status != FitStatus::converged) {

@@ -18,7 +18,7 @@ namespace {
 
 using Kind = doc::Column::Kind;
 
-/// Of the scores of a channel; null where it is not known.
+/// Uncertainty of the scores of a channel; null if unknown.
 const StoredAgreement* uncertainty_of(const StoredCondition& condition,
                                       const std::string& channel) {
   if (!condition.expanded_uncertainty) return nullptr;
@@ -83,7 +83,7 @@ doc::Line facts_of(const StoredCondition& condition) {
   return facts;
 }
 
-/// A plot over time as the script of the page reads it.
+/// JSON of a plot over time for the page's script.
 Json live_plot(const TimePlot& plot, SeriesData& data) {
   Json lines = Json::array();
   for (const TimeLine& line : plot.lines) {
@@ -111,10 +111,10 @@ Json live_plot(const TimePlot& plot, SeriesData& data) {
   return entry;
 }
 
-/// The plots over time, and the series that they zoom into.
+/// Adds the plots over time with the series for zooming.
 ///
-/// @param points  of one series, about
-/// @return        how many plots there are
+/// @param points  approximate number of points per series
+/// @return        number of plots
 std::size_t add_plots(const StoredCondition& condition, const Table& series, std::size_t points,
                       doc::Blocks& blocks) {
   if (series.columns.empty() || series.columns.front().empty()) return 0;
@@ -144,7 +144,7 @@ std::size_t add_plots(const StoredCondition& condition, const Table& series, std
 
 /// @param series  residuals/<condition>.csv
 /// @param curves  its entry in residual_tests.json, or null
-/// @param open    its curves are shown at once
+/// @param open    whether its curves are unfolded
 doc::Article article_of(const StoredCondition& condition, const Table& series,
                         const StoredChannelCurves* curves, std::size_t points, bool open) {
   const doc::Badge verdict = doc::badge(condition.verdict);
@@ -164,7 +164,7 @@ doc::Article article_of(const StoredCondition& condition, const Table& series,
   add_scores(condition, blocks);
   doc::Fold curves_of{"", {}, open, "curves"};
   const std::size_t plots = add_plots(condition, series, points, curves_of.blocks);
-  // A condition that was scored has a series; without it the page would only look complete.
+  // Every scored condition must have a series; without it the page would only look complete.
   if (!condition.metrics.empty() && plots == 0)
     problem(fmt::format("residuals/{}.csv is missing or holds no rows: nothing can be drawn.",
                         condition.id));
@@ -182,12 +182,12 @@ doc::Article article_of(const StoredCondition& condition, const Table& series,
   return article;
 }
 
-/// All interactive series of a page together take about this many bytes.
+/// Approximate size of all interactive series of a page.
 constexpr std::size_t kSeriesBytes = 3'600'000;
 constexpr double kBytesPerPoint = 2.0 * 4.0 / 3.0;
 constexpr std::size_t kLeastPoints = 2000;
 
-/// Points of one series, so that all of them together keep the size of the page.
+/// Number of points per series with which all series together have that size.
 std::size_t points_of(const Calibration& stored) {
   std::size_t columns = 0;
   for (std::size_t i = 0; i < stored.result.conditions.size(); ++i)
@@ -225,7 +225,8 @@ doc::Section conditions_section(const Calibration& stored, int threads) {
       doc::Paragraph::Tone::screen});
   const std::size_t points = points_of(stored);
   std::vector<std::string> articles(conditions.size());
-  // Each is drawn at once: the series of all together would be the most memory that a page takes.
+  // Each article is rendered right away. Keeping the series of all articles would need most of the
+  // memory of a page.
   parallel_for(conditions.size(), threads, [&](std::size_t i) {
     const std::shared_ptr<const Table> series = stored.series(i);
     const bool open = i == 0 || conditions.size() <= kFew;

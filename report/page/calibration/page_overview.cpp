@@ -12,8 +12,7 @@
 #include "report/page/page_parts.hpp"
 #include "report/text/readable.hpp"
 
-// What the first screen shows beside the verdict: three numbers, and every condition as a small
-// picture.
+// First screen after the verdict: three numbers, and every condition as a small picture.
 
 namespace rigcal::report {
 namespace {
@@ -80,7 +79,7 @@ struct Extreme {
   std::string channel;
 };
 
-/// The worst of a metric over every channel of every condition.
+/// Finds the worst value of a metric over all channels and conditions.
 template <typename Worse>
 std::optional<Extreme> extreme(const std::vector<StoredCondition>& conditions,
                                double metrics::Agreement::*metric, Worse worse) {
@@ -114,8 +113,8 @@ std::string whose(const Extreme& worst, const std::string& metric,
   return text;
 }
 
-/// What is known the least of what was estimated, nuisance parameters left out; null where nothing
-/// was.
+/// The estimate with the largest relative interval, nuisance parameters excluded; null if there is
+/// none.
 const StoredParameter* least_certain(const std::vector<StoredParameter>& parameters) {
   const StoredParameter* least = nullptr;
   for (const StoredParameter& p : parameters) {
@@ -139,7 +138,7 @@ doc::Facts three_numbers(const StoredFit& fit) {
     add("Largest mean error", fmt::format("{} % of the range", significant(largest->value, 3)),
         whose(*largest, "absolute_error_percent", &Agreement::absolute_error_percent));
   const StoredParameter* least = least_certain(fit.parameters);
-  // Stopped before it converged, a search knows nothing of its errors.
+  // A search that was stopped before it converged has no valid errors.
   if (least == nullptr || (fit.status == calib::FitStatus::stopped && !searched_to_the_end(fit)))
     return numbers;
   const bool bounded = least->identifiability == calib::Identifiability::bounded;

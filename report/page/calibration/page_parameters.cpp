@@ -22,7 +22,7 @@ Range bounds_of(const StoredParameter& p) {
   return {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)};
 }
 
-/// An error, and the 95 % interval that it makes alone, as if it were known exactly.
+/// Cell with an error and the 95 % interval from this error alone, by the normal distribution.
 doc::Cell error_cell(const StoredParameter& p, const std::optional<double>& error,
                      const RowUnit& unit) {
   constexpr double kNormalQuantile = 1.96;
@@ -33,8 +33,8 @@ doc::Cell error_cell(const StoredParameter& p, const std::optional<double>& erro
   return cell;
 }
 
-/// @param judged  whether the search came to its end
-/// @param reason  what is to be said of this estimate alone
+/// @param judged  whether the search converged
+/// @param reason  reason that applies to this estimate alone
 doc::Row fitted_row(const StoredParameter& p, bool judged, const std::string& reason) {
   const RowUnit unit = unit_of(p);
   const doc::Estimate estimate = doc::estimate(p.value, p.ci95, unit.si, bounds_of(p));
@@ -106,7 +106,7 @@ std::string joined_reason(const std::vector<std::string>& parts) {
   return text;
 }
 
-/// What holds for every one of several estimates, to be told once.
+/// Reasons that all of several estimates have in common, to be shown once.
 std::vector<std::string> common_reasons(const std::vector<const StoredParameter*>& fitted) {
   std::vector<std::string> common;
   if (fitted.size() < 2) return common;
@@ -121,7 +121,7 @@ std::vector<std::string> common_reasons(const std::vector<const StoredParameter*
   return common;
 }
 
-/// What is to be said of one estimate, without what holds for all.
+/// Reason of one estimate without the common ones.
 std::string own_reason(const StoredParameter& p, const std::vector<std::string>& common) {
   auto parts = parts_of_reason(p.reason);
   std::erase_if(parts, [&](const std::string& part) {
@@ -207,7 +207,7 @@ doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
   return section;
 }
 
-/// Singular values of the Jacobian, and what they say.
+/// Adds the singular values of the Jacobian with an explanation.
 void add_singular_values(const StoredFit& fit, doc::Blocks& blocks) {
   std::vector<double> values = fit.singular_values;
   std::erase_if(values, [](double value) { return std::isnan(value); });

@@ -29,7 +29,7 @@ doc::Table start_table(const StoredFit& fit) {
   return table;
 }
 
-/// What a fit of one start says of further ones.
+/// Text about further starts for a fit with one start.
 std::string further_starts_of(const StoredFit& fit) {
   if (fit.assessment) {
     for (const StoredReason& reason : fit.assessment->parameters.reasons) {
@@ -39,9 +39,9 @@ std::string further_starts_of(const StoredFit& fit) {
   return "One start alone: whether another minimum lies lower was not looked for.";
 }
 
-/// What the starts say together.
+/// Summary of all starts.
 ///
-/// @param costs  in which they ended, sorted
+/// @param costs  final costs of the starts, sorted
 std::string start_reading(const StoredFit& fit, const std::vector<double>& costs) {
   if (costs.empty()) return "No start ended with a cost: there is no answer.";
   std::string text =
@@ -101,7 +101,7 @@ doc::Section warnings_section(const StoredFit& fit) {
   doc::Section section{"warnings", "Failures and warnings"};
   doc::List warnings;
   for (const std::string& warning : fit.warnings) {
-    // Beside its parameter it was told already.
+    // The table of parameters already shows this reason.
     const bool told =
         std::any_of(fit.parameters.begin(), fit.parameters.end(), [&](const StoredParameter& p) {
           return p.fitted && !p.reason.empty() && warning.ends_with(": " + p.reason);
@@ -177,7 +177,7 @@ void add_fact(doc::Facts& facts, const char* fact, const std::optional<double>& 
   if (value) facts.rows.push_back({fact, {fmt::format("{:.{}g}{}", *value, digits, unit)}});
 }
 
-/// What a fit to records and one to published tables both have.
+/// The parts that fits to records and to published tables have in common.
 template <typename Fit>
 void add_effort(const Fit& fit, doc::Facts& facts) {
   add_fact(facts, "Residuals", static_cast<double>(fit.residual_count), 12);

@@ -29,7 +29,7 @@ std::string end_words(const StoredProfileEnd& end, const RowUnit& unit, const ch
                   : std::string());
 }
 
-/// How much worse the fit gets with a parameter held; 1 ends the 95 % interval.
+/// Rise of the cost with a parameter held at each value; a rise of 1 ends the 95 % interval.
 Plot profile_plot(const StoredParameter& parameter, const StoredProfile& profile) {
   const RowUnit unit = unit_of(parameter);
   Plot plot;
@@ -44,7 +44,7 @@ Plot profile_plot(const StoredParameter& parameter, const StoredProfile& profile
   trace.style = "reference";
   for (std::size_t i = 0; i < std::min(profile.values.size(), profile.rises.size()); ++i) {
     if (std::isnan(profile.values[i]) || std::isnan(profile.rises[i])) continue;
-    // Far beyond the end it would only flatten what counts.
+    // Values far beyond the end would only flatten the rest.
     if (profile.rises[i] > kHighestRise) continue;
     trace.x.push_back(profile.values[i] / unit.si);
     trace.y.push_back(profile.rises[i]);

@@ -24,7 +24,7 @@ std::pair<double, std::string> signal_of(const StoredCondition& condition) {
 
 std::string level_of(const StoredCondition& condition) { return condition.leak_level.value_or(""); }
 
-/// "rho2 0.99 (warning at 0.995), ccc 0.99"; empty where a channel has none.
+/// "rho2 0.99 (warning at 0.995), ccc 0.99"; empty if the channel has no limits.
 std::string limits_text(const std::vector<StoredLimit>& limits, const std::string& channel) {
   std::string text;
   for (const StoredLimit& limit : limits) {
@@ -36,7 +36,7 @@ std::string limits_text(const std::vector<StoredLimit>& limits, const std::strin
   return text;
 }
 
-/// The channel, with its limits and those that conditions have of their own.
+/// Caption of a channel with its limits, and those of conditions that have their own.
 Line caption_of(const StoredFit& fit, const std::string& channel) {
   const std::string limits = limits_text(fit.acceptance, channel);
   std::string rest =
@@ -50,7 +50,7 @@ Line caption_of(const StoredFit& fit, const std::string& channel) {
   return {channel, doc::Soft{rest}};
 }
 
-/// A condition in its cell; nothing where it did not compare the channel.
+/// Tile of a condition; nothing if the condition does not compare the channel.
 std::optional<doc::Tile> tile_of(const StoredCondition& condition, const std::string& channel) {
   const StoredScore* scores = find(condition.metrics, channel);
   if (scores == nullptr && !condition.failure) return std::nullopt;
@@ -67,7 +67,7 @@ std::optional<doc::Tile> tile_of(const StoredCondition& condition, const std::st
   return tile;
 }
 
-/// Per channel: signals by leak levels.
+/// A table of signals by leak levels for each channel.
 std::vector<doc::Table> matrices(const StoredFit& fit) {
   std::vector<std::string> channels;
   std::vector<std::pair<double, std::string>> signals;

@@ -24,20 +24,20 @@ struct StoredDiagnosisSettings {
 struct StoredClassLimit {
   std::string signal;
   double share_percent = 0.0;
-  std::optional<datasets::LeakClass> class_;  ///< that ends there
+  std::optional<datasets::LeakClass> class_;  ///< class that ends there
   std::vector<double> coefficients;
-  std::vector<std::optional<Range>> coefficients_ci95;  ///< of each
+  std::vector<std::optional<Range>> coefficients_ci95;  ///< intervals of each
   RIGCAL_DESCRIBE(signal, share_percent, class_, coefficients, coefficients_ci95)
 };
 
 struct StoredNearestLimit {
-  datasets::LeakClass class_ = datasets::LeakClass::normal;  ///< that begins there
+  datasets::LeakClass class_ = datasets::LeakClass::normal;  ///< class that begins there
   double percent = 0.0, distance_percentage_points = 0.0;
   bool on_limit = false;
   RIGCAL_DESCRIBE(class_, percent, distance_percentage_points, on_limit)
 };
 
-/// Whether the signals of a state tell the same leak.
+/// Whether the signals of a state give the same leak.
 struct StoredSignalsAgreement {
   double p = 1.0, chi_squared = 0.0, freedom = 0.0, widened = 1.0;
   bool agree = true;
@@ -58,7 +58,7 @@ struct StoredState {
   std::optional<Range> leak_area_ci95_m2;
   std::optional<std::string> duty;  ///< signal whose share is stated
   std::optional<StoredNearestLimit> nearest_limit;
-  std::optional<StoredSignalsAgreement> agreement;  ///< nothing: one signal alone
+  std::optional<StoredSignalsAgreement> agreement;  ///< nothing: a single signal
   RIGCAL_DESCRIBE(state, leak_level, specimen, date, sentence, failure, is_reference, conditions,
                   left_out, leak, leak_area_m2, leak_area_ci95_m2, duty, nearest_limit, agreement)
 };
@@ -88,7 +88,7 @@ struct StoredLeakTrend {
                   significant, chi_squared, freedom, widened, next_limit)
 };
 
-/// What was found in one record.
+/// Diagnosis of one record.
 struct StoredDiagnosedRecord {
   std::string condition;
   std::optional<int> repeat;  ///< from 1; nothing: the average
@@ -115,7 +115,7 @@ struct StoredDiagnosedRecord {
   bool is_average() const { return !repeat; }
 };
 
-/// Counts of records: rows by their true class, columns by what was found.
+/// Numbers of records: rows by true class, columns by assigned class.
 struct StoredConfusion {
   static constexpr std::size_t kClasses = datasets::kLeakClasses.size();
   std::array<std::string, kClasses> truth;
@@ -124,7 +124,7 @@ struct StoredConfusion {
   RIGCAL_DESCRIBE(truth, found, counts)
 };
 
-/// How often a method is right.
+/// Accuracy of a method.
 struct StoredAccuracy {
   int records = 0, conditions = 0, right = 0, undecided = 0, off_by_two_or_more = 0;
   std::optional<double> accuracy;
@@ -141,7 +141,7 @@ struct StoredMethods {
                   features_leave_one_signal_out)
 };
 
-/// The smallest leak of a signal that is told from none [L/min].
+/// The smallest detectable leak of a signal [L/min].
 struct StoredSmallestLeak {
   std::string signal;
   int repeats_averaged = 1;
@@ -165,7 +165,7 @@ struct StoredDiagnosis {
   std::vector<StoredState> states;
   std::vector<StoredLeakTrend> trends;
   std::vector<StoredDiagnosedRecord> records;
-  StoredConfusion confusion;  ///< of the fitted leak in single repeats, as the two below
+  StoredConfusion confusion;  ///< for the fitted leak in single repeats, like the two below
   std::optional<double> accuracy;
   std::optional<Range> accuracy_ci95;
   StoredMethods methods;

@@ -142,7 +142,7 @@ std::vector<StoredWeight> weights(const Result& result) {
   return list;
 }
 
-/// Puts an amplitude where those of its unit are: `amplitude_m`, `amplitude_v`, ...
+/// Stores an amplitude in the member of its unit: `amplitude_m`, `amplitude_v`, ...
 template <typename Stored, typename Value>
 void put_amplitude(std::string_view unit, const std::optional<Value>& amplitude, Stored& stored) {
   if (unit == "m") stored.amplitude_m = amplitude;
@@ -215,7 +215,7 @@ void add_stated(const Result& result, const calib::ConditionScore& score, Stored
   if (!condition->not_judged.empty()) stated.not_judged = keys_of(condition->not_judged);
 }
 
-/// Of the files that a record is made from, as the provenance has them.
+/// Hashes, from the provenance, of the files that a record is made from.
 std::vector<std::string> hashes_of(const Result& result, const datasets::Record& record) {
   std::vector<std::string> hashes;
   for (const FileState& file : record.files) {
@@ -324,8 +324,8 @@ void add_search(const calib::Fit& fit, StoredFit& result) {
         {failure.condition, failure.start, failure.time_s, failure.reason, failure.parameters});
 }
 
-/// Degrees of freedom of which the quantile of Student's t is the half width of ci95 in errors. A
-/// bound may cut an interval on one side, so the longer one counts.
+/// Degrees of freedom for which Student's t gives the half width of ci95 at this error. A bound may
+/// cut the interval at one end, so the longer side counts.
 double freedom_of_interval(const StoredParameter& parameter, double error) {
   if (!parameter.ci95 || !parameter.value) return metrics::kManyDegrees;
   const double quantile =
@@ -409,7 +409,7 @@ StoredFit stored(const Result& result) {
   json.synthetic = result.campaign.synthetic;
   json.report = identity_json(result.campaign);
   json.model = std::optional(result.campaign.rig.plant);
-  // Without a start nothing was estimated. A cost of zero would look like a perfect fit.
+  // Without a start nothing was estimated, and a cost of zero would look like a perfect fit.
   if (json.status != calib::FitStatus::failed && !fit.starts.empty()) json.cost = finite(fit.cost);
   json.residual_count = fit.residual_count;
   json.evaluations = fit.evaluations;

@@ -31,7 +31,7 @@ inline std::vector<datasets::DecisionRule> every() {
   return {datasets::DecisionRule::simple, datasets::DecisionRule::guard_band};
 }
 template <>
-inline std::vector<calib::StoppedIn> every() {  // but for `nothing`, which is null
+inline std::vector<calib::StoppedIn> every() {  // except `nothing`, which is null
   using calib::StoppedIn;
   return {StoppedIn::starts, StoppedIn::validation, StoppedIn::bootstrap, StoppedIn::profiles,
           StoppedIn::cross_validation};
@@ -98,7 +98,7 @@ struct StoredProfile {
 /// A parameter, fitted or known.
 struct StoredParameter {
   std::string name;  ///< that of results: "mass_kg"
-  std::string key;   ///< that of campaign files
+  std::string key;   ///< key in campaign files
   std::string symbol, unit;
   datasets::Scope scope = datasets::Scope::rig;
   std::optional<std::string> level;  ///< leak level or condition
@@ -108,7 +108,7 @@ struct StoredParameter {
   std::optional<double> standard_error, robust_standard_error;
   std::optional<Range> ci95;
   Later<std::optional<calib::IntervalSource>> ci95_from;
-  Later<std::optional<double>> degrees_of_freedom;  ///< of the error that ci95 rests on
+  Later<std::optional<double>> degrees_of_freedom;  ///< for the error on which ci95 is based
   Omittable<StoredBootstrap> bootstrap;
   Omittable<StoredProfile> profile;
   bool at_bound = false;
@@ -119,8 +119,8 @@ struct StoredParameter {
                   degrees_of_freedom, bootstrap, profile, at_bound, identifiability, reason)
 };
 
-/// The error that ci95 rests on, and its degrees of freedom. A file of a version that does not tell
-/// these has them by the half width of ci95 in errors, else many.
+/// The error on which ci95 is based, with its degrees of freedom. For a file of a version that does
+/// not store them they are computed from ci95 and the error, or taken as infinite.
 std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter);
 /// The larger of standard and robust error.
 std::optional<double> error_of(const StoredParameter& parameter);
@@ -184,7 +184,7 @@ struct StoredHeldOut {
   RIGCAL_DESCRIBE(condition, problem, rmse, fitted_rmse, largest_shift, shifted)
 };
 
-/// What the residuals of a channel are divided by.
+/// Divisor of the residuals of a channel.
 struct StoredWeight {
   std::string condition, channel;
   long samples = 0;
@@ -196,7 +196,7 @@ struct StoredValidity {
   std::optional<Range> frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa,
       leakage_coefficient;
   std::vector<std::string> leak_levels;
-  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< of other loops
+  Omittable<Range> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in other loops
   RIGCAL_DESCRIBE(frequency_hz, amplitude_m, amplitude_v, supply_pressure_pa, leakage_coefficient,
                   leak_levels, amplitude_n, amplitude_pa, amplitude_m_per_s2)
 };
@@ -225,7 +225,7 @@ struct StoredAgreement : metrics::Agreement {
   }
 };
 
-/// The same of one channel of a condition, with what is at its fundamental.
+/// The same for one channel of a condition, with the response at its fundamental.
 struct StoredScore : StoredAgreement {
   std::optional<double> gain_ratio, phase_deg, delay_s;
   std::optional<std::string> problem;
@@ -244,23 +244,23 @@ struct StoredCondition {
   Later<std::optional<datasets::Waveform>> waveform;
   Later<std::optional<double>> frequency_hz, amplitude_m;
   Omittable<std::optional<double>> amplitude_v;                     ///< in an open loop
-  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in loops on these
+  Omittable<double> amplitude_n, amplitude_pa, amplitude_m_per_s2;  ///< in other loops
   Later<std::optional<std::string>> leak_level;
   datasets::Use use = datasets::Use::fit;
   Omittable<double> temperature_k;
   Omittable<std::string> date;
   long samples = 0;
-  Later<std::vector<std::string>> record_sha256;  ///< of the files that its record is made from
+  Later<std::vector<std::string>> record_sha256;  ///< files that the record is made from
   Omittable<std::vector<Range>> windows_s;        ///< empty: the whole record
   Omittable<std::vector<std::string>> notes;
   Omittable<std::vector<StoredLimit>> acceptance;  ///< its own, in place of the campaign's
-  Omittable<std::vector<std::string>> not_judged;  ///< beside those of the campaign
+  Omittable<std::vector<std::string>> not_judged;  ///< in addition to those of the campaign
   Later<std::vector<std::string>> warnings;
   Later<std::optional<std::string>> not_scored;
   std::optional<std::string> failure;
-  Keyed<StoredScore> metrics;  ///< by channel, as the three below
+  Keyed<StoredScore> metrics;  ///< by channel, like the three below
   Keyed<std::optional<StoredNoiseFloor>> noise_floor;
-  Omittable<Keyed<std::optional<StoredAgreement>>> expanded_uncertainty;  ///< of each score
+  Omittable<Keyed<std::optional<StoredAgreement>>> expanded_uncertainty;  ///< per score
   Keyed<std::optional<StoredResidualTests>> residual_tests;
   Later<std::vector<StoredLimitCheck>> limit_checks;
   Later<Keyed<calib::Verdict>> channel_verdicts;
@@ -272,7 +272,7 @@ struct StoredCondition {
                   noise_floor, expanded_uncertainty, residual_tests, limit_checks, channel_verdicts,
                   verdict, reasons)
 
-  /// Of one channel; nothing where it has no limit.
+  /// Verdict on a channel; nothing without a limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;
 };
 
@@ -319,7 +319,7 @@ struct StoredFit {
   bool synthetic = false;
   Json report;  ///< identity_json()
   Later<std::optional<model::PlantKind>> model;
-  std::optional<double> cost;  ///< null where nothing was estimated, or the fit failed
+  std::optional<double> cost;  ///< null if nothing was estimated, or the fit failed
   long residual_count = 0;
   long evaluations = 0;
   std::optional<double> wall_seconds, simulation_tolerance;
@@ -334,16 +334,16 @@ struct StoredFit {
   Later<std::optional<StoredLackOfFit>> lack_of_fit;
   Later<std::optional<StoredBetweenRepeats>> between_repeats;
   Later<std::vector<StoredBasin>> basins;
-  Later<std::string> agreement;  ///< of the starts, in words
+  Later<std::string> agreement;  ///< agreement of the starts, in words
   Omittable<StoredBootstrapRun> bootstrap;
   Omittable<std::vector<StoredHeldOut>> cross_validation;
   Later<std::optional<double>> aic, bic;
   Omittable<std::vector<StoredWeight>> weights;
   StoredValidity validity;
-  Omittable<StoredValidity> validated;  ///< what the conditions cover that were not fitted
+  Omittable<StoredValidity> validated;  ///< ranges of the conditions that were not fitted
   Omittable<datasets::DecisionRule> decision;
   std::vector<StoredLimit> acceptance;
-  Omittable<std::vector<std::string>> not_judged;  ///< channels that are to have no limit
+  Omittable<std::vector<std::string>> not_judged;  ///< channels that need no limit
   std::vector<StoredCondition> conditions;
   std::vector<StoredGroup> groups;
   std::vector<StoredStart> starts;
@@ -363,7 +363,7 @@ struct StoredFit {
   const StoredCondition* find(const std::string& condition) const;
 };
 
-/// What a fit or validation leaves for its readers.
+/// Stored form of a fit or validation.
 StoredFit stored(const Result& result);
 
 }  // namespace rigcal::report

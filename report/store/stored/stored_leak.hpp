@@ -7,12 +7,12 @@
 #include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
 
-// What results that look for leaks in records have in common.
+// Parts that results of leak searches have in common.
 
 namespace rigcal::report {
 
-/// How such a result ended: `declined` where the records cannot tell, `failed` where nothing came
-/// of any of them.
+/// End of such a search: `declined` if the records cannot answer, `failed` if no record gave a
+/// result.
 enum class LeakStatus { done, declined, failed };
 
 inline std::string_view to_string(LeakStatus status) {
@@ -39,17 +39,17 @@ struct ByFeature {
   RIGCAL_DESCRIBE(mean_m, rms_m, std_m)
 };
 
-/// A leak and its class; nothing where it could not be estimated.
+/// A leak and its class; empty if it could not be estimated.
 struct StoredLeak {
   std::optional<double> leakage_coefficient;
-  std::optional<Range> ci95;  ///< of the coefficient
+  std::optional<Range> ci95;  ///< interval of the coefficient
   std::optional<double> standard_error;
-  std::optional<double> leak_share_percent;  ///< of the servo flow
+  std::optional<double> leak_share_percent;  ///< percentage of the servo flow
   std::optional<Range> leak_share_ci95_percent;
   std::optional<double> leak_share_upper_limit_percent;
   std::optional<double> leak_flow_l_per_min;
   std::optional<bool> leak_detected;
-  /// False: the coefficient lies below zero by more than its error, so nothing is said of a leak.
+  /// False: the coefficient is negative beyond its error, so no leak is reported.
   Later<std::optional<bool>> compatible_with_model;
   std::optional<datasets::LeakClass> class_;  ///< nothing: undecided
   Keyed<std::optional<double>> class_probabilities;

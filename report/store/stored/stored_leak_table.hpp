@@ -29,7 +29,7 @@ inline constexpr const char* kLeakTableSchema = "rigcal.leak_table/1";
 /// A value that the computation used.
 struct StoredAssumption {
   std::string name;  ///< that of results: "piston_area_m2"
-  std::string key;   ///< that of campaign files
+  std::string key;   ///< key in campaign files
   double value = 0.0;
   std::string unit;
   std::string source;

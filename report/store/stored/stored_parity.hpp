@@ -13,7 +13,7 @@ namespace rigcal::report {
 
 inline constexpr const char* kParitySchema = "rigcal.parity/1";
 
-/// What healthy records of one signal say.
+/// Thresholds from the healthy records of one signal.
 struct StoredParitySignal {
   std::string signal;
   std::optional<double> window_s;
@@ -26,7 +26,7 @@ struct StoredParitySignal {
 
 struct StoredParityRecord {
   std::string condition;
-  std::optional<int> repeat;  ///< from 1; nothing: a file that is averaged already
+  std::optional<int> repeat;  ///< from 1; nothing: an averaged file
   std::string signal;
   std::optional<std::string> leak_level;
   bool healthy = false;

@@ -31,8 +31,8 @@ struct StoredPlannedRecord {
   std::string condition;
   bool recorded = false;
   std::optional<std::string> problem;
-  std::vector<std::optional<double>> sd_alone;    ///< of each parameter, where anything is known
-  std::vector<std::optional<double>> sd_without;  ///< likewise
+  std::vector<std::optional<double>> sd_alone;    ///< for each parameter, if anything is known
+  std::vector<std::optional<double>> sd_without;  ///< likewise, from all other records
   RIGCAL_DESCRIBE(condition, recorded, problem, sd_alone, sd_without)
 };
 

@@ -9,7 +9,7 @@
 
 namespace rigcal::report {
 
-/// What a result was made from, as every result file holds it.
+/// Origin of a result, as in every result file.
 struct StoredProvenance {
   std::string version;
   std::string revision;
@@ -18,7 +18,7 @@ struct StoredProvenance {
   std::uint64_t seed = 0;
   Keyed<std::string> options;
   std::vector<InputFile> inputs;
-  Omittable<std::vector<InputFile>> files;  ///< of the result itself
+  Omittable<std::vector<InputFile>> files;  ///< files of the result itself
   RIGCAL_DESCRIBE(version, revision, machine, command, seed, options, inputs, files)
 };
 

@@ -9,7 +9,7 @@
 #include "report/store/described_campaign.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 
-// A record as `check` and `average` tell of it, and average.json.
+// A record in the output of `check` and `average`, and average.json.
 
 namespace rigcal::report {
 
@@ -20,16 +20,16 @@ struct StoredNoiseFloor {
   RIGCAL_DESCRIBE(rho2, ccc, absolute_error_percent)
 };
 
-/// How the repeats agree in one channel, in its unit.
+/// Agreement of the repeats in one channel, in its unit.
 struct StoredRepeatability {
   std::string unit;
-  int repeats = 1;  ///< that carry the channel
+  int repeats = 1;  ///< number of repeats with the channel
   std::optional<double> pooled_sd, sd_of_mean;
   std::optional<StoredNoiseFloor> noise_floor;
   RIGCAL_DESCRIBE(unit, repeats, pooled_sd, sd_of_mean, noise_floor)
 };
 
-/// What became of one repeat.
+/// Result of averaging for one repeat.
 struct StoredRepeat {
   std::string source;
   std::optional<double> offset_s, deviation;
@@ -55,7 +55,7 @@ struct StoredRecord {
   long outliers() const;
 };
 
-/// How the repeats of every condition agree.
+/// Agreement of the repeats of every condition.
 struct StoredAverage {
   std::string schema = kAverageSchema;
   std::string campaign;

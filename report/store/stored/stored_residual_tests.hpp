@@ -10,8 +10,7 @@
 #include "report/json/described.hpp"
 #include "report/store/result.hpp"
 
-// What the tests of residuals found, as `residual_tests` of fit.json and residual_tests.json hold
-// it.
+// Results of the residual tests, as in `residual_tests` of fit.json and in residual_tests.json.
 
 namespace rigcal::report {
 
@@ -115,7 +114,7 @@ struct StoredResidualCurves {
   RIGCAL_DESCRIBE(autocorrelation, cross_correlation, periodogram, normality)
 };
 
-/// By channel; null where the residual was not tested.
+/// By channel; null if the residual was not tested.
 using StoredChannelCurves = Keyed<std::optional<StoredResidualCurves>>;
 
 /// residual_tests.json

@@ -45,7 +45,7 @@ struct StoredTablesFit {
 /// Whether a fit.json is one of these.
 inline bool is_of_tables(const Json& fit) { return fit.is_object() && fit.contains("of"); }
 
-/// What it has in common with a fit to records.
+/// The part that it has in common with a fit to records.
 StoredFit as_fit(const StoredTablesFit& tables);
 
 }  // namespace rigcal::report

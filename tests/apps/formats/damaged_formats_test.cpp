@@ -66,8 +66,8 @@ TEST_CASE("check: an HDF5 file or a workbook that is cut or changed", "[apps]") 
     CAPTURE(name, bytes, size);
     check_refused(scene, scene.check(scene.whole.substr(0, bytes)));
   }
-  // Nothing tells a changed number from another one; but nothing crashes, either. What describes
-  // the rest stands at the beginning of HDF5 files, and at the end of archives.
+  // A changed number cannot be detected, but nothing may crash. The descriptions are at the
+  // beginning of HDF5 files, and at the end of archives.
   const std::size_t changes = kSanitized ? 12 : 80;
   for (std::size_t i = 0; i < changes; ++i) {
     const std::size_t from_edge = i * std::min<std::size_t>(size, 4096) / changes;

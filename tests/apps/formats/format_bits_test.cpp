@@ -17,7 +17,7 @@ std::string replaced_all(std::string text, const std::string& from, const std::s
   return text;
 }
 
-/// What a fit found, without where and when, and of which bytes.
+/// Results of a fit, without paths, times and hashes of inputs.
 json found(const CommandFolder& folder, const std::string& out) {
   json result = json::parse(folder.read(out + "/fit.json"));
   result.erase("wall_seconds");

@@ -26,7 +26,7 @@ using Arguments = CommandFolder::Arguments;
 struct Damage {
   std::string name;
   std::function<void(const fs::path&)> put;
-  std::string word;  ///< of the message
+  std::string word;  ///< word in the message
 };
 
 const std::vector<Damage> kNoFiles{
@@ -133,7 +133,7 @@ TEST_CASE("hostile files: a result of unheard-of numbers is no bug", "[apps]") {
   const CommandFolder folder;
   write_fitted_twin(folder);
   const std::string whole = folder.read("fit/fit.json");
-  // A number beyond all is refused where it stands, before its key is known.
+  // A number beyond the limit is refused at its position, before its key is known.
   for (const auto& [rank, named] : {std::pair("1e308", "number 1e308"), std::pair("-3", "'rank'"),
                                     std::pair("0.5", "'rank'")}) {
     folder.write("bad/fit.json", replaced(whole, "\"rank\": 2", std::string("\"rank\": ") + rank));

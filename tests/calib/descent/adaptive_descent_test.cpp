@@ -10,7 +10,7 @@
 namespace rigcal::calib {
 namespace {
 
-/// A problem of some unknowns in a box, with derivatives by hand.
+/// A problem of a few unknowns in a box, with analytical derivatives.
 struct TestProblem {
   Eigen::VectorXd lower, upper;
   std::function<Linearisation(const Eigen::VectorXd&)> at;
@@ -47,8 +47,8 @@ TestProblem problem_in(const Eigen::VectorXd& lower, const Eigen::VectorXd& uppe
   return {lower, upper, std::move(at), 0};
 }
 
-/// Brown and Dennis: 20 residuals of up to 3e4 at the minimum, where half their squares are
-/// 42 911.1 (Moré, Garbow and Hillstrom, ACM Trans. Math. Softw. 7, 1981, problem 16).
+/// Brown and Dennis: 20 residuals of up to 3e4 at the minimum, where the cost is 42 911.1 (Moré,
+/// Garbow and Hillstrom, ACM Trans. Math. Softw. 7, 1981, problem 16).
 TestProblem brown_dennis() {
   return problem_in(Eigen::Vector4d(-100.0, -100.0, -100.0, -100.0),
                     Eigen::Vector4d(100.0, 100.0, 100.0, 100.0), [](const Eigen::VectorXd& x) {
@@ -64,7 +64,7 @@ TestProblem brown_dennis() {
                     });
 }
 
-/// Jennrich and Sampson: half the squares are 62.1811 at x = y = 0.257825 (problem 6 there).
+/// Jennrich and Sampson: the cost is 62.1811 at x = y = 0.257825 (problem 6 there).
 TestProblem jennrich_sampson() {
   return problem_in(Eigen::Vector2d(-1.0, -1.0), Eigen::Vector2d(1.0, 1.0),
                     [](const Eigen::VectorXd& x) {
@@ -128,14 +128,14 @@ TEST_CASE("adaptive descent: small residuals take no more evaluations than by Ce
 }
 
 TEST_CASE("adaptive descent: bounds are met within a step, and left again", "[calib]") {
-  // y <= 0.25: the least of (1 - x)^2 + 100 (0.25 - x^2)^2.
+  // With y <= 0.25 the cost is (1 - x)^2 + 100 (0.25 - x^2)^2.
   TestProblem problem = curved_valley(0.25);
   std::vector<double> z = problem.unit(Eigen::Vector2d(-1.2, -1.0));
   CHECK(descend_adaptively(problem.options(), z).converged);
   CHECK(z[1] == 1.0);
   const double x = problem.physical(z)(0);
   CHECK(400.0 * x * (x * x - 0.25) == Approx(2.0 * (1.0 - x)).epsilon(1e-4));
-  // From the bound itself, where the minimum is inside.
+  // A start on the bound, with the minimum inside.
   TestProblem free = curved_valley(2.0);
   z = free.unit(Eigen::Vector2d(-1.2, 2.0));
   CHECK(descend_adaptively(free.options(), z).converged);
@@ -143,7 +143,7 @@ TEST_CASE("adaptive descent: bounds are met within a step, and left again", "[ca
 }
 
 TEST_CASE("adaptive descent: from where the cost curves down", "[calib]") {
-  // (2 - x^2)^2 / 2 at 0.01, and a second unknown that has nothing to do with it.
+  // (2 - x^2)^2 / 2 from 0.01, and a second, independent unknown.
   TestProblem problem = problem_in(
       Eigen::Vector2d(-3.0, -3.0), Eigen::Vector2d(3.0, 3.0), [](const Eigen::VectorXd& x) {
         Linearisation at{Eigen::MatrixXd(2, 2), Eigen::Vector2d(2.0 - x(0) * x(0), x(1) - 1.0)};
@@ -194,7 +194,7 @@ TEST_CASE("adaptive descent: ends where it is told to, or cannot go on", "[calib
   CHECK(cut_short.iterations == 2);
   CHECK(cut_short.failure.empty());
 
-  // Nothing around the start can be evaluated.
+  // No point near the start can be evaluated.
   z = start;
   options = problem.options();
   const auto whole = options.linearise;

@@ -52,7 +52,8 @@ TEST_CASE("box_step: negative curvature is followed, with a gradient along it or
   const BoxStep found = box_step(model, wide(2, 1.0));
   CHECK(found.at_radius);
   CHECK(found.step.norm() == Approx(1.0).epsilon(1e-6));
-  // Without one: 1 - y^2 of the curvature -2, y = -1 / 6 where both multipliers are 2.
+  // Without gradient along it: 1 - y^2 from the curvature -2, and y = -1 / 6, where both
+  // multipliers are 2.
   if (slope < 0.01) CHECK(found.fall == Approx(1.0 + 1.0 / 12.0).epsilon(1e-6));
   for (int k = 0; k < 3600; ++k) {
     const double angle = k * M_PI / 1800.0;
@@ -62,7 +63,7 @@ TEST_CASE("box_step: negative curvature is followed, with a gradient along it or
 }
 
 TEST_CASE("box_step: a direction without curvature or gradient is left alone", "[calib]") {
-  const Eigen::RowVector2d row(1.0, 1.0);  // what the data tell is the sum
+  const Eigen::RowVector2d row(1.0, 1.0);  // the data determine only the sum
   const QuadraticModel model{row.transpose() * row, Eigen::Vector2d(-1.0, -1.0)};
   const BoxStep found = box_step(model, wide(2, 10.0));
   CHECK(found.step(0) == Approx(0.5));
@@ -75,7 +76,7 @@ TEST_CASE("box_step: an unknown at its bound stays there, or is drawn back insid
   QuadraticModel model{Eigen::Matrix2d::Identity(), Eigen::Vector2d(0.5, -1.0)};
   CHECK(box_step(model, limits).step(0) == 0.0);
   CHECK(box_step(model, limits).step(1) == Approx(1.0));
-  // The step of the other one turns the slope round: -0.8 * 1 + 0.5 < 0.
+  // The step of the second unknown reverses the slope: -0.8 * 1 + 0.5 < 0.
   model.hessian(0, 1) = model.hessian(1, 0) = -0.8;
   const BoxStep found = box_step(model, limits);
   CHECK((model.hessian * found.step + model.gradient).norm() < 1e-12);
@@ -96,7 +97,7 @@ TEST_CASE("box_step: within the box it is the least of a convex model", "[calib]
     limits.upper = Eigen::VectorXd::NullaryExpr(3, [&] { return std::max(0.0, draw()); });
     const BoxStep found = box_step(model, limits);
     REQUIRE(within(limits, found.step));
-    // Coordinate descent finds the least of a convex function in a box.
+    // Coordinate descent finds the minimum of a convex function in a box.
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
     for (int sweep = 0; sweep < 3000; ++sweep) {
       for (int j = 0; j < 3; ++j) {

@@ -9,7 +9,7 @@
 
 #include "metrics/metric_table.hpp"
 
-// A score exactly on a limit, just beyond it and just within.
+// Scores exactly on a limit, just outside and just inside.
 
 namespace rigcal::calib {
 namespace {
@@ -98,14 +98,14 @@ TEST_CASE("acceptance: the tolerance is that of the limit, of the warning limit 
   CHECK_THAT(used({"absolute_error_percent", 4.0, 2.0}, 8.0), WithinRel(2.0, 1e-12));
   CHECK_THAT(used({"nrmse_fit_percent", 90.0, {}}, 95.0), WithinRel(0.5, 1e-12));  // ideal: 100
   CHECK_THAT(used({"rmse", 2e-3, {}}, 5e-4), WithinRel(0.25, 1e-12));
-  // A limit that is the ideal itself.
+  // A limit equal to the ideal.
   CHECK(used({"rho2", 1.0, {}}, 1.0) == 0.0);
   CHECK(std::isinf(used({"rho2", 1.0, {}}, 0.999)));
   CHECK(used({"absolute_error_percent", 0.0, {}}, 0.0) == 0.0);
 }
 
 TEST_CASE("acceptance: the guard band ends where the uncertainty does", "[calib]") {
-  // Sums of powers of two, so that a score can lie on the end of its band exactly.
+  // Sums of powers of two, so that a score can be exactly at the end of its guard band.
   const auto guarded = [](double value, Value uncertainty, const Question& question) {
     ConditionScore score = scored(question.metric, value);
     if (uncertainty) {
@@ -123,18 +123,18 @@ TEST_CASE("acceptance: the guard band ends where the uncertainty does", "[calib]
   CHECK_FALSE(guarded(0.75, 0.25, rho2).in_guard_band);
   CHECK(guarded(0.5, 0.0, rho2).verdict == Verdict::pass);
   CHECK(guarded(0.5, 1e-9, rho2).in_guard_band);
-  CHECK(guarded(0.25, 10.0, rho2).verdict == Verdict::fail);  // never the better for it
+  CHECK(guarded(0.25, 10.0, rho2).verdict == Verdict::fail);  // a large uncertainty does not help
   CHECK_FALSE(guarded(0.25, 10.0, rho2).in_guard_band);
   const Question error{"absolute_error_percent", 2.0, {}, DecisionRule::guard_band};
   CHECK(guarded(1.5, 0.5, error).verdict == Verdict::pass);
   CHECK(guarded(1.5, 0.5 + 1e-9, error).verdict == Verdict::warn);
   CHECK(guarded(2.5, 10.0, error).verdict == Verdict::fail);
-  // Without an uncertainty nobody knows.
+  // Without an uncertainty the guard band cannot be evaluated.
   CHECK(guarded(0.99, std::nullopt, rho2).in_guard_band);
   CHECK(guarded(0.99, std::nullopt, rho2).verdict == Verdict::warn);
   CHECK_FALSE(guarded(0.99, std::nullopt, rho2).expanded_uncertainty.has_value());
   CHECK(guarded(0.75, 0.125, rho2).expanded_uncertainty == 0.125);
-  // Between limit and warning limit the limit is what is near; a warning limit has no guard band.
+  // Between the two limits only the limit has a guard band; the warning limit has none.
   const Question both{"rho2", 0.5, 0.75, DecisionRule::guard_band};
   CHECK_FALSE(guarded(0.625, 0.5, both).in_guard_band);
   CHECK(guarded(0.625, 0.5, both).verdict == Verdict::warn);
@@ -164,7 +164,7 @@ TEST_CASE("acceptance: the noise is blamed where it alone keeps a score from its
   CHECK_THAT(words(error, 3.0, {0.0, 0.0, 1.5}), !Contains(blamed));
   CHECK_THAT(words(error, 3.0, {0.0, 0.0, 2.0}), !Contains(blamed));
   CHECK_THAT(words({"rmse", 1.0, {}}, 3.0, {0.0, 0.0, 9.0}), !Contains(blamed));
-  // A warning is held against its own limit.
+  // A warning is compared with the warning limit.
   CHECK_THAT(words({"rho2", 0.9, 0.99}, 0.95, {0.98, 1.0, 0.0}),
              Contains("is below 0.99" + blamed + "0.98"));
 }

@@ -26,7 +26,7 @@ TEST_CASE("adequacy: lack of fit counts where it is significant and larger than 
   test.ratio = 100.0;
   test.outcome = metrics::TestOutcome::passed;  // not significant
   CHECK(scene.assessed().adequacy.state == AspectState::pass);
-  // What is not significant may lie above what is allowed, and is not told as if it did not.
+  // An estimate above the allowed error that is not significant is reported as such.
   CHECK_THAT(find(scene.assessed().adequacy, "no_lack_of_fit")->words,
              Contains("no significant model error (0.6 times the noise allowed)") &&
                  Contains("9.9 times the noise are not significantly above none"));

@@ -11,7 +11,7 @@ namespace {
 
 using Catch::Contains;
 
-/// A condition with these checks: verdict, share of the tolerance used.
+/// A condition with these checks: verdict and used fraction of the tolerance.
 struct Checked {
   Verdict verdict = Verdict::pass;
   double used = 0.0;

@@ -42,7 +42,7 @@ TEST_CASE("fidelity: the first period of a sine or square, all of another signal
   CHECK(problem.repeats_itself());
   const Fidelity longest = Fidelity::first(horizons_s(problem).back());
   CHECK(problem.conditions[0].rows_at(longest) == 501);
-  // From 0.25 s to 0.35 s, but for what lies between the windows.
+  // From 0.25 s to 0.35 s, without the samples between the windows.
   CHECK(problem.conditions[1].rows_at(longest) == 26 + 51);
   CHECK_THAT(problem.conditions[1].fit_times(longest).back(), WithinRel(0.35, 1e-12));
   CHECK(problem.conditions[2].rows_at(longest) == 2000);
@@ -62,7 +62,7 @@ TEST_CASE("fidelity: horizons grow from four samples to the longest first period
   CHECK_THAT(lengths_s.back(), WithinRel(0.5, 1e-12));
   for (std::size_t k = 1; k < lengths_s.size(); ++k)
     CHECK_THAT(lengths_s[k] / lengths_s[k - 1], WithinRel(std::pow(125.0, 0.25), 1e-9));
-  // What a record alone has to tell takes four samples more.
+  // An unknown that only one record determines needs four samples more.
   twin.free("position_offset", 0.0, -5e-3, 5e-3, datasets::Scope::condition);
   CHECK_THAT(horizons_s(problem_of(twin, records)).front(), WithinRel(8e-3, 1e-12));
 }

@@ -16,7 +16,7 @@ using Catch::Contains;
 using Catch::WithinRel;
 using datasets::Waveform;
 
-/// The records of a campaign in ../shared/data; none where they are absent.
+/// Records of a campaign in ../shared/data; empty if they are absent.
 struct Recorded {
   datasets::Campaign campaign;
   std::vector<datasets::Record> records;
@@ -62,7 +62,7 @@ TEST_CASE("further starts: where the campaign's misleads, one that leads lower i
   CHECK(found.further_starts->followed >= 1);
   REQUIRE(further_starts_reason(found) != nullptr);
   CHECK_THAT(further_starts_reason(found)->words, Contains("led lower"));
-  // The same bits for any number of threads.
+  // Any number of threads gives the same bits.
   options.threads = 2;
   const Fit threaded = fit(boom->campaign, boom->records, options);
   CHECK(threaded.cost == found.cost);
@@ -99,7 +99,7 @@ TEST_CASE("further starts: where none leads lower the result is that of one star
   CHECK(further_starts_reason(found)->state == AspectState::note);
   CHECK_THAT(further_starts_reason(found)->words, Contains("none led lower"));
   CHECK(found.evaluations > alone.evaluations);
-  // Nor are they looked at where somebody says how many starts there are to be.
+  // Nor are they evaluated if the user states the number of starts.
   options.starts = 2;
   CHECK_FALSE(fit(twin.campaign, records, options).further_starts);
 }
@@ -136,7 +136,7 @@ TEST_CASE("obstacle: the valley that a search stopped in is named", "[calib]") {
   twin.free("mass", 60.0, 10.0, 500.0);
   twin.free("bulk_modulus", 600e6, 70e6, 7000e6);
   twin.free("valve_gain", 0.03e-3, 0.01e-3, 0.2e-3);
-  twin.add("sine", Waveform::sine, 5.0, 0.01);  // from which mass and oil are hard to tell apart
+  twin.add("sine", Waveform::sine, 5.0, 0.01);  // mass and oil are hard to separate in it
   const auto records = twin.records(2000, 500.0, 1);
   const Problem problem = problem_of(twin, records);
   Budget budget;
@@ -149,7 +149,7 @@ TEST_CASE("obstacle: the valley that a search stopped in is named", "[calib]") {
   const Eigen::VectorXd along = svd.inverse_lengths().cwiseProduct(svd.V().col(2));
   std::vector<double> z = optimum.z;
   for (std::size_t j = 0; j < z.size(); ++j)
-    z[j] += along(static_cast<Eigen::Index>(j)) / svd.singular_values()(2);  // a standard error
+    z[j] += along(static_cast<Eigen::Index>(j)) / svd.singular_values()(2);  // one standard error
   const Evaluation there = evaluate_at(problem, z, 1);
   const OptimumCheck check = check_optimum(problem, there);
   REQUIRE(there.ok);
@@ -163,7 +163,7 @@ TEST_CASE("obstacle: the valley that a search stopped in is named", "[calib]") {
 
 TEST_CASE("obstacle: a bound that the cost presses against is named", "[calib]") {
   Twin twin;
-  twin.free("mass", 40.0, 20.0, 60.0);  // 85 kg
+  twin.free("mass", 40.0, 20.0, 60.0);  // true value 85 kg
   twin.free("valve_gain", 0.03e-3, 0.01e-3, 0.2e-3);
   twin.add("square", Waveform::square, 2.0, 0.01);
   const auto records = twin.records(500, 500.0, 1);

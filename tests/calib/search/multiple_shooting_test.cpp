@@ -16,8 +16,8 @@ namespace {
 using Catch::Contains;
 using datasets::Channel;
 
-/// A single-rod cylinder of known parameters on a recorded command: its position is the integral of
-/// the flow, so that whatever is wrong with the valve drifts until a stop holds the piston.
+/// A single-rod cylinder of known parameters with a recorded command. Its position is the integral
+/// of the flow, so any error of the valve drifts until the piston reaches a stop.
 struct OpenLoop {
   datasets::Campaign campaign;
   model::ParameterValues truth = model::ParameterValues::defaults(model::PlantKind::two_chamber);

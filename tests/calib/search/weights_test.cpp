@@ -15,8 +15,7 @@ using Catch::WithinAbs;
 using Catch::WithinRel;
 using datasets::Waveform;
 
-/// Two conditions that ask for different valve gains, so that the estimate depends on how much each
-/// of them weighs.
+/// Two conditions with different valve gains, so that the estimate depends on their weights.
 Twin of_two_minds() {
   Twin twin;
   twin.free("valve_gain", 3e-5, 1e-5, 2e-4);
@@ -35,7 +34,7 @@ double rmse(const Fit& found, std::size_t condition) {
 TEST_CASE("weights: a channel ends with its residual over all records for its noise", "[calib]") {
   const Twin twin = of_two_minds();
   auto records = twin.records(500, 500.0, 3, model::InitialState::rest, false);
-  records[1].time_s.resize(250);  // records count by their samples
+  records[1].time_s.resize(250);  // records weigh by their number of samples
   auto& small = records[1].channels[datasets::Channel::position];
   small.mean.resize(250);
   small.sd.resize(std::min<std::size_t>(small.sd.size(), 250));
@@ -58,7 +57,7 @@ TEST_CASE("weights: a channel ends with its residual over all records for its no
 TEST_CASE("weights: iterations of all rounds count", "[calib]") {
   const Twin twin = of_two_minds();
   auto records = twin.records(500, 500.0, 3, model::InitialState::rest, false);
-  // Beside a record of known noise the weight of the other one moves the optimum.
+  // Beside a record of known noise the weight of the other record moves the optimum.
   records[1].channels[datasets::Channel::position].sd_of_mean = 5e-5;
   const Fit found = fit(twin.campaign, records, {});
   REQUIRE(found.starts.size() == 1);

@@ -49,7 +49,7 @@ TEST_CASE("between repeats: variance of the mean, freedom by Satterthwaite", "[c
   CHECK_THAT(found.variance, WithinRel(1.0 + 4.0 / 3.0, 1e-12));
   CHECK_THAT(found.freedom, WithinRel(std::pow(7.0 / 3.0, 2) / (1.0 + 16.0 / 18.0), 1e-12));
 
-  // A condition of one repeat adds what its residuals tell; a prior adds its variance.
+  // A condition with one repeat adds the variance from its residuals; a prior adds its own.
   const auto mixed =
       repeat_variance({row({1.0, -1.0}), MatrixXd()}, {scatter(9.0, 9.0), scatter(3.0, 4.0)},
                       MatrixXd::Constant(1, 1, 0.5), kOne, 0);
@@ -67,7 +67,7 @@ TEST_CASE("between repeats: a known random effect of a linear model", "[calib]")
   const MatrixXd deviations = measured.colwise() - measured.rowwise().mean();
   const auto found =
       repeat_variance({repeat_scores(j, deviations)}, {scatter(1.0, 1.0)}, kNoPriors, kOne, 0);
-  const double spread = (4.0 + 4.0 + 0.25 + 0.25) / 3.0;  // of a, about its mean of 1
+  const double spread = (4.0 + 4.0 + 0.25 + 0.25) / 3.0;  // deviations of a from its mean of 1
   CHECK_THAT(found.variance, WithinRel(spread / 4.0 * std::pow(j.dot(g), 2), 1e-12));
   CHECK_THAT(found.freedom, WithinRel(3.0, 1e-12));
 }
@@ -89,8 +89,8 @@ TEST_CASE("between repeats: the upper quartile of F decides", "[calib]") {
   CHECK(rests_on_repeats({2.0 * 1.47, 4.0}, robust));
 }
 
-/// Share of draws in which the interval holds the truth where a slow effect of this size differs
-/// between four repeats of six conditions.
+/// Fraction of draws in which the interval includes the truth, if a slow effect of this size
+/// differs between four repeats of six conditions.
 double coverage(double effect_sd, int draws) {
   constexpr Index kSamples = 60;
   constexpr Index kRepeats = 4;

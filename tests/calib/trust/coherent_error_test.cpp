@@ -51,7 +51,7 @@ TEST_CASE("coherent error: which residuals are no noise", "[calib]") {
   };
   const std::vector<std::vector<bool>> noise{{false}};
   const std::vector<std::vector<bool>> none{{true}};
-  CHECK(flags(1e-7, true) == noise);   // `sd` tells it
+  CHECK(flags(1e-7, true) == noise);   // `sd` states the noise
   CHECK(flags(1e-7, false) == none);   // a hundred-thousandth of the range
   CHECK(flags(1e-4, false) == noise);  // a hundredth
 }

@@ -53,7 +53,7 @@ TEST_CASE("combinations: the scaling symmetry is named, with mass and supply pre
   for (const auto* key : {"mass", "supply_pressure"}) {
     CHECK(parameter(found, key).identifiability == Identifiability::not_identifiable);
     CHECK_THAT(parameter(found, key).reason, Contains("a prior on"));
-    // The smoothing of the roots tells the scale of the model, but of no rig.
+    // The smoothing of the roots determines the scale in the model, but in no real rig.
     CHECK_FALSE(parameter(found, key).standard_error);
     CHECK_FALSE(parameter(found, key).ci95);
   }
@@ -68,7 +68,7 @@ TEST_CASE("combinations: the scaling symmetry is named, with mass and supply pre
   const Fit followed = fit(twin.campaign, records, more);
   CHECK_FALSE(parameter(followed, "mass").profile);
   CHECK_FALSE(parameter(followed, "mass").bootstrap);
-  // A known stiffness tells the scale, and the scale rests on it.
+  // A known stiffness determines the scale, so the scale depends on it.
   twin.setting("stiffness").fit = false;
   twin.setting("stiffness").value = 2e4;
   const Fit resting = fit(twin.campaign, records, {});

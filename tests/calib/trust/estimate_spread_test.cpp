@@ -10,7 +10,7 @@
 #include "calib/trust/prediction_band.hpp"
 #include "tests/calib/twin.hpp"
 
-// What the spread of the estimates and the band about a prediction are made of, by hand.
+// Covariance of the estimates and band about a prediction, computed by hand.
 
 namespace rigcal::calib {
 namespace {
@@ -22,7 +22,7 @@ using datasets::Scope;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Two unknowns, the first with a prior if one is wanted, and what their uncertainty is made of.
+/// Two unknowns, the first with an optional prior, and the inputs of their uncertainty.
 struct Scene {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -54,12 +54,12 @@ struct Scene {
   double slope(int j) const {
     return std::abs(problem.map.slope(j, z[static_cast<std::size_t>(j)]));
   }
-  /// Standard deviations of the estimates over the slope of each: in the unit box.
+  /// Standard deviations of the estimates in the unit box: in SI, divided by the slopes.
   std::pair<double, double> in_box() const {
     const MatrixXd& root = estimate_spread(problem, z, uncertainty).root;
     return {root.row(0).norm() / slope(0), root.row(1).norm() / slope(1)};
   }
-  /// As many standard errors in the box, SI.
+  /// Standard error of an estimate, SI, from one in the unit box.
   std::optional<double> error(int j, double boxed) const { return boxed * slope(j); }
 
   void add_scatter(double first, double second, double both = 0.0) {
@@ -83,12 +83,12 @@ TEST_CASE("estimate_spread: without scatter, sigma^2 (J^T J)^-1 of the misfit", 
   require_box(scene, 1.0, 1.0);
   scene.uncertainty.root << 2.0, 0.0, 0.0, 3.0;
   require_box(scene, 2.0, 3.0);
-  // A model that fits worse than the noise: standard deviations grow as the root.
+  // If the model fits worse than the noise, standard deviations grow with the root of chi-square.
   scene.uncertainty.reduced_chi_square = 4.0;
   require_box(scene, 4.0, 6.0);
   scene.uncertainty.reduced_chi_square = 1.0001;
   require_box(scene, 2.0 * std::sqrt(1.0001), 3.0 * std::sqrt(1.0001));
-  // The noise is known: a better fit tells nothing.
+  // The noise is known: a fit better than that carries no information.
   scene.uncertainty.reduced_chi_square = 0.25;
   require_box(scene, 2.0, 3.0);
 }
@@ -109,7 +109,7 @@ TEST_CASE("estimate_spread: estimates with whose they are, and their correlation
 
 TEST_CASE("estimate_spread: with scatter, the sum of that of all conditions", "[calib]") {
   Scene scene;
-  scene.uncertainty.reduced_chi_square = 100.0;  // is of no effect then
+  scene.uncertainty.reduced_chi_square = 100.0;  // without effect in this case
   scene.add_scatter(4.0, 1.0);
   require_box(scene, 2.0, 1.0);
   scene.add_scatter(5.0, 24.0);
@@ -129,21 +129,21 @@ TEST_CASE("estimate_spread: a prior is one more source of scatter", "[calib]") {
   scene.add_scatter(4.0, 9.0);
   require_box(scene, std::sqrt(4.0 + weight * weight), 3.0);
   scene.uncertainty.scatter.clear();
-  require_box(scene, 1.0, 1.0);  // it is in J^T J already
+  require_box(scene, 1.0, 1.0);  // J^T J includes it already
 }
 
 TEST_CASE("estimate_spread: as wide as the widest interval by its own error", "[calib]") {
   Scene scene;
   scene.uncertainty.root << 2.0, 0.0, 0.0, 3.0;
-  scene.uncertainty.standard_error[0] = scene.error(0, 1.5);  // less than 2
+  scene.uncertainty.standard_error[0] = scene.error(0, 1.5);  // below 2
   require_box(scene, 2.0, 3.0);
   scene.uncertainty.standard_error[0] = scene.error(0, 5.0);
-  require_box(scene, 5.0, 7.5);  // all by one factor, so that correlations stay
+  require_box(scene, 5.0, 7.5);  // one factor for all, so that correlations stay
   scene.uncertainty.standard_error[1] = scene.error(1, 6.0);
   require_box(scene, 5.0, 7.5);
   scene.uncertainty.standard_error[1] = scene.error(1, 9.0);
   require_box(scene, 6.0, 9.0);
-  // Errors and quantiles of the other kind do not count.
+  // Robust errors and quantiles have no effect without scatter.
   scene.uncertainty.robust_standard_error[0] = scene.error(0, 50.0);
   scene.uncertainty.robust_quantile = {20.0, 20.0};
   require_box(scene, 6.0, 9.0);
@@ -161,9 +161,9 @@ TEST_CASE("estimate_spread: by few degrees of freedom as wide as the quantile as
   require_box(scene, 4.0, 6.0);
   scene.uncertainty.robust_standard_error[0] = scene.error(0, 3.0);
   require_box(scene, 6.0, 9.0);
-  scene.uncertainty.robust_quantile[0] = 0.0;  // not known
+  scene.uncertainty.robust_quantile[0] = 0.0;  // unknown
   require_box(scene, 3.0, 4.5);
-  // That of another estimate is of no effect on this one.
+  // The quantile of another estimate has no effect on this one.
   scene.uncertainty.robust_quantile[1] = 12.71;
   require_box(scene, 3.0, 4.5);
 }
@@ -177,10 +177,10 @@ TEST_CASE("estimate_spread: known values add theirs, unwidened", "[calib]") {
   const EstimateSpread spread = estimate_spread(scene.problem, scene.z, scene.uncertainty);
   const MatrixXd covariance = spread.root * spread.root.transpose();
   CHECK_THAT(covariance(0, 1), WithinRel(-12.0 * scene.slope(0) * scene.slope(1), 1e-9));
-  // Of an error of 5 that holds it, 4 are the records' own: four times 1.
+  // The known value contributes 3 to the error of 5, so the records contribute 4: four times 1.
   scene.uncertainty.standard_error[0] = scene.error(0, 5.0);
   require_box(scene, 5.0, std::hypot(4.0, 4.0));
-  // An error that is less than what is carried widens nothing.
+  // An error below the contribution of known values widens nothing.
   scene.uncertainty.standard_error[0] = scene.error(0, 2.0);
   require_box(scene, std::hypot(1.0, 3.0), std::hypot(1.0, 4.0));
 }
@@ -192,7 +192,8 @@ TEST_CASE("estimate_spread: directions that are not determined have the spread o
   scene.uncertainty.root << 1.0, 0.0;
   scene.uncertainty.spread << 1.0, 0.0, 0.0, 7.0;
   require_box(scene, 1.0, 7.0);
-  scene.uncertainty.standard_error[0] = scene.error(0, 3.0);  // widens what is determined alone
+  // This widens only the determined direction.
+  scene.uncertainty.standard_error[0] = scene.error(0, 3.0);
   require_box(scene, 3.0, 7.0);
   scene.uncertainty.standard_error[1] = scene.error(1, 100.0);
   require_box(scene, 3.0, 7.0);
@@ -200,7 +201,7 @@ TEST_CASE("estimate_spread: directions that are not determined have the spread o
 
 namespace {
 
-/// A band about a prediction of one condition that rests on these estimates.
+/// The band about the prediction of a condition, for given estimates.
 struct Band {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -221,7 +222,8 @@ struct Band {
     return twin;
   }
 
-  /// Its largest standard deviation without the noise, over that by `sd` of the valve gain.
+  /// Largest standard deviation of the band without noise, divided by the largest sensitivity to
+  /// the valve gain.
   double part(std::size_t condition, const std::vector<EstimateSpread::Estimate>& estimates,
               const std::vector<double>& sds) const {
     EstimateSpread spread;

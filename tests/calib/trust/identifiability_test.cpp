@@ -69,7 +69,7 @@ TEST_CASE("identifiability: the robust error, unless it is small and hardly know
   CHECK(rig.graded().interval == IntervalSource::standard_error);
   rig.found.robust_standard_error = {15.0};
   CHECK(rig.graded().interval == IntervalSource::robust_standard_error);
-  // Residuals far below the noise that is stated tell nothing of it.
+  // Residuals far below the stated noise carry no information about it.
   rig.found.reduced_chi_square = 0.2;
   CHECK(rig.graded().interval == IntervalSource::standard_error);
 }

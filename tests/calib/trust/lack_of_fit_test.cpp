@@ -80,7 +80,7 @@ TEST_CASE("lack of fit: closed forms of a first-order process", "[calib]") {
   CHECK(least_likely(tests)->p == std::min(tests[0].p, tests[1].p));
   CHECK(least_likely({}) == nullptr);
 
-  // Each of two tests at half the level: a p of 4 % is no misfit, one of 2 % is.
+  // Each of two tests has half the level: a p of 4 % is no lack of fit, one of 2 % is.
   const auto ratio_of = [&](double p) {
     double low = 1.0, high = 2.0;
     for (int i = 0; i < 60; ++i) {
@@ -177,8 +177,8 @@ TEST_CASE("lack of fit: one failure is a misfit, one that cannot be judged leave
 }
 
 TEST_CASE("lack of fit: few independent samples cannot be judged", "[calib]") {
-  // Noise that hardly changes within the record: a freedom of one or two, against which four times
-  // the variance of the noise is no surprise.
+  // Noise that hardly changes within the record leaves one or two degrees of freedom, with which
+  // four times the variance of the noise is no surprise.
   const Twin twin = one_square();
   const Fit found = fit(twin.campaign, repeated(twin, 0.999, 7), {});
   REQUIRE(found.lack_of_fit.size() == 1);
@@ -279,7 +279,7 @@ TEST_CASE("known values: a certificate of the sensor counts as the prior of its 
   twin.campaign.channels.at(datasets::Channel::position).*way.stated = way.sd;
   CHECK_THAT(error(twin), WithinRel(error(prior), 1e-6));
   CHECK(error(twin) > exact);
-  // An estimate of the gain or offset itself holds it already.
+  // An estimated gain or offset covers its uncertainty already.
   Twin open = twin;
   open.campaign.channels.at(datasets::Channel::position).*way.stated = 0.0;
   open.free(way.key, way.value, way.value - 0.01, way.value + 0.01);
@@ -310,7 +310,7 @@ TEST_CASE("known values: intervals hold the truth with a sensor off as its certi
     twin.campaign.channels.at(datasets::Channel::position).gain_sd = kGainSd;
     held += holds();
   }
-  // 95 % of 24 are 22.8, with a standard deviation of 1.1; 24 and 10 when this was written.
+  // 95 % of 24 is 22.8, with a standard deviation of 1.1. The first run gave 24 and 10.
   CHECK(held >= 20);
   CHECK(held_without <= 14);
 }

@@ -67,7 +67,7 @@ TEST_CASE("model choice: neither contains the other", "[calib]") {
   CHECK_THAT(turned.message, Contains("friction is preferred"));
   const auto even = compare_information(first, candidate("other", 519.9, 5, 1000.0));
   CHECK_THAT(even.message, Contains("no difference to speak of"));
-  // More parameters that gain 3 each: AIC takes them, BIC asks for ln(1000) each.
+  // Parameters that gain 3 each: AIC prefers them, BIC requires ln(1000) each.
   const auto unclear =
       compare_information(candidate("few", 503.0, 4, 1000.0), candidate("many", 497.0, 8, 1000.0));
   CHECK(unclear.aic < -2.0);

@@ -131,7 +131,7 @@ TEST_CASE("prediction band: an estimate of another leak level does not count", "
   spread.estimates = {{Twin::index("leakage_coefficient"), datasets::Scope::leak_level, "small"},
                       {Twin::index("leakage_coefficient"), datasets::Scope::leak_level, "large"}};
   spread.root = Eigen::MatrixXd::Zero(2, 2);
-  spread.root(1, 1) = 0.1;  // of the large one alone
+  spread.root(1, 1) = 0.1;  // for the large one alone
   std::vector<ConditionScore> scores(2);
   for (std::size_t i = 0; i < 2; ++i) scores[i].time_s = records[i].time_s;
   add_prediction_sd(problem, z, spread, 1, scores);

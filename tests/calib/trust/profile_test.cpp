@@ -148,7 +148,7 @@ TEST_CASE("profile: a lower cost than that of the fit is told", "[calib]") {
 }
 
 TEST_CASE("profile: the error of simulations is no lower minimum", "[calib]") {
-  // Along what the records do not tell at all the cost is as flat as simulations can be.
+  // In a direction that the records do not determine, the cost is as flat as simulations allow.
   Twin twin = one_square();
   twin.free("discharge_coefficient", 0.6, 0.1, 1.0);
   FitOptions options;

@@ -7,7 +7,7 @@
 #include "metrics/distributions.hpp"
 #include "tests/calib/twin.hpp"
 
-// How far deviations of repeats go along one direction, by hand.
+// Deviations of repeats along one direction, computed by hand.
 
 namespace rigcal::calib {
 namespace {
@@ -17,9 +17,9 @@ using datasets::Channel;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr std::size_t kSamples = 40;  // two to each of twenty stretches
+constexpr std::size_t kSamples = 40;  // twenty stretches of two samples
 
-/// One condition whose mean rises by 3 m/s, with these deviations of its repeats.
+/// One condition with a mean that rises by 3 m/s, and the given deviations of its repeats.
 struct Ramp {
   Twin twin;
   std::vector<datasets::Record> records;
@@ -41,7 +41,8 @@ struct Ramp {
   }
 };
 
-/// Two repeats: +-(common + ripple), the ripple of one sign in each stretch of two samples.
+/// Two repeats with the deviations +-(common + ripple); the sign of the ripple changes every two
+/// samples.
 std::vector<std::vector<double>> two_repeats(double common, double ripple) {
   std::vector<std::vector<double>> result(2);
   for (std::size_t i = 0; i < kSamples; ++i) {
@@ -55,8 +56,9 @@ std::vector<std::vector<double>> two_repeats(double common, double ripple) {
 }  // namespace
 
 TEST_CASE("difference by noise: nineteen degrees of freedom of twenty stretches", "[calib]") {
-  // Along a constant direction of length 1: 2 * 40 * common^2 of squares. Each stretch holds
-  // (2 ripple)^2 / 40 of noise, twenty of them in two repeats: 4 ripple^2, for nineteen.
+  // Along a constant direction of length 1 the sum of squares is 2 * 40 * common^2. Each stretch
+  // has a noise of (2 ripple)^2 / 40; twenty of them in two repeats give 4 ripple^2, with nineteen
+  // degrees of freedom.
   for (const double common : {0.2, 0.5, 1.0, 2.0}) {
     CAPTURE(common);
     const double ratio = 2.0 * 40.0 * common * common / (20.0 / 19.0 * 4.0);
@@ -87,7 +89,7 @@ TEST_CASE("explained_by_declared: a repeat is as many times noisier as their mea
   deviations << felt, -2.0 * felt, 0.5 * felt;
   const MatrixXd explained = explained_by_declared(problem, 0, z, deviations);
   REQUIRE(explained.cols() == 3);
-  // Ridge regression: of what lies along it, F / (F + repeats).
+  // Ridge regression explains the fraction F / (F + repeats) along this direction.
   CHECK_THAT(explained.col(1).norm() / deviations.col(1).norm(),
              WithinRel(square / (square + 3.0), 1e-9));
   CHECK((explained.array() * deviations.array()).minCoeff() >= 0.0);
@@ -108,7 +110,7 @@ TEST_CASE("repeat_deviations: weighted, what is missing as nothing", "[calib]") 
   CHECK_THAT(found(0, 0), WithinRel(1.2e-5 / sd, 1e-12));
   CHECK_THAT(found(2, 1), WithinRel(-0.8e-5 / sd, 1e-12));
   CHECK(found(3, 0) == 0.0);
-  // What recorded inputs explain is taken off, where it has a column for each repeat.
+  // The part that recorded inputs explain is subtracted, if there is a column for each repeat.
   const MatrixXd half = 0.5 * found;
   CHECK((repeat_deviations(problem.conditions[0], half) - half).norm() < 1e-12);
   CHECK((repeat_deviations(problem.conditions[0], half.leftCols(1)) - found).norm() < 1e-12);

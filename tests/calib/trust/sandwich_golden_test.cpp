@@ -24,8 +24,8 @@ TEST_CASE("golden: covariance of the score, its freedom and what the error adds"
   const auto& noise = scatter[0].noise.at(0);
   const std::vector<double> model = golden("sandwich.noise");
   REQUIRE(noise.phi.size() + 1 == model.size());
-  // 1e-9: the dense side inverts matrices of 150 samples, and reads 15 digits. The freedom rests on
-  // the integral of the squared kernel, which the source has with six.
+  // 1e-9: the dense side inverts matrices of 150 samples, and reads 15 digits. The degrees of
+  // freedom depend on the integral of the squared kernel, which the source gives with six.
   CHECK_THAT(noise.variance, WithinRel(model[0], 1e-9));
   for (std::size_t k = 0; k < noise.phi.size(); ++k)
     CHECK_THAT(noise.phi[k], WithinRel(model[k + 1], 1e-9));

@@ -49,13 +49,13 @@ class Noise {
   boost::random::normal_distribution<double> normal_;
 };
 
-/// Of the draws of an experiment, those that are made.
+/// Part of an experiment's draws that is made.
 constexpr int kPart = test::kSanitized ? 4 : 1;
 /// What a share of them scatters more for it.
 const double kWider = std::sqrt(kPart);
 
-/// Share of draws in which the 95 % interval of a direction holds the truth, 0; by Student's t of
-/// the degrees of freedom alone, too.
+/// Fraction of draws in which the 95 % interval of a direction includes the truth, 0; also with
+/// Student's t by the degrees of freedom alone.
 struct Coverage {
   double found = 0.0;
   double by_freedom = 0.0;
@@ -82,14 +82,14 @@ std::vector<Coverage> coverage_of_each(const MatrixXd& model, double rho, int dr
   return covered;
 }
 
-/// Of all directions together.
+/// For all directions together.
 double coverage(const MatrixXd& model, double rho, int draws, double jump_at = 2.0) {
   double sum = 0.0;
   for (const Coverage& each : coverage_of_each(model, rho, draws, jump_at)) sum += each.found;
   return sum / static_cast<double>(model.cols());
 }
 
-/// The first of two columns is told by an oscillation that dies out within a few samples.
+/// An oscillation that decays within a few samples determines the first of two columns.
 MatrixXd brief_model(Index samples) {
   MatrixXd columns = MatrixXd::Zero(samples, 2);
   for (Index t = 0; t < samples; ++t) {
@@ -121,7 +121,7 @@ TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", 
   const MatrixXd model = slow_model(1500);
   // Binomial, the three directions of a draw independent: 600 at 95 % scatter by 0.9 %; 3.5 times.
   CHECK_THAT(coverage(model, 0.0, 200 / kPart), WithinAbs(0.95, 0.031 * kWider));
-  // 38 effective samples tell their own correlation to a fifth; t is then not quite its law.
+  // 38 effective samples determine their own correlation to a fifth; t is then not exactly right.
   CHECK_THAT(coverage(model, 0.95, 200 / kPart), WithinAbs(0.95, 0.035 * kWider));
   CHECK_THAT(coverage(model, 0.0, 200 / kPart, 0.8), WithinAbs(0.95, 0.031 * kWider));
 }
@@ -129,8 +129,8 @@ TEST_CASE("sandwich: intervals cover under white, correlated and uneven noise", 
 TEST_CASE("sandwich: what a few correlated samples tell is covered no more than it should be",
           "[calib]") {
   const auto covered = coverage_of_each(brief_model(1500), 0.95, 1000 / kPart);
-  // Binomial: 1000 at 95 % scatter by 0.7 %; 3.5 times. Residuals that few samples tell hold their
-  // own error, so Student's t alone covers more.
+  // Binomial: 1000 draws at 95 % have a standard deviation of 0.7 %; 3.5 times that. The residuals
+  // of few samples contain their own error, so Student's t alone covers more.
   CHECK_THAT(covered[0].found, WithinAbs(0.95, 0.025 * kWider));
   CHECK(covered[0].by_freedom > 0.98);
   CHECK_THAT(covered[1].found, WithinAbs(0.95, 0.035 * kWider));
@@ -147,8 +147,8 @@ TEST_CASE("sandwich: what a few correlated samples tell is covered no more than 
 TEST_CASE("sandwich: half width of the interval", "[calib]") {
   RobustVariance robust{1.0, 10.0, 0.0};
   CHECK_THAT(robust.quantile(), WithinRel(student_t(10.0), 1e-12));
-  // Three squares that hold the error: |sum| / root(sum of squares) is root 3 times the cosine to a
-  // fixed direction in space, which is uniform for normal numbers.
+  // Three squares that include the error: |sum| / root(sum of squares) is root 3 times the cosine
+  // to a fixed direction in space, which is uniform for normal numbers.
   robust = {1.0, 3.0, 1.0 / 3.0};
   CHECK_THAT(robust.quantile(), WithinRel(0.95 * std::sqrt(3.0), 1e-9));
   robust = {1.0, std::numeric_limits<double>::infinity(), 0.0};

@@ -21,7 +21,7 @@ Experiment everything(model::PlantKind plant) {
   e.set("stiffness", 2e4).set("coulomb_friction", 200.0).set("stribeck_friction", 300.0);
   e.set("external_force", 150.0).set("laminar_leakage", 2e-12).set("valve_null_leakage", 1e-12);
   e.set("load_gradient", 1e4).set("load_curvature", 1e5);
-  // A second mass and hoses do not go together.
+  // A rig with hoses cannot have a second mass.
   if (!chambers)
     e.set("payload_mass", 20.0).set("payload_frequency", 300.0).set("payload_damping_ratio", 0.1);
   if (chambers) {
@@ -120,8 +120,8 @@ TEST_CASE("symmetry: a prior alone tells the scale, as well as it is stated", "[
 }
 
 TEST_CASE("symmetry: a known supply pressure leaves none", "[calib]") {
-  // Slow and short: mass and bulk modulus together are told no better than to 10 %, but a known
-  // supply pressure, valve gain and damping do hold the scale.
+  // Slow and short: mass and bulk modulus together are determined to 10 % at best, but a known
+  // supply pressure, valve gain and damping fix the scale.
   Twin twin;
   twin.free("mass", 70.0, 17.0, 425.0);
   twin.free("bulk_modulus", 800e6, 138e6, 3445e6);

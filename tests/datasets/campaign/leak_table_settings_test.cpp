@@ -72,7 +72,7 @@ TEST_CASE("leak_table_settings: reads what is there, in SI", "[datasets]") {
   CHECK(signal.name() == "square_0.1Hz");
   CHECK_THAT(signal.amplitude, WithinRel(0.0508, 1e-12));
   REQUIRE(signal.printed.size() == 2);
-  // The last printed digit tells how it was rounded.
+  // The number of printed digits gives the rounding.
   CHECK_THAT(signal.printed.at(10.0).half_digit, WithinRel(0.005, 1e-12));
   CHECK_THAT(signal.printed.at(50.0).half_digit, WithinRel(0.05, 1e-12));
   CHECK(signal.printed.at(50.0).note == "a misprint");

@@ -12,7 +12,7 @@ using rigcal::test::TemporaryFolder;
 
 TEST_CASE("repeat_sources: a pattern looks through so many files at most", "[datasets]") {
   const TemporaryFolder folder;
-  constexpr int kEach = 460;  // squared: more than 200 000
+  constexpr int kEach = 460;  // its square exceeds 200 000
   for (int i = 0; i < kEach; ++i) folder.write("many/" + std::to_string(i) + ".csv", "t\n");
   std::filesystem::create_directories(folder / "links");
   const auto load = [&](const std::string& pattern) {

@@ -14,7 +14,7 @@ using rigcal::test::replaced;
 TEST_CASE("load_campaign: a quantity that sizes a loop has a range", "[datasets]") {
   struct Row {
     std::string key;
-    std::string behind;  ///< the line of the example behind which it stands
+    std::string behind;  ///< line of the example after which the key is inserted
     std::vector<std::string> values;
   };
   const std::string in_condition = "repeats = [\"records/sine_0.1Hz_33_*.csv\"]\n";

@@ -32,8 +32,8 @@ TEST_CASE("clipped_runs: a sine that is clipped, with noise and without", "[data
         const auto beyond = static_cast<std::size_t>(
             std::count_if(whole.begin(), whole.end(), [&](double v) { return v >= level; }));
         const std::size_t found = clipped_samples(cut, drive, RangeEnd::highest);
-        // All of it but crumbs at the edges; at 20 samples a period 0.95 is beyond two samples
-        // each, which no rule can tell from a coincidence.
+        // All of it except the edges; at 20 samples per period 0.95 leaves two samples each, which
+        // no rule can distinguish from a coincidence.
         if (period > 20.0 || level < 0.9) {
           CHECK(found <= beyond);
           CHECK(static_cast<double>(found) > 0.8 * static_cast<double>(beyond));

@@ -10,7 +10,7 @@ using rigcal::model::ControllerKind;
 
 namespace {
 
-/// A piston that follows a command of 2 V, which is there from the first sample on.
+/// A piston that follows a command that is 2 V from the first sample on.
 struct StartCase {
   Campaign campaign;
   Condition condition;

@@ -39,7 +39,7 @@ TEST_CASE("frozen_runs: a quiet signal, while the drive goes there and back", "[
   CHECK(frozen_runs(x, drive).empty());
   CHECK(frozen_runs(frozen(x, 1010, 1000), drive).size() == 1);
   CHECK(frozen_runs(frozen(x, 2010, 1990), drive).size() == 1);  // up to the end
-  CHECK(frozen_runs(frozen(x, 1010, 100), drive).empty());       // friction may hold a piston so
+  CHECK(frozen_runs(frozen(x, 1010, 100), drive).empty());  // a piston may stick so by friction
 }
 
 TEST_CASE("frozen_runs: nothing where the rig may be at rest", "[datasets]") {

@@ -88,7 +88,8 @@ TEST_CASE("mains_hum: late edges of a square wave are none", "[datasets]") {
     }
     CHECK_FALSE(mains_hum(rows, kRateHz, drive));
   }
-  // 50 Hz is a harmonic of 25 Hz, whose others are too far away to tell it from hum.
+  // 50 Hz is a harmonic of 25 Hz, whose other harmonics are too far away to distinguish it from
+  // hum.
   CHECK_FALSE(mains_hum(deviations(50.0, 0.3, 0.1, 20000), kRateHz, 25.0));
 }
 

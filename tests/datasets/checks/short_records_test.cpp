@@ -16,7 +16,7 @@ Condition sine_condition(double frequency_hz, std::optional<double> duration_s =
   return condition;
 }
 
-/// Which of the records of some seconds, one a condition, are told to be short.
+/// Which records of these durations, one per condition, are reported as short.
 std::vector<bool> told(const std::vector<Condition>& conditions, const std::vector<double>& s) {
   std::vector<RecordLength> lengths;
   for (std::size_t i = 0; i < s.size(); ++i) lengths.push_back({&conditions[i], s[i]});

@@ -61,7 +61,7 @@ TEST_CASE("travel_warning: beyond the stroke", "[datasets]") {
   CHECK_THAT(test.told(), Contains("0.5 m of travel, beyond the stroke of 0.4 m"));
   test.campaign.parameters[0].value = 0.47;
   CHECK(test.told().empty());
-  test.campaign.parameters[0].fit = true;  // it may be longer
+  test.campaign.parameters[0].fit = true;  // the true stroke may be longer
   test.campaign.parameters[0].value = 0.4;
   CHECK(test.told().empty());
 }

@@ -67,7 +67,7 @@ TEST_CASE("draft_campaign: a reference in newtons makes a loop on force", "[data
   std::string draft = draft_campaign({file}, folder.path()).text;
   CHECK_THAT(draft, Contains("feedback = \"force\""));
   CHECK_THAT(draft, Contains("force_reference = { column = \"ref_kN\", unit = \"kN\" }"));
-  CHECK_THAT(draft, Contains("# payload_mass = "));  // an acceleration was recorded
+  CHECK_THAT(draft, Contains("# payload_mass = "));  // since an acceleration was recorded
   CHECK_THAT(draft, Contains("amplitude = \"2 kN\""));
   draft = filled(draft);
   const auto fill = [&](const std::string& from, const std::string& to) {
@@ -176,7 +176,7 @@ TEST_CASE("draft_campaign: a file whose time restarts is left out", "[datasets]"
   const std::string draft = draft_campaign({cuts, run}, folder.path()).text;
   CHECK_THAT(draft, Contains("# left out: cuts.csv:4:1: time 't_s' does not increase"));
   CHECK_THAT(draft, !Contains("id = \"cuts\"") && Contains("\"sine_2.csv\""));
-  // The first of two repeats: the second stands for them.
+  // The first of two repeats is unreadable; the second one replaces it.
   const std::string rest =
       draft_campaign({folder.write("sine_1.csv", restarts), run}, folder.path()).text;
   CHECK_THAT(rest,
@@ -225,7 +225,7 @@ TEST_CASE("draft_campaign: columns that nothing recognises, with their ranges", 
                         Contains("position = { column = \"FILL IN\", unit = \"FILL IN\" }"));
   CHECK_THAT(draft, Contains("A1 (0 to 9.5, perhaps time)") &&
                         Contains("Q [bar] (3 to 6 bar, perhaps pressure_a), note\n"));
-  // Beside a recording it is none.
+  // Beside a proper recording the file does not count as one.
   const Draft both = draft_campaign(
       {folder.path() / "a.csv", folder.write("s_1.csv", sine_csv(0.1))}, folder.path());
   REQUIRE(both.left_out.size() == 1);

@@ -65,7 +65,7 @@ TEST_CASE("start_motion: motion is what exceeds four errors of its own", "[datas
     }
     return count;
   };
-  // The differences that tell the noise are 0.3 errors wide at 4; 2 and 6 are beyond their scatter.
+  // The differences that give the noise are known to 0.3 errors at 4; 2 and 6 are outside.
   CHECK(told(0.0) == 0);
   CHECK(told(2.0) < 20);
   CHECK(told(6.0) > 180);

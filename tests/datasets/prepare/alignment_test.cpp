@@ -47,7 +47,7 @@ TEST_CASE("align: what comes later is shifted back, relative to the mean", "[dat
 }
 
 TEST_CASE("align: shifts from a fiftieth of a sample on are made", "[datasets]") {
-  // Each lies half the distance from their mean.
+  // Each is half the distance from their mean.
   const auto apart = align({moved("a", 0.0), moved("b", 0.1)}, true);
   CHECK_THAT(apart.shift[1], WithinAbs(0.05, 2e-3));
   CHECK_THAT(apart.shift[0], WithinAbs(-0.05, 2e-3));
@@ -76,7 +76,7 @@ TEST_CASE("align: two clean repeats are told apart beside a noisy one", "[datase
 }
 
 TEST_CASE("align: the central repeat is no better known than the others", "[datasets]") {
-  // One delay of noise, told by two repeats: half of it is not more significant for either.
+  // With two repeats one random delay gives half of it for each, which is no more significant.
   for (int draw = 0; draw < 40; ++draw) {
     const std::string number = std::to_string(draw);
     const auto aligned =

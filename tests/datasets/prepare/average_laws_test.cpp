@@ -67,7 +67,7 @@ TEST_CASE("average: the sd of the mean is that of a repeat over the root of thei
       repeats.push_back(
           on_clock("r" + std::to_string(r), 0, 50, [&](long i) { return triangle(i) + 0.01 * r; }));
     const Record record = average("c", repeats, as_they_are());
-    // Of 0 .. n - 1 the sample variance is n (n + 1) / 12.
+    // The sample variance of 0 .. n - 1 is n (n + 1) / 12.
     const double sd = 0.01 * std::sqrt(n * (n + 1) / 12.0);
     CHECK_THAT(position_of(record).pooled_sd, WithinRel(sd, 1e-9));
     CHECK_THAT(position_of(record).sd[7], WithinRel(sd, 1e-9));
@@ -203,7 +203,7 @@ TEST_CASE("average: the deviation of a repeat is that of its worst channel", "[d
   for (const int r : {0, 1, 2}) {
     repeats.push_back(on_clock(
         "r", 0, 100, [&](long i) { return triangle(i) + (r == 2 ? 0.3 : 0.0) + 0.001 * r; }));
-    // No repeat stands out in the force, which comes after the position.
+    // No repeat is an outlier in the force, which comes after the position.
     repeats.back().values[Channel::force] = std::vector<double>(100, static_cast<double>(r));
   }
   const Record record = average("c", repeats, as_they_are());

@@ -110,7 +110,7 @@ TEST_CASE("average: jittered repeats keep their amplitude and their noise", "[da
       CAPTURE(r);
       CHECK_THAT(aligned.repeat_reports[r].offset_s, WithinAbs(late_s[r], 2e-5));  // 0.02 samples
     }
-    // The mean offset is nought, so the mean lies on the truth.
+    // The mean offset is zero, so the mean equals the truth.
     for (std::size_t i = 100; i < 1900; ++i)
       CHECK_THAT(position_of(aligned).mean[i], WithinAbs(truth[i], 0.03));
   }

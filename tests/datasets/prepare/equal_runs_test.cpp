@@ -46,7 +46,7 @@ TEST_CASE("cuts_a_motion: three samples before and after a run lie far enough fr
   const EqualRun top{3, 3, 3.5};
   CHECK(cuts_a_motion(x, top, 0.29));
   CHECK_FALSE(cuts_a_motion(x, top, 0.31));  // it leaves by 0.3
-  // At an end of the record the other side tells; without any side nothing does.
+  // At an end of the record the other side decides; without either there is no decision.
   CHECK(cuts_a_motion(Samples(x.begin(), x.begin() + 6), top, 3.5));
   CHECK_FALSE(cuts_a_motion(Samples(3, 3.5), {0, 3, 3.5}, 0.0));
 }
@@ -59,7 +59,7 @@ TEST_CASE("shows_noise: noise of two steps of a converter, not its flicker nor m
   CHECK_FALSE(noisy(sine_signal(2000, 1000.0)));
   CHECK_FALSE(noisy(quantised(sine_signal(2000, 1000.0), 0.01)));
   CHECK_FALSE(noisy(quantised(with_noise(sine_signal(2000, 1000.0), 0.004), 0.01)));
-  CHECK_FALSE(noisy(with_noise(lagged(square_signal(2000, 500.0), 20.0), 1e-9)));  // of rounding
+  CHECK_FALSE(noisy(with_noise(lagged(square_signal(2000, 500.0), 20.0), 1e-9)));  // rounding
   CHECK_FALSE(noisy(with_noise(Samples(40, 0.0), 0.01)));                          // too few
 }
 

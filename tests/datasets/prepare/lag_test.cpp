@@ -95,8 +95,8 @@ TEST_CASE("lag: gain and offset of a record do not matter", "[datasets]") {
 }
 
 TEST_CASE("lag: a period is never jumped", "[datasets]") {
-  // 33.33 samples a period: the peak one period away lies nearer to a whole sample than the true
-  // one, and ten periods fit into the search.
+  // 33.33 samples per period: the peak one period away is closer to a whole sample than the true
+  // one, and ten periods are within the search.
   for (const double delay : {0.5, -0.5, 12.4, -15.5}) {
     CAPTURE(delay);
     const auto a = sampled(sine(0.03), 2000, 0.0, 0.02, 3);

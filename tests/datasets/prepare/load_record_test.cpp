@@ -65,7 +65,7 @@ TEST_CASE("load_record: a second column is taken off the first before units", "[
   };
   CHECK_THAT(load_at(0), WithinRel(3e5 + 10.0, 1e-12));
   CHECK_THAT(load_at(2), WithinRel(6e5 + 10.0, 1e-12));
-  // A column that the repeat names itself stands alone.
+  // A column that the repeat names itself has no `minus`.
   condition.repeats[0].columns[Channel::load_pressure] = "c";
   CHECK_THAT(load_at(0), WithinRel(9e5 + 10.0, 1e-12));
 }

@@ -67,7 +67,7 @@ TEST_CASE("recognised_drive: a square wave, to its edges", "[datasets]") {
     CHECK(farthest(square, found->signal) == 0.0);
   }
   Sampled late = sampled(Signal::square(0.004, 10.0));
-  late.drive[50] = late.drive[49];  // one edge comes a sample late
+  late.drive[50] = late.drive[49];  // one edge is a sample late
   CHECK_FALSE(recognised(late));
 }
 
@@ -88,7 +88,7 @@ TEST_CASE("recognised_drive: what is no generated signal is none", "[datasets]")
   Sampled noisy = sampled(Signal::sine(0.05, 2.0));
   for (double& x : noisy.drive) x += 5e-5 * normal(random);
   CHECK_FALSE(recognised(noisy));
-  CHECK(recognised(noisy, 5e-5));  // the campaign says that it is the sensor's
+  CHECK(recognised(noisy, 5e-5));  // the campaign states that this is noise of the sensor
   CHECK_FALSE(recognised(noisy, 1e-5));
   Sampled clipped = sampled(Signal::sine(0.05, 2.0), 1e-6);
   for (double& x : clipped.drive) x = std::min(x, 0.0499);

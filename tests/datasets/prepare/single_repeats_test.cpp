@@ -61,7 +61,7 @@ TEST_CASE("repeat_records: each repeat on the time base of the average, with the
   }
   CHECK(records.covered[0].start_s == average.time_s.front());
   CHECK_THAT(records.covered[1].start_s, WithinAbs(0.031, 1e-9));
-  // What it does not cover holds its nearest sample.
+  // Times that it does not cover get its nearest sample.
   const auto& late = records.singles[1].channels.at(Channel::position).mean;
   CHECK(late[0] == late[31]);
   CHECK(late[30] == late[31]);

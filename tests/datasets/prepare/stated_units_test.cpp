@@ -56,7 +56,7 @@ TEST_CASE("require_stated_unit: the same unit written otherwise is the same", "[
   }
   CHECK(is_taken(stated_unit("mm"), "Position in mm"));
   CHECK_FALSE(is_taken(stated_unit("mm"), "Position in cm"));
-  // No unit, a number, or a word that only looks like a unit of another dimension.
+  // No unit, a pure number, or a word that only looks like a unit of another dimension.
   for (const char* name : {"x", "p (ist)", "p_in", "p_s", "p (A)", "u [%]", "p [-]", "p (in)"}) {
     CAPTURE(name);
     CHECK(is_taken(stated_unit("bar"), name));
@@ -83,5 +83,5 @@ TEST_CASE("require_stated_unit: a gain that converts, and what the campaign igno
   StatedUnit kelvin = stated_unit("K");
   kelvin.has_offset = true;
   CHECK(is_taken(kelvin, "T [degC]"));
-  CHECK(is_taken({}, "p [psi]"));  // counts of a converter
+  CHECK(is_taken({}, "p [psi]"));  // raw counts of a converter
 }

@@ -62,7 +62,7 @@ TEST_CASE("ar1_noise: stationary sd and geometric correlation", "[datasets]") {
   auto stream = random_stream(4, {"a"});
   const auto noise = ar1_noise(stream, 200000, 2.0, 0.9);
   const double variance = covariance(noise, noise, 0);
-  // 200000 samples hold about 10000 independent ones.
+  // 200000 samples contain about 10000 independent ones.
   CHECK_THAT(std::sqrt(variance), WithinRel(2.0, 0.03));
   CHECK_THAT(covariance(noise, noise, 1) / variance, WithinAbs(0.9, 0.01));
   CHECK_THAT(covariance(noise, noise, 5) / variance, WithinAbs(std::pow(0.9, 5), 0.03));

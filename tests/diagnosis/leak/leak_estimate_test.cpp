@@ -49,7 +49,7 @@ TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]
   CHECK_THAT(sure.ci95.second, WithinAbs(1.5 + 0.0392, 1e-5));
 
   const auto torn = estimated(fit_of(1.0, 0.1));
-  // Half the distribution lies below the limit, of which the prior makes the more probable half:
+  // Half the distribution is below the limit, and the prior makes this half more probable:
   // integrals of exp(-(s - 0.1)^2 / (2 0.01^2)) / (0.00125 + s).
   CHECK_THAT(probability(torn, LeakClass::slight), WithinAbs(0.5398, 2e-3));
   CHECK_THAT(probability(torn, LeakClass::medium), WithinAbs(0.4602, 2e-3));
@@ -59,7 +59,7 @@ TEST_CASE("estimate_leak: class probabilities follow the interval", "[diagnosis]
 
 TEST_CASE("estimate_leak: beforehand normal is as probable as slight, without a step between them",
           "[diagnosis]") {
-  // A record that tells next to nothing of shares below 10 %: the prior alone.
+  // A record that hardly determines shares below 10 %: only the prior counts.
   const auto vague = estimated(fit_of(0.0, 50.0));
   CHECK_THAT(probability(vague, LeakClass::normal) / probability(vague, LeakClass::slight),
              WithinRel(1.0, 0.1));
@@ -130,7 +130,8 @@ TEST_CASE("estimate_leak: a reference adds its own scatter and takes the model's
   const auto corrected = estimated(fit, errors, 1, 3);
   CHECK_THAT(corrected.standard_error,
              WithinRel(std::sqrt(0.03 * 0.03 + 0.12 * 0.12 * (1.0 + 1.0 / 3.0)), 1e-9));
-  // Welch and Satterthwaite: what the repeats tell has 16 degrees of freedom, the scatter 1e6.
+  // Welch and Satterthwaite: the part of the repeats has 16 degrees of freedom, that of the
+  // residuals 1e6.
   const double repeats = 0.12 * 0.12 * (1.0 + 1.0 / 3.0);
   CHECK_THAT(corrected.freedom, WithinRel(std::pow(0.03 * 0.03 + repeats, 2) /
                                               (repeats * repeats / 16.0 + std::pow(0.03, 4) / 1e6),
@@ -153,7 +154,7 @@ TEST_CASE("estimate_leak: the rig's error blurs the share", "[diagnosis]") {
 }
 
 TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis]") {
-  // Half a normal distribution of sd 0.1, below 1.959964 of which 95 % lie; a tenth is the share's.
+  // Half a normal distribution with sd 0.1: 95 % are below 1.959964; the share is a tenth of it.
   const auto none = estimated(fit_of(0.0, 0.1));
   REQUIRE(none.share_upper_limit);
   CHECK_THAT(*none.share_upper_limit, WithinAbs(0.0196, 1e-4));
@@ -166,16 +167,16 @@ TEST_CASE("estimate_leak: an upper limit where no leak is detected", "[diagnosis
 
 TEST_CASE("estimate_leak: no interval ends at zero, however far below it the estimate lies",
           "[diagnosis]") {
-  // Where nothing leaks: of half a normal distribution 95 % lie below 1.959964.
+  // Without a leak: 95 % of half a normal distribution is below 1.959964.
   const auto none = estimated(fit_of(0.0, 0.1));
   CHECK(none.ci95.first == 0.0);
   CHECK_THAT(none.ci95.second, WithinRel(0.1959964, 1e-5));
-  // Two errors below zero: of what is left above zero, P(Z > 2) = 0.0227501, a twentieth lies
-  // beyond 3.05176 errors.
+  // Two errors below zero: P(Z > 2) = 0.0227501 remains above zero, and a twentieth of it is beyond
+  // 3.05176 errors.
   const auto below = estimated(fit_of(-0.2, 0.1));
   CHECK_FALSE(below.incompatible);
   CHECK_THAT(below.ci95.second, WithinAbs(0.1 * (3.05176 - 2.0), 1e-5));
-  // From 2.3263 errors on, the 1 % of false alarms, no leak makes such a record.
+  // Beyond 2.3263 errors (1 % false alarms) no leak explains such a record.
   CHECK_FALSE(estimated(fit_of(-0.232, 0.1)).incompatible);
   const auto beyond = estimated(fit_of(-0.233, 0.1));
   CHECK(beyond.incompatible);
@@ -185,7 +186,7 @@ TEST_CASE("estimate_leak: no interval ends at zero, however far below it the est
 }
 
 TEST_CASE("estimate_leak: a share is within 0 and 1, or none", "[diagnosis]") {
-  // share = C / 10: a coefficient of 9 with an error of 2 has shares beyond all of the flow.
+  // share = C / 10: the interval of a coefficient of 9 with an error of 2 includes shares above 1.
   const auto wide = estimated(fit_of(9.0, 2.0));
   CHECK(wide.has_share());
   CHECK(wide.share_ci95.second == 1.0);
@@ -201,10 +202,10 @@ TEST_CASE("detection_limit: Currie's sum of both quantiles", "[diagnosis]") {
 
 TEST_CASE("error_of_averages: from the spread between repeats, of both means", "[diagnosis]") {
   SignalErrors errors;
-  // A record that is its own reference has no residual, and so no error of its own.
+  // A record that is its own reference has no residual, and so no error.
   const LeakFit reference = fit_of(0.0, 0.0);
   CHECK_FALSE(error_of_averages(reference, errors, 5, 5));
-  errors.repeat_m = 0.12e-3;  // 0.12 of the coefficient
+  errors.repeat_m = 0.12e-3;  // in units of the coefficient: 0.12
   errors.repeat_freedom = 4;
   const auto error = error_of_averages(reference, errors, 5, 3);
   REQUIRE(error);

@@ -87,11 +87,12 @@ TEST_CASE("fit_leak: a supply that differs between repeats is part of the error"
     datasets::differ_between_repeats(datasets::spec_of(campaign.rig.plant, supply),
                                      0.02 * setting.value, setting);
   }
-  // Of 40 independent scores the 0.1 and 99.9 % quantiles of the rms are 0.68 and 1.35.
+  // With 40 independent scores the 0.1 and 99.9 % quantiles of the rms are 0.68 and 1.35.
   const double score = rms_score(0);
   CHECK(score > 0.68);
   CHECK(score < 1.35);
-  // A reference of one repeat differs by as much again; the record tells a part of its own supply.
+  // A reference of one repeat differs by as much again; the record determines a part of its own
+  // supply.
   CHECK(rms_score(1) < score);
 }
 
@@ -99,7 +100,7 @@ TEST_CASE("rig_fit_of: the larger error of each value, and their correlation", "
   calib::Fit fit;
   fit.parameters = {fitted(1, 2.0, 3.0), fitted(4, 5.0, 4.0), fitted(2, 7.0, std::nullopt)};
   fit.parameters.push_back(fitted(3, 1.0, 9.0));
-  fit.parameters.back().nuisance = true;  // of a condition's own: not the rig's
+  fit.parameters.back().nuisance = true;  // a condition's own value, not the rig's
   fit.correlation = Eigen::MatrixXd::Identity(4, 4);
   fit.correlation(0, 1) = fit.correlation(1, 0) = 0.5;
   const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);

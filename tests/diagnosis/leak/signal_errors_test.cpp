@@ -50,9 +50,9 @@ TEST_CASE("signal_errors: pooled over conditions, a degree of freedom less for e
 
 TEST_CASE("separate_noise: what white noise explains is no variation between repeats",
           "[diagnosis]") {
-  // Coefficients 1 and 3 differ with a variance of 2; white noise alone makes 0.5 of it, or all but
-  // a third, which is no more than one degree of freedom may show by chance (chi-square 1.5, its
-  // upper quartile 1.32; of a ratio of 1.25 not).
+  // Coefficients 1 and 3 differ with a variance of 2. White noise alone accounts for 0.5 of it, or
+  // for all but a third, which one degree of freedom may show by chance (chi-square 1.5, its upper
+  // quartile 1.32; a ratio of 1.25 is below it).
   LeakFit a = fit_with(1.0, 1e-3);
   LeakFit b = fit_with(3.0, 1e-3);
   const auto separated = [&](double noise_variance) {

@@ -13,7 +13,7 @@
 #include "tests/model/rig.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// What an importer may ask of an instance, when, and within which limits.
+// Calls of an importer to an instance: which are allowed, when, and with which values.
 
 using namespace rigcal::model;
 using Catch::Contains;
@@ -31,7 +31,7 @@ ExportedRig exported(double sample_time_s = 0.0) {
   return rig;
 }
 
-/// An instance of a rig, with the folder of its resources.
+/// An instance of a rig with the folder of its resources.
 struct Importer {
   TemporaryFolder folder;
   FmuInstance instance;
@@ -115,7 +115,7 @@ TEST_CASE("fmu instance: tolerances between 0 and 0.1, and times that are number
                Contains("startTime: found"));
   importer.instance.set_up(-2.0, nullptr);
   CHECK(importer.instance.state().start_s == -2.0);
-  CHECK(importer.instance.state().tolerance == 0.0999);  // as it was
+  CHECK(importer.instance.state().tolerance == 0.0999);  // unchanged
 }
 
 TEST_CASE("fmu instance: parameters within their limits, which are allowed", "[model]") {
@@ -154,7 +154,7 @@ TEST_CASE("fmu instance: what may be set while it runs", "[model]") {
   exchange.instance.enter_continuous_mode();
   CHECK_THAT(complaint([&] { exchange.instance.set_real(parameter("mass"), 71.0); }),
              Contains("the instance is in continuous-time mode"));
-  exchange.instance.set_real(kReference, 0.001);  // inputs always
+  exchange.instance.set_real(kReference, 0.001);  // inputs may change at any time
   exchange.instance.terminate();
   CHECK_THAT(complaint([&] { exchange.instance.set_real(kReference, 0.0); }),
              Contains("the instance is terminated"));
@@ -263,7 +263,7 @@ TEST_CASE("fmu instance: a step begins where the last one ended, and has a lengt
   FmuInstance& instance = importer.instance;
   instance.step(10.0, 0.1);
   CHECK(instance.state().time_s == Approx(10.1).epsilon(1e-15));
-  instance.step(10.1 + 0.9e-4, 0.1);  // within a thousandth of the step
+  instance.step(10.1 + 0.9e-4, 0.1);  // within a thousandth of the step of time
   CHECK(instance.state().time_s == Approx(10.2 + 0.9e-4).epsilon(1e-15));
   const double now = instance.state().time_s;
   for (const double off : {1.1e-4, -1.1e-4, 0.1})
@@ -322,7 +322,7 @@ TEST_CASE("fmu instance: however a ramp is cut into steps, it leads to the same 
   CHECK(std::abs(whole) > 1e-4);
   CHECK(position_after({0.1, 0.1}, 1e-9) == Approx(whole).epsilon(1e-6));
   CHECK(position_after({0.05, 0.15}, 1e-9) == Approx(whole).epsilon(1e-6));
-  // A millionth of the peak in each step.
+  // a tolerance of a millionth of the peak per step
   CHECK(position_after({0.2}, 1e-6) == Approx(whole).epsilon(1e-4));
 }
 
@@ -353,10 +353,10 @@ TEST_CASE("fmu instance: ticks of a sampled controller, a period apart from the 
   CHECK(instance.real(command) == Approx(kp * 0.001));
   CHECK_FALSE(instance.new_discrete_states());
   instance.set_real(kReference, 0.002);
-  CHECK(instance.real(command) == Approx(kp * 0.001));  // held
+  CHECK(instance.real(command) == Approx(kp * 0.001));  // the output is held
   instance.set_time(2.01 - 0.01 * 1e-4);
   CHECK_FALSE(instance.new_discrete_states());
-  instance.set_time(2.01 - 0.01 * 1e-7);  // times that an importer adds up are rounded
+  instance.set_time(2.01 - 0.01 * 1e-7);  // importers add up times, so they are rounded
   CHECK(instance.new_discrete_states());
   CHECK(instance.real(command) == Approx(kp * 0.002));
   CHECK(instance.state().ticks == 2);
@@ -376,7 +376,7 @@ TEST_CASE("fmu instance: a step takes the ticks within it, the one at its end wi
   const double kp = exported().values["kp"];
   const unsigned command = kOutputReference + static_cast<unsigned>(Output::command);
   instance.set_real(kReference, 0.001);
-  // Before the first step the importer sees what the controller makes of the inputs.
+  // Before the first step the importer reads the controller's output for the inputs.
   CHECK(instance.real(command) == Approx(kp * 0.001));
   CHECK(instance.state().ticks == 0);
   instance.step(0.0, 0.03);
@@ -418,7 +418,7 @@ TEST_CASE("fmu instance: the initial state follows what is set before it is left
   instance.enter_initialization();
   const double before = instance.real(kStateReference + 2);
   instance.set_real(kForce, 600.0);
-  // In equilibrium the load pressure holds the force.
+  // In equilibrium the load pressure balances the force.
   CHECK(instance.real(kStateReference + 2) - before ==
         Approx(570.0 / exported().values["piston_area"]).epsilon(1e-9));
   instance.exit_initialization();
@@ -450,7 +450,7 @@ TEST_CASE("equations: where the valve, the stops and the spool have their kinks"
   rig.values.set("valve_rate_limit", 50.0);
   const auto limited = indicators(rig, 0.25, {0.0, 0.0, 0.0, 0.05});
   REQUIRE(limited.size() == 4);
-  CHECK(limited[0] == Approx(0.05 + 0.02 - 0.1));  // of the spool, not of the command
+  CHECK(limited[0] == Approx(0.05 + 0.02 - 0.1));  // limits apply to the spool, not to the command
   CHECK(limited[2] == Approx(50.0 - 20.0));        // 0.2 V in 10 ms
   CHECK(limited[3] == Approx(50.0 + 20.0));
 }

@@ -31,7 +31,7 @@ Layout layout_with(int integral, int filter, int held) {
   return layout;
 }
 
-/// A loop that saturates: a step of the reference that asks for twice the limit.
+/// A loop that saturates: a step of the reference that requires twice the limit.
 Experiment step_of(double amplitude_m) {
   Experiment e;
   e.inputs.drive = Signal::square(amplitude_m, 0.1);
@@ -223,7 +223,7 @@ TEST_CASE("controller: a PID of the whole loop against a Runge-Kutta of small st
     }
   }
   CHECK(peak(run.outputs.col(1)) == 3.0);
-  // Kinks at the limit cost some digits of the 1e-8 asked for: 1e-5 of the peaks.
+  // Kinks at the limit cost some digits of the requested 1e-8: 1e-5 of the peaks.
   CHECK(worst_x < 1e-5 * 0.02);
   CHECK(worst_u < 1e-5 * 3.0);
 }

@@ -18,7 +18,7 @@ struct Loop {
   Feedback feedback;
   Output controlled;
   double amplitude;
-  double kp, ki;  ///< gentle ones
+  double kp, ki;  ///< low gains
 };
 constexpr Loop kLoops[] = {{Feedback::position, Output::position, 0.01, 80.0, 400.0},
                            {Feedback::force, Output::force, 2e3, 5e-5, 1e-3},
@@ -90,7 +90,7 @@ TEST_CASE("feedback: pressure feedback damps what rings", "[model]") {
 
 TEST_CASE("feedback: integral action leaves no error of force and load pressure", "[model]") {
   for (const Loop& loop : kLoops) {
-    if (loop.feedback == Feedback::acceleration) continue;  // against a damper it lags behind
+    if (loop.feedback == Feedback::acceleration) continue;  // lags behind a damper
     Experiment e = loop_on(loop);
     e.set("stiffness", 3e5).set("damping", 2e4).set(gain_keys(loop.feedback).ki, 20.0 * loop.ki);
     e.inputs.drive = Signal::constant(0.5 * loop.amplitude);

@@ -1,6 +1,6 @@
-// Sign and size of every optional term of the load-pressure plant, as steady states and exact
-// solutions written by hand (docs/model.md). That two methods agree, or that a derivative is that
-// of the function, tells neither.
+// Sign and size of every optional term of the load-pressure plant, by steady states and exact
+// solutions that were derived by hand (docs/model.md). Agreement of two methods, or of derivatives
+// with differences, proves neither.
 
 #include <catch2/catch.hpp>
 #include <cmath>

@@ -1,5 +1,5 @@
-// The load behind the rod: forces that vary with travel, and a second mass. Against exact solutions
-// written by hand (docs/model.md).
+// The load at the rod: forces that vary with travel, and a second mass. Compared with exact
+// solutions that were derived by hand (docs/model.md).
 
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kPistonArea_m2 = 1.62e-3;
 
-/// At rest with a closed valve that does not leak, 20 mm out.
+/// Extended by 20 mm, at rest, with a closed valve without leakage.
 Experiment held_at(double position_m, Experiment e) {
   e.rig.controller = ControllerKind::none;
   e.rig.initial = InitialState::given;
@@ -26,8 +26,8 @@ Experiment held_at(double position_m, Experiment e) {
   return e;
 }
 
-/// Two masses with a spring and a damper between them, the first pushed by a constant force; the
-/// piston is too small for its oil to take part.
+/// Two masses with a spring and a damper between them; a constant force pushes the first. The
+/// piston is so small that its oil has no effect.
 struct TwoMasses {
   double mass_kg = 85.0, payload_kg = 40.0, frequency = 60.0, ratio = 0.15, push_n = -500.0;
 

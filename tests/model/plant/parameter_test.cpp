@@ -79,7 +79,7 @@ TEST_CASE("parameters: bounds are in order and hold the default", "[model]") {
       CHECK(spec.kind == ParameterKind::plant);
       continue;
     }
-    // A 0 below the bounds stands for a term that is absent and must be given with its value.
+    // A 0 below the bounds represents an absent term, which must be given with its value.
     const bool absent =
         *spec.default_value == 0.0 && spec.lower > 0.0 &&
         (spec.kind == ParameterKind::term || spec.kind == ParameterKind::controller ||

@@ -72,7 +72,7 @@ Powers powers(const States& x, double spool_v, const Layout& layout,
     result.held += 0.5 * p.supply_capacity_m3_per_pa * P_s * P_s;
   }
   if (layout.hoses >= 0) {
-    // A hose holds C (p - p_h z): a spring of C behind a slip of p_h z, z its memory.
+    // A hose stores C (p - p_h z): a spring of C behind a slip of p_h z, where z is its memory.
     const auto rates = Plant::hose_rates(x, dx, p, terms);
     for (const int side : {0, 1}) {
       const double C = side == 0 ? p.hose_capacity_a_m3_per_pa : p.hose_capacity_b_m3_per_pa;
@@ -107,7 +107,7 @@ Powers energies(const Experiment& e) {
   Powers sum;
   Powers before;
   for (std::size_t i = 0; i < e.times_s.size(); ++i) {
-    // From sample to sample, because states are told at the end of a run.
+    // From sample to sample, because states are available only at the end of a run.
     const std::size_t from = i == 0 ? 0 : i - 1;
     const auto times = std::span(e.times_s).subspan(from, i - from + 1);
     const std::vector<Output> outputs{Output::spool};
@@ -268,7 +268,7 @@ TEST_CASE("two_chamber: a stop holds the piston and gives way by force over stif
   const Simulation run = e();
   REQUIRE(run.ok());
   const auto x = run.outputs.col(0);
-  CHECK_THAT(x(0), WithinAbs(0.005, 1e-5));  // zero lies beyond the stop
+  CHECK_THAT(x(0), WithinAbs(0.005, 1e-5));  // zero is beyond the stop
   CHECK_THAT(x.maxCoeff(), WithinAbs(0.195, 2e-4));
   const double push = 2.0e-4 * run.outputs(3000, 2) - 1.2e-4 * run.outputs(3000, 3);
   CHECK_THAT(x(3000) - 0.195, WithinRel(push / 1e8, 1e-3));

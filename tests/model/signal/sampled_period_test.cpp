@@ -13,7 +13,7 @@ std::optional<SampledPeriod> period_of(const Signal& drive, const std::vector<do
   return sampled_period({drive, {}, {}}, times_s, false, tick_s);
 }
 
-/// Of a rig that reversed inputs reverse.
+/// For a rig whose response reverses with its inputs.
 std::optional<SampledPeriod> reversible_period_of(const Signal& drive,
                                                   const std::vector<double>& times_s,
                                                   std::optional<double> tick_s = {}) {

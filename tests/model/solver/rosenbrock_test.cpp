@@ -76,8 +76,8 @@ struct SignOfD4Changed : AsShipped {
   const double d4 = -AsShipped::d4;
 };
 
-/// The step of Odeint's rosenbrock4 for one equation, with its coefficients (uBLAS, on which it
-/// stands, does not compile as C++20 in Boost 1.74).
+/// The step of Odeint's rosenbrock4 for one equation, with its coefficients (it is based on uBLAS,
+/// which does not compile as C++20 in Boost 1.74).
 template <typename Coefficients>
 double odeint_error(const Equation& equation, int steps) {
   const Coefficients c;

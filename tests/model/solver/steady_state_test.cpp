@@ -176,7 +176,7 @@ TEST_CASE("steady_state: a run read from its last periods is as exact as one sim
   struct Case {
     std::string name;
     Experiment e;
-    double share;  ///< of the steps, at most
+    double share;  ///< largest fraction of the steps
   };
   std::vector<Case> cases;
   const std::vector<const char*> keys{"mass", "bulk_modulus", "valve_gain", "damping"};
@@ -323,7 +323,7 @@ TEST_CASE("steady_state: whole periods where halves do not reverse all that is a
   Experiment chambers = e;  // their pressures trade places, half the supply pressure above zero
   chambers.outputs = {Output::position, Output::pressure_a, Output::pressure_b};
   CHECK(check(chambers) > steps);
-  Experiment offset = e;  // zero, but by how much it would shift the run is asked for
+  Experiment offset = e;  // zero, but the sensitivity to it is requested
   offset.free = indices(offset, {"valve_offset", "external_force"});
   CHECK(check(offset) > steps);
 }

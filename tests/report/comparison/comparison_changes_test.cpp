@@ -14,7 +14,7 @@
 #include "tests/report/stored_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Which differences a comparison tells, how large, and in which order.
+// Which differences a comparison reports, their size and order.
 
 using Catch::Contains;
 using Catch::WithinRel;
@@ -25,7 +25,7 @@ using rigcal::test::stored_result;
 
 namespace {
 
-/// A fit of the mass, of records of its own.
+/// A fit of the mass to records of its own.
 ComparedJson fit_of(const std::string& name, double mass_kg, double error_kg = 0.3) {
   Json result = stored_result();
   Json& mass = result["parameters"][0];
@@ -49,7 +49,7 @@ StoredDifference difference(const ComparedJson& first, const ComparedJson& other
   return list[0].differences.at(1).value();
 }
 
-/// The mass with this interval; its percentage, if it is told.
+/// Reported percentage of a mass with this interval, if there is one.
 std::optional<double> percent_of(double value, double low, double high, double other = 20.0) {
   ComparedJson first = fit_of("first", value);
   first.result["parameters"][0]["ci95"] = {low, high};
@@ -141,7 +141,7 @@ TEST_CASE("comparison: a known value has no error, and is not fitted to anything
     CHECK_THAT(*found.standard_error, WithinRel(0.3, 1e-12));
     CHECK(found.significant == true);
   }
-  // Of the same records too: what is known does not rest on them.
+  // Also for the same records: a known value does not depend on them.
   ComparedJson same = fit_of("fitted", 85.0);
   same.result["provenance"]["inputs"] = known.result["provenance"]["inputs"];
   CHECK(difference(known, same).significant == true);
@@ -382,7 +382,7 @@ TEST_CASE("comparison: scores by mean over the conditions of both, an error the 
   add(other, "c1", 0.9, 1.0);
   add(first, "c2", 0.6, 3.0);
   add(other, "c2", 0.5, 2.0);
-  add(first, "c3", 0.7, 1.0);  // only there
+  add(first, "c3", 0.7, 1.0);  // in the second result only
   const auto conditions = compared_conditions(compared_all({first, other}));
   REQUIRE(conditions.size() == 4);
   CHECK(conditions[1].id == "c1");
@@ -490,11 +490,11 @@ TEST_CASE("comparison: estimates of one fit, each of its own conditions, make a 
   REQUIRE(list[0].points.size() == 4);
   CHECK(list[0].points[2].level == "c2");
   CHECK(*list[0].points[2].day - *list[0].points[0].day == 4.0);
-  // They share the files of the fit, but each rests on its own.
+  // They share the files of the fit, but each is estimated from its own.
   CHECK_FALSE(list[0].along_date.reason.has_value());
   CHECK(list[0].along_date.points == 4);
   CHECK_THAT(*list[0].along_date.slope, WithinRel(0.01, 1e-9));
-  // Another parameter, or one that is known, has no place in it.
+  // Other parameters and known ones have no trend.
   CHECK(trends({Compared(fit)}, "damping").empty());
   CHECK(trends({Compared(fit)}, "supply_pressure").empty());
 }

@@ -41,7 +41,7 @@ rigcal::report::doc::Verdict comparison_headline(const Json& json) {
   return rigcal::report::comparison_headline(read_back(json));
 }
 
-/// The words of a reason that leads somewhere.
+/// Text of a reason, which is a link.
 std::string reason_of(const rigcal::report::doc::Verdict& verdict, std::size_t i) {
   return std::get<rigcal::report::doc::Link>(verdict.reasons.at(i).front()).words;
 }
@@ -129,7 +129,7 @@ TEST_CASE("comparison: nothing is a percentage of what may be zero", "[report]")
   CHECK_THAT(comparison_text(json, {}), Contains("+0.3 significant p"));
   CHECK_THAT(reason_of(comparison_headline(json), 0),
              Contains("leakage_coefficient differs in after by +0.3 (p"));
-  // Not zero, but its interval holds zero: 0.03 would be +200 %.
+  // Not zero, but its interval includes zero: 0.03 would be +200 %.
   ComparedJson other = compared_fit("after", 87.0, 0.03);
   other.result["provenance"]["inputs"][1]["sha256"] = "before";
   json = comparison_json({compared_fit("before", 85.0, 0.01), other}, {});
@@ -173,7 +173,7 @@ TEST_CASE("comparison: errors of few degrees of freedom are judged by Student's 
     compared.result["parameters"][0]["degrees_of_freedom"] = freedom;
     return compared;
   };
-  // 2.5 errors: p = 0.012 by the normal distribution, 0.067 by t with 2 + 2 degrees.
+  // 2.5 errors: p = 0.012 by the normal distribution, 0.067 by t with 2 + 2 degrees of freedom.
   const double mass_kg = 85.0 + 2.5 * std::hypot(0.4, 0.4);
   const Json json = comparison_json({fit("before", 85.0, 2.0), fit("after", mass_kg, 2.0)}, {});
   const Json& difference = json["parameters"][0]["differences"][1];
@@ -187,7 +187,7 @@ TEST_CASE("comparison: a file without degrees of freedom has those of its interv
   Json& mass = old.result["parameters"][0];
   mass.erase("degrees_of_freedom");
   mass.erase("ci95_from");
-  // Three degrees: quantile 3.182446 of t. The lower end is cut by a bound.
+  // With three degrees of freedom the quantile of t is 3.182446. A bound cuts the lower end.
   mass["ci95"] = {84.9, 85.0 + 3.182446305 * 0.4};
   const Json json = comparison_json({old, compared_fit("after", 86.0, 0.3)}, {});
   CHECK_THAT(json["parameters"][0]["estimates"][0]["degrees_of_freedom"].get<double>(),
@@ -209,7 +209,7 @@ TEST_CASE("comparison: repeats that differ are said of the fit that warned of th
 
 namespace {
 
-/// A fit to one record that scores another one too; both are among its inputs.
+/// A fit to one record that scores another one, too; both are among its inputs.
 ComparedJson half(const std::string& name, double mass_kg, const std::string& fitted,
                   const std::string& scored) {
   ComparedJson compared = compared_fit(name, mass_kg, 0.3);
@@ -227,7 +227,7 @@ ComparedJson half(const std::string& name, double mass_kg, const std::string& fi
 bool is_tested(const ComparedJson& a, const ComparedJson& b) {
   const Json json = comparison_json({a, b}, {});
   const bool tested = json["parameters"][0]["differences"][1]["significant"].is_boolean();
-  // What is not tested is warned of.
+  // Differences that are not tested cause a warning.
   CHECK(tested == (json["warnings"].dump().find("fitted to the same") == std::string::npos));
   return tested;
 }
@@ -238,7 +238,7 @@ TEST_CASE("comparison: halves that score each other's records are independent", 
   const ComparedJson first = half("h1", 85.0, "one", "two");
   CHECK(is_tested(first, half("h2", 86.0, "two", "one")));
   CHECK_FALSE(is_tested(first, half("again", 86.0, "one", "two")));
-  // Either may be of an earlier version, which does not tell what was fitted.
+  // Either may come from an earlier version, which does not name the fitted records.
   ComparedJson old = half("old", 86.0, "two", "one");
   for (Json& condition : old.result["conditions"]) condition.erase("record_sha256");
   CHECK_FALSE(is_tested(first, old));
@@ -321,7 +321,7 @@ TEST_CASE("comparison: scores over the conditions that both have", "[report]") {
   CHECK(rho2["worse"] == 1);
   CHECK(rho2["mean"] == 0.9);
   CHECK(rho2["mean_of_first"] == 0.99876543);
-  // One condition tells nothing by its sign.
+  // The sign of one condition proves nothing.
   CHECK(rho2["p_value"].is_null());
   CHECK(rho2["significant"].is_null());
   CHECK(rho2["reason"] == "not tested: 1 condition, and a sign test needs 6");

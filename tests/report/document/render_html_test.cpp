@@ -76,7 +76,7 @@ TEST_CASE("render_html: a table has a caption, scopes and a label for a screen r
   CHECK_THAT(page, Contains("<caption class=\"hidden\">Numbers</caption>"));
   CHECK_THAT(page,
              Contains("<th scope=\"row\">mass</th>") && Contains("<th scope=\"col\" class=\"n\">"));
-  // As a card the value has its unit beside it.
+  // On a card the unit is beside the value.
   CHECK_THAT(page, Contains("data-label=\"Value\"><data value=\"85\">85</data><span "
                             "class=\"beside-value\"> kg</span></td>"));
   CHECK_THAT(page, Contains("<tr class=\"note\"><td colspan=\"4\">"));

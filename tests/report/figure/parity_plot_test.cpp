@@ -29,7 +29,7 @@ std::size_t cells_of(const Plot& plot) {
 TEST_CASE("residual_moments: mean and standard deviation of what has both", "[report]") {
   const std::vector<double> measured{1.0, 2.0, kNan, 4.0};
   const std::vector<double> simulated{0.0, 3.0, 1.0, 1.0};
-  const auto moments = residual_moments(measured, simulated);  // of 1, -1 and 3
+  const auto moments = residual_moments(measured, simulated);  // moments of 1, -1 and 3
   CHECK(moments.samples == 3);
   CHECK_THAT(moments.mean, WithinAbs(1.0, 1e-15));
   CHECK_THAT(moments.sd, WithinAbs(std::sqrt(8.0 / 3.0), 1e-15));
@@ -55,7 +55,7 @@ TEST_CASE("parity_plot: a single sample far out is a cell of its own", "[report]
   for (std::size_t i = 0; i < measured.size(); ++i)
     measured[i] = simulated[i] = 1e-3 * static_cast<double>(i % 10);
   const std::size_t without = cells_of(parity_plot("x", measured, simulated, "mm", 1e-3));
-  simulated[500] = 8e-3;  // of 0
+  simulated[500] = 8e-3;  // instead of 0
   const Plot plot = parity_plot("x", measured, simulated, "mm", 1e-3);
   CHECK(cells_of(plot) == without + 1);
   const auto sparse = std::find_if(plot.traces.begin(), plot.traces.end(),

@@ -18,7 +18,7 @@
 #include "report/fmu/zip.hpp"
 #include "tests/model/rig.hpp"
 
-// What an importer reads of a rig.
+// The description of a rig that an importer reads.
 
 using namespace rigcal;
 using Catch::Contains;
@@ -58,7 +58,7 @@ bool has(const std::vector<FmuVariable>& variables, const std::string& name) {
                      [&](const FmuVariable& each) { return each.name == name; });
 }
 
-/// The element of a variable.
+/// Element of a variable in the XML.
 std::string element(const std::string& xml, const std::string& name) {
   const std::size_t at = xml.find("<ScalarVariable name=\"" + name + "\"");
   REQUIRE(at != std::string::npos);
@@ -124,7 +124,7 @@ TEST_CASE("fmu variables: states, outputs and rates by their references", "[repo
   CHECK(force.unit == "N");
   CHECK(has(variables, "command"));
   CHECK_FALSE(named(variables, "command").causality == Causality::input);
-  // In an open loop it is the input, which is no output too.
+  // In an open loop the command is an input, so it is no output.
   CHECK(named(variables_of(load_rig(false)), "command").causality == Causality::input);
   std::size_t rates = 0;
   for (const FmuVariable& each : variables) {
@@ -233,13 +233,13 @@ TEST_CASE("fmu description: each kind of variable", "[report]") {
                                        Contains("min=\"0.001\" max=\"1000000\""));
   CHECK_THAT(element(xml, "sample_time"), Contains("variability=\"fixed\""));
   CHECK_THAT(element(xml, "controller_integral"), Contains("reinit=\"true\""));
-  // Indices count from 1: states are the first variables behind the three inputs.
+  // Indices start at 1, and the states follow the three inputs.
   const std::string structure = xml.substr(xml.find("<ModelStructure>"));
   CHECK_THAT(structure, Contains("<Outputs>\n      <Unknown index=\"4\" dependencies=\"4\" "
                                  "dependenciesKind=\"constant\"/>\n      <Unknown index=\"5\""));
   CHECK_THAT(element(xml, "der(position)"), Contains("derivative=\"4\""));
   CHECK_THAT(element(xml, "der(velocity)"), Contains("derivative=\"5\""));
-  // What is computed at the beginning: outputs, states and rates, whatever each is besides.
+  // Initial unknowns are all outputs, states and rates, each listed once.
   const std::string initial = structure.substr(structure.find("<InitialUnknowns>"));
   const auto variables = variables_of(rig);
   for (std::size_t i = 0; i < variables.size(); ++i) {

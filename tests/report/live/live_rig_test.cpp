@@ -44,7 +44,7 @@ TEST_CASE("live rig: ranges are the bounds of the campaign, else around the valu
   CHECK(kp.at("group") == "controller");
   CHECK(kp.at("slider").at("upper") == 5.0 * 78.74);
   CHECK(parameter(rig, "leakage_coefficient").at("slider").at("scale") == "cubic");
-  // Neither a bound nor the value says how far a spring that is not there may go.
+  // An absent spring has neither bounds nor a value from which a range could follow.
   CHECK(parameter(rig, "stiffness").at("slider").is_null());
   CHECK(parameter(rig, "valve_gain").at("unit") == "um/V");
 }

@@ -67,7 +67,7 @@ TEST_CASE("page: the repeats of every condition, their offsets and the noise flo
   CHECK_THAT(html, Contains("offset of each repeat of sine"));
   CHECK_THAT(html, Contains("position of sine, mean and standard deviation of its repeats"));
   CHECK_THAT(html, Contains("Warnings (1)") && Contains("sine: c.csv is an outlier"));
-  // A command is what it was told to be.
+  // A command has no measurement error.
   CHECK_THAT(html, !Contains("data-label=\"Channel\">reference"));
 }
 
@@ -105,7 +105,7 @@ TEST_CASE("page: what each record tells of each parameter", "[report]") {
   CHECK_THAT(html, Contains("bulk_modulus_pa is not determined: add a pressure"));
   CHECK_THAT(html, Contains("2 fast (planned)") && Contains("From all records but one (2)"));
   const auto figures = plan_figures(as<StoredPlan>(stored_plan(), "folder", "plan.json"));
-  REQUIRE(figures.size() == 1);  // nothing tells of the other
+  REQUIRE(figures.size() == 1);  // nothing is known about the other
   REQUIRE(figures[0].plot.traces.size() == 2);
   CHECK(figures[0].plot.traces[0].upper[0] == Approx(25.0));  // (0.4 / 0.8)^2
   CHECK(figures[0].plot.traces[1].upper[0] == Approx(64.0));

@@ -129,7 +129,7 @@ TEST_CASE("page: the three numbers are the worst of all channels and estimates",
       json["conditions"][0]["metrics"]["load_pressure"];
   json["conditions"][0]["expanded_uncertainty"]["load_pressure"]["rho2"] = 0.00123;
   CHECK_THAT(page(json), Contains("load pressure of sine, no limit, U 0.0012<"));
-  // A search that was stopped knows no uncertainty and grades nothing.
+  // A stopped search has no uncertainties and no grades.
   json["status"] = "stopped";
   json["stopped_in"] = "starts";
   const std::string stopped = page(json);
@@ -478,7 +478,7 @@ TEST_CASE("page: 24 conditions stay below 8 MB, however long they are", "[report
 
 TEST_CASE("page: page one is what is signed", "[report]") {
   Json json = stored_result();
-  json["parameters"][0]["ci95"] = {84.96043529, 85.06235529};  // 1.96 errors on both sides
+  json["parameters"][0]["ci95"] = {84.96043529, 85.06235529};  // 1.96 errors to both sides
   Json& condition = json["conditions"][0];
   condition["use"] = "validate";
   condition["expanded_uncertainty"]["position"] = condition["metrics"]["position"];
@@ -519,7 +519,7 @@ TEST_CASE("page: every kind of doubt is told before one signs", "[report]") {
   CHECK(doubts.find("a breaks its limit") < doubts.find("lack of fit of a"));
   CHECK_THAT(doubts, Contains("(and 1 more of this kind)") && !Contains("lack of fit of b"));
   CHECK_THAT(doubts, Contains("2 warnings</a>: the record is short"));
-  CHECK_THAT(doubts, !Contains("conditional on"));  // beneath the values that rest on them
+  CHECK_THAT(doubts, !Contains("conditional on"));  // the note is below the table of values
   CHECK_THAT(html, Contains("Conditional on 2 known values."));
 }
 
@@ -559,7 +559,8 @@ TEST_CASE("page: the foot of every sheet says whose report it is", "[report]") {
   CHECK_THAT(style,
              Contains("Bench 4 · PASS · issued 2026-03-02 · relates only to the items tested"));
   CHECK_THAT(style, Contains("SHA-256 of fit.json ") && Contains("counter(page)"));
-  // Overdue on the last day of the test, in red; due on that day is not.
+  // A sensor that was overdue on the last day of the test is red; one that is due on that day is
+  // not.
   CHECK_THAT(
       html, Contains("<span class=\"tag bad\"><span aria-hidden=\"true\">✕</span> due 2025-01-31"));
   CHECK_THAT(html, Contains("LVDT, due 2026-02-27"));

@@ -77,7 +77,7 @@ TEST_CASE("HeldFolder: names what is in the way", "[report]") {
 
 namespace {
 
-/// What a run of a verb leaves.
+/// Writes the files of a run.
 void write(const std::filesystem::path& out, const Holding& holding, const PlannedFiles& planned,
            const std::vector<ResultFile>& files) {
   HeldFolder held(out, holding);
@@ -191,7 +191,8 @@ TEST_CASE("HeldFolder: a manifest lists each file with the hash of what stands",
     CHECK(file.sha256 == sha256_of_file(folder.work() / file.path));
     CHECK(file.verb == "fit");
   }
-  // A run that was killed before the last rename leaves both hashes of a file; either is rigcal's.
+  // A run that was killed before the last rename leaves both hashes of a file; both count as
+  // rigcal's.
   auto both = files;
   both.push_back({"sub/a", sha256_of_text("abc"), "fit"});
   folder.write(kManifestFile, manifest_text(both));
@@ -239,7 +240,8 @@ TEST_CASE("HeldFolder: may be a link, but follows none inside", "[report]") {
   CHECK(fs::is_empty(folder.work() / "elsewhere"));
   write(folder.work() / "out", {"fit"}, {}, {{"a", "x"}});
   CHECK(folder.read("real/a") == "x");
-  // A link to a file is not what rigcal wrote; by force the link goes, not what it leads to.
+  // A link to a file does not count as written by rigcal. --force replaces the link, not its
+  // target.
   folder.write("elsewhere/b", "mine");
   fs::create_symlink("../elsewhere/b", folder.work() / "real" / "b");
   CHECK_THROWS_WITH(write(folder.work() / "out", {"fit"}, {}, {{"b", "mine"}}),

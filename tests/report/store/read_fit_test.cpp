@@ -10,7 +10,7 @@ using namespace rigcal::report;
 
 namespace {
 
-/// A fit of mass and damping, and of the valve gain where the matrix has three rows.
+/// A fit of mass and damping, and of the valve gain if the matrix has three rows.
 Json fit_of(const Json& matrix) {
   Json fit = rigcal::test::stored_result();
   Json names = Json::array({"mass_kg"});

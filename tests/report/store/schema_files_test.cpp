@@ -53,10 +53,10 @@ void check_schema(const std::string& name) {
   check_schema(name, schema_of<T>());
 }
 
-/// A fit to records, or to published tables: these say what they are of, and have no records.
+/// Schema of a fit to records, or to published tables, which says so in a key and has no records.
 Json result_schema() {
   Json of_records = schema_of<StoredFit>();
-  // Where nothing was estimated there is no cost: zero would look like a perfect fit.
+  // A result without estimation has no cost: zero would look like a perfect fit.
   of_records["anyOf"] = {{{"properties", {{"starts", {{"minItems", 1}}}}}},
                          {{"properties", {{"cost", {{"type", "null"}}}}}}};
   of_records["not"] = {{"required", Json::array({"of"})}};

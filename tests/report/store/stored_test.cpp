@@ -14,7 +14,7 @@ using namespace rigcal::report;
 
 namespace {
 
-/// Reads these JSON files and no others, and notes what else was asked for.
+/// Reads only these JSON files, and notes which others were requested.
 struct StoredFiles {
   std::map<std::string, Json> json;
   std::vector<std::string> others;

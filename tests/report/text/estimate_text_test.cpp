@@ -11,7 +11,7 @@ namespace {
 
 double number_of(const std::string& text) { return std::stod(text); }
 
-/// Of the last digit that a text states; of a whole number of its last digit that is no zero.
+/// Place value of the last digit of a text; for a whole number, of its last digit that is not zero.
 double step_of(const std::string& text) {
   const std::size_t exponent = std::min(text.find('e'), text.size());
   const int power = exponent < text.size() ? std::stoi(text.substr(exponent + 1)) : 0;
@@ -23,7 +23,7 @@ double step_of(const std::string& text) {
                   power + static_cast<double>(digits.size() - 1 - digits.find_last_not_of('0')));
 }
 
-/// Of the value itself.
+/// Number of significant digits of a text.
 int significant_digits(const std::string& text) {
   const std::string digits = text.substr(0, text.find('e'));
   int count = 0;
@@ -86,11 +86,11 @@ TEST_CASE("estimate: of any value, error and bounds the text is true", "[report]
   for (int i = 0; i < 20'000; ++i) {
     const double value = std::pow(10.0, power(random)) * (unit(random) < 0.2 ? -1.0 : 1.0);
     const double error = std::abs(value) * std::pow(10.0, ratio(random));
-    // At a bound as often as not, as estimates are that nothing determines.
+    // Often at a bound, as undetermined estimates are.
     const double below = unit(random) < 0.3 ? 0.0 : std::abs(value) * std::pow(10.0, ratio(random));
     const double above = unit(random) < 0.3 ? 0.0 : std::abs(value) * std::pow(10.0, ratio(random));
     const Range bounds{value - below, value + above};
-    if (bounds.high - bounds.low < 1e-5 * std::abs(value)) continue;  // as wide as no file states
+    if (bounds.high - bounds.low < 1e-5 * std::abs(value)) continue;  // narrower than in any file
     const Range ci95{value - error, value + error};
     const EstimateText text = estimate_text(value, ci95, bounds);
     check(text.value, value, {std::max(bounds.low, ci95.low), std::min(bounds.high, ci95.high)});

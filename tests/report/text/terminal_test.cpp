@@ -80,7 +80,7 @@ TEST_CASE("scorecard_text: each condition shows its worst channel, by name", "[r
   scene.fit.conditions = {sine};
   const auto text = [&] { return scorecard_text(scene.result(ResultKind::fit), {}); };
   CHECK_THAT(text(), Contains("pressure_a") && Contains(" 0.9840 ") && !Contains("0.9996"));
-  // What fails comes before what nobody judges.
+  // A failed channel comes before one that is not judged.
   auto& check = scene.fit.conditions[0].checks.emplace_back();
   check.channel = datasets::Channel::pressure_b;
   check.metric = "rho2";
@@ -103,7 +103,7 @@ TEST_CASE("result_text: what was stopped says so first and grades nothing", "[re
   const auto text = [&] { return result_text(scene.result(ResultKind::fit), {}, {}); };
   CHECK_THAT(text(), Catch::StartsWith("STOPPED: stopped by the time limit. Ended before"));
   CHECK_THAT(text(), !Contains("identified") && !Contains("WARN") && !Contains("0.80 .. 1.20"));
-  // After the search its estimates and verdict stand, beside what is missing.
+  // After the search the estimates and the verdict are shown, with the missing parts.
   scene.fit.stopped_in = calib::StoppedIn::bootstrap;
   CHECK_THAT(text(), Catch::StartsWith("STOPPED: ") && Contains("verdict: WARN") &&
                          Contains("not all that was asked for") && Contains("identified") &&

@@ -367,7 +367,7 @@ struct EndlessResult {
   long grown_megabytes = 0;  ///< peak of memory above that before
 };
 
-/// Loads, in a process of its own, a pipe that holds `head` and then `body` again and again.
+/// Loads, in a separate process, a pipe with `head` and then `body` again and again.
 EndlessResult load_endless(const std::string& head, const std::string& body,
                            const CsvRequest& wanted) {
   const File file("");
@@ -499,7 +499,7 @@ TEST_CASE("load_csv: decimal comma and decimal point in one file are refused", "
   CHECK_THAT(refusal("t\tx\n0,5\t1.5\n"), Contains("has a decimal point, but line 2"));
   CHECK(load("t;x\n0;1\n1;2,5\n2;3\n").columns == Columns{{0, 1, 2}, {1, 2.5, 3}});
   CHECK(load("t;x\n0;1\n1;2.5\n2;3\n").columns == Columns{{0, 1, 2}, {1, 2.5, 3}});
-  // A column that nobody asked for may be a date.
+  // A column that is not wanted may contain dates.
   CHECK(load("t;date;x\n0;12.03.2026;1,5\n1;12.03.2026;2,5\n").columns ==
         Columns{{0, 1}, {1.5, 2.5}});
 }

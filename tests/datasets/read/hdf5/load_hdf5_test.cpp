@@ -337,7 +337,7 @@ TEST_CASE("load_hdf5: what was written in part only is refused", "[datasets]") {
   CHECK(read_columns(path, {"/whole"}) == Table{{1, 2, 3, 4, 5}});
   CHECK_THAT(read_refusal(path, {"/half"}), Contains("rows 5 to 6 of '/half' were never written"));
   CHECK_THAT(read_refusal(path, {"/torn"}), Contains("row 4 of '/torn' is 3.25, which stands for"));
-  // A zero may be meant.
+  // A zero may be a real value.
   CHECK(read_columns(path, {"/zero"}) == Table{{1, 2, 3, 0}});
 }
 

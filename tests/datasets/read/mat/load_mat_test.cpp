@@ -31,7 +31,7 @@ std::string message_of(const std::filesystem::path& path, const MatRequest& requ
   return message_when([&] { load_mat(path, request); });
 }
 
-/// Message of reading one column `name` of a file that holds these variables.
+/// Message of reading the column `name` from a file with these variables.
 std::string message_of(const std::vector<matvar_t*>& variables, const std::string& name,
                        MatFormat format = MatFormat::v7) {
   const TemporaryFolder folder;

@@ -79,7 +79,7 @@ TEST_CASE("damaged MAT: version 7.3, byte by byte", "[datasets]") {
                                [](const fs::path& file) { return mat_ending(file, false); });
   CHECK(count.refused > 0);
   CHECK(count.values > 0);
-  // What HDF5 takes for an address, in the heap that holds the names of fields.
+  // Damages an address of HDF5 in the heap with the names of fields.
   std::string damaged = whole;
   const std::size_t heap = whole.find("GCOL");
   REQUIRE(heap != std::string::npos);

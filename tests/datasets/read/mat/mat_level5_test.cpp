@@ -61,7 +61,7 @@ struct Level5Writer {
     return element(6, raw(type) + raw(std::uint32_t{0})) + element(5, raw_list(dims)) +
            element(1, name);
   }
-  /// @param data  the element that holds the numbers
+  /// @param data  the element with the numbers
   std::string numbers(const std::string& name, const std::vector<std::int32_t>& dims,
                       const std::string& data) const {
     return element(14, array_head(6, dims, name) + data);
@@ -211,7 +211,7 @@ TEST_CASE("level 5: nothing that a file says of itself is believed", "[datasets]
     const std::string message = refusal(kLittle.file(each.variables));
     CHECK_THAT(message,
                Contains("damaged in variable 1, which begins at byte 129") && Contains(each.word));
-    // Whatever stands before it.
+    // The content before it does not matter.
     CHECK_THAT(refusal(kLittle.file(good + each.variables)), Contains("damaged in variable 2"));
   }
   CHECK_THAT(refusal(kLittle.file(nested(20))), Contains("'x' is a struct"));

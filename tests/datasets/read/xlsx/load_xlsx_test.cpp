@@ -168,7 +168,7 @@ TEST_CASE("load_xlsx: rows and headers that do not fit", "[datasets]") {
              Contains("Log: columns B1 and C1 are both named 'x'; expected one"));
 }
 
-/// What openpyxl, pandas and XlsxWriter write is a formula that nobody has computed.
+/// openpyxl, pandas and XlsxWriter write formulas without a computed result.
 TEST_CASE("load_xlsx: formulas at the end do not end the record", "[datasets]") {
   const auto rows = [](const std::string& formula) {
     return XlsxRows{{cell("t"), cell("x")},

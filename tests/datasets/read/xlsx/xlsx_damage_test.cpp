@@ -68,7 +68,7 @@ TEST_CASE("damaged XLSX: what inflates without end is refused", "[datasets]") {
   const std::string head = sheet_xml({{cell("t"), cell("x")}, {cell(0), cell(1)}});
   const std::string blanks(std::size_t{1} << 20, ' ');
   std::string text = head;
-  // A cell of more text than one can hold; 64 MB of blanks pass, since they are none of a cell.
+  // A cell with more text than allowed; 64 MB of blanks outside cells are accepted.
   text.replace(text.find("<v>0</v>"), 8, "<v>" + std::string(300'000, '1') + "</v>");
   write_bomb(bomb, text);
   CHECK_THROWS_WITH(load_xlsx_record(bomb, {{"t", "x"}, "t"}),

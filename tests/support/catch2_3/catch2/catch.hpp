@@ -1,6 +1,7 @@
 #pragma once
 
-// What the tests use of Catch2, by the header and the names of version 2, for version 3.
+// Maps the parts of Catch2 that the tests use, under the header and names of version 2, to version
+// 3.
 #include <catch2/catch_approx.hpp>
 #include <catch2/catch_template_test_macros.hpp>
 #include <catch2/catch_test_macros.hpp>

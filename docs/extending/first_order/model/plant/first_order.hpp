@@ -69,7 +69,7 @@ struct FirstOrderPlant {
     return {v, (in.spool_command_v * p.velocity_gain_m_per_s_v - v) / p.velocity_lag_s};
   }
 
-  /// It tells nothing beside position and velocity.
+  /// It has no outputs other than position and velocity.
   template <typename X, std::size_t M, typename C>
   static X output(Output /*output*/, const std::array<X, M>& /*x*/, const PlantInput<X>& /*in*/,
                   const Coefficients<C>& /*p*/, const PresentTerms& /*terms*/) {
