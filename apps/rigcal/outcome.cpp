@@ -1,5 +1,6 @@
 #include "apps/rigcal/outcome.hpp"
 
+#include "report/document/render_terminal.hpp"
 #include "report/run/write_result.hpp"
 #include "report/store/json.hpp"
 #include "report/store/stored/stored_fit.hpp"
@@ -45,6 +46,21 @@ ExitCode write_and_print(report::HeldFolder& held, const CampaignOptions& option
   const auto files = report::write_result(held, options.threads, result, stored);
   print(options.print, text_of(options, result, files), report::json_of(stored));
   return exit_code_of(stored.status, stored.verdict, strict);
+}
+
+std::string text_of(const PrintedDocument& document, const PrintOptions& options) {
+  std::string text =
+      report::doc::render_terminal(document.verdict, document.sections, terminal_style(options));
+  if (document.synthetic) text += "note: the records of this campaign are synthetic\n";
+  return text;
+}
+
+void print(const PrintOptions& options, const PrintedDocument& document,
+           const std::filesystem::path& folder, const std::vector<std::string>& files,
+           const report::Json& json) {
+  std::string text = text_of(document, options) + "files:";
+  for (const std::string& file : files) text += " " + (folder / file).string();
+  print(options, text + "\n", json);
 }
 
 }  // namespace rigcal::app

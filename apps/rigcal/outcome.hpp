@@ -1,9 +1,13 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "apps/rigcal/options.hpp"
 #include "common/error.hpp"
+#include "report/document/document.hpp"
 #include "report/store/result.hpp"
 
 namespace rigcal::app {
@@ -22,5 +26,23 @@ ExitCode write_and_print(report::HeldFolder& held, const CampaignOptions& option
 
 /// --strict
 void add_strict_option(CLI::App& verb, bool& strict);
+
+/// A result as its document shows it, on page and terminal alike.
+struct PrintedDocument {
+  report::doc::Verdict verdict;
+  std::vector<report::doc::Section> sections;
+  bool synthetic = false;  ///< its records are
+};
+
+/// The text of a document, in as many lines as a terminal should have of it.
+std::string text_of(const PrintedDocument& document, const PrintOptions& options);
+
+/// Prints a result on stdout, as text or as JSON, and where its files are.
+///
+/// @param files  of the folder, those to be opened first
+/// @throws WriteError  stdout does not take it
+void print(const PrintOptions& options, const PrintedDocument& document,
+           const std::filesystem::path& folder, const std::vector<std::string>& files,
+           const report::Json& json);
 
 }  // namespace rigcal::app

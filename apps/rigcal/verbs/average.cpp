@@ -1,7 +1,7 @@
 #include <memory>
 
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/print_document.hpp"
+#include "apps/rigcal/outcome.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "report/page/page_average.hpp"
 #include "report/run/averaging.hpp"

@@ -11,7 +11,7 @@
 #include "apps/rigcal/fit_choices.hpp"
 #include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/print_document.hpp"
+#include "apps/rigcal/outcome.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"

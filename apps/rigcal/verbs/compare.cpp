@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/print_document.hpp"
+#include "apps/rigcal/outcome.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "common/file.hpp"

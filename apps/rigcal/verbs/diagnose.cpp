@@ -9,7 +9,7 @@
 
 #include "apps/rigcal/leak_records.hpp"
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/print_document.hpp"
+#include "apps/rigcal/outcome.hpp"
 #include "apps/rigcal/progress.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/campaign/reading_root.hpp"

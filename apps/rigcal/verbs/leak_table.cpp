@@ -9,7 +9,7 @@
 #include "apps/rigcal/fitted_rig.hpp"
 #include "apps/rigcal/leak_table_files.hpp"
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/print_document.hpp"
+#include "apps/rigcal/outcome.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "report/leak/leak_table.hpp"
 #include "report/page/page_parts.hpp"

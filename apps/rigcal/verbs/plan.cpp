@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "apps/rigcal/options.hpp"
-#include "apps/rigcal/print_document.hpp"
+#include "apps/rigcal/outcome.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/prepare/time_holes.hpp"
