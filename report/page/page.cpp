@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <set>
 
 #include "common/error.hpp"
 #include "common/file.hpp"
@@ -113,6 +114,20 @@ void add_top(const Part& first, bool synthetic, std::string& page) {
   page += "</header>\n";
 }
 
+/// Every file that a result on the page was made from, once.
+doc::Fold inputs_of(const Parts& parts) {
+  doc::Table inputs{"Input files"};
+  inputs.style = "hashes";
+  inputs.columns = {{"File"}, {"SHA-256"}};
+  std::set<std::pair<std::string, std::string>> listed;
+  for (const Part& part : parts.drawn)
+    for (const InputFile& input : part.inputs)
+      if (listed.emplace(input.path, input.sha256).second)
+        inputs.rows.push_back({{input.path, input.sha256}});
+  return {fmt::format("{} input file{} with SHA-256", listed.size(), listed.size() == 1 ? "" : "s"),
+          {std::move(inputs)}};
+}
+
 /// Adds the page that is signed: the verdict of the first result with its evidence, then the
 /// verdicts of the others.
 void add_first_page(const Parts& parts, bool synthetic, const std::string& sha256,
@@ -187,6 +202,7 @@ std::string page_of(const Parts& parts, const std::string& sha256) {
     provenance.blocks.insert(provenance.blocks.end(), part.provenance.begin(),
                              part.provenance.end());
   }
+  provenance.blocks.emplace_back(inputs_of(parts));
   doc::render_html(provenance, page);
   doc::render_html(formulas_section(), page);
   // The licence of the plot library requires its notice in every copy, and each page is one.

@@ -31,6 +31,7 @@ struct Part {
   doc::Blocks front;  ///< for page one, below the verdict
   std::vector<doc::Section> sections;
   doc::Blocks provenance;
+  std::vector<InputFile> inputs;                         ///< that it was made from
   std::string program;                                   ///< program that made the result
   std::vector<std::pair<std::string, std::string>> nav;  ///< id and title of each section
 };
@@ -71,6 +72,7 @@ Part part_of(const Result& result, const char* link, const char* name, const std
   if constexpr (requires { result.synthetic; }) part.synthetic = result.synthetic;
   if constexpr (requires { result.report; }) part.identity = identity_of(result.report);
   part.program = program_of(result.provenance);
+  part.inputs = result.provenance.inputs;
   return part;
 }
 

@@ -154,16 +154,7 @@ doc::Blocks provenance_blocks(const StoredProvenance& provenance, const std::str
   add("Seed", fmt::format("{}", provenance.seed));
   for (const auto& [option, value] : provenance.options) add("Option " + option, value);
   facts.rows.insert(facts.rows.end(), making.rows.begin(), making.rows.end());
-  doc::Table inputs{"Input files of " + name};
-  inputs.style = "hashes";
-  inputs.columns = {{"File"}, {"SHA-256"}};
-  for (const InputFile& input : provenance.inputs)
-    inputs.rows.push_back({{input.path, input.sha256}});
-  const std::size_t count = provenance.inputs.size();
-  const std::string summary =
-      fmt::format("{} input file{} with SHA-256", count, count == 1 ? "" : "s");
   return {doc::Heading{{name}}, doc::Command{provenance.command}, std::move(facts),
-          doc::Fold{summary, {std::move(inputs)}},
           doc::Paragraph{{fmt::format("Drawn from {} and the files beside it; ", file),
                           doc::Code{"rigcal report"},
                           " with their folder draws the same page again, byte for byte."},
