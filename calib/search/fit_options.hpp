@@ -24,6 +24,7 @@ struct FitOptions {
   int max_iterations = 200;             ///< per start
   std::optional<long> max_evaluations;  ///< of all residuals, of the whole job; then: `stopped`
   std::optional<double> max_seconds;    ///< of the whole job; then: status `stopped`
+  bool consider = true;                 ///< the small effects that the model leaves out
   int bootstrap = 0;                    ///< replicates, each fitted from the optimum; 0: none
   bool profiles = false;                ///< profile likelihood of every unknown that is no nuisance
   bool cross_validate = false;          ///< leave one condition out after the other

@@ -37,7 +37,7 @@ std::string ends_text(const std::pair<double, double>& interval, std::string_vie
                      unit == "1" ? "" : " ", unit == "1" ? "" : unit);
 }
 
-/// Where profile or bootstrap of a parameter say otherwise than `ci95`, and which to use.
+/// Where profile or bootstrap of a parameter say otherwise than `ci95_if_exact`, and which to use.
 std::string other_interval(const FittedParameter& parameter, std::string_view unit, bool misfit) {
   if (parameter.profile && parameter.profile->low.value && parameter.profile->high.value) {
     const std::pair ends{*parameter.profile->low.value, *parameter.profile->high.value};
@@ -48,7 +48,7 @@ std::string other_interval(const FittedParameter& parameter, std::string_view un
   }
   if (!parameter.bootstrap) return {};
   const std::pair<double, double>& drawn = parameter.bootstrap->ci95;
-  const double ratio = width(drawn) / width(*parameter.ci95);
+  const double ratio = width(drawn) / width(*parameter.ci95_if_exact);
   if (ratio > kAgrees) {
     return fmt::format("use the interval of the bootstrap, {}: it is {} times as wide",
                        ends_text(drawn, unit), significant(ratio, 2));
@@ -59,7 +59,7 @@ std::string other_interval(const FittedParameter& parameter, std::string_view un
   // Few repeats know their own scatter badly: a variance of f degrees of freedom to sqrt(2 / f).
   const double chance = 2.0 / std::sqrt(2.0 * std::max(1.0, parameter.bootstrap->freedom));
   if (ratio * (kAgrees + chance) < 1.0) {
-    return fmt::format("the bootstrap is {:.2g} times as wide; use `ci95`{}", ratio,
+    return fmt::format("the bootstrap is {:.2g} times as wide; use `ci95_if_exact`{}", ratio,
                        misfit ? ", which counts what the model lacks too" : "");
   }
   return {};
@@ -185,7 +185,7 @@ std::string compare_intervals(const Problem& problem,
       open.push_back(problem.name(j));
       continue;
     }
-    if (!each.ci95 || !(width(*each.ci95) > 0.0)) continue;
+    if (!each.ci95_if_exact || !(width(*each.ci95_if_exact) > 0.0)) continue;
     drawn = drawn || each.bootstrap;
     followed = followed || (each.profile && !each.profile->low.lost && !each.profile->high.lost);
     if (!carried.empty()) continue;
@@ -201,8 +201,8 @@ std::string compare_intervals(const Problem& problem,
         fmt::format("{} leave{} out the uncertainty of {}: use `ci95`, which includes it", made, s,
                     fmt::join(carried, ", ")));
   } else if (words.empty() && (drawn || followed)) {
-    words.push_back(
-        fmt::format("{}{} agree{} with `ci95`", open.empty() ? "" : "elsewhere ", made, s));
+    words.push_back(fmt::format("{}{} agree{} with `ci95_if_exact`",
+                                open.empty() ? "" : "elsewhere ", made, s));
   }
   if (!open.empty()) {
     words.insert(words.begin(), fmt::format("not identifiable, so that no interval is reliable: {}",

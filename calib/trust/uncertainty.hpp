@@ -50,6 +50,7 @@ struct Uncertainty {
   /// `scatter` is in its coordinates.
   Eigen::MatrixXd root;
   KnownUncertainty known;              ///< is in all errors
+  std::vector<ScoreRows> scores;       ///< that `scatter` is made of
   std::vector<ScoreScatter> scatter;   ///< per condition; empty: no robust errors
   double independent_residuals = 0.0;  ///< of all conditions and channels
 
@@ -61,6 +62,10 @@ struct Uncertainty {
 /// Adds J^T J of the priors, in coordinates of `root`.
 void add_prior_information(const Problem& problem, std::span<const double> z,
                            const Eigen::MatrixXd& root, Eigen::MatrixXd& sum);
+
+/// Scores of the single repeats of every condition, by rows whose residuals are left alone.
+std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span<const double> z,
+                                               const std::vector<ScoreRows>& rows, int threads);
 
 /// Standard errors from the Gauss-Newton matrix, sigma^2 (J^T J)^-1, at all unknowns, those at a
 /// bound included. sigma^2 is the larger of 1 (the noise is known) and the reduced chi-square (the

@@ -377,6 +377,48 @@ std::string scorecard_text(const Result& result, const Style& style, std::size_t
   return text;
 }
 
+/// Of an uncertainty budget, in the unit of the estimate: what the records, known values and
+/// effects that the model leaves out contribute, and the largest of the effects.
+std::string budget_text(const Result& result, const Style& style) {
+  const auto table = model::parameter_table(result.campaign.rig.plant);
+  TextTable text({{"parameter"},
+                  {"for"},
+                  {"records", Align::right},
+                  {"known values", Align::right},
+                  {"effects", Align::right},
+                  {"combined", Align::right},
+                  {"k", Align::right},
+                  {"degrees", Align::right},
+                  {"unit"},
+                  {"largest effect"}},
+                 2);
+  for (const calib::FittedParameter& p : result.fit.parameters) {
+    if (!p.budget || p.nuisance) continue;
+    const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
+    const ReadableUnit unit = readable_unit(p.value, spec.unit);
+    std::map<std::string, double> squares;
+    const calib::BudgetLine* largest = nullptr;
+    for (const calib::BudgetLine& line : p.budget->lines) {
+      squares[line.kind] += line.uncertainty * line.uncertainty;
+      if (line.kind == "effect" && (largest == nullptr || line.uncertainty > largest->uncertainty))
+        largest = &line;
+    }
+    const auto of = [&](const char* kind) {
+      return in_unit(std::sqrt(squares[kind]), unit, kErrorDigits);
+    };
+    const double freedom = p.budget->degrees_of_freedom;
+    text.add({std::string(spec.key), p.scope == datasets::Scope::rig ? "rig" : p.level,
+              of("records"), of("known_value"), of("effect"),
+              in_unit(p.budget->combined, unit, kErrorDigits),
+              fmt::format("{:.2f}", p.budget->coverage_factor),
+              freedom > 1000.0 ? std::string("many") : fmt::format("{:.0f}", freedom),
+              std::string(unit.name), largest == nullptr ? "-" : largest->source});
+  }
+  if (text.empty()) return {};
+  return coloured("Uncertainty budget (standard uncertainties; squares add up)", "1", style) +
+         "\n" + text.text(style.columns);
+}
+
 std::string parameters_text(const Result& result, const Style& style, std::size_t most) {
   const auto table = model::parameter_table(result.campaign.rig.plant);
   TextTable text({{"parameter"},
@@ -423,7 +465,7 @@ std::string parameters_text(const Result& result, const Style& style, std::size_
   }
   return coloured("Parameters", "1", style) + "\n" + text.text(style.columns) +
          more_text(fitted.size(), most, "parameters") +
-         foot_notes(reasons, text.rows(), most, style.columns);
+         foot_notes(reasons, text.rows(), most, style.columns) + budget_text(result, style);
 }
 
 std::string summary_text(const Result& result, const std::vector<std::string>& files,

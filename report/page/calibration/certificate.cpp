@@ -107,7 +107,7 @@ void add_numbers(const StoredFit& fit, Line& sentence) {
         signals.size() == 1
             ? std::string("The model reproduces the test signal")
             : fmt::format("The model reproduces all {} test signals", signals.size()));
-    if (fit.schema == kFitSchema && !unseen.empty()) {
+    if (is_fit_schema(fit.schema) && !unseen.empty()) {
       constexpr std::size_t kNamed = 2;
       const auto of_these = std::count_if(signals.begin(), signals.end(),
                                           [](const Judged& each) { return each.held_back(); });
@@ -551,7 +551,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
     const std::optional<Range>& fitted = fit.validity.*range;
     // A validation covers both at once.
     const std::optional<Range> validated =
-        fit.schema == kFitSchema && fit.validated ? (*fit.validated).*range : std::nullopt;
+        is_fit_schema(fit.schema) && fit.validated ? (*fit.validated).*range : std::nullopt;
     if (fitted || validated)
       ranges.push_back(fmt::format("{} {}", name, coverage_text(fitted, validated, unit)));
   };
@@ -563,7 +563,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
   add(&StoredValidity::leakage_coefficient, "leakage coefficient", "1");
   if (!fit.validity.leak_levels.empty())
     ranges.push_back(fmt::format("leak levels {}", fmt::join(fit.validity.leak_levels, ", ")));
-  const bool valid = fit.schema == kFitSchema && fit.assessment &&
+  const bool valid = is_fit_schema(fit.schema) && fit.assessment &&
                      calib::has_range_of_validity(fit.assessment->agreement.state,
                                                   fit.assessment->validation.state);
   blocks.emplace_back(doc::Paragraph{

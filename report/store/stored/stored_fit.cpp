@@ -51,6 +51,46 @@ StoredProfileEnd stored(const calib::ProfileEnd& end) {
   return {finite(end.value), finite(end.reached), std::optional(end.lost)};
 }
 
+StoredBudget stored(const calib::Budget95& budget) {
+  StoredBudget result;
+  for (const calib::BudgetLine& line : budget.lines)
+    result.lines.push_back({line.source, line.kind, line.uncertainty});
+  result.combined = budget.combined;
+  result.degrees_of_freedom = budget.degrees_of_freedom;
+  result.coverage_factor = budget.coverage_factor;
+  result.expanded = budget.expanded;
+  result.shift = budget.shift;
+  return result;
+}
+
+StoredConsidered stored(const calib::Considered& considered) {
+  StoredConsidered result;
+  result.left_out = considered.left_out;
+  for (const calib::ConsideredEffect& e : considered.effects)
+    result.effects.push_back({e.key, e.meaning, e.unit, e.size_from, e.size, e.one_sided,
+                              unless_empty(e.problem), e.estimate, e.standard_error, e.alone,
+                              e.alone_half_width, e.p_value, e.p_of_all, e.explains});
+  for (const std::size_t position : considered.missing)
+    result.missing.push_back(considered.effects[position].key);
+  return result;
+}
+
+std::vector<StoredStability> stored(const std::vector<calib::StabilityCheck>& checks,
+                                    std::span<const model::ParameterSpec> table) {
+  std::vector<StoredStability> result;
+  for (const calib::StabilityCheck& each : checks) {
+    StoredStability& check = result.emplace_back();
+    check.key = table[static_cast<std::size_t>(each.index)].key;
+    check.scope = each.scope;
+    if (each.scope != Scope::rig) check.level = each.level;
+    check.value = each.value;
+    check.difference = each.difference;
+    check.expanded = each.expanded;
+    check.differs = each.differs;
+  }
+  return result;
+}
+
 StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSpec& spec) {
   StoredParameter result;
   result.name = spec.name;
@@ -71,6 +111,8 @@ StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSp
   result.standard_error = finite(p.standard_error);
   result.robust_standard_error = finite(p.robust_standard_error);
   result.ci95 = range_of(p.ci95);
+  result.ci95_if_exact = range_of(p.ci95_if_exact);
+  if (p.budget) result.budget = stored(*p.budget);
   if (p.ci95) result.ci95_from = std::optional(p.interval);
   result.degrees_of_freedom = finite(p.degrees_of_freedom);
   if (p.bootstrap)
@@ -290,6 +332,7 @@ StoredStart stored(const calib::StartReport& start) {
 }
 
 void add_trust(const calib::Fit& fit, StoredFit& result) {
+  if (fit.considered) result.considered = stored(*fit.considered);
   const bool solved = fit.rank > 0;
   result.rank = fit.rank;
   result.singular_values = fit.singular_values;
@@ -324,13 +367,13 @@ void add_search(const calib::Fit& fit, StoredFit& result) {
         {failure.condition, failure.start, failure.time_s, failure.reason, failure.parameters});
 }
 
-/// Degrees of freedom of which the quantile of Student's t is the half width of ci95 in errors. A
-/// bound may cut an interval on one side, so the longer one counts.
+/// Degrees of freedom of which the quantile of Student's t is the half width of ci95_if_exact in
+/// errors. A bound may cut an interval on one side, so the longer one counts.
 double freedom_of_interval(const StoredParameter& parameter, double error) {
-  if (!parameter.ci95 || !parameter.value) return metrics::kManyDegrees;
+  const auto& interval = parameter.ci95_if_exact;
+  if (!interval || !parameter.value) return metrics::kManyDegrees;
   const double quantile =
-      std::max(parameter.ci95->high - *parameter.value, *parameter.value - parameter.ci95->low) /
-      error;
+      std::max(interval->high - *parameter.value, *parameter.value - interval->low) / error;
   if (!(quantile > metrics::student_t_quantile(0.975, metrics::kManyDegrees)))
     return metrics::kManyDegrees;
   double low = 1.0;
@@ -348,6 +391,13 @@ std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& cha
   if (failure) return verdict;
   const calib::Verdict* found = find(channel_verdicts, channel);
   return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters) {
+  if (schema == kFitSchema) return;
+  for (StoredParameter& each : parameters) {
+    if (!each.ci95_if_exact && each.ci95) each.ci95_if_exact = *each.ci95;
+  }
 }
 
 std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter) {
@@ -419,6 +469,7 @@ StoredFit stored(const Result& result) {
   for (const calib::FittedParameter& p : fit.parameters)
     json.parameters.push_back(stored(p, table[static_cast<std::size_t>(p.index)]));
   add_trust(fit, json);
+  if (!fit.stability.empty()) json.stability = stored(fit.stability, table);
   if (result.kind == ResultKind::fit) json.weights = weights(result);
   using datasets::Use;
   json.validity =

@@ -436,7 +436,7 @@ TEST_CASE("page: refuses what is no result of this version", "[report]") {
   CHECK_THROWS_AS(page(Json::array()), InputError);
   CHECK_THROWS_AS(page(Json::object()), InputError);
   CHECK_THROWS_WITH(page({{"schema", "other/1"}}),
-                    Contains("fit.json") && Contains("other/1") && Contains("rigcal.fit/1"));
+                    Contains("fit.json") && Contains("other/1") && Contains("rigcal.fit/2"));
   CHECK_THROWS_WITH(page(stored_result(), "other.json"),
                     Contains("neither fit.json nor validation.json"));
   Json json = stored_result();
