@@ -244,8 +244,8 @@ ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaig
   const model::PlantKind plant = campaign.rig.plant;
   const auto names = effect_names(plant);
   for (const auto& [key, entry] : node.entries()) {
-    const auto name =
-        std::find_if(names.begin(), names.end(), [&](const auto& each) { return each.key == key; });
+    const auto name = std::find_if(names.begin(), names.end(),
+                                   [&key = key](const auto& each) { return each.key == key; });
     if (name == names.end()) {
       std::vector<std::string> known;
       for (const EffectName& each : names) known.push_back(each.key);

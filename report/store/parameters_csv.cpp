@@ -2,23 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-#include <string_view>
-
 #include "report/store/csv_fields.hpp"
 
 namespace rigcal::report {
 namespace {
 
 std::string yes_or_no(bool value) { return value ? "1" : "0"; }
-
-/// Root of the sum of squares of the lines of a kind.
-double contribution(const StoredBudget& budget, std::string_view kind) {
-  double squares = 0.0;
-  for (const StoredBudgetLine& line : budget.lines)
-    if (line.kind == kind) squares += line.uncertainty * line.uncertainty;
-  return std::sqrt(squares);
-}
 
 void add_budget(const StoredParameter& p, std::vector<std::string>& fields) {
   const auto& exact = p.ci95_if_exact;

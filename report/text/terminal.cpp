@@ -377,59 +377,45 @@ std::string scorecard_text(const Result& result, const Style& style, std::size_t
   return text;
 }
 
-/// Of an uncertainty budget, in the unit of the estimate: what the records, known values and
-/// effects that the model leaves out contribute, and the largest of the effects.
-std::string budget_text(const Result& result, const Style& style) {
-  const auto table = model::parameter_table(result.campaign.rig.plant);
-  TextTable text({{"parameter"},
-                  {"for"},
-                  {"records", Align::right},
-                  {"known values", Align::right},
-                  {"effects", Align::right},
-                  {"combined", Align::right},
-                  {"k", Align::right},
-                  {"degrees", Align::right},
-                  {"unit"},
-                  {"largest effect"}},
-                 2);
-  for (const calib::FittedParameter& p : result.fit.parameters) {
-    if (!p.budget || p.nuisance) continue;
-    const model::ParameterSpec& spec = table[static_cast<std::size_t>(p.index)];
-    const ReadableUnit unit = readable_unit(p.value, spec.unit);
-    std::map<std::string, double> squares;
-    const calib::BudgetLine* largest = nullptr;
+/// Half of the interval that would hold if the model were exact.
+std::string exact_text(const calib::FittedParameter& p, const ReadableUnit& unit) {
+  if (!p.budget || !p.ci95_if_exact) return "-";
+  return "+- " +
+         in_unit(0.5 * (p.ci95_if_exact->second - p.ci95_if_exact->first), unit, kErrorDigits);
+}
+
+/// With what the model leaves out, where that was considered.
+double standard_uncertainty(const calib::FittedParameter& p) {
+  return p.budget ? p.budget->combined : error_of(p);
+}
+
+/// The effect that adds most to an interval.
+std::string widened_by(const calib::FittedParameter& p) {
+  const calib::BudgetLine* largest = nullptr;
+  if (p.budget) {
     for (const calib::BudgetLine& line : p.budget->lines) {
-      squares[line.kind] += line.uncertainty * line.uncertainty;
-      if (line.kind == "effect" && (largest == nullptr || line.uncertainty > largest->uncertainty))
-        largest = &line;
+      if (largest == nullptr || line.uncertainty > largest->uncertainty) largest = &line;
     }
-    const auto of = [&](const char* kind) {
-      return in_unit(std::sqrt(squares[kind]), unit, kErrorDigits);
-    };
-    const double freedom = p.budget->degrees_of_freedom;
-    text.add({std::string(spec.key), p.scope == datasets::Scope::rig ? "rig" : p.level,
-              of("records"), of("known_value"), of("effect"),
-              in_unit(p.budget->combined, unit, kErrorDigits),
-              fmt::format("{:.2f}", p.budget->coverage_factor),
-              freedom > 1000.0 ? std::string("many") : fmt::format("{:.0f}", freedom),
-              std::string(unit.name), largest == nullptr ? "-" : largest->source});
   }
-  if (text.empty()) return {};
-  return coloured("Uncertainty budget (standard uncertainties; squares add up)", "1", style) +
-         "\n" + text.text(style.columns);
+  return largest == nullptr || largest->kind != "effect" ? "-" : largest->source;
 }
 
 std::string parameters_text(const Result& result, const Style& style, std::size_t most) {
   const auto table = model::parameter_table(result.campaign.rig.plant);
-  TextTable text({{"parameter"},
-                  {"for"},
-                  {"value", Align::right},
-                  {"unit"},
-                  {"std. error", Align::right, 1},
-                  {"95 % interval", Align::right},
-                  {"bounds", Align::right, 2},
-                  {"identifiability"}},
-                 2);
+  std::vector<TextTable::Column> columns{{"parameter"},
+                                         {"for"},
+                                         {"value", Align::right},
+                                         {"unit"},
+                                         {"std. error", Align::right, 1},
+                                         {"95 % interval", Align::right}};
+  const bool considered = result.fit.considered.has_value();
+  if (considered) {
+    columns.push_back({"if model exact", Align::right, 1});
+    columns.push_back({"widened by", Align::left, 3});
+  }
+  columns.push_back({"bounds", Align::right, 2});
+  columns.push_back({"identifiability"});
+  TextTable text(std::move(columns), 2);
   std::vector<std::pair<std::string, std::string>> reasons;  // whose, why
   // Errors and intervals are those of a minimum, at which a search that was stopped is not.
   const bool judged = result.fit.status != FitStatus::stopped || result.fit.has_converged();
@@ -452,11 +438,20 @@ std::string parameters_text(const Result& result, const Style& style, std::size_
     if (p.ci95) ci95 = {p.ci95->first / unit.si, p.ci95->second / unit.si};
     const EstimateText estimate =
         estimate_text(p.value / unit.si, ci95, {p.lower / unit.si, p.upper / unit.si});
-    text.add({std::string(spec.key) + (p.nuisance ? " (nuisance)" : ""), whose, estimate.value,
-              std::string(unit.name),
-              judged && p.standard_error ? in_unit(error_of(p), unit, kErrorDigits) : "-",
-              judged && ci95 ? fmt::format("{} .. {}", estimate.low, estimate.high) : "-",
-              limits(p.lower, p.upper, unit, 4), identifiability_text(p, judged, style)});
+    std::vector<std::string> row{
+        std::string(spec.key) + (p.nuisance ? " (nuisance)" : ""),
+        whose,
+        estimate.value,
+        std::string(unit.name),
+        judged && p.standard_error ? in_unit(standard_uncertainty(p), unit, kErrorDigits) : "-",
+        judged && ci95 ? fmt::format("{} .. {}", estimate.low, estimate.high) : "-"};
+    if (considered) {
+      row.push_back(judged ? exact_text(p, unit) : "-");
+      row.push_back(judged ? widened_by(p) : "-");
+    }
+    row.push_back(limits(p.lower, p.upper, unit, 4));
+    row.push_back(identifiability_text(p, judged, style));
+    text.add(std::move(row));
     if (!p.reason.empty()) reasons.emplace_back(fmt::format("{} ({})", spec.key, whose), p.reason);
   }
   if (text.empty()) {
@@ -465,7 +460,7 @@ std::string parameters_text(const Result& result, const Style& style, std::size_
   }
   return coloured("Parameters", "1", style) + "\n" + text.text(style.columns) +
          more_text(fitted.size(), most, "parameters") +
-         foot_notes(reasons, text.rows(), most, style.columns) + budget_text(result, style);
+         foot_notes(reasons, text.rows(), most, style.columns);
 }
 
 std::string summary_text(const Result& result, const std::vector<std::string>& files,

@@ -220,10 +220,11 @@ doc::Doubts doubts_of(const StoredFit& fit) {
   return doubts;
 }
 
-/// Half the interval, where it is as wide on both sides; nothing where it is not, or unknown.
-std::optional<double> expanded_uncertainty(const StoredParameter& p) {
+/// Half an interval, where it is as wide on both sides; nothing where it is not, or unknown.
+std::optional<double> expanded_uncertainty(const StoredParameter& p,
+                                           const doc::Interval& interval) {
   constexpr double kSymmetric = 0.01;
-  const auto ends = doc::Interval(p.ci95).ends;
+  const auto& ends = interval.ends;
   if (!ends || !p.value) return std::nullopt;
   const double below = *p.value - ends->low;
   const double above = ends->high - *p.value;
@@ -231,31 +232,41 @@ std::optional<double> expanded_uncertainty(const StoredParameter& p) {
   return 0.5 * (above + below);
 }
 
-/// U over the standard error that it rests on.
+/// U over the standard uncertainty that it rests on.
 std::optional<double> coverage_factor(const StoredParameter& p) {
-  const auto half = expanded_uncertainty(p);
+  if (p.budget) return p.budget->coverage_factor;
+  const auto half = expanded_uncertainty(p, p.ci95);
   const auto error = interval_error(p);
   if (!half || !error || !(error->standard_error > 0.0)) return std::nullopt;
   return *half / error->standard_error;
 }
 
-doc::Row value_row(const StoredParameter& p, bool judged) {
+/// "± 0.05", or both ends where it is not as wide on both sides.
+Line uncertainty_line(const StoredParameter& p, const doc::Interval& interval,
+                      const RowUnit& unit) {
+  if (const auto half = expanded_uncertainty(p, interval))
+    return {"± ", doc::Quantity{half, matched(*half / unit.si, *half / unit.si)}};
+  const doc::Estimate estimate =
+      doc::estimate(p.value, interval, unit.si,
+                    {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)});
+  return estimate.has_interval ? estimate.interval() : Line{"–"};
+}
+
+/// @param both  with the uncertainty if the model were exact
+doc::Row value_row(const StoredParameter& p, bool judged, bool both) {
   const RowUnit unit = unit_of(p);
   const doc::Estimate estimate =
       doc::estimate(p.value, judged ? p.ci95 : std::nullopt, unit.si,
                     {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)});
   Line name{capitalised(spaced(p.key)), " ", doc::Soft{p.symbol}};
   if (p.level) name.emplace_back(", " + *p.level);
-  Line uncertainty{"–"};
-  if (const auto half = expanded_uncertainty(p); judged && half)
-    uncertainty = {"± ", doc::Quantity{half, matched(*half / unit.si, *half / unit.si)}};
-  else if (estimate.has_interval)
-    uncertainty = estimate.interval();
-  return {{{std::move(name)},
-           estimate.value,
-           {std::move(uncertainty)},
-           unit.name,
-           doc::badge(p.identifiability, p.at_bound, judged)}};
+  doc::Row row{{{std::move(name)},
+                estimate.value,
+                {judged ? uncertainty_line(p, p.ci95, unit) : Line{"–"}}}};
+  if (both) row.cells.push_back({uncertainty_line(p, p.ci95_if_exact, unit)});
+  row.cells.push_back(unit.name);
+  row.cells.push_back(doc::badge(p.identifiability, p.at_bound, judged));
+  return row;
 }
 
 /// "k = 1.96", "k = 1.96 to 2.1"; empty where no U has one.
@@ -294,14 +305,20 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
   doc::Table table{"Calibrated values"};
   table.shape = doc::Table::Shape::cards;
   table.style = "values";
-  table.columns = {{"Quantity"},
-                   {"Value", doc::Column::Kind::number},
-                   {"U"},
-                   {"Unit", doc::Column::Kind::unit},
-                   {"Determined?"}};
-  for (const StoredParameter* p : found) table.rows.push_back(value_row(*p, judged));
+  const bool both = judged && std::any_of(found.begin(), found.end(),
+                                          [](const auto* p) { return p->budget.has_value(); });
+  table.columns = {{"Quantity"}, {"Value", doc::Column::Kind::number}, {"U"}};
+  if (both) table.columns.push_back({"U if the model is exact"});
+  table.columns.push_back({"Unit", doc::Column::Kind::unit});
+  table.columns.push_back({"Determined?"});
+  for (const StoredParameter* p : found) table.rows.push_back(value_row(*p, judged, both));
   blocks.emplace_back(std::move(table));
   Line notes;
+  if (both) {
+    notes.emplace_back("U counts small effects that the model leaves out (");
+    notes.emplace_back(doc::Link{"#parameters", "budget"});
+    notes.emplace_back("). ");
+  }
   if (more > 0) {
     notes.emplace_back(doc::Link{"#parameters", plural(more, "more value")});
     notes.emplace_back(", each more certain than these. ");

@@ -80,7 +80,9 @@ std::vector<StoredStability> stored(const std::vector<calib::StabilityCheck>& ch
   std::vector<StoredStability> result;
   for (const calib::StabilityCheck& each : checks) {
     StoredStability& check = result.emplace_back();
-    check.key = table[static_cast<std::size_t>(each.index)].key;
+    const model::ParameterSpec& spec = table[static_cast<std::size_t>(each.index)];
+    check.key = spec.key;
+    check.unit = spec.unit;
     check.scope = each.scope;
     if (each.scope != Scope::rig) check.level = each.level;
     check.value = each.value;
@@ -391,6 +393,22 @@ std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& cha
   if (failure) return verdict;
   const calib::Verdict* found = find(channel_verdicts, channel);
   return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+double contribution(const StoredBudget& budget, std::string_view kind) {
+  double squares = 0.0;
+  for (const StoredBudgetLine& line : budget.lines)
+    if (line.kind == kind) squares += line.uncertainty * line.uncertainty;
+  return std::sqrt(squares);
+}
+
+const StoredBudgetLine* largest_effect(const StoredBudget& budget) {
+  const StoredBudgetLine* largest = nullptr;
+  for (const StoredBudgetLine& line : budget.lines) {
+    const bool counts = line.kind == "effect" && line.uncertainty > 0.0;
+    if (counts && (largest == nullptr || line.uncertainty > largest->uncertainty)) largest = &line;
+  }
+  return largest;
 }
 
 void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters) {

@@ -110,6 +110,10 @@ struct StoredBudget {
          shift = 0.0;
   RIGCAL_DESCRIBE(lines, combined, degrees_of_freedom, coverage_factor, expanded, shift)
 };
+/// What the lines of a kind contribute together: the root of the sum of their squares.
+double contribution(const StoredBudget& budget, std::string_view kind);
+/// The line of an effect that contributes most; null where there is none.
+const StoredBudgetLine* largest_effect(const StoredBudget& budget);
 
 /// A small effect that the model leaves out, SI.
 struct StoredEffect {
@@ -126,12 +130,12 @@ struct StoredEffect {
 
 /// An estimate made once more from the validation records alone, SI.
 struct StoredStability {
-  std::string key;
+  std::string key, unit;
   datasets::Scope scope = datasets::Scope::rig;
   std::optional<std::string> level;
   double value = 0.0, difference = 0.0, expanded = 0.0;
   bool differs = false;
-  RIGCAL_DESCRIBE(key, scope, level, value, difference, expanded, differs)
+  RIGCAL_DESCRIBE(key, unit, scope, level, value, difference, expanded, differs)
 };
 
 struct StoredConsidered {
