@@ -34,9 +34,6 @@ const std::vector<Reference> kFitted{
     {"square", 1.0, 0.01, 1.5}, {"square", 4.0, 0.005, 0.75}, {"sine", 5.0, 0.02, 0.8}};
 const Reference kValidated{"sine", 2.0, 0.02, 1.0};
 
-/// What one draw of a row makes of the rig.
-using Change = std::function<void(ForeignRig&, double size)>;
-
 /// An effect with the size that the catalogue gives it on this rig.
 struct ForeignEffect {
   const char* name;
@@ -67,27 +64,31 @@ struct Row {
   std::string name;
   std::string effect;  ///< which is to be named; empty: none, or several
   std::function<void(ForeignRig&, boost::random::mt19937_64&)> apply;
+  bool drawn = false;  ///< anew for each campaign
 };
 
 std::vector<Row> rows() {
   std::vector<Row> all;
-  all.push_back({"none", "", [](ForeignRig&, auto&) {}});
-  all.push_back({"all, drawn from their sizes", "", [](ForeignRig& rig, auto& stream) {
+  all.push_back({"none", "", [](ForeignRig&, auto&) {}, false});
+  all.push_back({"all, drawn from their sizes", "",
+                 [](ForeignRig& rig, auto& stream) {
                    boost::random::normal_distribution<double> normal;
                    for (const ForeignEffect& each : kEffects) {
                      const double size = each.plausible * normal(stream);
                      each.apply(rig, each.one_sided ? std::abs(size) : size);
                    }
-                 }});
+                 },
+                 true});
   for (const ForeignEffect& each : kEffects) {
     for (const double factor : {0.3, 1.0, 3.0}) {
       all.push_back(
           {fmt::format("{} of {} times its size", each.name, factor), each.name,
-           [each, factor](ForeignRig& rig, auto&) { each.apply(rig, factor * each.plausible); }});
+           [each, factor](ForeignRig& rig, auto&) { each.apply(rig, factor * each.plausible); },
+           false});
     }
   }
   const auto known = [&](const char* name, const char* effect, void (*apply)(ForeignRig&)) {
-    all.push_back({name, effect, [apply](ForeignRig& rig, auto&) { apply(rig); }});
+    all.push_back({name, effect, [apply](ForeignRig& rig, auto&) { apply(rig); }, false});
   };
   known("omission: valve lag of 0.2 ms", "valve_time_constant",
         [](ForeignRig& r) { r.valve_lag_s = 0.2e-3; });
@@ -200,6 +201,14 @@ datasets::Record record_of(const datasets::Campaign& campaign, const datasets::C
   return datasets::average_of(campaign, condition, all, true);
 }
 
+/// Of every condition, in the order of the campaign's.
+std::vector<std::vector<double>> readings_of_all(const ForeignRig& rig) {
+  std::vector<std::vector<double>> all;
+  for (const Reference& reference : kFitted) all.push_back(foreign_readings(rig, reference));
+  all.push_back(foreign_readings(rig, kValidated));
+  return all;
+}
+
 struct Outcome {
   std::vector<bool> holds, exact;
   std::vector<double> half_width, error;  ///< over the truth
@@ -244,17 +253,22 @@ std::string of_each(const Each& text) {
 
 void study_row(const Row& row, std::size_t campaigns, int repeats, int threads) {
   std::vector<Outcome> outcomes(campaigns);
+  std::vector<std::vector<double>> same_readings;
+  if (!row.drawn) {
+    boost::random::mt19937_64 unused;
+    ForeignRig rig;
+    row.apply(rig, unused);
+    same_readings = readings_of_all(rig);
+  }
   parallel_for(campaigns, threads, [&](std::size_t i) {
     boost::random::mt19937_64 stream(i + 1);
     ForeignRig rig;
     row.apply(rig, stream);
+    const auto readings = row.drawn ? readings_of_all(rig) : same_readings;
     const datasets::Campaign campaign = campaign_of(rig);
     std::vector<datasets::Record> records;
-    for (std::size_t c = 0; c < campaign.conditions.size(); ++c) {
-      const Reference& reference = c < kFitted.size() ? kFitted[c] : kValidated;
-      records.push_back(record_of(campaign, campaign.conditions[c],
-                                  foreign_readings(rig, reference), repeats, stream));
-    }
+    for (std::size_t c = 0; c < campaign.conditions.size(); ++c)
+      records.push_back(record_of(campaign, campaign.conditions[c], readings[c], repeats, stream));
     outcomes[i] = outcome_of(calib::fit(campaign, records, {}));
   });
   const auto count = [&](const auto& holds) {

@@ -268,12 +268,12 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
     if (name == names.end()) continue;
     Effect effect;
     effect.kind = row.kind;
+    const auto channel = sensor_channel(row.key);
+    if (channel && !is_compared(problem, *channel)) continue;
     if (row.kind == EffectKind::parameter) {
       effect.index = model::parameter_index(plant, row.key);
       if (is_in_model(problem, row.key, effect.index)) continue;
     }
-    const auto channel = sensor_channel(row.key);
-    if (channel && !is_compared(problem, *channel)) continue;
     effect.range = row.kind == EffectKind::supply_sag ? rig.flow_m3_per_s : rig.travel_m;
     EffectSize size = row.size(rig);
     if (is_volume(row.key)) {
