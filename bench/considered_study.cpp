@@ -31,8 +31,8 @@ using datasets::Channel;
 constexpr double kNoise_m = 0.05e-3;
 constexpr double kOff = 1.1;
 const std::vector<Reference> kFitted{
-    {"square", 1.0, 0.01, 1.5}, {"square", 4.0, 0.005, 0.75}, {"sine", 5.0, 0.02, 0.8}};
-const Reference kValidated{"sine", 2.0, 0.02, 1.0};
+    {"square", 1.0, 0.05, 2.0}, {"square", 4.0, 0.02, 1.0}, {"sine", 5.0, 0.02, 1.0}};
+const Reference kValidated{"sine", 2.0, 0.05, 1.0};
 
 /// An effect with the size that the catalogue gives it on this rig.
 struct ForeignEffect {

@@ -87,8 +87,8 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"laminar_leakage", EffectKind::parameter, true, "laminar leak",
                  [](const RigScale& rig) {
-                   return EffectSize{0.02 * rig.flow_m3_per_s / rig.pressure_pa,
-                                     "2 % of the valve's flow at full command"};
+                   return EffectSize{0.05 * rig.flow_m3_per_s / rig.pressure_pa,
+                                     "5 % of the valve's flow at full command"};
                  }},
     CatalogueRow{"leakage_coefficient", EffectKind::parameter, true, "leak through an orifice",
                  [](const RigScale& rig) {
@@ -224,6 +224,10 @@ bool is_compared(const Problem& problem, Channel channel) {
   });
 }
 
+bool is_curved(std::string_view key) {
+  return key == "coulomb_friction" || key == "valve_dead_band" || key == "position_hysteresis";
+}
+
 bool is_volume(std::string_view key) {
   return key == "total_volume" || key.starts_with("dead_volume");
 }
@@ -268,6 +272,7 @@ std::vector<Effect> possible_effects(const Problem& problem, std::span<const dou
     if (name == names.end()) continue;
     Effect effect;
     effect.kind = row.kind;
+    effect.curved = is_curved(row.key);
     const auto channel = sensor_channel(row.key);
     if (channel && !is_compared(problem, *channel)) continue;
     if (row.kind == EffectKind::parameter) {
@@ -356,9 +361,58 @@ std::vector<std::string> left_out_effects(const Problem& problem, std::span<cons
   return keys;
 }
 
+Eigen::VectorXd outputs_with(const Problem& problem, std::size_t condition,
+                             std::span<const double> z, const std::vector<Effect>& effects,
+                             const Eigen::VectorXd& sizes, const std::atomic<bool>* cancel) {
+  const ProblemCondition& data = problem.conditions[condition];
+  const auto samples = static_cast<Eigen::Index>(data.rows.size());
+  const auto channels = static_cast<Eigen::Index>(data.channels.size());
+  auto options = problem.simulation_options(cancel);
+  options.tolerance = std::max(problem.tolerance_of(condition), kSecantTolerance);
+  options.max_steps = data.max_steps;
+  model::ParameterValues values = problem.values_at(condition, z);
+  model::SimulationInputs inputs = data.inputs;
+  const auto run = [&] {
+    return model::simulate(data.rig, values, std::vector<int>(), inputs, data.fit_times(),
+                           outputs_and_flow(data), options);
+  };
+  const auto size_of = [&](std::size_t e) {
+    return effects[e].about.size * sizes(static_cast<Eigen::Index>(e));
+  };
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    const int index = effects[e].index;
+    if (effects[e].kind == EffectKind::parameter && size_of(e) != 0.0)
+      values.set(index, values.value[static_cast<std::size_t>(index)] + size_of(e));
+  }
+  model::Simulation simulation = run();
+  for (std::size_t e = 0; e < effects.size() && simulation.ok(); ++e) {
+    if (effects[e].kind != EffectKind::supply_sag || size_of(e) == 0.0) continue;
+    inputs.supply_pressure_pa = sagging_supply(effects[e], values, data.fit_times(),
+                                               simulation.outputs.col(channels), size_of(e));
+    simulation = run();
+  }
+  if (!simulation.ok()) return {};
+  Eigen::VectorXd result(samples * channels);
+  for (Eigen::Index k = 0; k < channels; ++k) {
+    const ProblemChannel& channel = data.channels[static_cast<std::size_t>(k)];
+    Eigen::VectorXd reading = simulation.outputs.col(k);
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+      const bool of_sensor =
+          effects[e].kind != EffectKind::parameter && effects[e].kind != EffectKind::supply_sag;
+      if (of_sensor && channel.channel == Channel::position && size_of(e) != 0.0)
+        reading += reading_error(effects[e], reading, size_of(e));
+    }
+    for (Eigen::Index t = 0; t < samples; ++t) {
+      const auto sample = static_cast<Eigen::Index>(data.rows[static_cast<std::size_t>(t)]);
+      result(k * samples + t) = reading(sample) / channel.sd;
+    }
+  }
+  return result;
+}
+
 Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
                             std::span<const double> z, const std::vector<Effect>& effects,
-                            const std::atomic<bool>* cancel, double fraction) {
+                            const std::atomic<bool>* cancel) {
   const ProblemCondition& data = problem.conditions[condition];
   const auto samples = static_cast<Eigen::Index>(data.rows.size());
   const auto channels = static_cast<Eigen::Index>(data.channels.size());
@@ -376,7 +430,7 @@ Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
   if (!base.ok()) return result;
   for (std::size_t e = 0; e < effects.size(); ++e) {
     const Effect& effect = effects[e];
-    const double size = fraction * effect.about.size;
+    const double size = effect.secant * effect.about.size;
     Eigen::MatrixXd change = Eigen::MatrixXd::Zero(base.outputs.rows(), channels);
     if (effect.kind == EffectKind::parameter || effect.kind == EffectKind::supply_sag) {
       model::ParameterValues changed = values;
@@ -397,7 +451,7 @@ Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
       }
     }
     for (Eigen::Index k = 0; k < channels; ++k) {
-      const double weight = 1.0 / (fraction * data.channels[static_cast<std::size_t>(k)].sd);
+      const double weight = 1.0 / (effect.secant * data.channels[static_cast<std::size_t>(k)].sd);
       for (Eigen::Index t = 0; t < samples; ++t) {
         const auto sample = static_cast<Eigen::Index>(data.rows[static_cast<std::size_t>(t)]);
         result(k * samples + t, static_cast<Eigen::Index>(e)) = change(sample, k) * weight;

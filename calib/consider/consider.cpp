@@ -31,6 +31,15 @@ constexpr double kLeastInformation = 1e-6;
 constexpr double kMissingLevel = 0.02;
 /// Level of the tests for what no effect explains, of all records together (Bonferroni).
 constexpr double kUnexplainedLevel = 0.01;
+/// Sizes of which the logarithms differ by less have the same secant.
+constexpr double kSameSize = 0.5;
+/// Over the plausible size: a secant of less is lost in the tolerance of the simulation.
+constexpr double kLeastSecant = 0.02;
+/// Chord iterations, and a step, in standard errors of white noise, after which they have settled.
+constexpr int kMostChords = 12;
+constexpr double kSettledMove = 0.3;
+/// How often secants are taken again.
+constexpr int kMostSecants = 2;
 /// More terms than this at once are a guess.
 constexpr std::size_t kMostMissing = 3;
 
@@ -68,7 +77,7 @@ void drop_failed(std::vector<Effect>& effects, std::vector<MatrixXd>& columns,
 }
 
 /// What fit and residuals see of the effects, whose columns are used up.
-Seen look_at(std::vector<Effect> effects, std::vector<MatrixXd> columns,
+Seen look_at(std::vector<Effect> effects, std::vector<MatrixXd>& columns,
              const std::vector<ScoreRows>& scores) {
   Seen seen;
   const auto count = static_cast<Index>(effects.size());
@@ -164,6 +173,99 @@ NormalMoments sizes_of(const Seen& seen, const MatrixXd& directions) {
   return cut_at_zero(std::move(sizes), never_negative);
 }
 
+/// Takes the secants of curved effects again, at the size that prior and records leave them.
+///
+/// @return  whether any was; then their columns, and those of all others as they were, are in
+///          `columns`
+bool take_again(const Problem& problem, std::span<const double> z, const Uncertainty& found,
+                const NormalMoments& sizes, int threads, const std::atomic<bool>* cancel,
+                Seen& seen, std::vector<MatrixXd>& columns) {
+  std::vector<Effect> again;
+  std::vector<Index> which;
+  for (std::size_t e = 0; e < seen.effects.size(); ++e) {
+    const auto k = static_cast<Index>(e);
+    Effect& effect = seen.effects[e];
+    const double size = std::sqrt(sizes.mean(k) * sizes.mean(k) + sizes.covariance(k, k));
+    if (!effect.curved || std::abs(std::log(size / effect.secant)) < kSameSize) continue;
+    effect.secant = std::max(size, kLeastSecant);
+    again.push_back(effect);
+    which.push_back(k);
+  }
+  if (again.empty()) return false;
+  const MatrixXd felt = seen.left * seen.basis;
+  parallel_for(columns.size(), threads, [&](std::size_t i) {
+    columns[i] = seen.rows[i].jacobian * felt.transpose() + found.scores[i].jacobian * seen.taken;
+    const MatrixXd anew = effect_rows(problem, i, z, again, cancel);
+    for (std::size_t a = 0; a < which.size(); ++a) {
+      const auto column = static_cast<Index>(a);
+      if (anew.col(column).allFinite()) columns[i].col(which[a]) = anew.col(column);
+    }
+  });
+  return true;
+}
+
+/// Sizes of the effects and move of the estimate where the effects are not small against what the
+/// linear model holds for: simulations with all of them, at moved parameters, in place of the
+/// secants, the sensitivities being those of the fit (chord iterations). With the sizes come the
+/// scores and the residuals as they would be if all were linear about the optimum.
+///
+/// @param moved  of the estimate, in coordinates of the root
+/// @return  whether it settled; else nothing has changed
+bool follow_curvature(const Problem& problem, std::span<const double> z, const Uncertainty& found,
+                      const MatrixXd& directions, int threads, const std::atomic<bool>* cancel,
+                      Seen& seen, NormalMoments& sizes, VectorXd& moved) {
+  Seen next = seen;
+  NormalMoments at = sizes;
+  VectorXd move = moved;
+  const MatrixXd felt = seen.left * seen.basis;
+  std::vector<VectorXd> base(problem.conditions.size());
+  const VectorXd none = VectorXd::Zero(at.mean.size());
+  parallel_for(base.size(), threads, [&](std::size_t i) {
+    base[i] = outputs_with(problem, i, z, seen.effects, none, cancel);
+  });
+  for (int chord = 0; chord < kMostChords; ++chord) {
+    const VectorXd step = found.root * move;
+    std::vector<double> there(z.begin(), z.end());
+    for (std::size_t j = 0; j < there.size(); ++j) {
+      there[j] += step(static_cast<Index>(j));
+      if (!(there[j] >= 0.0 && there[j] <= 1.0)) return false;
+    }
+    std::vector<VectorXd> scores(base.size());
+    std::vector<VectorXd> taken(base.size());
+    std::atomic<bool> failed = false;
+    parallel_for(base.size(), threads, [&](std::size_t i) {
+      const VectorXd outputs = outputs_with(problem, i, there, seen.effects, at.mean, cancel);
+      if (outputs.size() == 0 || base[i].size() == 0) {
+        failed = true;
+        return;
+      }
+      const ScoreRows& rows = found.scores[i];
+      next.rows[i].residual = rows.residual + outputs - base[i];
+      const VectorXd linear = seen.rows[i].jacobian * (felt.transpose() * at.mean) +
+                              rows.jacobian * (seen.taken * at.mean + move) - next.rows[i].residual;
+      scores[i] = seen.rows[i].jacobian.transpose() * linear;
+      taken[i] = rows.jacobian.transpose() * linear;
+    });
+    if (failed) return false;
+    VectorXd score = VectorXd::Zero(felt.cols());
+    VectorXd free_move = VectorXd::Zero(move.size());
+    for (std::size_t i = 0; i < base.size(); ++i) {
+      score += scores[i];
+      free_move += taken[i];
+    }
+    next.score = felt * score;
+    at = sizes_of(next, directions);
+    const VectorXd last = move;
+    move = free_move - seen.taken * at.mean;
+    if ((move - last).norm() > kSettledMove) continue;
+    seen = std::move(next);
+    sizes = std::move(at);
+    moved = move;
+    return true;
+  }
+  return false;
+}
+
 /// What the residuals say of each effect alone.
 void test_alone(const Seen& seen, const ScoreCovariance& scores,
                 std::vector<ConsideredEffect>& about) {
@@ -206,6 +308,8 @@ std::vector<std::size_t> missing_effects(const Seen& seen, const ScoreCovariance
     for (std::size_t e = 0; e < about.size(); ++e) {
       const auto k = static_cast<Index>(e);
       if (std::find(taken.begin(), taken.end(), e) != taken.end() || !about[e].p_value) continue;
+      // What would be negative alone is no explanation, whatever it does beside others.
+      if (about[e].one_sided && seen.score(k) < 0.0) continue;
       // Score, information and its variance of this effect beside those taken.
       VectorXd weights = VectorXd::Zero(seen.left.rows());
       weights(k) = 1.0;
@@ -251,9 +355,10 @@ VectorXd variances_by_effect(const VectorXd& moves, const MatrixXd& covariance) 
 /// Budget of one estimate with the error that it would have if the model were exact.
 ///
 /// @param moves  change of the estimate by each effect at its plausible size, SI
+/// @param shift  of the middle of the interval, SI
 Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedParameter& parameter,
                    double slope, const Seen& seen, const VectorXd& moves,
-                   const NormalMoments& sizes) {
+                   const NormalMoments& sizes, double shift) {
   Budget95 budget;
   const bool robust = parameter.interval == IntervalSource::robust_standard_error;
   const double exact =
@@ -282,7 +387,7 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
   budget.degrees_of_freedom = metrics::effective_freedom(variances);
   budget.coverage_factor = student_t(budget.degrees_of_freedom);
   budget.expanded = budget.coverage_factor * budget.combined;
-  budget.shift = -moves.dot(sizes.mean);
+  budget.shift = shift;
   return budget;
 }
 
@@ -319,14 +424,16 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
   return squares.cwiseSqrt();
 }
 
-/// The interval of the rig: about the shifted estimate, and never without that of the exact model.
+/// The interval of the rig. Which of the effects are there nobody knows, so that it extends from
+/// the estimate as it is to the shifted one, by the expanded uncertainty to either side.
 void widen(const Problem& problem, std::size_t unknown, Budget95 budget,
            FittedParameter& parameter) {
   const model::ParameterSpec& spec = problem.spec(unknown);
-  const double middle = parameter.value + budget.shift;
   auto& [low, high] = *parameter.ci95;
-  low = std::max(spec.lower, std::min(low, middle - budget.expanded));
-  high = std::min(spec.upper, std::max(high, middle + budget.expanded));
+  const double below = parameter.value + std::min(0.0, budget.shift) - budget.expanded;
+  const double above = parameter.value + std::max(0.0, budget.shift) + budget.expanded;
+  low = std::max(spec.lower, std::min(low, below));
+  high = std::min(spec.upper, std::max(high, above));
   parameter.budget = std::move(budget);
 }
 
@@ -346,20 +453,37 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   drop_failed(effects, columns, dropped);
   std::optional<Seen> seen;
   NormalMoments sizes;
+  VectorXd moved;
   if (!effects.empty()) {
-    seen = look_at(std::move(effects), std::move(columns), found.scores);
-    const ScoreCovariance scores = covariance_of(problem, z, *seen, threads);
+    seen = look_at(std::move(effects), columns, found.scores);
+    ScoreCovariance scores = covariance_of(problem, z, *seen, threads);
     sizes = sizes_of(*seen, scores.directions);
+    for (int i = 0; i < kMostSecants; ++i) {
+      if (!take_again(problem, z, found, sizes, threads, cancel, *seen, columns)) break;
+      if (cancel != nullptr && cancel->load()) return;
+      seen = look_at(std::move(seen->effects), columns, found.scores);
+      scores = covariance_of(problem, z, *seen, threads);
+      sizes = sizes_of(*seen, scores.directions);
+    }
+    moved = -seen->taken * sizes.mean;
     for (const Effect& each : seen->effects) considered.effects.push_back(each.about);
+    test_alone(*seen, scores, considered.effects);
+    considered.missing = missing_effects(*seen, scores, considered.effects);
+    if (!considered.missing.empty() && follow_curvature(problem, z, found, scores.directions,
+                                                        threads, cancel, *seen, sizes, moved)) {
+      for (std::size_t e = 0; e < considered.effects.size(); ++e)
+        considered.effects[e] = seen->effects[e].about;
+      test_alone(*seen, scores, considered.effects);
+      considered.missing = missing_effects(*seen, scores, considered.effects);
+    }
     for (std::size_t e = 0; e < considered.effects.size(); ++e) {
       const auto k = static_cast<Index>(e);
       ConsideredEffect& about = considered.effects[e];
       about.estimate = about.size * sizes.mean(k);
       about.standard_error = about.size * std::sqrt(std::max(0.0, sizes.covariance(k, k)));
     }
-    test_alone(*seen, scores, considered.effects);
-    considered.missing = missing_effects(*seen, scores, considered.effects);
   } else {
+    moved = VectorXd::Zero(found.root.cols());
     seen.emplace();
     seen->taken = MatrixXd::Zero(found.root.cols(), 0);
     sizes.mean = VectorXd::Zero(0);
@@ -373,7 +497,8 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     const double slope = problem.map.slope(static_cast<int>(j), z[j]);
     const VectorXd moves =
         slope * (found.root.row(static_cast<Index>(j)) * seen->taken).transpose();
-    widen(problem, j, budget_of(found, j, parameter, slope, *seen, moves, sizes), parameter);
+    const double shift = slope * found.root.row(static_cast<Index>(j)).dot(moved);
+    widen(problem, j, budget_of(found, j, parameter, slope, *seen, moves, sizes, shift), parameter);
     grade_widened(problem, found, j, parameter);
     parameter.moved_by_unexplained = slope * unexplained(static_cast<Index>(j));
     for (const std::size_t e : considered.missing) {

@@ -208,11 +208,13 @@ void judge_considered(const Campaign& campaign, const Fit& fit, std::vector<Reas
         name, {{"times_half_width", each.moved_by_unexplained / half}}));
   }
   if (!fit.considered->left_out.empty()) {
-    reasons.push_back(reason(AspectState::reservation, "effects_left_out",
-                             fmt::format("the campaign leaves out of what is considered: {}",
-                                         fmt::join(fit.considered->left_out, ", ")),
-                             {},
-                             {{"effects", static_cast<double>(fit.considered->left_out.size())}}));
+    reasons.push_back(reason(
+        AspectState::reservation, "effects_left_out",
+        campaign.considered.none ? std::string("the campaign counts the model as exact, so that "
+                                               "the intervals leave out what it lacks")
+                                 : fmt::format("the campaign leaves out of what is considered: {}",
+                                               fmt::join(fit.considered->left_out, ", ")),
+        {}, {{"effects", static_cast<double>(fit.considered->left_out.size())}}));
   }
 }
 

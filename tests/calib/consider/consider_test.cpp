@@ -38,10 +38,13 @@ Eigen::MatrixXd rows_at(const SmallRig& rig, const std::vector<datasets::Record>
   std::vector<const datasets::Condition*> conditions;
   for (const auto& each : rig.campaign.conditions) conditions.push_back(&each);
   const Problem problem = make_problem(rig.campaign, records, conditions, false, nullptr);
-  const auto effects = effects_of(problem, problem.start());
+  auto effects = effects_of(problem, problem.start());
   keys.clear();
-  for (const Effect& each : effects) keys.push_back(each.about.key);
-  return effect_rows(problem, 0, problem.start(), effects, nullptr, fraction);
+  for (Effect& each : effects) {
+    keys.push_back(each.about.key);
+    each.secant = fraction;
+  }
+  return effect_rows(problem, 0, problem.start(), effects, nullptr);
 }
 
 TEST_CASE("considered: secants at the plausible size are near those of a smaller step", "[calib]") {
