@@ -154,15 +154,45 @@ ScoreCovariance covariance_of(const Problem& problem, std::span<const double> z,
   return result;
 }
 
-/// Sizes of the effects by prior and records.
-NormalMoments sizes_of(const Seen& seen, const MatrixXd& directions) {
+/// Sizes of the effects by prior and records, over their plausible sizes.
+struct Sizes {
+  VectorXd mean;
+  MatrixXd covariance;
+  VectorXd likeliest;  ///< all together: what is cut off at zero has its mean elsewhere
+};
+
+/// Minimum of (x - mean)^T precision (x - mean) where some components cannot be negative, by
+/// coordinates.
+VectorXd likeliest_of(const VectorXd& mean, const MatrixXd& precision,
+                      const std::vector<Index>& never_negative) {
+  constexpr int kMostSweeps = 1000;
+  constexpr double kSettled = 1e-6;
+  std::vector<bool> bounded(static_cast<std::size_t>(mean.size()), false);
+  for (const Index k : never_negative) bounded[static_cast<std::size_t>(k)] = true;
+  VectorXd x = mean;
+  for (const Index k : never_negative) x(k) = std::max(0.0, x(k));
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    double farthest = 0.0;
+    for (Index k = 0; k < x.size(); ++k) {
+      double next = x(k) - precision.row(k).dot(x - mean) / precision(k, k);
+      if (bounded[static_cast<std::size_t>(k)]) next = std::max(0.0, next);
+      farthest = std::max(farthest, std::abs(next - x(k)));
+      x(k) = next;
+    }
+    if (farthest < kSettled) break;
+  }
+  return x;
+}
+
+Sizes sizes_of(const Seen& seen, const MatrixXd& directions) {
   const auto count = static_cast<Index>(seen.effects.size());
   NormalMoments sizes{VectorXd::Zero(count), MatrixXd::Identity(count, count)};
+  MatrixXd precision = sizes.covariance;
   const MatrixXd felt = seen.left * seen.basis;  // T^-T
   if (felt.cols() > 0) {
     const Eigen::LDLT<MatrixXd> solver(directions);
     const MatrixXd weighted = solver.solve(felt.transpose());
-    const MatrixXd precision = sizes.covariance + felt * weighted;
+    precision += felt * weighted;
     const Eigen::LLT<MatrixXd> inverse(precision);
     sizes.covariance = inverse.solve(MatrixXd::Identity(count, count));
     sizes.mean = inverse.solve(weighted.transpose() * (seen.basis.transpose() * seen.score));
@@ -170,7 +200,9 @@ NormalMoments sizes_of(const Seen& seen, const MatrixXd& directions) {
   std::vector<Index> never_negative;
   for (Index k = 0; k < count; ++k)
     if (seen.effects[static_cast<std::size_t>(k)].about.one_sided) never_negative.push_back(k);
-  return cut_at_zero(std::move(sizes), never_negative);
+  VectorXd likeliest = likeliest_of(sizes.mean, precision, never_negative);
+  NormalMoments cut = cut_at_zero(std::move(sizes), never_negative);
+  return {std::move(cut.mean), std::move(cut.covariance), std::move(likeliest)};
 }
 
 /// Takes the secants of curved effects again, at the size that prior and records leave them.
@@ -178,8 +210,8 @@ NormalMoments sizes_of(const Seen& seen, const MatrixXd& directions) {
 /// @return  whether any was; then their columns, and those of all others as they were, are in
 ///          `columns`
 bool take_again(const Problem& problem, std::span<const double> z, const Uncertainty& found,
-                const NormalMoments& sizes, int threads, const std::atomic<bool>* cancel,
-                Seen& seen, std::vector<MatrixXd>& columns) {
+                const Sizes& sizes, int threads, const std::atomic<bool>* cancel, Seen& seen,
+                std::vector<MatrixXd>& columns) {
   std::vector<Effect> again;
   std::vector<Index> which;
   for (std::size_t e = 0; e < seen.effects.size(); ++e) {
@@ -213,9 +245,9 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
 /// @return  whether it settled; else nothing has changed
 bool follow_curvature(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                       const MatrixXd& directions, int threads, const std::atomic<bool>* cancel,
-                      Seen& seen, NormalMoments& sizes, VectorXd& moved) {
+                      Seen& seen, Sizes& sizes, VectorXd& moved) {
   Seen next = seen;
-  NormalMoments at = sizes;
+  Sizes at = sizes;
   VectorXd move = moved;
   const MatrixXd felt = seen.left * seen.basis;
   std::vector<VectorXd> base(problem.conditions.size());
@@ -357,8 +389,8 @@ VectorXd variances_by_effect(const VectorXd& moves, const MatrixXd& covariance) 
 /// @param moves  change of the estimate by each effect at its plausible size, SI
 /// @param shift  of the middle of the interval, SI
 Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedParameter& parameter,
-                   double slope, const Seen& seen, const VectorXd& moves,
-                   const NormalMoments& sizes, double shift) {
+                   double slope, const Seen& seen, const VectorXd& moves, const Sizes& sizes,
+                   double shift) {
   Budget95 budget;
   const bool robust = parameter.interval == IntervalSource::robust_standard_error;
   const double exact =
@@ -424,14 +456,17 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
   return squares.cwiseSqrt();
 }
 
-/// The interval of the rig. Which of the effects are there nobody knows, so that it extends from
-/// the estimate as it is to the shifted one, by the expanded uncertainty to either side.
-void widen(const Problem& problem, std::size_t unknown, Budget95 budget,
+/// The interval of the rig. Which of the effects are there nobody knows, so that it extends over
+/// the estimate as it is, that shifted by the mean sizes of the effects and that by the likeliest
+/// ones, by the expanded uncertainty to either side.
+///
+/// @param likeliest  shift by the likeliest sizes, SI
+void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double likeliest,
            FittedParameter& parameter) {
   const model::ParameterSpec& spec = problem.spec(unknown);
   auto& [low, high] = *parameter.ci95;
-  const double below = parameter.value + std::min(0.0, budget.shift) - budget.expanded;
-  const double above = parameter.value + std::max(0.0, budget.shift) + budget.expanded;
+  const double below = parameter.value + std::min({0.0, budget.shift, likeliest}) - budget.expanded;
+  const double above = parameter.value + std::max({0.0, budget.shift, likeliest}) + budget.expanded;
   low = std::max(spec.lower, std::min(low, below));
   high = std::min(spec.upper, std::max(high, above));
   parameter.budget = std::move(budget);
@@ -452,7 +487,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   std::vector<ConsideredEffect> dropped;
   drop_failed(effects, columns, dropped);
   std::optional<Seen> seen;
-  NormalMoments sizes;
+  Sizes sizes;
   VectorXd moved;
   if (!effects.empty()) {
     seen = look_at(std::move(effects), columns, found.scores);
@@ -488,6 +523,7 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     seen->taken = MatrixXd::Zero(found.root.cols(), 0);
     sizes.mean = VectorXd::Zero(0);
     sizes.covariance = MatrixXd::Zero(0, 0);
+    sizes.likeliest = VectorXd::Zero(0);
   }
   const VectorXd unexplained = unexplained_moves(
       problem, found.scores, seen->rows.empty() ? found.scores : seen->rows, found.root);
@@ -498,7 +534,9 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     const VectorXd moves =
         slope * (found.root.row(static_cast<Index>(j)) * seen->taken).transpose();
     const double shift = slope * found.root.row(static_cast<Index>(j)).dot(moved);
-    widen(problem, j, budget_of(found, j, parameter, slope, *seen, moves, sizes, shift), parameter);
+    const double likeliest = shift - moves.dot(sizes.likeliest - sizes.mean);
+    widen(problem, j, budget_of(found, j, parameter, slope, *seen, moves, sizes, shift), likeliest,
+          parameter);
     grade_widened(problem, found, j, parameter);
     parameter.moved_by_unexplained = slope * unexplained(static_cast<Index>(j));
     for (const std::size_t e : considered.missing) {
