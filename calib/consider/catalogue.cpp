@@ -75,15 +75,15 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"valve_offset", EffectKind::parameter, false, "null shift of the valve",
                  [](const RigScale& rig) {
-                   return EffectSize{3e-3 * rig.command_v, "0.3 % of full command"};
+                   return EffectSize{1e-3 * rig.command_v, "0.1 % of full command"};
                  }},
     CatalogueRow{"valve_dead_band", EffectKind::parameter, true, "overlap of the spool",
                  [](const RigScale& rig) {
-                   return EffectSize{2e-3 * rig.command_v, "0.2 % of full command"};
+                   return EffectSize{1e-3 * rig.command_v, "0.1 % of full command"};
                  }},
     CatalogueRow{"coulomb_friction", EffectKind::parameter, true, "friction of the seals",
                  [](const RigScale& rig) {
-                   return EffectSize{2e-3 * rig.force_n, "0.2 % of area times supply"};
+                   return EffectSize{1e-3 * rig.force_n, "0.1 % of area times supply"};
                  }},
     CatalogueRow{"laminar_leakage", EffectKind::parameter, true, "laminar leak",
                  [](const RigScale& rig) {
@@ -97,7 +97,7 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"ki", EffectKind::parameter, true, "integral gain of the controller",
                  [](const RigScale& rig) {
-                   return EffectSize{0.05 * rig.kp_v_per_m, "a reset time of 20 s"};
+                   return EffectSize{0.02 * rig.kp_v_per_m, "a reset time of 50 s"};
                  }},
     CatalogueRow{"total_volume", EffectKind::parameter, true, "oil of hoses and ports",
                  [](const RigScale& rig) {

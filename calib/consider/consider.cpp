@@ -540,9 +540,9 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     grade_widened(problem, found, j, parameter);
     parameter.moved_by_unexplained = slope * unexplained(static_cast<Index>(j));
     for (const std::size_t e : considered.missing) {
-      const double moved = moves(static_cast<Index>(e)) / considered.effects[e].size *
+      const double by_it = moves(static_cast<Index>(e)) / considered.effects[e].size *
                            considered.effects[e].alone.value_or(0.0);
-      parameter.moved_by_missing = std::max(parameter.moved_by_missing, std::abs(moved));
+      parameter.moved_by_missing = std::max(parameter.moved_by_missing, std::abs(by_it));
     }
   }
   considered.effects.insert(considered.effects.end(), dropped.begin(), dropped.end());

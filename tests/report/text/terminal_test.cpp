@@ -163,8 +163,9 @@ TEST_CASE("parameters_text: both intervals, and what widens one most", "[report]
                   {"valve_time_constant", "effect", 4.0}};
   budget.combined = 5.00625;
   CHECK_THAT(parameters_text(scene.result(ResultKind::fit), {}),
-             Contains("if model exact") && Contains(" +- 0.50 ") && Contains(" 5.0 ") &&
-                 Contains("valve_time_constant") && !Contains("coulomb_friction"));
+             Contains("if model exact") && Contains(" +- 0.5  valve_time_constant ") &&
+                 Contains(" 5 ") && Contains("valve_time_constant") &&
+                 !Contains("coulomb_friction"));
   // Where the records are the largest part no effect is named.
   budget.lines[0].uncertainty = 8.0;
   CHECK_THAT(parameters_text(scene.result(ResultKind::fit), {}),
