@@ -113,6 +113,7 @@ std::vector<HeldOut> cross_validate(const Campaign& campaign,
   }
   FitOptions once;
   once.seed = options.seed;
+  once.consider = false;
   once.max_iterations = options.max_iterations;
   once.cancel = options.cancel;
   std::vector<HeldOut> result(ids.size());

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "calib/consider/consider.hpp"
+#include "calib/consider/stability.hpp"
 #include "calib/cross_validation.hpp"
 #include "calib/finish.hpp"
 #include "calib/problem/initial_state.hpp"
@@ -201,8 +203,13 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
   Budget budget = budget_of(campaign, options, began);
   Evaluator evaluator(problem, budget, options.threads);
   evaluator.keep_rows();
-  const Solved solved = solve_from_starts(problem, evaluator, options, result);
+  Solved solved = solve_from_starts(problem, evaluator, options, result);
   if (solved.optimum.ok) {
+    if (result.status == FitStatus::converged && options.consider) {
+      consider_effects(problem, solved.optimum.z, solved.spread, options.threads, options.cancel,
+                       result);
+    }
+    solved.spread.scores = {};
     result.conditions = score_conditions(problem, solved.optimum.z, options.threads);
     std::optional<EstimateSpread> spread;
     if (result.status == FitStatus::converged) {
@@ -217,6 +224,10 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
       quiet.progress = nullptr;
       validation = score_at(campaign, records, validated, &values, quiet, budget,
                             spread ? &*spread : nullptr);
+    }
+    if (result.considered && validation && validation->status == FitStatus::converged) {
+      repeat_on_validation(make_problem(campaign, records, validated, false, nullptr),
+                           validation->parameters, options.threads, options.cancel, result);
     }
     if (result.status == FitStatus::stopped) result.stopped_in = StoppedIn::starts;
     if (result.status == FitStatus::converged && validation)

@@ -96,16 +96,21 @@ void bind_fitted_parameters(py::module_& module) {
                              field(&Self::value, &calib::FittedParameter::robust_standard_error),
                              "From the scatter of the residuals themselves, in `unit`; or None.")
       .def_property_readonly("ci95", field(&Self::value, &calib::FittedParameter::ci95),
-                             "95 % interval (low, high), in `unit`; or None.")
+                             "95 % interval (low, high), in `unit`, with what the model leaves\n"
+                             "out; or None.")
+      .def_property_readonly("ci95_if_exact",
+                             field(&Self::value, &calib::FittedParameter::ci95_if_exact),
+                             "The same if the model were exact; or None.")
       .def_property_readonly(
           "ci95_from",
           [](const Self& self) {
             return self.value.ci95 ? std::optional(to_string(self.value.interval)) : std::nullopt;
           },
-          "What the interval rests on: \"standard_error\", \"robust_standard_error\"...; or None.")
-      .def_property_readonly("degrees_of_freedom",
-                             field(&Self::value, &calib::FittedParameter::degrees_of_freedom),
-                             "With which the error that `ci95` rests on is known; or None.")
+          "What `ci95_if_exact` rests on: \"standard_error\", \"robust_standard_error\"...; or "
+          "None.")
+      .def_property_readonly(
+          "degrees_of_freedom", field(&Self::value, &calib::FittedParameter::degrees_of_freedom),
+          "With which the error that `ci95_if_exact` rests on is known; or None.")
       .def_property_readonly("bootstrap", field(&Self::value, &calib::FittedParameter::bootstrap),
                              "Its spread, where the fit was asked for one.")
       .def_property_readonly(

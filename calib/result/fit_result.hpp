@@ -7,6 +7,7 @@
 
 #include "calib/result/aspect.hpp"
 #include "calib/result/condition_score.hpp"
+#include "calib/result/considered.hpp"
 #include "calib/result/fitted_parameter.hpp"
 #include "calib/result/model_error.hpp"
 #include "calib/result/search_report.hpp"
@@ -31,7 +32,9 @@ struct Fit {
   std::vector<LackOfFit> lack_of_fit;  ///< channels of known noise
   std::optional<bool> misfit;          ///< significant lack of fit; absent: cannot be judged
   std::optional<BetweenRepeats> between_repeats;  ///< absent: no single repeats
-  std::string interval_advice;                    ///< which interval to use, and why
+  std::optional<Considered> considered;           ///< small effects; absent: not looked at
+  std::vector<StabilityCheck> stability;          ///< against the validation records
+  std::string interval_advice;                    ///< which interval to believe, and why
   std::vector<std::string> correlation_names;
   std::vector<std::string> combinations;  ///< determined combinations of parameters
   Eigen::MatrixXd correlation;            ///< shape (unknowns that have a standard error)^2

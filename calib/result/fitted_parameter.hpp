@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "calib/result/considered.hpp"
 #include "datasets/campaign/campaign.hpp"
 
 // A parameter after a fit.
@@ -65,10 +66,18 @@ struct FittedParameter {
   std::optional<double> standard_error;  ///< absent where the Jacobian does not determine it
   /// From the residuals themselves: larger if they are correlated in time.
   std::optional<double> robust_standard_error;
+  /// Of the rig: with what the model leaves out, where that was considered.
   std::optional<std::pair<double, double>> ci95;
-  IntervalSource interval = IntervalSource::none;  ///< how ci95 was found
-  /// Degrees of freedom of the error on which ci95 is based; at most metrics::kManyDegrees.
+  /// What it would be if the model were exact.
+  std::optional<std::pair<double, double>> ci95_if_exact;
+  IntervalSource interval = IntervalSource::none;  ///< of ci95_if_exact
+  /// With which the error that ci95_if_exact rests on is known; at most metrics::kManyDegrees.
   std::optional<double> degrees_of_freedom;
+  std::optional<Budget95> budget;  ///< of ci95; absent where nothing was considered
+  /// The most that an effect which the residuals ask for would move the estimate, SI.
+  double moved_by_missing = 0.0;
+  /// The most that a significant error of the model which no effect explains could, SI.
+  double moved_by_unexplained = 0.0;
   std::optional<BootstrapSpread> bootstrap;
   std::optional<Profile> profile;
   bool at_bound = false;

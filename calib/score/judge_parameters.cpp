@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "calib/problem/parameter_map.hpp"
+#include "common/significant.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -113,6 +114,110 @@ void note_further_starts(const Fit& fit, std::vector<Reason>& reasons) {
                             {"as_low", static_cast<double>(looks.as_low)}}));
 }
 
+/// A size in a unit that people use for it.
+std::string readable_size(double value, const std::string& unit) {
+  if (unit == "1") return significant(100.0 * value, 2) + " %";
+  if (unit == "s" || unit == "m" || unit == "V")
+    return fmt::format("{} m{}", significant(1e3 * value, 2), unit);
+  if (unit == "N" || unit == "V/(m s)") return fmt::format("{} {}", significant(value, 2), unit);
+  return fmt::format("{:.2g} {}", value, unit);
+}
+
+double half_width_if_exact(const FittedParameter& parameter) {
+  if (!parameter.ci95_if_exact) return HUGE_VAL;
+  return 0.5 * (parameter.ci95_if_exact->second - parameter.ci95_if_exact->first);
+}
+
+/// What the residuals ask for. It is a reservation where the effect would move an estimate beyond
+/// the interval that it has if the model is exact.
+void judge_missing(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  std::vector<std::string> moved;
+  for (const FittedParameter& each : fit.parameters) {
+    if (each.fitted && !each.nuisance && each.moved_by_missing > half_width_if_exact(each))
+      moved.push_back(
+          parameter_name(table[static_cast<std::size_t>(each.index)], each.scope, each.level));
+  }
+  for (const std::size_t position : fit.considered->missing) {
+    const ConsideredEffect& effect = fit.considered->effects[position];
+    const double alone = effect.alone.value_or(0.0);
+    const double half = effect.alone_half_width.value_or(0.0);
+    reasons.push_back(reason(
+        moved.empty() ? AspectState::note : AspectState::reservation, "missing_effect",
+        fmt::format("the residuals ask for a term that the model lacks: {} ({}) of {} ({} to {}){}",
+                    effect.meaning, effect.key, readable_size(alone, effect.unit),
+                    readable_size(alone - half, effect.unit),
+                    readable_size(alone + half, effect.unit),
+                    moved.empty() ? std::string()
+                                  : fmt::format("; it would move {} by more than half of the "
+                                                "interval that holds if the model is exact",
+                                                fmt::join(moved, ", "))),
+        effect.key,
+        {{"size", alone},
+         {"low", alone - half},
+         {"high", alone + half},
+         {"p", effect.p_of_all.value_or(1.0)}}));
+  }
+}
+
+/// Whether the validation records alone lead to the same values.
+void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
+  const auto table = model::parameter_table(campaign.rig.plant);
+  std::vector<std::string> words;
+  for (const StabilityCheck& each : fit.stability) {
+    if (!each.differs) continue;
+    const auto& spec = table[static_cast<std::size_t>(each.index)];
+    words.push_back(fmt::format("{} {:.4g} {} ({:+.2g}, {:.2g} allowed)",
+                                parameter_name(spec, each.scope, each.level), each.value, spec.unit,
+                                each.difference, each.expanded));
+  }
+  if (fit.stability.empty()) return;
+  const std::vector<std::pair<std::string, double>> numbers{
+      {"differ", static_cast<double>(words.size())},
+      {"estimated", static_cast<double>(fit.stability.size())}};
+  if (words.empty()) {
+    reasons.push_back(reason(AspectState::note, "stable",
+                             "the validation records alone lead to the same estimates, within the "
+                             "uncertainty of both",
+                             {}, numbers));
+  } else {
+    reasons.push_back(reason(
+        AspectState::reservation, "unstable",
+        fmt::format("{} of {} estimates differ when made from the validation records alone: {}",
+                    words.size(), fit.stability.size(), fmt::join(words, ", ")),
+        {}, numbers));
+  }
+}
+
+/// What small effects that the model leaves out do to the estimates.
+void judge_considered(const Campaign& campaign, const Fit& fit, std::vector<Reason>& reasons) {
+  if (!fit.considered) return;
+  judge_missing(campaign, fit, reasons);
+  const auto table = model::parameter_table(campaign.rig.plant);
+  for (const FittedParameter& each : fit.parameters) {
+    if (!each.fitted || each.nuisance || !each.ci95) continue;
+    const double half = 0.5 * (each.ci95->second - each.ci95->first);
+    if (!(each.moved_by_unexplained > half)) continue;
+    const std::string name =
+        parameter_name(table[static_cast<std::size_t>(each.index)], each.scope, each.level);
+    reasons.push_back(reason(
+        AspectState::reservation, "unexplained_error",
+        fmt::format("{}: the model error that the residuals show, and no small effect explains, "
+                    "could move it by up to {} times the half width of its interval",
+                    name, significant(each.moved_by_unexplained / half, 2)),
+        name, {{"times_half_width", each.moved_by_unexplained / half}}));
+  }
+  if (!fit.considered->left_out.empty()) {
+    reasons.push_back(reason(
+        AspectState::reservation, "effects_left_out",
+        campaign.considered.none ? std::string("the campaign counts the model as exact, so that "
+                                               "the intervals leave out what it lacks")
+                                 : fmt::format("the campaign leaves out of what is considered: {}",
+                                               fmt::join(fit.considered->left_out, ", ")),
+        {}, {{"effects", static_cast<double>(fit.considered->left_out.size())}}));
+  }
+}
+
 }  // namespace
 
 Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
@@ -158,6 +263,8 @@ Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
                               {"estimated", static_cast<double>(estimated)}}));
   }
   note_further_starts(fit, reasons);
+  judge_considered(campaign, fit, reasons);
+  judge_stability(campaign, fit, reasons);
   note_exact_values(campaign, fit, reasons);
   return aspect_of(std::move(reasons));
 }

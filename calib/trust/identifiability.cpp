@@ -75,32 +75,54 @@ void add_reason(FittedParameter& parameter, const std::string& text) {
   parameter.reason += parameter.reason.empty() ? text : "; " + text;
 }
 
-/// Grades a parameter by its value and the half width of its interval only, so that wider bounds
-/// change neither grade nor reason.
+/// Why an interval of this half width gives this grade; empty where nothing is to be said.
+std::string grade_words(const Problem& problem, const Uncertainty& found, std::size_t unknown,
+                        double half_width, const FittedParameter& parameter) {
+  const ParameterSpec& spec = spec_of(problem, problem.map.unknowns()[unknown].index);
+  switch (parameter.identifiability) {
+    case Identifiability::identified:
+      return {};
+    case Identifiability::bounded:
+      return may_be_absent(spec)
+                 ? fmt::format("not significantly different from zero: at most {} (95 %)",
+                               number(spec, parameter.value + half_width))
+                 : fmt::format("not significantly different from zero: {} to {} (95 %)",
+                               number(spec, parameter.value - half_width),
+                               number(spec, parameter.value + half_width));
+    case Identifiability::weak:
+    case Identifiability::not_identifiable:
+      break;
+  }
+  return half_width_words(share_of_value(parameter.value, half_width)) +
+         partner(problem, found, unknown);
+}
+
+/// Grade and reason of a parameter that has an interval of this half width: by nothing but the
+/// interval and the value, so that wider bounds change neither.
 void grade(const Problem& problem, const Uncertainty& found, std::size_t unknown, double half_width,
            FittedParameter& parameter) {
   const Unknown& u = problem.map.unknowns()[unknown];
   const ParameterSpec& spec = spec_of(problem, u.index);
   parameter.identifiability =
       grade_of(spec, parameter.value, half_width, zero_is_arbitrary(spec, u));
-  switch (parameter.identifiability) {
-    case Identifiability::identified:
-      return;
-    case Identifiability::bounded:
-      add_reason(parameter,
-                 may_be_absent(spec)
-                     ? fmt::format("not significantly different from zero: at most {} (95 %)",
-                                   number(spec, parameter.value + half_width))
-                     : fmt::format("not significantly different from zero: {} to {} (95 %)",
-                                   number(spec, parameter.value - half_width),
-                                   number(spec, parameter.value + half_width)));
-      return;
-    case Identifiability::weak:
-    case Identifiability::not_identifiable:
-      break;
+  const std::string words = grade_words(problem, found, unknown, half_width, parameter);
+  if (!words.empty()) add_reason(parameter, words);
+}
+
+/// What adds most to an interval that is wider than if the model were exact.
+std::string widened_words(const Budget95& budget) {
+  const BudgetLine* largest = nullptr;
+  for (const BudgetLine& line : budget.lines) {
+    if (line.kind == "effect" && (largest == nullptr || line.uncertainty > largest->uncertainty))
+      largest = &line;
   }
-  add_reason(parameter, half_width_words(share_of_value(parameter.value, half_width)) +
-                            partner(problem, found, unknown));
+  if (largest == nullptr) return "with what the model leaves out";
+  return fmt::format("with what the model leaves out, most of it {}", largest->source);
+}
+
+/// The longer side of an interval.
+double longer_side(double value, const std::pair<double, double>& interval) {
+  return std::max(interval.second - value, value - interval.first);
 }
 
 /// Degrees of freedom as student_t() accepts them; infinitely many, with known variances, are
@@ -225,6 +247,7 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
       const double half_width = choose_interval(problem, found, j, parameter);
       parameter.ci95 = {std::max(spec.lower, parameter.value - half_width),
                         std::min(spec.upper, parameter.value + half_width)};
+      parameter.ci95_if_exact = parameter.ci95;
       grade(problem, found, j, half_width, parameter);
     } else {
       parameter.identifiability = Identifiability::not_identifiable;
@@ -233,6 +256,21 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
     describe_bound(problem, check, j, parameter);
   }
   return result;
+}
+
+void grade_widened(const Problem& problem, const Uncertainty& found, std::size_t unknown,
+                   FittedParameter& parameter) {
+  if (!parameter.ci95 || !parameter.ci95_if_exact) return;
+  const double before = longer_side(parameter.value, *parameter.ci95_if_exact);
+  const double half_width = longer_side(parameter.value, *parameter.ci95);
+  if (!(half_width > before)) return;
+  const std::string old = grade_words(problem, found, unknown, before, parameter);
+  if (const auto at = parameter.reason.find(old); !old.empty() && at != std::string::npos)
+    parameter.reason.erase(at, old.size());
+  while (parameter.reason.ends_with("; ")) parameter.reason.resize(parameter.reason.size() - 2);
+  grade(problem, found, unknown, half_width, parameter);
+  if (parameter.identifiability != Identifiability::identified && parameter.budget)
+    add_reason(parameter, widened_words(*parameter.budget));
 }
 
 bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,

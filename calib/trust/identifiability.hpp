@@ -40,7 +40,11 @@ std::string half_width_words(double share);
 /// point that is no minimum cannot grade an estimate.
 void withhold_grades(std::vector<FittedParameter>& parameters);
 
-/// Whether most of a standard error comes from uncertain known values, not from the records.
+/// Grade and reason anew, after effects that the model leaves out have widened the interval.
+void grade_widened(const Problem& problem, const Uncertainty& found, std::size_t unknown,
+                   FittedParameter& parameter);
+
+/// Whether most of a standard error is what known values leave uncertain, not what the records do.
 bool rests_on_known(const Problem& problem, const Uncertainty& uncertainty,
                     const std::vector<double>& z, std::size_t unknown);
 

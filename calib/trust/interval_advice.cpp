@@ -49,7 +49,7 @@ std::string other_interval(const FittedParameter& parameter, std::string_view un
   }
   if (!parameter.bootstrap) return {};
   const std::pair<double, double>& drawn = parameter.bootstrap->ci95;
-  const double ratio = width(drawn) / width(*parameter.ci95);
+  const double ratio = width(drawn) / width(*parameter.ci95_if_exact);
   if (ratio > kAgrees) {
     return fmt::format("use the interval of the bootstrap, {}: it is {} times as wide",
                        ends_text(drawn, unit), significant(ratio, 2));
@@ -60,7 +60,7 @@ std::string other_interval(const FittedParameter& parameter, std::string_view un
   // With few repeats their variance is uncertain: with f degrees of freedom by sqrt(2 / f).
   const double chance = 2.0 / std::sqrt(2.0 * std::max(1.0, parameter.bootstrap->freedom));
   if (ratio * (kAgrees + chance) < 1.0) {
-    return fmt::format("the bootstrap is {:.2g} times as wide; use `ci95`{}", ratio,
+    return fmt::format("the bootstrap is {:.2g} times as wide; use `ci95_if_exact`{}", ratio,
                        misfit ? ", which counts what the model lacks too" : "");
   }
   return {};
@@ -186,7 +186,7 @@ std::string compare_intervals(const Problem& problem,
       open.push_back(problem.name(j));
       continue;
     }
-    if (!each.ci95 || !(width(*each.ci95) > 0.0)) continue;
+    if (!each.ci95_if_exact || !(width(*each.ci95_if_exact) > 0.0)) continue;
     drawn = drawn || each.bootstrap;
     followed = followed || (each.profile && !each.profile->low.lost && !each.profile->high.lost);
     if (!carried.empty()) continue;
@@ -202,8 +202,8 @@ std::string compare_intervals(const Problem& problem,
         fmt::format("{} leave{} out the uncertainty of {}: use `ci95`, which includes it", made, s,
                     fmt::join(carried, ", ")));
   } else if (words.empty() && (drawn || followed)) {
-    words.push_back(
-        fmt::format("{}{} agree{} with `ci95`", open.empty() ? "" : "elsewhere ", made, s));
+    words.push_back(fmt::format("{}{} agree{} with `ci95_if_exact`",
+                                open.empty() ? "" : "elsewhere ", made, s));
   }
   if (!open.empty()) {
     words.insert(words.begin(), fmt::format("not identifiable, so that no interval is reliable: {}",

@@ -202,11 +202,11 @@ ProfileEnd follow(Follower& follower, const Problem& problem, std::size_t unknow
 /// Rise of 2 cost at which the profile of this parameter ends: a quadratic one at ci95.
 double threshold_of(const FittedParameter& parameter, double reduced_chi_square) {
   const double variance = std::max(1.0, reduced_chi_square);
-  if (!parameter.ci95 || !parameter.standard_error)
+  if (!parameter.ci95_if_exact || !parameter.standard_error)
     return metrics::kNormal95 * metrics::kNormal95 * variance;
   // The longer half: the other may be cut off where values make no sense.
-  const double half =
-      std::max(parameter.ci95->second - parameter.value, parameter.value - parameter.ci95->first);
+  const double half = std::max(parameter.ci95_if_exact->second - parameter.value,
+                               parameter.value - parameter.ci95_if_exact->first);
   const double errors = half / *parameter.standard_error;
   return errors * errors * variance;
 }
@@ -319,11 +319,11 @@ void profiles(const Problem& problem, const std::vector<datasets::Record>& recor
                     below && above ? "on both sides" : (above ? "above" : "below"),
                     profile.low.value.value_or(profile.low.reached), unit,
                     profile.high.value.value_or(profile.high.reached), unit));
-    // A bound within `ci95` cuts off what the records determine; beyond it they determine less than
-    // `ci95` states.
-    const double half_width = parameter.ci95 ? std::max(parameter.ci95->second - parameter.value,
-                                                        parameter.value - parameter.ci95->first)
-                                             : 0.0;
+    // A bound within `ci95` cuts off what the records tell; beyond it they tell less than it says.
+    const double half_width = parameter.ci95_if_exact
+                                  ? std::max(parameter.ci95_if_exact->second - parameter.value,
+                                             parameter.value - parameter.ci95_if_exact->first)
+                                  : 0.0;
     if ((below && parameter.value - unknowns[j].lower >= half_width) ||
         (above && unknowns[j].upper - parameter.value >= half_width))
       parameter.identifiability = Identifiability::not_identifiable;

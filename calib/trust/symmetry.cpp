@@ -191,6 +191,7 @@ void grade_symmetric(const Problem& problem, const ScalingSymmetry& symmetry,
     each.standard_error.reset();
     each.robust_standard_error.reset();
     each.ci95.reset();
+    each.ci95_if_exact.reset();
     each.interval = IntervalSource::none;
     each.reason = fmt::format(
         "not determined because of the scaling symmetry: {}, would make it identifiable{}",

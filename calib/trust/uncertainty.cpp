@@ -37,20 +37,6 @@ std::vector<ScoreRows> score_rows(const Problem& problem, std::vector<ConditionR
   return result;
 }
 
-/// Scores of the single repeats of every condition.
-std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span<const double> z,
-                                               const std::vector<ScoreRows>& rows, int threads) {
-  std::vector<Eigen::MatrixXd> result(rows.size());
-  parallel_for(rows.size(), threads, [&](std::size_t i) {
-    Eigen::MatrixXd deviations =
-        repeat_deviations(problem.conditions[i], explained_by_inputs(problem, i, z));
-    const Eigen::MatrixXd declared = explained_by_declared(problem, i, z, deviations);
-    if (declared.size() > 0) deviations -= declared;
-    result[i] = repeat_scores(rows[i].jacobian, deviations);
-  });
-  return result;
-}
-
 std::string null_reason(const Problem& problem, const std::vector<std::size_t>& members,
                         std::size_t unknown) {
   std::vector<std::string> partners;
@@ -64,6 +50,19 @@ std::string null_reason(const Problem& problem, const std::vector<std::size_t>& 
 }
 
 }  // namespace
+
+std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span<const double> z,
+                                               const std::vector<ScoreRows>& rows, int threads) {
+  std::vector<Eigen::MatrixXd> result(rows.size());
+  parallel_for(rows.size(), threads, [&](std::size_t i) {
+    Eigen::MatrixXd deviations =
+        repeat_deviations(problem.conditions[i], explained_by_inputs(problem, i, z));
+    const Eigen::MatrixXd declared = explained_by_declared(problem, i, z, deviations);
+    if (declared.size() > 0) deviations -= declared;
+    result[i] = repeat_scores(rows[i].jacobian, deviations);
+  });
+  return result;
+}
 
 void add_prior_information(const Problem& problem, std::span<const double> z,
                            const Eigen::MatrixXd& root, Eigen::MatrixXd& sum) {
@@ -189,6 +188,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   if (difference) difference->p = difference_by_noise(effects, difference->cause);
   if (difference && (difference->p < kDifferenceLevel || result.repeats_differ()))
     result.difference = difference;
+  result.scores = std::move(scores);
   return result;
 }
 

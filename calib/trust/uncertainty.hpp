@@ -50,6 +50,7 @@ struct Uncertainty {
   /// `scatter` is in these coordinates.
   Eigen::MatrixXd root;
   KnownUncertainty known;              ///< is in all errors
+  std::vector<ScoreRows> scores;       ///< that `scatter` is made of
   std::vector<ScoreScatter> scatter;   ///< per condition; empty: no robust errors
   double independent_residuals = 0.0;  ///< sum over all conditions and channels
 
@@ -62,9 +63,13 @@ struct Uncertainty {
 void add_prior_information(const Problem& problem, std::span<const double> z,
                            const Eigen::MatrixXd& root, Eigen::MatrixXd& sum);
 
-/// Standard errors from the Gauss-Newton matrix, sigma^2 (J^T J)^-1, for all unknowns including
-/// those at a bound. sigma^2 is the larger of 1 (the noise is known) and the reduced chi-square
-/// (the residuals exceed the noise, so the model has an error).
+/// Scores of the single repeats of every condition, by rows whose residuals are left alone.
+std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span<const double> z,
+                                               const std::vector<ScoreRows>& rows, int threads);
+
+/// Standard errors from the Gauss-Newton matrix, sigma^2 (J^T J)^-1, at all unknowns, those at a
+/// bound included. sigma^2 is the larger of 1 (the noise is known) and the reduced chi-square (the
+/// residuals are larger than the noise, so the model is wrong somewhere).
 ///
 /// The robust ones are the sandwich (J^T J)^-1 (covariance of J^T r) (J^T J)^-1 of score_scatter():
 /// residuals that are correlated in time, as model errors are, carry less information than their

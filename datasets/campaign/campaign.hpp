@@ -16,6 +16,7 @@
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "datasets/campaign/report_settings.hpp"
 #include "datasets/campaign/waveform.hpp"
+#include "datasets/considered_settings.hpp"
 #include "datasets/record.hpp"
 #include "model/plant/parameter.hpp"
 #include "model/simulate.hpp"
@@ -218,6 +219,7 @@ struct Campaign {
   AcceptanceBounds acceptance_bounds;
   FitSettings fit;
   SimulationSettings simulation;
+  ConsideredSettings considered;
   DiagnosisSettings diagnosis;
   ReportSettings report;
   std::optional<SyntheticSettings> synthetic_settings;

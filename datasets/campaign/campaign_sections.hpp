@@ -26,6 +26,9 @@ void read_acceptance(const TomlNode& node, Campaign& campaign);
 /// [fit]; needs the channels.
 FitSettings read_fit(const TomlNode& node, const Campaign& campaign);
 
+/// [considered]; needs the rig.
+ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaign);
+
 /// [diagnosis]
 DiagnosisSettings read_diagnosis(const TomlNode& node);
 /// @throws InputError  `duty` names no condition of the campaign

@@ -233,6 +233,46 @@ FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
   return fit;
 }
 
+ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaign) {
+  ConsideredSettings considered;
+  if (node.is_boolean()) {
+    if (node.boolean())
+      node.fail("is true: expected a table of sizes, or false where the model counts as exact");
+    considered.none = true;
+    return considered;
+  }
+  const model::PlantKind plant = campaign.rig.plant;
+  const auto names = effect_names(plant);
+  for (const auto& [key, entry] : node.entries()) {
+    const auto name = std::find_if(names.begin(), names.end(),
+                                   [&key = key](const auto& each) { return each.key == key; });
+    if (name == names.end()) {
+      std::vector<std::string> known;
+      for (const EffectName& each : names) known.push_back(each.key);
+      node.fail_unknown(key, "effect", known);
+    }
+    const int index = model::parameter_index(plant, key);
+    const ParameterSetting* setting = index < 0 ? nullptr : campaign.setting(index);
+    if (setting != nullptr && (setting->fit || setting->prior))
+      entry.fail("is in the model already, with an estimate or a prior: expected no size here");
+    if (entry.is_boolean()) {
+      if (entry.boolean()) entry.fail("is true: expected a size, or false to leave it out");
+      considered.left_out.insert(key);
+      continue;
+    }
+    const double size = entry.difference(name->unit);
+    if (!(size > 0.0)) entry.fail("is not above zero: expected a plausible size, or false");
+    const double most = index < 0 ? (name->unit == "1" ? 1.0 : 1e3) : spec_of(plant, index).upper;
+    if (!(size <= most))
+      entry.fail(
+          fmt::format("is larger than {:g} {}, which such a term may be at most: expected "
+                      "a plausible size",
+                      most, name->unit));
+    considered.sizes[key] = size;
+  }
+  return considered;
+}
+
 SimulationSettings read_simulation(const TomlNode& node) {
   node.allow_only({"method", "tolerance", "max_seconds"});
   SimulationSettings simulation;

@@ -44,10 +44,12 @@ Compared compared_of(const Json& json, const std::filesystem::path& file, const 
   Compared compared{name, file, {}, is_of_tables(json), {}};
   if (!compared.of_tables) {
     compared.result = as<StoredFit>(json, where, result);
+    as_of_now(compared.result.schema, compared.result.parameters);
     return compared;
   }
   const auto tables = as<StoredTablesFit>(json, where, result);
   compared.result = as_fit(tables);
+  as_of_now(tables.schema, compared.result.parameters);
   for (const StoredTableResidual& residual : tables.residuals)
     compared.published_numbers.push_back(residual.of);
   return compared;

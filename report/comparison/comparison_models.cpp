@@ -67,7 +67,7 @@ Candidate candidate_of(const Compared& compared) {
 std::string obstacle(const Compared& a, const Compared& b) {
   for (const Compared* each : {&a, &b}) {
     const StoredFit& fit = each->result;
-    if (each->of_tables || !fit.weights || !fit.independent_residuals || fit.schema != kFitSchema)
+    if (each->of_tables || !fit.weights || !fit.independent_residuals || !is_fit_schema(fit.schema))
       return fmt::format("{} is no fit of records by this version", each->name);
     if (fit.status != calib::FitStatus::converged || !fit.cost)
       return fmt::format("{} did not converge", each->name);

@@ -41,6 +41,7 @@ StoredParameter stored(const TablesFitResult& result, const calib::FittedAssumpt
   parameter.standard_error = p.standard_error;
   if (p.ci95) {
     parameter.ci95 = {p.ci95->first, p.ci95->second};
+    parameter.ci95_if_exact = parameter.ci95;
     parameter.ci95_from = std::optional(calib::IntervalSource::standard_error);
     parameter.degrees_of_freedom = p.degrees_of_freedom;
   }

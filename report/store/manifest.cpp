@@ -18,6 +18,7 @@
 #include "report/store/json.hpp"
 #include "report/store/provenance.hpp"
 #include "report/store/stored/stored_provenance.hpp"
+#include "report/store/stored/stored_residual_tests.hpp"
 
 namespace rigcal::report {
 namespace {
@@ -116,7 +117,9 @@ std::optional<StoredProvenance> provenance_in(const fs::path& folder, const std:
   if (!is_plain_file(file)) return std::nullopt;
   try {
     const Json json = read_json(file, "a result of rigcal");
-    if (!json.is_object() || json.value("schema", Json()) != "rigcal." + kind + "/1")
+    if (!json.is_object()) return std::nullopt;
+    const Json schema = json.value("schema", Json());
+    if (schema != "rigcal." + kind + "/1" && !(kind == "fit" && schema == kFitSchema))
       return std::nullopt;
     StoredProvenance provenance;
     read_into(JsonNode(json, file.string(), "", kind + ".json")["provenance"], provenance);

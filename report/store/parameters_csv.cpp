@@ -9,6 +9,21 @@ namespace {
 
 std::string yes_or_no(bool value) { return value ? "1" : "0"; }
 
+void add_budget(const StoredParameter& p, std::vector<std::string>& fields) {
+  const auto& exact = p.ci95_if_exact;
+  fields.push_back(exact ? csv_number(exact->low) : std::string());
+  fields.push_back(exact ? csv_number(exact->high) : std::string());
+  if (!p.budget) {
+    fields.insert(fields.end(), 7, std::string());
+    return;
+  }
+  for (const char* kind : {"records", "known_value", "effect"})
+    fields.push_back(csv_number(contribution(*p.budget, kind)));
+  for (const double number : {p.budget->combined, p.budget->degrees_of_freedom,
+                              p.budget->coverage_factor, p.budget->shift})
+    fields.push_back(csv_number(number));
+}
+
 std::string row_of(const StoredParameter& p) {
   std::vector<std::string> fields;
   for (const std::string& text :
@@ -24,6 +39,7 @@ std::string row_of(const StoredParameter& p) {
   fields.push_back(yes_or_no(p.at_bound));
   fields.push_back(p.identifiability ? std::string(to_string(*p.identifiability)) : std::string());
   fields.push_back(csv_text(p.reason));
+  add_budget(p, fields);
   return csv_row(fields);
 }
 
@@ -34,9 +50,34 @@ std::string parameters_csv(calib::FitStatus status, const std::string& message,
   std::string text;
   if (status != calib::FitStatus::converged)
     text += csv_comment(fmt::format("status: {}: {}", to_string(status), message));
-  text += csv_row({"name", "key", "symbol", "unit", "scope", "level", "fitted", "nuisance", "start",
-                   "lower", "upper", "value", "standard_error", "robust_standard_error", "ci95_low",
-                   "ci95_high", "at_bound", "identifiability", "reason"});
+  text += csv_row({"name",
+                   "key",
+                   "symbol",
+                   "unit",
+                   "scope",
+                   "level",
+                   "fitted",
+                   "nuisance",
+                   "start",
+                   "lower",
+                   "upper",
+                   "value",
+                   "standard_error",
+                   "robust_standard_error",
+                   "ci95_low",
+                   "ci95_high",
+                   "at_bound",
+                   "identifiability",
+                   "reason",
+                   "ci95_if_exact_low",
+                   "ci95_if_exact_high",
+                   "u_records",
+                   "u_known_values",
+                   "u_effects",
+                   "u_combined",
+                   "u_degrees_of_freedom",
+                   "coverage_factor",
+                   "shift"});
   for (const StoredParameter& parameter : parameters) text += row_of(parameter);
   return text;
 }

@@ -54,8 +54,9 @@ struct Estimates {
 
 /// Half of a 95 % interval in standard errors.
 double half_in_errors(const StoredParameter& p, double error) {
-  if (!p.ci95 || !std::isfinite(p.ci95->high - p.ci95->low)) return 0.0;
-  return 0.5 * (p.ci95->high - p.ci95->low) / error;
+  const auto& ci95 = p.ci95_if_exact;
+  if (!ci95 || !std::isfinite(ci95->high - ci95->low)) return 0.0;
+  return 0.5 * (ci95->high - ci95->low) / error;
 }
 
 /// Refuses a matrix that is no correlation matrix.
@@ -203,11 +204,12 @@ EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKi
   if (!json.is_object()) {
     throw InputError({name}, "found no JSON object, expected the fit.json of an earlier fit");
   }
-  if (root["schema"].string() != kFitSchema) {
+  if (!is_fit_schema(root["schema"].string())) {
     root["schema"].fail(fmt::format("\"{}\"", kFitSchema));
   }
   StoredFit stored;
   read_into(root, stored);
+  as_of_now(stored.schema, stored.parameters);
   if (stored.status == calib::FitStatus::failed) {
     throw InputError({name}, fmt::format("this fit failed ({}), its values mean nothing; expected "
                                          "one that converged",

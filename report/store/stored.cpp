@@ -81,10 +81,12 @@ ReadFile files_in(const std::filesystem::path& folder) {
 
 Json load_json(const ReadFile& read, const std::string& where, const std::string& name) {
   Json json = parsed(read, where, name);
+  const bool of_fit = name == "fit.json";
   const std::string expected =
-      fmt::format("rigcal.{}/1", std::filesystem::path(name).stem().string());
+      of_fit ? kFitSchema : fmt::format("rigcal.{}/1", std::filesystem::path(name).stem().string());
   const bool has_schema = json.is_object() && json.contains("schema");
-  if (has_schema && json["schema"] == expected) return json;
+  if (has_schema && (json["schema"] == expected || (of_fit && json["schema"] == kEarlierFitSchema)))
+    return json;
   throw InputError(
       {path_in(where, name)},
       fmt::format("found {}; expected \"schema\": \"{}\"",
@@ -98,11 +100,12 @@ std::variant<Calibration, StoredTablesFit> load_calibration(const ReadFile& read
   const bool has_fit = read("fit.json").has_value();
   const bool both = has_fit && read("validation.json").has_value();
   const bool is_fit =
-      both ? text_of(parsed(read, where, "residual_tests.json"), "of") == kFitSchema : has_fit;
+      both ? is_fit_schema(text_of(parsed(read, where, "residual_tests.json"), "of")) : has_fit;
   stored.file = is_fit ? "fit.json" : "validation.json";
   const Json json = load_json(read, where, stored.file);
   if (is_fit && is_of_tables(json)) return as<StoredTablesFit>(json, where, stored.file);
   stored.result = as<StoredFit>(json, where, stored.file);
+  as_of_now(stored.result.schema, stored.result.parameters);
   const ReadFile own = files_of_run(read, stored.result.provenance, where, stored.file);
   require_matching(stored.result, path_in(where, stored.file));
   stored.curves = load<StoredCurves>(own, where, "residual_tests.json");

@@ -376,19 +376,47 @@ std::string scorecard_text(const Result& result, const Style& style, std::size_t
   return text;
 }
 
+/// Half of the interval that would hold if the model were exact.
+std::string exact_text(const calib::FittedParameter& p, const ReadableUnit& unit) {
+  if (!p.budget || !p.ci95_if_exact) return "-";
+  return "+- " +
+         in_unit(0.5 * (p.ci95_if_exact->second - p.ci95_if_exact->first), unit, kErrorDigits);
+}
+
+/// With what the model leaves out, where that was considered.
+double standard_uncertainty(const calib::FittedParameter& p) {
+  return p.budget ? p.budget->combined : error_of(p);
+}
+
+/// The effect that adds most to an interval.
+std::string widened_by(const calib::FittedParameter& p) {
+  const calib::BudgetLine* largest = nullptr;
+  if (p.budget) {
+    for (const calib::BudgetLine& line : p.budget->lines) {
+      if (largest == nullptr || line.uncertainty > largest->uncertainty) largest = &line;
+    }
+  }
+  return largest == nullptr || largest->kind != "effect" ? "-" : largest->source;
+}
+
 std::string parameters_text(const Result& result, const Style& style, std::size_t most) {
   const auto table = model::parameter_table(result.campaign.rig.plant);
-  TextTable text({{"parameter"},
-                  {"for"},
-                  {"value", Align::right},
-                  {"unit"},
-                  {"std. error", Align::right, 1},
-                  {"95 % interval", Align::right},
-                  {"bounds", Align::right, 2},
-                  {"identifiability"}},
-                 2);
-  std::vector<std::pair<std::string, std::string>> reasons;  // parameter and reason
-  // Errors and intervals hold at a minimum only, which a stopped search has not reached.
+  std::vector<TextTable::Column> columns{{"parameter"},
+                                         {"for"},
+                                         {"value", Align::right},
+                                         {"unit"},
+                                         {"std. error", Align::right, 1},
+                                         {"95 % interval", Align::right}};
+  const bool considered = result.fit.considered.has_value();
+  if (considered) {
+    columns.push_back({"if model exact", Align::right, 1});
+    columns.push_back({"widened by", Align::left, 3});
+  }
+  columns.push_back({"bounds", Align::right, 2});
+  columns.push_back({"identifiability"});
+  TextTable text(std::move(columns), 2);
+  std::vector<std::pair<std::string, std::string>> reasons;  // whose, why
+  // Errors and intervals are those of a minimum, at which a search that was stopped is not.
   const bool judged = result.fit.status != FitStatus::stopped || result.fit.has_converged();
   std::vector<const calib::FittedParameter*> fitted;
   for (const calib::FittedParameter& p : result.fit.parameters)
@@ -409,11 +437,20 @@ std::string parameters_text(const Result& result, const Style& style, std::size_
     if (p.ci95) ci95 = {p.ci95->first / unit.si, p.ci95->second / unit.si};
     const EstimateText estimate =
         estimate_text(p.value / unit.si, ci95, {p.lower / unit.si, p.upper / unit.si});
-    text.add({std::string(spec.key) + (p.nuisance ? " (nuisance)" : ""), whose, estimate.value,
-              std::string(unit.name),
-              judged && p.standard_error ? in_unit(error_of(p), unit, kErrorDigits) : "-",
-              judged && ci95 ? fmt::format("{} .. {}", estimate.low, estimate.high) : "-",
-              limits(p.lower, p.upper, unit, 4), identifiability_text(p, judged, style)});
+    std::vector<std::string> row{
+        std::string(spec.key) + (p.nuisance ? " (nuisance)" : ""),
+        whose,
+        estimate.value,
+        std::string(unit.name),
+        judged && p.standard_error ? in_unit(standard_uncertainty(p), unit, kErrorDigits) : "-",
+        judged && ci95 ? fmt::format("{} .. {}", estimate.low, estimate.high) : "-"};
+    if (considered) {
+      row.push_back(judged ? exact_text(p, unit) : "-");
+      row.push_back(judged ? widened_by(p) : "-");
+    }
+    row.push_back(limits(p.lower, p.upper, unit, 4));
+    row.push_back(identifiability_text(p, judged, style));
+    text.add(std::move(row));
     if (!p.reason.empty()) reasons.emplace_back(fmt::format("{} ({})", spec.key, whose), p.reason);
   }
   if (text.empty()) {

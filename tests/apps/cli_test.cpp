@@ -247,7 +247,7 @@ std::string broken_fit(const std::function<void(json&)>& edit) {
 const std::vector<BadFit> kBadFits{
     {"not JSON", "{\n  \"schema\": oops\n}\n", {"fit.json:2:", "not JSON"}},
     {"a list", "[]", {"fit.json", "object"}},
-    {"another schema", R"({"schema": "rigcal.validation/1"})", {"schema", "rigcal.fit/1"}},
+    {"another schema", R"({"schema": "rigcal.validation/1"})", {"schema", "rigcal.fit/2"}},
     {"no status", R"({"schema": "rigcal.fit/1"})", {"status", "missing"}},
     {"unknown status",
      R"({"schema": "rigcal.fit/1", "status": "good", "message": ""})",
@@ -516,7 +516,7 @@ TEST_CASE("fit and validate: a twin from its records to its verdict", "[apps]") 
 
   check_complete(folder.read("out/fit.json"));
   const json fit = json::parse(folder.read("out/fit.json"));
-  CHECK(fit["schema"] == "rigcal.fit/1");
+  CHECK(fit["schema"] == "rigcal.fit/2");
   CHECK(fit["status"] == "converged");
   CHECK(fit["verdict"] == "PASS");
   CHECK(fit["synthetic"] == true);

@@ -235,7 +235,7 @@ TEST_CASE("user files: batch hands --force on, and a rig alone is refused withou
   CHECK(folder.read("out/bench/fit.json") == "mine");
   CHECK(folder.has("out/batch.json"));
   CHECK(folder.run({"batch", "lab", "--out", "out", "--force"}).exit_code == 0);
-  CHECK(json::parse(folder.read("out/bench/fit.json"))["schema"] == "rigcal.fit/1");
+  CHECK(json::parse(folder.read("out/bench/fit.json"))["schema"] == "rigcal.fit/2");
 }
 
 TEST_CASE("user files: links inside a folder of results are not followed", "[apps]") {

@@ -107,7 +107,7 @@ void add_numbers(const StoredFit& fit, Line& sentence) {
         signals.size() == 1
             ? std::string("The model reproduces the test signal")
             : fmt::format("The model reproduces all {} test signals", signals.size()));
-    if (fit.schema == kFitSchema && !unseen.empty()) {
+    if (is_fit_schema(fit.schema) && !unseen.empty()) {
       constexpr std::size_t kNamed = 2;
       const auto of_these = std::count_if(signals.begin(), signals.end(),
                                           [](const Judged& each) { return each.held_back(); });
@@ -219,10 +219,11 @@ doc::Doubts doubts_of(const StoredFit& fit) {
   return doubts;
 }
 
-/// Half width of a symmetric interval; nothing for an asymmetric or missing one.
-std::optional<double> expanded_uncertainty(const StoredParameter& p) {
+/// Half an interval, where it is as wide on both sides; nothing where it is not, or unknown.
+std::optional<double> expanded_uncertainty(const StoredParameter& p,
+                                           const doc::Interval& interval) {
   constexpr double kSymmetric = 0.01;
-  const auto ends = doc::Interval(p.ci95).ends;
+  const auto& ends = interval.ends;
   if (!ends || !p.value) return std::nullopt;
   const double below = *p.value - ends->low;
   const double above = ends->high - *p.value;
@@ -232,29 +233,39 @@ std::optional<double> expanded_uncertainty(const StoredParameter& p) {
 
 /// U divided by the standard error from which it follows.
 std::optional<double> coverage_factor(const StoredParameter& p) {
-  const auto half = expanded_uncertainty(p);
+  if (p.budget) return p.budget->coverage_factor;
+  const auto half = expanded_uncertainty(p, p.ci95);
   const auto error = interval_error(p);
   if (!half || !error || !(error->standard_error > 0.0)) return std::nullopt;
   return *half / error->standard_error;
 }
 
-doc::Row value_row(const StoredParameter& p, bool judged) {
+/// "± 0.05", or both ends where it is not as wide on both sides.
+Line uncertainty_line(const StoredParameter& p, const doc::Interval& interval,
+                      const RowUnit& unit) {
+  if (const auto half = expanded_uncertainty(p, interval))
+    return {"± ", doc::Quantity{half, matched(*half / unit.si, *half / unit.si)}};
+  const doc::Estimate estimate =
+      doc::estimate(p.value, interval, unit.si,
+                    {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)});
+  return estimate.has_interval ? estimate.interval() : Line{"–"};
+}
+
+/// @param both  with the uncertainty if the model were exact
+doc::Row value_row(const StoredParameter& p, bool judged, bool both) {
   const RowUnit unit = unit_of(p);
   const doc::Estimate estimate =
       doc::estimate(p.value, judged ? p.ci95 : std::nullopt, unit.si,
                     {p.lower.value_or(kAnywhere.low), p.upper.value_or(kAnywhere.high)});
   Line name{capitalised(spaced(p.key)), " ", doc::Soft{p.symbol}};
   if (p.level) name.emplace_back(", " + *p.level);
-  Line uncertainty{"–"};
-  if (const auto half = expanded_uncertainty(p); judged && half)
-    uncertainty = {"± ", doc::Quantity{half, matched(*half / unit.si, *half / unit.si)}};
-  else if (estimate.has_interval)
-    uncertainty = estimate.interval();
-  return {{{std::move(name)},
-           estimate.value,
-           {std::move(uncertainty)},
-           unit.name,
-           doc::badge(p.identifiability, p.at_bound, judged)}};
+  doc::Row row{{{std::move(name)},
+                estimate.value,
+                {judged ? uncertainty_line(p, p.ci95, unit) : Line{"–"}}}};
+  if (both) row.cells.push_back({uncertainty_line(p, p.ci95_if_exact, unit)});
+  row.cells.push_back(unit.name);
+  row.cells.push_back(doc::badge(p.identifiability, p.at_bound, judged));
+  return row;
 }
 
 /// "k = 1.96", "k = 1.96 to 2.1"; empty if no value has a U.
@@ -293,14 +304,20 @@ void add_values(const StoredFit& fit, bool judged, doc::Blocks& blocks) {
   doc::Table table{"Calibrated values"};
   table.shape = doc::Table::Shape::cards;
   table.style = "values";
-  table.columns = {{"Quantity"},
-                   {"Value", doc::Column::Kind::number},
-                   {"U"},
-                   {"Unit", doc::Column::Kind::unit},
-                   {"Determined?"}};
-  for (const StoredParameter* p : found) table.rows.push_back(value_row(*p, judged));
+  const bool both = judged && std::any_of(found.begin(), found.end(),
+                                          [](const auto* p) { return p->budget.has_value(); });
+  table.columns = {{"Quantity"}, {"Value", doc::Column::Kind::number}, {"U"}};
+  if (both) table.columns.push_back({"U if the model is exact"});
+  table.columns.push_back({"Unit", doc::Column::Kind::unit});
+  table.columns.push_back({"Determined?"});
+  for (const StoredParameter* p : found) table.rows.push_back(value_row(*p, judged, both));
   blocks.emplace_back(std::move(table));
   Line notes;
+  if (both) {
+    notes.emplace_back("U counts small effects that the model leaves out (");
+    notes.emplace_back(doc::Link{"#parameters", "budget"});
+    notes.emplace_back("). ");
+  }
   if (more > 0) {
     notes.emplace_back(doc::Link{"#parameters", plural(more, "more value")});
     notes.emplace_back(", each more certain than these. ");
@@ -551,7 +568,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
     const std::optional<Range>& fitted = fit.validity.*range;
     // The ranges of a pure validation are in `validity` already.
     const std::optional<Range> validated =
-        fit.schema == kFitSchema && fit.validated ? (*fit.validated).*range : std::nullopt;
+        is_fit_schema(fit.schema) && fit.validated ? (*fit.validated).*range : std::nullopt;
     if (fitted || validated)
       ranges.push_back(fmt::format("{} {}", name, coverage_text(fitted, validated, unit)));
   };
@@ -563,7 +580,7 @@ void add_scope(const StoredFit& fit, doc::Blocks& blocks) {
   add(&StoredValidity::leakage_coefficient, "leakage coefficient", "1");
   if (!fit.validity.leak_levels.empty())
     ranges.push_back(fmt::format("leak levels {}", fmt::join(fit.validity.leak_levels, ", ")));
-  const bool valid = fit.schema == kFitSchema && fit.assessment &&
+  const bool valid = is_fit_schema(fit.schema) && fit.assessment &&
                      calib::has_range_of_validity(fit.assessment->agreement.state,
                                                   fit.assessment->validation.state);
   blocks.emplace_back(doc::Paragraph{

@@ -20,12 +20,18 @@ doc::Section scores_section(const StoredFit& fit, bool unfinished);
 /// @param judged  whether a search converged, so that estimates have grades
 doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
                                 const StoredCorrelation& correlation, bool judged);
-/// One article for each condition: its description, scores, plots and residual tests.
+/// What contributes to the uncertainty of each estimate; nothing where no effects were considered.
+void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blocks);
+/// One article for each condition: what it is, its scores, its plots and residual tests.
 doc::Section conditions_section(const Calibration& stored, int threads);
 /// Evidence on the estimates: singular values, profiles, bootstrap, lack of fit, predictions.
 doc::Section identifiability_section(const StoredFit& fit);
 /// Adds the singular values of the Jacobian with an explanation.
 void add_singular_values(const StoredFit& fit, doc::Blocks& blocks);
+/// Small effects that the model leaves out, and which of them the residuals ask for.
+void add_considered(const StoredFit& fit, doc::Blocks& blocks);
+/// Estimates from the validation records alone, beside those of the fit.
+void add_stability(const StoredFit& fit, doc::Blocks& blocks);
 doc::Section starts_section(const StoredFit& fit);
 /// Failures and warnings.
 doc::Section warnings_section(const StoredFit& fit);

@@ -46,7 +46,7 @@ Part tables_fit_part(const StoredTablesFit& fit) {
 
 Part fit_part(const Calibration& stored, int threads) {
   const StoredFit& fit = stored.result;
-  Part part = part_of(fit, "parameters", fit.schema == kFitSchema ? "Calibration" : "Validation",
+  Part part = part_of(fit, "parameters", is_fit_schema(fit.schema) ? "Calibration" : "Validation",
                       stored.file);
   const bool unfinished = fit.status == calib::FitStatus::stopped && !searched_to_the_end(fit);
   part.verdict = fit_verdict(fit);

@@ -43,6 +43,13 @@ doc::Row fitted_row(const StoredParameter& p, bool judged, const std::string& re
   const double half_width = relative_half_width(p);
   doc::Cell interval{estimate.interval()};
   if (!std::isinf(half_width)) interval.below = {{half_width_text(half_width)}};
+  if (p.budget) {
+    Line exact{"if exact "};
+    for (doc::Inline& part :
+         doc::estimate(p.value, p.ci95_if_exact, unit.si, bounds_of(p)).interval())
+      exact.push_back(std::move(part));
+    interval.below.push_back(std::move(exact));
+  }
   doc::Cell start{Line{doc::in_unit(p.start, unit.si, 5)}};
   start.below = {{doc::in_unit(p.lower, unit.si, 4), " … ", doc::in_unit(p.upper, unit.si, 4)}};
   doc::Row row{{{std::move(name)},
@@ -194,6 +201,7 @@ doc::Section parameters_section(const std::vector<StoredParameter>& parameters,
     section.blocks.emplace_back(std::move(table));
     if (!common.empty())
       section.blocks.emplace_back(doc::reading("All: " + joined_reason(common) + "."));
+    add_budget(parameters, section.blocks);
   }
   if (correlation.names.size() > 1) {
     section.blocks.emplace_back(doc::Heading{{"Correlation of the estimates"}});

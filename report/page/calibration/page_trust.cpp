@@ -190,6 +190,8 @@ doc::Section identifiability_section(const StoredFit& fit) {
   add_profiles(fit, blocks);
   add_bootstrap(fit, blocks);
   add_lack_of_fit(fit, blocks);
+  add_considered(fit, blocks);
+  add_stability(fit, blocks);
   add_cross_validation(fit, blocks);
   return section;
 }

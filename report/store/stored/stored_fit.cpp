@@ -51,6 +51,48 @@ StoredProfileEnd stored(const calib::ProfileEnd& end) {
   return {finite(end.value), finite(end.reached), std::optional(end.lost)};
 }
 
+StoredBudget stored(const calib::Budget95& budget) {
+  StoredBudget result;
+  for (const calib::BudgetLine& line : budget.lines)
+    result.lines.push_back({line.source, line.kind, line.uncertainty});
+  result.combined = budget.combined;
+  result.degrees_of_freedom = budget.degrees_of_freedom;
+  result.coverage_factor = budget.coverage_factor;
+  result.expanded = budget.expanded;
+  result.shift = budget.shift;
+  return result;
+}
+
+StoredConsidered stored(const calib::Considered& considered) {
+  StoredConsidered result;
+  result.left_out = considered.left_out;
+  for (const calib::ConsideredEffect& e : considered.effects)
+    result.effects.push_back({e.key, e.meaning, e.unit, e.size_from, e.size, e.one_sided,
+                              unless_empty(e.problem), e.estimate, e.standard_error, e.alone,
+                              e.alone_half_width, e.p_value, e.p_of_all, e.explains});
+  for (const std::size_t position : considered.missing)
+    result.missing.push_back(considered.effects[position].key);
+  return result;
+}
+
+std::vector<StoredStability> stored(const std::vector<calib::StabilityCheck>& checks,
+                                    std::span<const model::ParameterSpec> table) {
+  std::vector<StoredStability> result;
+  for (const calib::StabilityCheck& each : checks) {
+    StoredStability& check = result.emplace_back();
+    const model::ParameterSpec& spec = table[static_cast<std::size_t>(each.index)];
+    check.key = spec.key;
+    check.unit = spec.unit;
+    check.scope = each.scope;
+    if (each.scope != Scope::rig) check.level = each.level;
+    check.value = each.value;
+    check.difference = each.difference;
+    check.expanded = each.expanded;
+    check.differs = each.differs;
+  }
+  return result;
+}
+
 StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSpec& spec) {
   StoredParameter result;
   result.name = spec.name;
@@ -71,6 +113,8 @@ StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSp
   result.standard_error = finite(p.standard_error);
   result.robust_standard_error = finite(p.robust_standard_error);
   result.ci95 = range_of(p.ci95);
+  result.ci95_if_exact = range_of(p.ci95_if_exact);
+  if (p.budget) result.budget = stored(*p.budget);
   if (p.ci95) result.ci95_from = std::optional(p.interval);
   result.degrees_of_freedom = finite(p.degrees_of_freedom);
   if (p.bootstrap)
@@ -290,6 +334,7 @@ StoredStart stored(const calib::StartReport& start) {
 }
 
 void add_trust(const calib::Fit& fit, StoredFit& result) {
+  if (fit.considered) result.considered = stored(*fit.considered);
   const bool solved = fit.rank > 0;
   result.rank = fit.rank;
   result.singular_values = fit.singular_values;
@@ -327,10 +372,10 @@ void add_search(const calib::Fit& fit, StoredFit& result) {
 /// Degrees of freedom for which Student's t gives the half width of ci95 at this error. A bound may
 /// cut the interval at one end, so the longer side counts.
 double freedom_of_interval(const StoredParameter& parameter, double error) {
-  if (!parameter.ci95 || !parameter.value) return metrics::kManyDegrees;
+  const auto& interval = parameter.ci95_if_exact;
+  if (!interval || !parameter.value) return metrics::kManyDegrees;
   const double quantile =
-      std::max(parameter.ci95->high - *parameter.value, *parameter.value - parameter.ci95->low) /
-      error;
+      std::max(interval->high - *parameter.value, *parameter.value - interval->low) / error;
   if (!(quantile > metrics::student_t_quantile(0.975, metrics::kManyDegrees)))
     return metrics::kManyDegrees;
   double low = 1.0;
@@ -348,6 +393,29 @@ std::optional<calib::Verdict> StoredCondition::verdict_of(const std::string& cha
   if (failure) return verdict;
   const calib::Verdict* found = find(channel_verdicts, channel);
   return found == nullptr ? std::nullopt : std::optional(*found);
+}
+
+double contribution(const StoredBudget& budget, std::string_view kind) {
+  double squares = 0.0;
+  for (const StoredBudgetLine& line : budget.lines)
+    if (line.kind == kind) squares += line.uncertainty * line.uncertainty;
+  return std::sqrt(squares);
+}
+
+const StoredBudgetLine* largest_effect(const StoredBudget& budget) {
+  const StoredBudgetLine* largest = nullptr;
+  for (const StoredBudgetLine& line : budget.lines) {
+    const bool counts = line.kind == "effect" && line.uncertainty > 0.0;
+    if (counts && (largest == nullptr || line.uncertainty > largest->uncertainty)) largest = &line;
+  }
+  return largest;
+}
+
+void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters) {
+  if (schema == kFitSchema) return;
+  for (StoredParameter& each : parameters) {
+    if (!each.ci95_if_exact && each.ci95) each.ci95_if_exact = *each.ci95;
+  }
 }
 
 std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter) {
@@ -419,6 +487,7 @@ StoredFit stored(const Result& result) {
   for (const calib::FittedParameter& p : fit.parameters)
     json.parameters.push_back(stored(p, table[static_cast<std::size_t>(p.index)]));
   add_trust(fit, json);
+  if (!fit.stability.empty()) json.stability = stored(fit.stability, table);
   if (result.kind == ResultKind::fit) json.weights = weights(result);
   using datasets::Use;
   json.validity =

@@ -95,6 +95,56 @@ struct StoredProfile {
   RIGCAL_DESCRIBE(low, high, values, rises)
 };
 
+/// One contribution to the uncertainty of an estimate, SI.
+struct StoredBudgetLine {
+  std::string source, kind;
+  double uncertainty = 0.0;
+  RIGCAL_DESCRIBE(source, kind, uncertainty)
+};
+
+/// Uncertainty budget of an estimate: the squares of the lines add up to that of the combined
+/// standard uncertainty, SI.
+struct StoredBudget {
+  std::vector<StoredBudgetLine> lines;
+  double combined = 0.0, degrees_of_freedom = 0.0, coverage_factor = 0.0, expanded = 0.0,
+         shift = 0.0;
+  RIGCAL_DESCRIBE(lines, combined, degrees_of_freedom, coverage_factor, expanded, shift)
+};
+/// What the lines of a kind contribute together: the root of the sum of their squares.
+double contribution(const StoredBudget& budget, std::string_view kind);
+/// The line of an effect that contributes most; null where there is none.
+const StoredBudgetLine* largest_effect(const StoredBudget& budget);
+
+/// A small effect that the model leaves out, SI.
+struct StoredEffect {
+  std::string key, meaning, unit, size_from;
+  double size = 0.0;
+  bool one_sided = false;
+  std::optional<std::string> problem;
+  std::optional<double> estimate, standard_error;
+  std::optional<double> alone, alone_half_width, p_value, p_of_all;
+  double explains = 0.0;
+  RIGCAL_DESCRIBE(key, meaning, unit, size_from, size, one_sided, problem, estimate, standard_error,
+                  alone, alone_half_width, p_value, p_of_all, explains)
+};
+
+/// An estimate made once more from the validation records alone, SI.
+struct StoredStability {
+  std::string key, unit;
+  datasets::Scope scope = datasets::Scope::rig;
+  std::optional<std::string> level;
+  double value = 0.0, difference = 0.0, expanded = 0.0;
+  bool differs = false;
+  RIGCAL_DESCRIBE(key, unit, scope, level, value, difference, expanded, differs)
+};
+
+struct StoredConsidered {
+  std::vector<StoredEffect> effects;
+  std::vector<std::string> left_out;
+  std::vector<std::string> missing;  ///< that the residuals ask for, the best explanation first
+  RIGCAL_DESCRIBE(effects, left_out, missing)
+};
+
 /// A parameter, fitted or known.
 struct StoredParameter {
   std::string name;  ///< that of results: "mass_kg"
@@ -106,21 +156,26 @@ struct StoredParameter {
   bool fitted = false;
   bool nuisance = false;
   std::optional<double> standard_error, robust_standard_error;
-  std::optional<Range> ci95;
-  Later<std::optional<calib::IntervalSource>> ci95_from;
-  Later<std::optional<double>> degrees_of_freedom;  ///< for the error on which ci95 is based
+  std::optional<Range> ci95;                              ///< of the rig
+  Later<std::optional<Range>> ci95_if_exact;              ///< if the model were exact
+  Later<std::optional<calib::IntervalSource>> ci95_from;  ///< of ci95_if_exact
+  Later<std::optional<double>> degrees_of_freedom;  ///< of the error that ci95_if_exact rests on
+  Omittable<StoredBudget> budget;
   Omittable<StoredBootstrap> bootstrap;
   Omittable<StoredProfile> profile;
   bool at_bound = false;
   std::optional<calib::Identifiability> identifiability;
   std::string reason;
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, value, start, lower, upper, fitted,
-                  nuisance, standard_error, robust_standard_error, ci95, ci95_from,
-                  degrees_of_freedom, bootstrap, profile, at_bound, identifiability, reason)
+                  nuisance, standard_error, robust_standard_error, ci95, ci95_if_exact, ci95_from,
+                  degrees_of_freedom, budget, bootstrap, profile, at_bound, identifiability, reason)
 };
 
-/// The error on which ci95 is based, with its degrees of freedom. For a file of a version that does
-/// not store them they are computed from ci95 and the error, or taken as infinite.
+/// What the parameters of a result of an earlier schema say today.
+void as_of_now(std::string_view schema, std::vector<StoredParameter>& parameters);
+
+/// The error that ci95_if_exact rests on, and its degrees of freedom. A file of a version that does
+/// not tell these has them by the half width of that interval in errors, else many.
 std::optional<metrics::EstimateError> interval_error(const StoredParameter& parameter);
 /// The larger of standard and robust error.
 std::optional<double> error_of(const StoredParameter& parameter);
@@ -333,6 +388,8 @@ struct StoredFit {
   Later<std::vector<std::string>> combinations;
   Later<std::optional<StoredLackOfFit>> lack_of_fit;
   Later<std::optional<StoredBetweenRepeats>> between_repeats;
+  Omittable<StoredConsidered> considered;
+  Omittable<std::vector<StoredStability>> stability;
   Later<std::vector<StoredBasin>> basins;
   Later<std::string> agreement;  ///< agreement of the starts, in words
   Omittable<StoredBootstrapRun> bootstrap;
@@ -356,9 +413,10 @@ struct StoredFit {
                   report, model, cost, residual_count, evaluations, wall_seconds,
                   simulation_tolerance, parameters, correlation, rank, singular_values,
                   reduced_chi_square, independent_residuals, interval_advice, combinations,
-                  lack_of_fit, between_repeats, basins, agreement, bootstrap, cross_validation, aic,
-                  bic, weights, validity, validated, decision, acceptance, not_judged, conditions,
-                  groups, starts, best_start, failure_count, failures, warnings, provenance)
+                  lack_of_fit, between_repeats, considered, stability, basins, agreement, bootstrap,
+                  cross_validation, aic, bic, weights, validity, validated, decision, acceptance,
+                  not_judged, conditions, groups, starts, best_start, failure_count, failures,
+                  warnings, provenance)
 
   const StoredCondition* find(const std::string& condition) const;
 };

@@ -14,7 +14,13 @@
 
 namespace rigcal::report {
 
-inline constexpr const char* kFitSchema = "rigcal.fit/1";
+inline constexpr const char* kFitSchema = "rigcal.fit/2";
+/// Whose `ci95` is what is `ci95_if_exact` today.
+inline constexpr const char* kEarlierFitSchema = "rigcal.fit/1";
+/// Whether a result is a fit, of this or of an earlier version.
+inline bool is_fit_schema(std::string_view schema) {
+  return schema == kFitSchema || schema == kEarlierFitSchema;
+}
 inline constexpr const char* kValidationSchema = "rigcal.validation/1";
 
 template <>

@@ -32,7 +32,7 @@ TEST_CASE("profile: where the cost is all but quadratic it ends where the interv
     const FittedParameter& p = parameter(found, key);
     CAPTURE(key, p.reason);
     REQUIRE(p.profile.has_value());
-    const auto interval = p.ci95.value();
+    const auto interval = p.ci95_if_exact.value();
     // 10 %: curvature, the quantile of t, and a crossing that is found to 2 %.
     CHECK_THAT(p.profile->high.value.value() - p.value, WithinRel(interval.second - p.value, 0.1));
     CHECK_THAT(p.value - p.profile->low.value.value(), WithinRel(p.value - interval.first, 0.1));
@@ -75,7 +75,7 @@ TEST_CASE("profile: one that was stopped, or cut off by a bound, says nothing of
   CHECK(mass.identifiability == Identifiability::identified);
   CHECK_THAT(mass.reason, Contains("not made on either side: stopped on request"));
 
-  twin.setting("mass").upper = mass.value + 0.2 * (mass.ci95->second - mass.value);
+  twin.setting("mass").upper = mass.value + 0.2 * (mass.ci95_if_exact->second - mass.value);
   options.profiles = true;
   const Fit bounded = fit(twin.campaign, records, options);
   const FittedParameter& cut = parameter(bounded, "mass");
@@ -109,7 +109,7 @@ TEST_CASE("profile: without an interval it ends where the cost says 95 %", "[cal
   Fit bare = found;
   std::vector<double> z;
   for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
-    bare.parameters[j].ci95.reset();
+    bare.parameters[j].ci95_if_exact.reset();
     bare.parameters[j].standard_error.reset();
     bare.parameters[j].robust_standard_error.reset();
     z.push_back(problem.map.to_unit(static_cast<int>(j), found.parameters[j].value));
@@ -135,8 +135,8 @@ TEST_CASE("profile: a lower cost than that of the fit is told", "[calib]") {
   for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
     FittedParameter& each = found.parameters[j];
     each.value += 5.0 * each.standard_error.value();
-    each.ci95->first += 5.0 * each.standard_error.value();
-    each.ci95->second += 5.0 * each.standard_error.value();
+    each.ci95_if_exact->first += 5.0 * each.standard_error.value();
+    each.ci95_if_exact->second += 5.0 * each.standard_error.value();
     z.push_back(problem.map.to_unit(static_cast<int>(j), each.value));
   }
   Budget budget;
@@ -172,17 +172,17 @@ TEST_CASE("intervals: which of them to use", "[calib]") {
   std::vector<FittedParameter> parameters(2);
   for (FittedParameter& each : parameters) {
     each.value = 85.0;
-    each.ci95 = {84.9999, 85.0001};
+    each.ci95_if_exact = {84.9999, 85.0001};
   }
   CHECK(compare_intervals(problem, parameters).empty());
   BootstrapSpread drawn{3e-5, 0.0, 9.0, {84.9999, 85.0001}};
   parameters[0].bootstrap = drawn;
-  CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95`");
+  CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95_if_exact`");
   CHECK_THAT(compare_intervals(problem, parameters, {"supply_pressure_pa"}),
              Contains("the bootstrap leaves out the uncertainty of supply_pressure_pa"));
   drawn.ci95 = {84.99994, 85.00006};  // 0.6 times as wide: nine degrees of freedom may
   parameters[0].bootstrap = drawn;
-  CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95`");
+  CHECK(compare_intervals(problem, parameters) == "the bootstrap agrees with `ci95_if_exact`");
   drawn.ci95 = {84.99996, 85.00004};
   parameters[0].bootstrap = drawn;
   CHECK_THAT(compare_intervals(problem, parameters),

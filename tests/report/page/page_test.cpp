@@ -395,6 +395,60 @@ TEST_CASE("page: an estimate is told with its interval and grade on a narrow scr
     CHECK_THAT(html, Contains(std::string("data-label=\"") + label + "\""));
 }
 
+TEST_CASE("page: both uncertainties, the budget, the effects and the second estimate", "[report]") {
+  Json json = stored_result();
+  for (const char* word : {"U if the model is exact", "Uncertainty budget", "leaves out"})
+    CHECK_THAT(page(json), !Contains(word));
+  json["schema"] = "rigcal.fit/2";
+  Json& mass = json["parameters"][0];
+  mass["value"] = 85.0;
+  mass["ci95"] = {75.0, 95.0};
+  mass["ci95_if_exact"] = {84.5, 85.5};
+  mass["budget"] = {{"lines",
+                     {{{"source", "noise"}, {"kind", "records"}, {"uncertainty", 0.25}},
+                      {{"source", "coulomb_friction"}, {"kind", "effect"}, {"uncertainty", 3.0}},
+                      {{"source", "valve_time_constant"}, {"kind", "effect"}, {"uncertainty", 4.0}},
+                      {{"source", "ki"}, {"kind", "effect"}, {"uncertainty", 0.01}}}},
+                    {"combined", 5.00626},
+                    {"degrees_of_freedom", 40.0},
+                    {"coverage_factor", 2.02},
+                    {"expanded", 10.1126},
+                    {"shift", -0.5}};
+  json["considered"] = {{"effects",
+                         {{{"key", "valve_time_constant"},
+                           {"meaning", "lag of the valve"},
+                           {"unit", "s"},
+                           {"size_from", "a corner <of> 300 Hz"},
+                           {"size", 5e-4},
+                           {"one_sided", true},
+                           {"problem", nullptr},
+                           {"estimate", 2e-4},
+                           {"standard_error", 1e-5},
+                           {"alone", 2.1e-4},
+                           {"alone_half_width", 2e-5},
+                           {"p_value", 1e-5},
+                           {"p_of_all", 1.5e-4},
+                           {"explains", 30.0}}}},
+                        {"left_out", {"supply_sag"}},
+                        {"missing", {"valve_time_constant"}}};
+  json["stability"] = {{{"key", "mass"},
+                        {"unit", "kg"},
+                        {"scope", "rig"},
+                        {"level", nullptr},
+                        {"value", 97.0},
+                        {"difference", 12.0},
+                        {"expanded", 11.0},
+                        {"differs", true}}};
+  const std::string html = page(json);
+  CHECK_THAT(html, Contains("U if the model is exact") && Contains("k = 2.02, coverage 95 %"));
+  CHECK_THAT(html, Contains("Uncertainty budget") && Contains("all others") &&
+                       Contains("Contributions one by one (4)"));
+  CHECK_THAT(html, Contains("The residuals ask for valve_time_constant.") &&
+                       Contains("a corner &lt;of&gt; 300 Hz") &&
+                       Contains("Left out by the campaign: supply_sag."));
+  CHECK_THAT(html, Contains("Estimates from the validation records alone") && Contains("differs"));
+}
+
 TEST_CASE("page: the band of prediction lies around model and residual", "[report]") {
   const auto drawn = [](const std::string& titles, const std::string& fields) {
     const ReadFile read = [&](const std::filesystem::path& path) -> std::optional<std::string> {
@@ -436,7 +490,7 @@ TEST_CASE("page: refuses what is no result of this version", "[report]") {
   CHECK_THROWS_AS(page(Json::array()), InputError);
   CHECK_THROWS_AS(page(Json::object()), InputError);
   CHECK_THROWS_WITH(page({{"schema", "other/1"}}),
-                    Contains("fit.json") && Contains("other/1") && Contains("rigcal.fit/1"));
+                    Contains("fit.json") && Contains("other/1") && Contains("rigcal.fit/2"));
   CHECK_THROWS_WITH(page(stored_result(), "other.json"),
                     Contains("neither fit.json nor validation.json"));
   Json json = stored_result();

@@ -143,6 +143,35 @@ TEST_CASE("parameters_text: no estimate is rounded to zero or out of its bounds"
              Contains(" 10 ") && Contains("0 .. 810") && Contains("10 .. 500"));
 }
 
+TEST_CASE("parameters_text: both intervals, and what widens one most", "[report]") {
+  Scene scene;
+  scene.add_parameter("mass", "");
+  calib::FittedParameter& mass = scene.fit.parameters[0];
+  scene.fit.status = calib::FitStatus::converged;
+  mass.value = 110.0;
+  mass.lower = 10.0;
+  mass.upper = 500.0;
+  mass.standard_error = 0.25;
+  mass.ci95 = {98.0, 120.0};
+  mass.ci95_if_exact = {109.5, 110.5};
+  CHECK_THAT(parameters_text(scene.result(ResultKind::fit), {}),
+             !Contains("if model exact") && !Contains("widened by"));
+  scene.fit.considered.emplace();
+  calib::Budget95& budget = mass.budget.emplace();
+  budget.lines = {{"noise", "records", 0.25},
+                  {"coulomb_friction", "effect", 3.0},
+                  {"valve_time_constant", "effect", 4.0}};
+  budget.combined = 5.00625;
+  CHECK_THAT(parameters_text(scene.result(ResultKind::fit), {}),
+             Contains("if model exact") && Contains(" +- 0.5  valve_time_constant ") &&
+                 Contains(" 5 ") && Contains("valve_time_constant") &&
+                 !Contains("coulomb_friction"));
+  // Where the records are the largest part no effect is named.
+  budget.lines[0].uncertainty = 8.0;
+  CHECK_THAT(parameters_text(scene.result(ResultKind::fit), {}),
+             Contains("if model exact") && !Contains("valve_time_constant"));
+}
+
 TEST_CASE("parameters_text: a reason that several share is told once", "[report]") {
   Scene scene;
   scene.add_parameter("mass", "shared");

@@ -1,0 +1,464 @@
+#include "calib/consider/catalogue.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace rigcal::calib {
+namespace {
+
+using datasets::Channel;
+using model::Output;
+
+/// What is known of a rig's size, SI; NaN where a value is missing.
+struct RigScale {
+  double force_n = 0.0;        ///< piston area times supply
+  double command_v = 0.0;      ///< full scale of the command
+  double flow_m3_per_s = 0.0;  ///< through the valve at full command and no load
+  double travel_m = 0.0;       ///< stroke, or oil volume over piston area
+  double pressure_pa = 0.0;    ///< supply
+  double sample_s = 0.0;       ///< shortest sampling interval
+  double kp_v_per_m = 0.0;
+  double leak_per_coefficient = 0.0;  ///< flow of the orifice leak at supply, per coefficient
+};
+
+/// A size that follows from the rig.
+struct EffectSize {
+  double value = 0.0;  ///< standard deviation, SI
+  const char* from = "";
+};
+
+/// One row of the catalogue. To add an effect: a row here and its key in
+/// datasets/considered_settings.cpp.
+struct CatalogueRow {
+  const char* key;
+  EffectKind kind;
+  bool one_sided;
+  const char* meaning;
+  EffectSize (*size)(const RigScale& rig);
+};
+
+/// The converter of a laboratory, where the controller has no limit of its own.
+constexpr double kUsualCommand_v = 10.0;
+/// Lags and delays are of the order of the sampling interval, and within this.
+constexpr double kLeastLag_s = 0.05e-3;
+constexpr double kMostLag_s = 0.5e-3;
+
+/// An effect moves an output by a ten-thousandth of its peak or more: this resolves a hundredth of
+/// it.
+constexpr double kSecantTolerance = 1e-6;
+
+double lag_of(double intervals, const RigScale& rig) {
+  return std::clamp(intervals * rig.sample_s, kLeastLag_s, kMostLag_s);
+}
+
+EffectSize sensor_lag(const RigScale& rig) {
+  return {lag_of(1.0 / std::numbers::pi, rig), "a filter at half the sampling rate"};
+}
+EffectSize pressure_gain(const RigScale&) { return {5e-3, "0.5 % of the reading"}; }
+EffectSize pressure_offset(const RigScale& rig) {
+  return {2.5e-3 * rig.pressure_pa, "0.25 % of the supply"};
+}
+
+constexpr std::array kCatalogue{
+    CatalogueRow{"valve_time_constant", EffectKind::parameter, true, "lag of the valve",
+                 [](const RigScale&) {
+                   return EffectSize{0.5e-3, "a servo valve with a corner of 300 Hz"};
+                 }},
+    CatalogueRow{"transport_delay", EffectKind::parameter, true, "delay of the drive",
+                 [](const RigScale& rig) {
+                   return EffectSize{lag_of(0.5, rig), "half a sampling interval"};
+                 }},
+    CatalogueRow{"valve_offset", EffectKind::parameter, false, "null shift of the valve",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.command_v, "0.1 % of full command"};
+                 }},
+    CatalogueRow{"valve_dead_band", EffectKind::parameter, true, "overlap of the spool",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.command_v, "0.1 % of full command"};
+                 }},
+    CatalogueRow{"coulomb_friction", EffectKind::parameter, true, "friction of the seals",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.force_n, "0.1 % of area times supply"};
+                 }},
+    CatalogueRow{"laminar_leakage", EffectKind::parameter, true, "laminar leak",
+                 [](const RigScale& rig) {
+                   return EffectSize{0.05 * rig.flow_m3_per_s / rig.pressure_pa,
+                                     "5 % of the valve's flow at full command"};
+                 }},
+    CatalogueRow{"leakage_coefficient", EffectKind::parameter, true, "leak through an orifice",
+                 [](const RigScale& rig) {
+                   return EffectSize{0.02 * rig.flow_m3_per_s / rig.leak_per_coefficient,
+                                     "2 % of the valve's flow at full command"};
+                 }},
+    CatalogueRow{"ki", EffectKind::parameter, true, "integral gain of the controller",
+                 [](const RigScale& rig) {
+                   return EffectSize{0.02 * rig.kp_v_per_m, "a reset time of 50 s"};
+                 }},
+    CatalogueRow{"total_volume", EffectKind::parameter, true, "oil of hoses and ports",
+                 [](const RigScale& rig) {
+                   return EffectSize{0.01 * rig.travel_m, "1 % of the volume"};
+                 }},
+    CatalogueRow{"dead_volume_a", EffectKind::parameter, true, "oil of hoses and ports, chamber A",
+                 [](const RigScale& rig) {
+                   return EffectSize{0.01 * rig.travel_m, "1 % of the area times the stroke"};
+                 }},
+    CatalogueRow{"dead_volume_b", EffectKind::parameter, true, "oil of hoses and ports, chamber B",
+                 [](const RigScale& rig) {
+                   return EffectSize{0.01 * rig.travel_m, "1 % of the area times the stroke"};
+                 }},
+    CatalogueRow{"supply_sag", EffectKind::supply_sag, true, "supply that falls with its flow",
+                 [](const RigScale&) {
+                   return EffectSize{0.01, "1 % of the supply at the flow of full command"};
+                 }},
+    CatalogueRow{"position_lag", EffectKind::parameter, true, "lag of the position sensor",
+                 sensor_lag},
+    CatalogueRow{"position_gain", EffectKind::parameter, false, "gain of the position sensor",
+                 [](const RigScale&) {
+                   return EffectSize{2e-3, "0.2 % of the reading"};
+                 }},
+    CatalogueRow{"position_offset", EffectKind::parameter, false, "offset of the position sensor",
+                 [](const RigScale& rig) {
+                   return EffectSize{5e-4 * rig.travel_m, "0.05 % of the travel"};
+                 }},
+    CatalogueRow{"position_bow", EffectKind::bow, false,
+                 "nonlinearity of the position sensor, even",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.travel_m, "0.1 % of the travel"};
+                 }},
+    CatalogueRow{"position_wave", EffectKind::wave, false,
+                 "nonlinearity of the position sensor, odd",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.travel_m, "0.1 % of the travel"};
+                 }},
+    CatalogueRow{"position_hysteresis", EffectKind::hysteresis, true,
+                 "hysteresis of the position sensor",
+                 [](const RigScale& rig) {
+                   return EffectSize{2e-4 * rig.travel_m, "0.02 % of the travel"};
+                 }},
+    CatalogueRow{"load_pressure_lag", EffectKind::parameter, true,
+                 "lag of the load pressure sensor", sensor_lag},
+    CatalogueRow{"load_pressure_gain", EffectKind::parameter, false,
+                 "gain of the load pressure sensor", pressure_gain},
+    CatalogueRow{"load_pressure_offset", EffectKind::parameter, false,
+                 "offset of the load pressure sensor", pressure_offset},
+    CatalogueRow{"pressure_a_lag", EffectKind::parameter, true, "lag of the pressure sensor A",
+                 sensor_lag},
+    CatalogueRow{"pressure_a_gain", EffectKind::parameter, false, "gain of the pressure sensor A",
+                 pressure_gain},
+    CatalogueRow{"pressure_a_offset", EffectKind::parameter, false,
+                 "offset of the pressure sensor A", pressure_offset},
+    CatalogueRow{"pressure_b_lag", EffectKind::parameter, true, "lag of the pressure sensor B",
+                 sensor_lag},
+    CatalogueRow{"pressure_b_gain", EffectKind::parameter, false, "gain of the pressure sensor B",
+                 pressure_gain},
+    CatalogueRow{"pressure_b_offset", EffectKind::parameter, false,
+                 "offset of the pressure sensor B", pressure_offset},
+    CatalogueRow{"force_lag", EffectKind::parameter, true, "lag of the load cell", sensor_lag},
+    CatalogueRow{"force_gain", EffectKind::parameter, false, "gain of the load cell",
+                 [](const RigScale&) {
+                   return EffectSize{5e-3, "0.5 % of the reading"};
+                 }},
+    CatalogueRow{"force_offset", EffectKind::parameter, false, "offset of the load cell",
+                 [](const RigScale& rig) {
+                   return EffectSize{1e-3 * rig.force_n, "0.1 % of area times supply"};
+                 }},
+};
+
+double value_of_key(const Problem& problem, const model::ParameterValues& values,
+                    std::string_view key) {
+  const int index = model::parameter_index(problem.campaign->rig.plant, key);
+  return index < 0 ? std::nan("") : values.value[static_cast<std::size_t>(index)];
+}
+
+double first_finite(double a, double b) { return std::isfinite(a) ? a : b; }
+
+double shortest_interval(const Problem& problem) {
+  double least = HUGE_VAL;
+  for (const ProblemCondition& each : problem.conditions) {
+    const auto& time_s = each.record->time_s;
+    if (time_s.size() > 1)
+      least = std::min(least,
+                       (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1));
+  }
+  return least;
+}
+
+RigScale scale_of(const Problem& problem, std::span<const double> z) {
+  const model::ParameterValues values = problem.values_at(0, z);
+  const auto get = [&](std::string_view key) { return value_of_key(problem, values, key); };
+  RigScale rig;
+  const double area = first_finite(get("piston_area"), get("area_a"));
+  rig.pressure_pa = get("supply_pressure");
+  rig.force_n = area * rig.pressure_pa;
+  const double limit = get("output_limit");
+  rig.command_v = std::isfinite(limit) && limit > 0.0 ? limit : kUsualCommand_v;
+  rig.flow_m3_per_s = get("discharge_coefficient") * get("area_gradient") * get("valve_gain") *
+                      rig.command_v * std::sqrt(rig.pressure_pa / get("density"));
+  rig.travel_m = first_finite(get("stroke"), get("total_volume") / area);
+  rig.sample_s = shortest_interval(problem);
+  rig.kp_v_per_m = get("kp");
+  rig.leak_per_coefficient =
+      get("leakage_area") * std::sqrt(2.0 * rig.pressure_pa / get("density"));
+  return rig;
+}
+
+/// The channel whose sensor a key names ("pressure_a_lag"); none if it names none.
+std::optional<Channel> sensor_channel(std::string_view key) {
+  for (const Channel channel : {Channel::load_pressure, Channel::pressure_a, Channel::pressure_b,
+                                Channel::position, Channel::force}) {
+    const std::string_view name = datasets::info(channel).key;
+    if (key.starts_with(name) && key.substr(name.size()).starts_with('_')) return channel;
+  }
+  return std::nullopt;
+}
+
+bool is_compared(const Problem& problem, Channel channel) {
+  return std::any_of(problem.conditions.begin(), problem.conditions.end(), [&](const auto& each) {
+    return std::any_of(each.channels.begin(), each.channels.end(),
+                       [&](const auto& one) { return one.channel == channel; });
+  });
+}
+
+bool is_curved(std::string_view key) {
+  return key == "coulomb_friction" || key == "valve_dead_band" || key == "position_hysteresis";
+}
+
+bool is_volume(std::string_view key) {
+  return key == "total_volume" || key.starts_with("dead_volume");
+}
+
+/// Whether the model has the effect already, or its size is stated elsewhere: a parameter that is
+/// free or given in any condition, a sensor with a certificate.
+bool is_in_model(const Problem& problem, std::string_view key, int index) {
+  const auto& unknowns = problem.map.unknowns();
+  if (std::any_of(unknowns.begin(), unknowns.end(),
+                  [&](const Unknown& each) { return each.index == index; }))
+    return true;
+  const auto* setting = problem.campaign->setting(index);
+  if (setting != nullptr && (setting->fit || setting->prior)) return true;
+  if (is_volume(key)) return false;
+  const auto& spec =
+      model::parameter_table(problem.campaign->rig.plant)[static_cast<std::size_t>(index)];
+  const double neutral = spec.default_value.value_or(0.0);
+  for (const ProblemCondition& each : problem.conditions) {
+    if (each.values.value[static_cast<std::size_t>(index)] != neutral) return true;
+    if (key == "valve_time_constant" && each.values.is_given("valve_frequency")) return true;
+    if (key == "ki" && each.rig.controller == model::ControllerKind::none) return true;
+  }
+  if (const auto channel = sensor_channel(key)) {
+    const auto& stated = problem.campaign->channels.at(*channel);
+    if (key.ends_with("_gain") && stated.gain_sd > 0.0) return true;
+    if (key.ends_with("_offset") && stated.offset_sd > 0.0) return true;
+  }
+  return false;
+}
+
+/// Effects of the catalogue that may act in a problem, whatever the campaign says of them.
+std::vector<Effect> possible_effects(const Problem& problem, std::span<const double> z) {
+  std::vector<Effect> result;
+  if (problem.conditions.empty()) return result;
+  const model::PlantKind plant = problem.campaign->rig.plant;
+  const RigScale rig = scale_of(problem, z);
+  const model::ParameterValues values = problem.values_at(0, z);
+  const auto names = datasets::effect_names(plant);
+  for (const CatalogueRow& row : kCatalogue) {
+    const auto name = std::find_if(names.begin(), names.end(),
+                                   [&](const auto& each) { return each.key == row.key; });
+    if (name == names.end()) continue;
+    Effect effect;
+    effect.kind = row.kind;
+    effect.curved = is_curved(row.key);
+    const auto channel = sensor_channel(row.key);
+    if (channel && !is_compared(problem, *channel)) continue;
+    if (row.kind == EffectKind::parameter) {
+      effect.index = model::parameter_index(plant, row.key);
+      if (is_in_model(problem, row.key, effect.index)) continue;
+    }
+    effect.range = row.kind == EffectKind::supply_sag ? rig.flow_m3_per_s : rig.travel_m;
+    EffectSize size = row.size(rig);
+    if (is_volume(row.key)) {
+      const double area = first_finite(value_of_key(problem, values, "piston_area"),
+                                       value_of_key(problem, values, "area_a"));
+      size.value *= area;
+    }
+    if (row.kind == EffectKind::supply_sag &&
+        std::any_of(problem.conditions.begin(), problem.conditions.end(),
+                    [](const auto& each) { return each.inputs.supply_pressure_pa.has_value(); }))
+      continue;  // what was recorded includes its sag
+    if (!(effect.range > 0.0) || !std::isfinite(size.value) || !(size.value > 0.0)) continue;
+    effect.about.key = row.key;
+    effect.about.meaning = row.meaning;
+    effect.about.unit = name->unit;
+    effect.about.size = size.value;
+    effect.about.size_from = size.from;
+    effect.about.one_sided = row.one_sided;
+    result.push_back(std::move(effect));
+  }
+  return result;
+}
+
+/// Reading of a sensor with play: it follows the quantity where that has taken up the play.
+Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
+  Eigen::VectorXd y = x;
+  for (Eigen::Index i = 1; i < x.size(); ++i)
+    y(i) = std::clamp(y(i - 1), x(i) - half_width, x(i) + half_width);
+  return y;
+}
+
+/// Change of a reading by an error of its sensor of a size.
+Eigen::VectorXd reading_error(const Effect& effect, const Eigen::VectorXd& reading, double size) {
+  const Eigen::ArrayXd turn = reading.array() / effect.range;  // of the whole range
+  if (effect.kind == EffectKind::bow) return size * (2.0 * turn).square();
+  if (effect.kind == EffectKind::wave) return size * (2.0 * std::numbers::pi * turn).sin();
+  return with_play(reading, size) - reading;
+}
+
+/// The supply at which a flow is fed through a line that costs `sag` of it at the flow of the
+/// range.
+model::Signal sagging_supply(const Effect& effect, const model::ParameterValues& values,
+                             std::span<const double> time_s, const Eigen::VectorXd& flow,
+                             double sag) {
+  std::vector<double> supply;
+  const double full = values["supply_pressure"];
+  for (Eigen::Index i = 0; i < flow.size(); ++i)
+    supply.push_back(full * (1.0 - std::min(0.5, sag * std::abs(flow(i)) / effect.range)));
+  return model::Signal::linear({time_s.begin(), time_s.end()}, std::move(supply));
+}
+
+/// Outputs of a condition, the servo flow last.
+std::vector<Output> outputs_and_flow(const ProblemCondition& condition) {
+  std::vector<Output> outputs = condition.outputs;
+  outputs.push_back(Output::servo_flow);
+  return outputs;
+}
+
+}  // namespace
+
+std::vector<Effect> effects_of(const Problem& problem, std::span<const double> z) {
+  const datasets::ConsideredSettings& stated = problem.campaign->considered;
+  std::vector<Effect> result;
+  for (Effect& effect : possible_effects(problem, z)) {
+    if (stated.leaves_out(effect.about.key)) continue;
+    if (const auto size = stated.size(effect.about.key)) {
+      effect.about.size = *size;
+      effect.about.size_from = "[considered]";
+    }
+    result.push_back(std::move(effect));
+  }
+  return result;
+}
+
+std::vector<std::string> left_out_effects(const Problem& problem, std::span<const double> z) {
+  std::vector<std::string> keys;
+  for (const Effect& effect : possible_effects(problem, z)) {
+    if (problem.campaign->considered.leaves_out(effect.about.key)) keys.push_back(effect.about.key);
+  }
+  return keys;
+}
+
+Eigen::VectorXd outputs_with(const Problem& problem, std::size_t condition,
+                             std::span<const double> z, const std::vector<Effect>& effects,
+                             const Eigen::VectorXd& sizes, const std::atomic<bool>* cancel) {
+  const ProblemCondition& data = problem.conditions[condition];
+  const auto samples = static_cast<Eigen::Index>(data.rows.size());
+  const auto channels = static_cast<Eigen::Index>(data.channels.size());
+  auto options = problem.simulation_options(cancel);
+  options.tolerance = std::max(problem.tolerance_of(condition), kSecantTolerance);
+  options.max_steps = data.max_steps;
+  model::ParameterValues values = problem.values_at(condition, z);
+  model::SimulationInputs inputs = data.inputs;
+  const auto run = [&] {
+    return model::simulate(data.rig, values, std::vector<int>(), inputs, data.fit_times(),
+                           outputs_and_flow(data), options);
+  };
+  const auto size_of = [&](std::size_t e) {
+    return effects[e].about.size * sizes(static_cast<Eigen::Index>(e));
+  };
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    const int index = effects[e].index;
+    if (effects[e].kind == EffectKind::parameter && size_of(e) != 0.0)
+      values.set(index, values.value[static_cast<std::size_t>(index)] + size_of(e));
+  }
+  model::Simulation simulation = run();
+  for (std::size_t e = 0; e < effects.size() && simulation.ok(); ++e) {
+    if (effects[e].kind != EffectKind::supply_sag || size_of(e) == 0.0) continue;
+    inputs.supply_pressure_pa = sagging_supply(effects[e], values, data.fit_times(),
+                                               simulation.outputs.col(channels), size_of(e));
+    simulation = run();
+  }
+  if (!simulation.ok()) return {};
+  Eigen::VectorXd result(samples * channels);
+  for (Eigen::Index k = 0; k < channels; ++k) {
+    const ProblemChannel& channel = data.channels[static_cast<std::size_t>(k)];
+    Eigen::VectorXd reading = simulation.outputs.col(k);
+    for (std::size_t e = 0; e < effects.size(); ++e) {
+      const bool of_sensor =
+          effects[e].kind != EffectKind::parameter && effects[e].kind != EffectKind::supply_sag;
+      if (of_sensor && channel.channel == Channel::position && size_of(e) != 0.0)
+        reading += reading_error(effects[e], reading, size_of(e));
+    }
+    for (Eigen::Index t = 0; t < samples; ++t) {
+      const auto sample = static_cast<Eigen::Index>(data.rows[static_cast<std::size_t>(t)]);
+      result(k * samples + t) = reading(sample) / channel.sd;
+    }
+  }
+  return result;
+}
+
+Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
+                            std::span<const double> z, const std::vector<Effect>& effects,
+                            const std::atomic<bool>* cancel) {
+  const ProblemCondition& data = problem.conditions[condition];
+  const auto samples = static_cast<Eigen::Index>(data.rows.size());
+  const auto channels = static_cast<Eigen::Index>(data.channels.size());
+  Eigen::MatrixXd result = Eigen::MatrixXd::Constant(
+      samples * channels, static_cast<Eigen::Index>(effects.size()), std::nan(""));
+  const model::ParameterValues values = problem.values_at(condition, z);
+  auto options = problem.simulation_options(cancel);
+  options.tolerance = std::max(problem.tolerance_of(condition), kSecantTolerance);
+  options.max_steps = data.max_steps;
+  const auto run_with = [&](const model::ParameterValues& at, const model::SimulationInputs& in) {
+    return model::simulate(data.rig, at, std::vector<int>(), in, data.fit_times(),
+                           outputs_and_flow(data), options);
+  };
+  const model::Simulation base = run_with(values, data.inputs);
+  if (!base.ok()) return result;
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    const Effect& effect = effects[e];
+    const double size = effect.secant * effect.about.size;
+    Eigen::MatrixXd change = Eigen::MatrixXd::Zero(base.outputs.rows(), channels);
+    if (effect.kind == EffectKind::parameter || effect.kind == EffectKind::supply_sag) {
+      model::ParameterValues changed = values;
+      model::SimulationInputs inputs = data.inputs;
+      if (effect.kind == EffectKind::parameter) {
+        changed.set(effect.index, values.value[static_cast<std::size_t>(effect.index)] + size);
+      } else {
+        inputs.supply_pressure_pa =
+            sagging_supply(effect, values, data.fit_times(), base.outputs.col(channels), size);
+      }
+      const model::Simulation run = run_with(changed, inputs);
+      if (!run.ok()) continue;
+      change = (run.outputs - base.outputs).leftCols(channels);
+    } else {
+      for (Eigen::Index k = 0; k < channels; ++k) {
+        if (data.channels[static_cast<std::size_t>(k)].channel == Channel::position)
+          change.col(k) = reading_error(effect, base.outputs.col(k), size);
+      }
+    }
+    for (Eigen::Index k = 0; k < channels; ++k) {
+      const double weight = 1.0 / (effect.secant * data.channels[static_cast<std::size_t>(k)].sd);
+      for (Eigen::Index t = 0; t < samples; ++t) {
+        const auto sample = static_cast<Eigen::Index>(data.rows[static_cast<std::size_t>(t)]);
+        result(k * samples + t, static_cast<Eigen::Index>(e)) = change(sample, k) * weight;
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace rigcal::calib

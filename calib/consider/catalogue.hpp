@@ -1,0 +1,59 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "calib/problem/problem.hpp"
+#include "calib/result/considered.hpp"
+
+namespace rigcal::calib {
+
+/// How an effect enters a simulation.
+enum class EffectKind {
+  parameter,   ///< it is added to a parameter: an optional term, a volume
+  supply_sag,  ///< the supply falls with the flow that it feeds
+  bow,         ///< nonlinearity of the position sensor, in the square of the reading
+  wave,        ///< the same, one wave over the range
+  hysteresis,  ///< play of the position sensor
+};
+
+/// One effect that may act in a problem, with its plausible size.
+struct Effect {
+  EffectKind kind = EffectKind::parameter;
+  int index = -1;      ///< row of the parameter table; -1: no parameter describes it
+  double range = 0.0;  ///< of the sensor or the flow that it is a fraction of, SI
+  /// Whether its secant depends on the size at which it is taken: friction, overlap, play.
+  bool curved = false;
+  double secant = 1.0;  ///< size at which that is taken, over the plausible size
+  ConsideredEffect about;
+};
+
+/// The effects that the model of a problem leaves out: rows of the catalogue whose parameter is
+/// neither free nor given, whose channel is compared, and whose size follows from the rig
+/// (docs/uncertainty.md). Those that the campaign leaves out are not among them.
+///
+/// @param z  the optimum: sizes follow from the values there
+std::vector<Effect> effects_of(const Problem& problem, std::span<const double> z);
+
+/// Those of the rows of the catalogue that the campaign leaves out.
+std::vector<std::string> left_out_effects(const Problem& problem, std::span<const double> z);
+
+/// Change of the weighted outputs of one condition by each effect, per plausible size. It is a
+/// secant: a term that cannot be negative has no derivative at zero, where a lag cannot be
+/// simulated. Shape (channels * samples that count, effects); a column that cannot be simulated is
+/// NaN.
+Eigen::MatrixXd effect_rows(const Problem& problem, std::size_t condition,
+                            std::span<const double> z, const std::vector<Effect>& effects,
+                            const std::atomic<bool>* cancel);
+
+/// Weighted outputs of one condition with all effects at once; empty if it cannot be simulated.
+///
+/// @param sizes  of the effects over their plausible sizes
+Eigen::VectorXd outputs_with(const Problem& problem, std::size_t condition,
+                             std::span<const double> z, const std::vector<Effect>& effects,
+                             const Eigen::VectorXd& sizes, const std::atomic<bool>* cancel);
+
+}  // namespace rigcal::calib

@@ -1,0 +1,552 @@
+#include "calib/consider/consider.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "calib/consider/catalogue.hpp"
+#include "calib/consider/truncated_normal.hpp"
+#include "calib/trust/between_repeats.hpp"
+#include "calib/trust/identifiability.hpp"
+#include "calib/trust/lack_of_fit.hpp"
+#include "common/parallel.hpp"
+#include "metrics/distributions.hpp"
+#include "metrics/significance.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Directions in which the information of the records is less than this part of the priors' have
+/// none.
+constexpr double kLeastInformation = 1e-6;
+/// Level of the tests for missing effects, of all together: on the right model one fit in fifty
+/// proposes one.
+constexpr double kMissingLevel = 0.02;
+/// Level of the tests for what no effect explains, of all records together (Bonferroni).
+constexpr double kUnexplainedLevel = 0.01;
+/// Sizes of which the logarithms differ by less have the same secant.
+constexpr double kSameSize = 0.5;
+/// Over the plausible size: a secant of less is lost in the tolerance of the simulation.
+constexpr double kLeastSecant = 0.02;
+/// Chord iterations, and a step, in standard errors of white noise, after which they have settled.
+constexpr int kMostChords = 12;
+constexpr double kSettledMove = 0.3;
+/// How often secants are taken again.
+constexpr int kMostSecants = 2;
+/// More terms than this at once are a guess.
+constexpr std::size_t kMostMissing = 3;
+
+/// Effects and what the fit and the residuals see of them, each in units of its plausible size.
+struct Seen {
+  std::vector<Effect> effects;
+  MatrixXd taken;  ///< C: what the fit takes for a change, coordinates of the root
+  MatrixXd left;   ///< M
+  VectorXd score;  ///< s
+  MatrixXd basis;  ///< T: left = T^-T T^-1 on the directions that the records determine
+  /// Columns Q with Q^T Q = 1 that span what is left, and the residual without its effects.
+  std::vector<ScoreRows> rows;
+};
+
+/// Takes out the effects that cannot be simulated, with the reason.
+void drop_failed(std::vector<Effect>& effects, std::vector<MatrixXd>& columns,
+                 std::vector<ConsideredEffect>& dropped) {
+  std::vector<Index> kept;
+  std::vector<Effect> remaining;
+  for (std::size_t e = 0; e < effects.size(); ++e) {
+    const auto column = static_cast<Index>(e);
+    const bool finite = std::all_of(columns.begin(), columns.end(), [&](const MatrixXd& each) {
+      return each.col(column).allFinite();
+    });
+    if (finite) {
+      kept.push_back(column);
+      remaining.push_back(std::move(effects[e]));
+    } else {
+      effects[e].about.problem = "the records cannot be simulated with it";
+      dropped.push_back(std::move(effects[e].about));
+    }
+  }
+  effects = std::move(remaining);
+  for (MatrixXd& each : columns) each = MatrixXd(each(Eigen::all, kept));
+}
+
+/// What fit and residuals see of the effects, whose columns are used up.
+Seen look_at(std::vector<Effect> effects, std::vector<MatrixXd>& columns,
+             const std::vector<ScoreRows>& scores) {
+  Seen seen;
+  const auto count = static_cast<Index>(effects.size());
+  const Index rank = scores.front().jacobian.cols();
+  seen.effects = std::move(effects);
+  seen.taken = MatrixXd::Zero(rank, count);
+  for (std::size_t i = 0; i < scores.size(); ++i)
+    seen.taken += scores[i].jacobian.transpose() * columns[i];
+  seen.left = MatrixXd::Zero(count, count);
+  seen.score = VectorXd::Zero(count);
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    columns[i] -= scores[i].jacobian * seen.taken;
+    seen.left += columns[i].transpose() * columns[i];
+    seen.score -= columns[i].transpose() * scores[i].residual;
+  }
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(seen.left);
+  const VectorXd& values = solver.eigenvalues();
+  Index first = 0;
+  while (first < count && !(values(first) > kLeastInformation)) ++first;
+  const Index determined = count - first;
+  seen.basis = solver.eigenvectors().rightCols(determined) *
+               values.tail(determined).cwiseSqrt().cwiseInverse().asDiagonal();
+  // The effects by white noise, so that what is left of the residual is noise.
+  const VectorXd size = seen.basis.transpose() * seen.score;
+  const VectorXd first_guess =
+      size.array() * values.tail(determined).array() / (1.0 + values.tail(determined).array());
+  seen.rows.resize(scores.size());
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    seen.rows[i].jacobian = columns[i] * seen.basis;
+    columns[i].resize(0, 0);
+    seen.rows[i].residual = scores[i].residual + seen.rows[i].jacobian * first_guess;
+    seen.rows[i].channels = scores[i].channels;
+  }
+  return seen;
+}
+
+/// Covariance of the scores of what is left, of the columns Q and of each effect alone.
+struct ScoreCovariance {
+  MatrixXd directions;  ///< W, shape (directions)^2
+  VectorXd alone;       ///< variance of the score of each effect
+  VectorXd freedom;     ///< with which that is known
+};
+
+ScoreCovariance covariance_of(const Problem& problem, std::span<const double> z, const Seen& seen,
+                              int threads) {
+  const Index determined = seen.basis.cols();
+  const auto count = static_cast<Index>(seen.effects.size());
+  const MatrixXd none = MatrixXd::Zero(determined, determined);
+  if (determined == 0) return {none, VectorXd::Zero(count), VectorXd::Ones(count)};
+  MatrixXd combinations(determined + count, determined);
+  combinations << MatrixXd::Identity(determined, determined), seen.left * seen.basis;
+  const auto scatter = score_scatter(seen.rows, none, combinations, threads);
+  const auto repeats = scores_of_repeats(problem, z, seen.rows, threads);
+  ScoreCovariance result;
+  result.directions = none;
+  for (const ScoreScatter& each : scatter) result.directions += each.covariance;
+  result.alone.resize(count);
+  result.freedom.resize(count);
+  VectorXd widened = VectorXd::Ones(determined);
+  for (Index j = 0; j < determined + count; ++j) {
+    const RobustVariance robust = robust_variance(scatter, none, combinations, j);
+    const RepeatVariance spread = repeat_variance(repeats, scatter, none, combinations, j);
+    const bool repeated = spread.freedom > 0.0 && robust.variance > 0.0 &&
+                          spread.variance > robust.variance && rests_on_repeats(spread, robust);
+    if (j < determined) {
+      if (repeated) widened(j) = std::sqrt(spread.variance / robust.variance);
+    } else {
+      result.alone(j - determined) = repeated ? spread.variance : robust.variance;
+      result.freedom(j - determined) =
+          std::clamp(repeated ? spread.freedom : robust.freedom, 1.0, metrics::kManyDegrees);
+    }
+  }
+  result.directions = widened.asDiagonal() * result.directions * widened.asDiagonal();
+  return result;
+}
+
+/// Sizes of the effects by prior and records, over their plausible sizes.
+struct Sizes {
+  VectorXd mean;
+  MatrixXd covariance;
+  VectorXd likeliest;  ///< all together: what is cut off at zero has its mean elsewhere
+};
+
+/// Minimum of (x - mean)^T precision (x - mean) where some components cannot be negative, by
+/// coordinates.
+VectorXd likeliest_of(const VectorXd& mean, const MatrixXd& precision,
+                      const std::vector<Index>& never_negative) {
+  constexpr int kMostSweeps = 1000;
+  constexpr double kSettled = 1e-6;
+  std::vector<bool> bounded(static_cast<std::size_t>(mean.size()), false);
+  for (const Index k : never_negative) bounded[static_cast<std::size_t>(k)] = true;
+  VectorXd x = mean;
+  for (const Index k : never_negative) x(k) = std::max(0.0, x(k));
+  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    double farthest = 0.0;
+    for (Index k = 0; k < x.size(); ++k) {
+      double next = x(k) - precision.row(k).dot(x - mean) / precision(k, k);
+      if (bounded[static_cast<std::size_t>(k)]) next = std::max(0.0, next);
+      farthest = std::max(farthest, std::abs(next - x(k)));
+      x(k) = next;
+    }
+    if (farthest < kSettled) break;
+  }
+  return x;
+}
+
+Sizes sizes_of(const Seen& seen, const MatrixXd& directions) {
+  const auto count = static_cast<Index>(seen.effects.size());
+  NormalMoments sizes{VectorXd::Zero(count), MatrixXd::Identity(count, count)};
+  MatrixXd precision = sizes.covariance;
+  const MatrixXd felt = seen.left * seen.basis;  // T^-T
+  if (felt.cols() > 0) {
+    const Eigen::LDLT<MatrixXd> solver(directions);
+    const MatrixXd weighted = solver.solve(felt.transpose());
+    precision += felt * weighted;
+    const Eigen::LLT<MatrixXd> inverse(precision);
+    sizes.covariance = inverse.solve(MatrixXd::Identity(count, count));
+    sizes.mean = inverse.solve(weighted.transpose() * (seen.basis.transpose() * seen.score));
+  }
+  std::vector<Index> never_negative;
+  for (Index k = 0; k < count; ++k)
+    if (seen.effects[static_cast<std::size_t>(k)].about.one_sided) never_negative.push_back(k);
+  VectorXd likeliest = likeliest_of(sizes.mean, precision, never_negative);
+  NormalMoments cut = cut_at_zero(std::move(sizes), never_negative);
+  return {std::move(cut.mean), std::move(cut.covariance), std::move(likeliest)};
+}
+
+/// Takes the secants of curved effects again, at the size that prior and records leave them.
+///
+/// @return  whether any was; then their columns, and those of all others as they were, are in
+///          `columns`
+bool take_again(const Problem& problem, std::span<const double> z, const Uncertainty& found,
+                const Sizes& sizes, int threads, const std::atomic<bool>* cancel, Seen& seen,
+                std::vector<MatrixXd>& columns) {
+  std::vector<Effect> again;
+  std::vector<Index> which;
+  for (std::size_t e = 0; e < seen.effects.size(); ++e) {
+    const auto k = static_cast<Index>(e);
+    Effect& effect = seen.effects[e];
+    const double size = std::sqrt(sizes.mean(k) * sizes.mean(k) + sizes.covariance(k, k));
+    if (!effect.curved || std::abs(std::log(size / effect.secant)) < kSameSize) continue;
+    effect.secant = std::max(size, kLeastSecant);
+    again.push_back(effect);
+    which.push_back(k);
+  }
+  if (again.empty()) return false;
+  const MatrixXd felt = seen.left * seen.basis;
+  parallel_for(columns.size(), threads, [&](std::size_t i) {
+    columns[i] = seen.rows[i].jacobian * felt.transpose() + found.scores[i].jacobian * seen.taken;
+    const MatrixXd anew = effect_rows(problem, i, z, again, cancel);
+    for (std::size_t a = 0; a < which.size(); ++a) {
+      const auto column = static_cast<Index>(a);
+      if (anew.col(column).allFinite()) columns[i].col(which[a]) = anew.col(column);
+    }
+  });
+  return true;
+}
+
+/// Sizes of the effects and move of the estimate where the effects are not small against what the
+/// linear model holds for: simulations with all of them, at moved parameters, in place of the
+/// secants, the sensitivities being those of the fit (chord iterations). With the sizes come the
+/// scores and the residuals as they would be if all were linear about the optimum.
+///
+/// @param moved  of the estimate, in coordinates of the root
+/// @return  whether it settled; else nothing has changed
+bool follow_curvature(const Problem& problem, std::span<const double> z, const Uncertainty& found,
+                      const MatrixXd& directions, int threads, const std::atomic<bool>* cancel,
+                      Seen& seen, Sizes& sizes, VectorXd& moved) {
+  Seen next = seen;
+  Sizes at = sizes;
+  VectorXd move = moved;
+  const MatrixXd felt = seen.left * seen.basis;
+  std::vector<VectorXd> base(problem.conditions.size());
+  const VectorXd none = VectorXd::Zero(at.mean.size());
+  parallel_for(base.size(), threads, [&](std::size_t i) {
+    base[i] = outputs_with(problem, i, z, seen.effects, none, cancel);
+  });
+  for (int chord = 0; chord < kMostChords; ++chord) {
+    const VectorXd step = found.root * move;
+    std::vector<double> there(z.begin(), z.end());
+    for (std::size_t j = 0; j < there.size(); ++j) {
+      there[j] += step(static_cast<Index>(j));
+      if (!(there[j] >= 0.0 && there[j] <= 1.0)) return false;
+    }
+    std::vector<VectorXd> scores(base.size());
+    std::vector<VectorXd> taken(base.size());
+    std::atomic<bool> failed = false;
+    parallel_for(base.size(), threads, [&](std::size_t i) {
+      const VectorXd outputs = outputs_with(problem, i, there, seen.effects, at.mean, cancel);
+      if (outputs.size() == 0 || base[i].size() == 0) {
+        failed = true;
+        return;
+      }
+      const ScoreRows& rows = found.scores[i];
+      next.rows[i].residual = rows.residual + outputs - base[i];
+      const VectorXd linear = seen.rows[i].jacobian * (felt.transpose() * at.mean) +
+                              rows.jacobian * (seen.taken * at.mean + move) - next.rows[i].residual;
+      scores[i] = seen.rows[i].jacobian.transpose() * linear;
+      taken[i] = rows.jacobian.transpose() * linear;
+    });
+    if (failed) return false;
+    VectorXd score = VectorXd::Zero(felt.cols());
+    VectorXd free_move = VectorXd::Zero(move.size());
+    for (std::size_t i = 0; i < base.size(); ++i) {
+      score += scores[i];
+      free_move += taken[i];
+    }
+    next.score = felt * score;
+    at = sizes_of(next, directions);
+    const VectorXd last = move;
+    move = free_move - seen.taken * at.mean;
+    if ((move - last).norm() > kSettledMove) continue;
+    seen = std::move(next);
+    sizes = std::move(at);
+    moved = move;
+    return true;
+  }
+  return false;
+}
+
+/// What the residuals say of each effect alone.
+void test_alone(const Seen& seen, const ScoreCovariance& scores,
+                std::vector<ConsideredEffect>& about) {
+  std::vector<double> p_values;
+  std::vector<std::size_t> tested;
+  for (std::size_t e = 0; e < about.size(); ++e) {
+    const auto k = static_cast<Index>(e);
+    const double left = seen.left(k, k);
+    if (!(left > kLeastInformation) || !(scores.alone(k) > 0.0)) continue;
+    ConsideredEffect& effect = about[e];
+    const double error = std::sqrt(scores.alone(k));
+    const double t = seen.score(k) / error;
+    const double above = 1.0 - metrics::student_t_cdf(t, scores.freedom(k));
+    effect.p_value = effect.one_sided ? above : 2.0 * std::min(above, 1.0 - above);
+    effect.alone = effect.size * seen.score(k) / left;
+    effect.alone_error = effect.size * error / left;
+    effect.alone_half_width = student_t(scores.freedom(k)) * *effect.alone_error;
+    if (!effect.one_sided || t > 0.0) effect.explains = seen.score(k) * seen.score(k) / left;
+    tested.push_back(e);
+    p_values.push_back(*effect.p_value);
+  }
+  const auto together = metrics::holm(p_values);
+  for (std::size_t i = 0; i < tested.size(); ++i) about[tested[i]].p_of_all = together[i];
+}
+
+/// Forward selection: the effect that explains most of what is left, as long as some effect is
+/// significant beside those that were taken already.
+std::vector<std::size_t> missing_effects(const Seen& seen, const ScoreCovariance& scores,
+                                         const std::vector<ConsideredEffect>& about) {
+  const MatrixXd felt = seen.left * seen.basis;
+  const MatrixXd variance = felt * scores.directions * felt.transpose();
+  std::vector<std::size_t> taken;
+  std::vector<Index> columns;
+  while (taken.size() < std::min(kMostMissing, about.size())) {
+    std::vector<double> p_values;
+    std::vector<std::size_t> tested;
+    std::vector<double> gains;
+    const MatrixXd among = seen.left(columns, columns);
+    const Eigen::LDLT<MatrixXd> solver(among);
+    for (std::size_t e = 0; e < about.size(); ++e) {
+      const auto k = static_cast<Index>(e);
+      if (std::find(taken.begin(), taken.end(), e) != taken.end() || !about[e].p_value) continue;
+      // What would be negative alone is no explanation, whatever it does beside others.
+      if (about[e].one_sided && seen.score(k) < 0.0) continue;
+      // Score, information and its variance of this effect beside those taken.
+      VectorXd weights = VectorXd::Zero(seen.left.rows());
+      weights(k) = 1.0;
+      if (!columns.empty()) {
+        const VectorXd along = seen.left(columns, k);
+        const VectorXd beside = solver.solve(along);
+        for (std::size_t c = 0; c < columns.size(); ++c)
+          weights(columns[c]) = -beside(static_cast<Index>(c));
+      }
+      const double information = weights.dot(seen.left * weights);
+      const double spread = weights.dot(variance * weights);
+      if (!(information > 0.01 * seen.left(k, k)) || !(spread > 0.0)) continue;
+      // The variance of its own score may be by the repeats, which knows more than `variance`.
+      const double widened = std::max(1.0, scores.alone(k) / variance(k, k));
+      const double score = weights.dot(seen.score);
+      const double t = score / std::sqrt(spread * widened);
+      const double above = 1.0 - metrics::student_t_cdf(t, scores.freedom(k));
+      tested.push_back(e);
+      p_values.push_back(about[e].one_sided ? above : 2.0 * std::min(above, 1.0 - above));
+      gains.push_back(about[e].one_sided && score < 0.0 ? 0.0 : score * score / information);
+    }
+    if (tested.empty()) break;
+    const auto together = metrics::holm(p_values);
+    if (*std::min_element(together.begin(), together.end()) >= kMissingLevel) break;
+    const auto best = std::max_element(gains.begin(), gains.end()) - gains.begin();
+    if (together[static_cast<std::size_t>(best)] >= kMissingLevel) break;
+    taken.push_back(tested[static_cast<std::size_t>(best)]);
+    columns.push_back(static_cast<Index>(taken.back()));
+  }
+  return taken;
+}
+
+/// Contributions of the effects to the variance of an estimate; those of effects that the records
+/// cannot separate are divided by their part in it, none less than zero.
+VectorXd variances_by_effect(const VectorXd& moves, const MatrixXd& covariance) {
+  const VectorXd along = covariance * moves;
+  const double all = std::max(0.0, moves.dot(along));
+  const VectorXd parts = (moves.array() * along.array()).max(0.0);
+  const double sum = parts.sum();
+  return sum > 0.0 ? VectorXd(parts * (all / sum)) : VectorXd::Zero(moves.size());
+}
+
+/// Budget of one estimate with the error that it would have if the model were exact.
+///
+/// @param moves  change of the estimate by each effect at its plausible size, SI
+/// @param shift  of the middle of the interval, SI
+Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedParameter& parameter,
+                   double slope, const Seen& seen, const VectorXd& moves, const Sizes& sizes,
+                   double shift) {
+  Budget95 budget;
+  const bool robust = parameter.interval == IntervalSource::robust_standard_error;
+  const double exact =
+      (robust ? parameter.robust_standard_error : parameter.standard_error).value_or(0.0);
+  double known = 0.0;
+  std::vector<BudgetLine> stated;
+  for (std::size_t p = 0; p < found.known.names.size(); ++p) {
+    const double part =
+        std::abs(slope * found.known.response(static_cast<Index>(unknown), static_cast<Index>(p)));
+    known += part * part;
+    stated.push_back({found.known.names[p], "known_value", part});
+  }
+  const double noise = std::sqrt(std::max(0.0, exact * exact - known));
+  budget.lines.push_back(
+      {robust && found.from_repeats[unknown] ? "repeats" : "noise", "records", noise});
+  budget.lines.insert(budget.lines.end(), stated.begin(), stated.end());
+  const VectorXd parts = variances_by_effect(moves, sizes.covariance);
+  for (Index k = 0; k < parts.size(); ++k) {
+    budget.lines.push_back(
+        {seen.effects[static_cast<std::size_t>(k)].about.key, "effect", std::sqrt(parts(k))});
+  }
+  const double rest = known + parts.sum();
+  budget.combined = std::sqrt(noise * noise + rest);
+  const std::vector<metrics::ErrorPart> variances{
+      {noise * noise, parameter.degrees_of_freedom.value_or(metrics::kManyDegrees)}, {rest}};
+  budget.degrees_of_freedom = metrics::effective_freedom(variances);
+  budget.coverage_factor = student_t(budget.degrees_of_freedom);
+  budget.expanded = budget.coverage_factor * budget.combined;
+  budget.shift = shift;
+  return budget;
+}
+
+/// The most that the error of the model which no effect explains could move each estimate, in the
+/// unit box: an error of the size that the residual without the effects shows, where it is
+/// significant, in phase with the sensitivity throughout.
+///
+/// @param rows  whose residuals are without the effects
+VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>& scores,
+                           const std::vector<ScoreRows>& rows, const MatrixXd& root) {
+  std::vector<LackOfFit> tests;
+  std::vector<VectorXd> moves;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const ProblemCondition& condition = problem.conditions[i];
+    const Index samples = rows[i].residual.size() / rows[i].channels;
+    for (Index k = 0; k < rows[i].channels; ++k) {
+      const ProblemChannel& channel = condition.channels[static_cast<std::size_t>(k)];
+      const VectorXd left = rows[i].residual.segment(k * samples, samples) * channel.sd;
+      const auto test = lack_of_prediction(
+          condition, channel, std::span(left.data(), static_cast<std::size_t>(left.size())));
+      if (!test) continue;
+      tests.push_back(*test);
+      const MatrixXd felt = scores[i].jacobian.middleRows(k * samples, samples) * root.transpose();
+      const double error = std::sqrt(std::max(0.0, test->ratio - 1.0));
+      moves.push_back(error * std::sqrt(static_cast<double>(samples)) *
+                      felt.colwise().norm().transpose());
+    }
+  }
+  VectorXd squares = VectorXd::Zero(root.rows());
+  for (std::size_t t = 0; t < tests.size(); ++t) {
+    if (tests[t].p * static_cast<double>(tests.size()) < kUnexplainedLevel)
+      squares += moves[t].cwiseAbs2();
+  }
+  return squares.cwiseSqrt();
+}
+
+/// The interval of the rig. Which of the effects are there nobody knows, so that it extends over
+/// the estimate as it is, that shifted by the mean sizes of the effects and that by the likeliest
+/// ones, by the expanded uncertainty to either side.
+///
+/// @param likeliest  shift by the likeliest sizes, SI
+void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double likeliest,
+           FittedParameter& parameter) {
+  const model::ParameterSpec& spec = problem.spec(unknown);
+  auto& [low, high] = *parameter.ci95;
+  const double below = parameter.value + std::min({0.0, budget.shift, likeliest}) - budget.expanded;
+  const double above = parameter.value + std::max({0.0, budget.shift, likeliest}) + budget.expanded;
+  low = std::max(spec.lower, std::min(low, below));
+  high = std::min(spec.upper, std::max(high, above));
+  parameter.budget = std::move(budget);
+}
+
+}  // namespace
+
+void consider_effects(const Problem& problem, std::span<const double> z, const Uncertainty& found,
+                      int threads, const std::atomic<bool>* cancel, Fit& fit) {
+  if (found.scores.empty() || found.root.cols() == 0) return;
+  Considered considered;
+  considered.left_out = left_out_effects(problem, z);
+  std::vector<Effect> effects = effects_of(problem, z);
+  std::vector<MatrixXd> columns(problem.conditions.size());
+  parallel_for(columns.size(), threads,
+               [&](std::size_t i) { columns[i] = effect_rows(problem, i, z, effects, cancel); });
+  if (cancel != nullptr && cancel->load()) return;
+  std::vector<ConsideredEffect> dropped;
+  drop_failed(effects, columns, dropped);
+  std::optional<Seen> seen;
+  Sizes sizes;
+  VectorXd moved;
+  if (!effects.empty()) {
+    seen = look_at(std::move(effects), columns, found.scores);
+    ScoreCovariance scores = covariance_of(problem, z, *seen, threads);
+    sizes = sizes_of(*seen, scores.directions);
+    for (int i = 0; i < kMostSecants; ++i) {
+      if (!take_again(problem, z, found, sizes, threads, cancel, *seen, columns)) break;
+      if (cancel != nullptr && cancel->load()) return;
+      seen = look_at(std::move(seen->effects), columns, found.scores);
+      scores = covariance_of(problem, z, *seen, threads);
+      sizes = sizes_of(*seen, scores.directions);
+    }
+    moved = -seen->taken * sizes.mean;
+    for (const Effect& each : seen->effects) considered.effects.push_back(each.about);
+    test_alone(*seen, scores, considered.effects);
+    considered.missing = missing_effects(*seen, scores, considered.effects);
+    if (!considered.missing.empty() && follow_curvature(problem, z, found, scores.directions,
+                                                        threads, cancel, *seen, sizes, moved)) {
+      for (std::size_t e = 0; e < considered.effects.size(); ++e)
+        considered.effects[e] = seen->effects[e].about;
+      test_alone(*seen, scores, considered.effects);
+      considered.missing = missing_effects(*seen, scores, considered.effects);
+    }
+    for (std::size_t e = 0; e < considered.effects.size(); ++e) {
+      const auto k = static_cast<Index>(e);
+      ConsideredEffect& about = considered.effects[e];
+      about.estimate = about.size * sizes.mean(k);
+      about.standard_error = about.size * std::sqrt(std::max(0.0, sizes.covariance(k, k)));
+    }
+  } else {
+    moved = VectorXd::Zero(found.root.cols());
+    seen.emplace();
+    seen->taken = MatrixXd::Zero(found.root.cols(), 0);
+    sizes.mean = VectorXd::Zero(0);
+    sizes.covariance = MatrixXd::Zero(0, 0);
+    sizes.likeliest = VectorXd::Zero(0);
+  }
+  const VectorXd unexplained = unexplained_moves(
+      problem, found.scores, seen->rows.empty() ? found.scores : seen->rows, found.root);
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    FittedParameter& parameter = fit.parameters[j];
+    if (!parameter.ci95) continue;
+    const double slope = problem.map.slope(static_cast<int>(j), z[j]);
+    const VectorXd moves =
+        slope * (found.root.row(static_cast<Index>(j)) * seen->taken).transpose();
+    const double shift = slope * found.root.row(static_cast<Index>(j)).dot(moved);
+    const double likeliest = shift - moves.dot(sizes.likeliest - sizes.mean);
+    widen(problem, j, budget_of(found, j, parameter, slope, *seen, moves, sizes, shift), likeliest,
+          parameter);
+    grade_widened(problem, found, j, parameter);
+    parameter.moved_by_unexplained = slope * unexplained(static_cast<Index>(j));
+    for (const std::size_t e : considered.missing) {
+      const double by_it = moves(static_cast<Index>(e)) / considered.effects[e].size *
+                           considered.effects[e].alone.value_or(0.0);
+      parameter.moved_by_missing = std::max(parameter.moved_by_missing, std::abs(by_it));
+    }
+  }
+  considered.effects.insert(considered.effects.end(), dropped.begin(), dropped.end());
+  fit.considered = std::move(considered);
+}
+
+}  // namespace rigcal::calib

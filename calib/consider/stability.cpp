@@ -1,0 +1,108 @@
+#include "calib/consider/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "calib/problem/evaluation.hpp"
+#include "calib/problem/scaled_svd.hpp"
+#include "calib/search/optimum.hpp"
+#include "calib/trust/uncertainty.hpp"
+#include "metrics/distributions.hpp"
+#include "metrics/significance.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+/// The second step is that of a model which is not quite linear between both estimates.
+constexpr int kSteps = 2;
+
+const FittedParameter* same_unknown(const std::vector<FittedParameter>& parameters,
+                                    const Unknown& unknown) {
+  const auto found =
+      std::find_if(parameters.begin(), parameters.end(), [&](const FittedParameter& each) {
+        return each.fitted && each.index == unknown.index && each.scope == unknown.scope &&
+               each.level == unknown.level;
+      });
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+/// Where neither repeats nor `sd` tell a noise, the residual at the fit's values does.
+void weigh_by_residuals(const Evaluation& at, Problem& problem) {
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    auto& channels = problem.conditions[i].channels;
+    for (std::size_t k = 0; k < channels.size(); ++k) {
+      if (!channels[k].sd_known)
+        channels[k].sd = std::max(at.conditions[i].rms[k], problem.least_sd(channels[k]));
+    }
+  }
+}
+
+Evaluation evaluated(const Problem& problem, const std::vector<double>& z, int threads,
+                     const std::atomic<bool>* cancel) {
+  return evaluate_at(problem, z, threads, {Fidelity::full, cancel, true});
+}
+
+/// z after a Gauss-Newton step within the box.
+std::vector<double> after_step(const Problem& problem, const Evaluation& at) {
+  const Linearisation system = linearise(problem, at);
+  const Eigen::VectorXd step =
+      ScaledSvd(system.jacobian, rank_threshold(problem.tolerance)).step(system.residual);
+  std::vector<double> z = at.z;
+  for (std::size_t j = 0; j < z.size(); ++j)
+    z[j] = std::clamp(z[j] + step(static_cast<Eigen::Index>(j)), 0.0, 1.0);
+  return z;
+}
+
+}  // namespace
+
+void repeat_on_validation(Problem validation, const std::vector<FittedParameter>& nuisance,
+                          int threads, const std::atomic<bool>* cancel, Fit& fit) {
+  const auto& unknowns = validation.map.unknowns();
+  std::vector<double> z = validation.start();
+  std::vector<const FittedParameter*> fitted(unknowns.size(), nullptr);
+  for (std::size_t j = 0; j < unknowns.size(); ++j) {
+    fitted[j] = unknowns[j].nuisance ? nullptr : same_unknown(fit.parameters, unknowns[j]);
+    const FittedParameter* value =
+        fitted[j] != nullptr ? fitted[j] : same_unknown(nuisance, unknowns[j]);
+    if (value != nullptr)
+      z[j] = std::clamp(validation.map.to_unit(static_cast<int>(j), value->value), 0.0, 1.0);
+  }
+  Evaluation at = evaluated(validation, z, threads, cancel);
+  if (!at.ok) return;
+  if (validation.has_estimated_sd()) {
+    weigh_by_residuals(at, validation);
+    at = evaluated(validation, z, threads, cancel);
+  }
+  for (int step = 0; step < kSteps && at.ok; ++step)
+    at = evaluated(validation, after_step(validation, at), threads, cancel);
+  if (!at.ok) return;
+  std::vector<ConditionRows> rows = std::move(*at.rows);
+  at.rows.reset();
+  const Uncertainty found = uncertainty(validation, at, std::move(rows), threads);
+  std::vector<double> p_values;
+  for (std::size_t j = 0; j < unknowns.size(); ++j) {
+    if (fitted[j] == nullptr || !fitted[j]->budget || !found.robust_standard_error[j]) continue;
+    if (bound_side(at.z[j]) != BoundSide::inside) continue;  // its error is not that of a minimum
+    const Budget95& own = *fitted[j]->budget;
+    const std::vector<metrics::ErrorPart> parts{
+        {own.combined * own.combined, own.degrees_of_freedom},
+        {*found.robust_standard_error[j] * *found.robust_standard_error[j],
+         std::clamp(found.robust_freedom[j], 1.0, metrics::kManyDegrees)}};
+    const metrics::EstimateError error{std::sqrt(parts[0].variance + parts[1].variance),
+                                       metrics::effective_freedom(parts)};
+    if (!(error.standard_error > 0.0)) continue;
+    StabilityCheck& check = fit.stability.emplace_back();
+    check.index = unknowns[j].index;
+    check.scope = unknowns[j].scope;
+    check.level = unknowns[j].level;
+    check.value = validation.map.to_physical(static_cast<int>(j), at.z[j]);
+    check.difference = check.value - fitted[j]->value;
+    check.expanded = student_t(error.freedom) * error.standard_error;
+    p_values.push_back(metrics::difference_p_value(check.difference, error));
+  }
+  const auto together = metrics::holm(p_values);
+  for (std::size_t i = 0; i < together.size(); ++i)
+    fit.stability[i].differs = together[i] < metrics::kWarningLevel;
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "datasets/campaign/campaign.hpp"
+
+// What small effects that the model leaves out do to the estimates, and what the residuals say of
+// them.
+
+namespace rigcal::calib {
+
+/// One effect that the model leaves out. Sizes and estimates in SI.
+struct ConsideredEffect {
+  std::string key;         ///< as [considered] calls it
+  std::string meaning;     ///< in words
+  std::string unit;        ///< SI unit of its size
+  double size = 0.0;       ///< plausible size: standard deviation of the prior about zero
+  bool one_sided = false;  ///< it cannot be negative
+  std::string size_from;   ///< what the size follows from, in words
+  std::string problem;     ///< why it could not be considered, in words; empty: it was
+  /// By prior and records, with all other effects; absent where it was not considered.
+  std::optional<double> estimate, standard_error;
+  /// By the records, if it were the only effect; absent where they do not respond to it.
+  std::optional<double> alone, alone_error;
+  std::optional<double> alone_half_width;  ///< of its 95 % interval
+  std::optional<double> p_value;           ///< score test of none
+  std::optional<double> p_of_all;          ///< the same for all effects together (Holm)
+  double explains = 0.0;  ///< by how much it alone would lower the sum of the squared residuals
+};
+
+/// One contribution to the uncertainty of an estimate.
+struct BudgetLine {
+  std::string source;        ///< "noise", "repeats", or the key of a known value or an effect
+  std::string kind;          ///< "records", "known_value" or "effect"
+  double uncertainty = 0.0;  ///< standard uncertainty that it contributes, SI
+};
+
+/// Uncertainty budget of an estimate (JCGM 100:2008, 5.1 and annex G): the squares of the lines add
+/// up to that of the combined standard uncertainty.
+struct Budget95 {
+  std::vector<BudgetLine> lines;
+  double combined = 0.0;            ///< standard uncertainty, SI
+  double degrees_of_freedom = 0.0;  ///< effective ones of it
+  double coverage_factor = 0.0;
+  double expanded = 0.0;  ///< coverage factor times combined, SI
+  /// By how much the effects move the middle of the interval off the estimate, which is not
+  /// corrected for them, SI.
+  double shift = 0.0;
+};
+
+/// What was considered in a fit.
+struct Considered {
+  std::vector<ConsideredEffect> effects;
+  std::vector<std::string> left_out;  ///< by the campaign
+  /// Positions of the effects that the residuals ask for, the best explanation first.
+  std::vector<std::size_t> missing;
+};
+
+/// An estimate made once more from the validation records alone. SI.
+struct StabilityCheck {
+  int index = 0;  ///< row of the parameter table
+  datasets::Scope scope = datasets::Scope::rig;
+  std::string level;
+  double value = 0.0;       ///< by the validation records
+  double difference = 0.0;  ///< of that from the fit's
+  double expanded = 0.0;    ///< half width of its 95 % interval
+  bool differs = false;     ///< significantly, all parameters together
+};
+
+}  // namespace rigcal::calib

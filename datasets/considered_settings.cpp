@@ -1,0 +1,34 @@
+#include "datasets/considered_settings.hpp"
+
+#include <array>
+
+namespace rigcal::datasets {
+namespace {
+
+/// Keys of parameters; a plant without one of them has no such effect.
+constexpr std::array kOfParameters{
+    "valve_time_constant",  "valve_offset",        "valve_dead_band",   "coulomb_friction",
+    "laminar_leakage",      "leakage_coefficient", "transport_delay",   "ki",
+    "total_volume",         "dead_volume_a",       "dead_volume_b",     "position_lag",
+    "position_gain",        "position_offset",     "load_pressure_lag", "load_pressure_gain",
+    "load_pressure_offset", "pressure_a_lag",      "pressure_a_gain",   "pressure_a_offset",
+    "pressure_b_lag",       "pressure_b_gain",     "pressure_b_offset", "force_lag",
+    "force_gain",           "force_offset"};
+
+}  // namespace
+
+std::vector<EffectName> effect_names(model::PlantKind plant) {
+  std::vector<EffectName> names;
+  for (const char* key : kOfParameters) {
+    const int index = model::parameter_index(plant, key);
+    if (index < 0) continue;
+    const auto& spec = model::parameter_table(plant)[static_cast<std::size_t>(index)];
+    names.push_back({key, std::string(spec.unit)});
+  }
+  names.push_back({"supply_sag", "1"});
+  for (const char* key : {"position_bow", "position_wave", "position_hysteresis"})
+    names.push_back({key, "m"});
+  return names;
+}
+
+}  // namespace rigcal::datasets

@@ -1,0 +1,178 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include "report/document/quantity.hpp"
+#include "report/page/calibration/fit_sections.hpp"
+#include "report/page/page_parts.hpp"
+#include "report/text/readable.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using doc::Line;
+using Kind = doc::Column::Kind;
+
+constexpr int kBudgetDigits = 3;
+
+std::string freedom_text(double freedom) {
+  constexpr double kMany = 1000.0;
+  return freedom > kMany ? std::string("many") : fmt::format("{:.0f}", freedom);
+}
+
+doc::Row budget_row(const StoredParameter& p) {
+  const RowUnit unit = unit_of(p);
+  const StoredBudget& budget = *p.budget;
+  const auto number = [&](double value) { return doc::in_unit(value, unit.si, kBudgetDigits); };
+  const StoredBudgetLine* largest = largest_effect(budget);
+  return {{parameter_label(p), unit.name, number(contribution(budget, "records")),
+           number(contribution(budget, "known_value")), number(contribution(budget, "effect")),
+           number(budget.combined), freedom_text(budget.degrees_of_freedom),
+           doc::decimals(budget.coverage_factor, 2), number(budget.expanded), number(budget.shift),
+           largest == nullptr ? std::string("–") : spaced(largest->source)}};
+}
+
+/// The lines of one budget; those that hardly count are one line together.
+void add_lines(const StoredParameter& p, std::vector<doc::Row>& rows) {
+  constexpr double kHardly = 1e-3;  // of the variance
+  const RowUnit unit = unit_of(p);
+  const StoredBudget& budget = *p.budget;
+  const double whole = budget.combined * budget.combined;
+  double others = 0.0;
+  const auto add = [&](const std::string& source, double squares) {
+    rows.push_back(
+        {{parameter_label(p), source, doc::in_unit(std::sqrt(squares), unit.si, kBudgetDigits),
+          unit.name, doc::decimals(whole > 0.0 ? 100.0 * squares / whole : 0.0, 1)}});
+  };
+  for (const StoredBudgetLine& line : budget.lines) {
+    const double square = line.uncertainty * line.uncertainty;
+    if (line.kind == "records" || square >= kHardly * whole) {
+      add(spaced(line.source), square);
+    } else {
+      others += square;
+    }
+  }
+  if (others > 0.0) add("all others", others);
+}
+
+/// A size or an estimate of an effect in the unit that suits its size.
+Line effect_number(const std::optional<double>& value, const std::optional<double>& half_width,
+                   const RowUnit& unit) {
+  Line line{doc::in_unit(value, unit.si, kBudgetDigits)};
+  if (value && half_width) {
+    line.emplace_back(" ± ");
+    line.emplace_back(doc::in_unit(half_width, unit.si, kBudgetDigits));
+  }
+  return line;
+}
+
+doc::Row effect_row(const StoredEffect& effect, bool missing) {
+  const RowUnit unit = row_unit(effect.size, effect.unit);
+  doc::Row row{{{Line{effect.key, " ", doc::Soft{effect.meaning}}},
+                doc::in_unit(effect.size, unit.si, kBudgetDigits),
+                {effect_number(effect.estimate, effect.standard_error, unit)},
+                {effect_number(effect.alone, effect.alone_half_width, unit)},
+                unit.name,
+                effect.p_of_all ? p_value_text(*effect.p_of_all) : std::string("–"),
+                effect.size_from}};
+  if (missing) row.notes.emplace_back("the residuals ask for it");
+  if (effect.problem) row.notes.push_back(*effect.problem);
+  return row;
+}
+
+doc::Row stability_row(const StoredStability& check) {
+  const RowUnit unit = row_unit(check.value, check.unit);
+  return {{check.level ? fmt::format("{} ({})", check.key, *check.level) : check.key,
+           doc::in_unit(check.value, unit.si),
+           doc::in_unit(check.difference, unit.si, kBudgetDigits),
+           Line{"± ", doc::in_unit(check.expanded, unit.si, kBudgetDigits)}, unit.name,
+           doc::Badge{check.differs ? doc::State::warn : doc::State::good,
+                      check.differs ? "differs" : "agrees"}}};
+}
+
+}  // namespace
+
+void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blocks) {
+  doc::Table table{"Uncertainty budget"};
+  table.caption = {"Uncertainty budget: standard uncertainties u, of which the squares add up"};
+  table.columns = {{"Parameter"},
+                   {"Unit"},
+                   {"Records", Kind::number},
+                   {"Known values", Kind::number},
+                   {"Effects left out", Kind::number},
+                   {"u", Kind::number},
+                   {"Degrees of freedom", Kind::number},
+                   {"k", Kind::number},
+                   {"U = k u", Kind::number},
+                   {"Shift", Kind::number},
+                   {"Largest effect"}};
+  doc::Table lines{"Contributions one by one"};
+  lines.columns = {{"Parameter"},
+                   {"Source"},
+                   {"u", Kind::number},
+                   {"Unit", Kind::unit},
+                   {"Share of the variance, %", Kind::number}};
+  for (const StoredParameter& p : parameters) {
+    if (!p.budget) continue;
+    table.rows.push_back(budget_row(p));
+    add_lines(p, lines.rows);
+  }
+  if (table.rows.empty()) return;
+  blocks.emplace_back(std::move(table));
+  blocks.emplace_back(doc::reading(
+      "The 95 % interval is value + shift ± U, and wherever it would be narrower, that of an exact "
+      "model."));
+  const std::string summary = fmt::format("Contributions one by one ({})", lines.rows.size());
+  blocks.emplace_back(doc::Fold{summary, {std::move(lines)}});
+}
+
+void add_considered(const StoredFit& fit, doc::Blocks& blocks) {
+  if (!fit.considered) return;
+  blocks.emplace_back(doc::Heading{{"Small effects that the model leaves out"}});
+  const StoredConsidered& considered = *fit.considered;
+  const auto is_missing = [&](const StoredEffect& effect) {
+    return std::find(considered.missing.begin(), considered.missing.end(), effect.key) !=
+           considered.missing.end();
+  };
+  if (!considered.effects.empty()) {
+    blocks.emplace_back(doc::reading(
+        considered.missing.empty()
+            ? std::string("The residuals ask for none of them.")
+            : fmt::format("The residuals ask for {}.", fmt::join(considered.missing, ", then "))));
+    doc::Table table{"Effects"};
+    table.columns = {{"Effect"},
+                     {"Plausible size", Kind::number},
+                     {"By prior and records, ± u", Kind::number},
+                     {"Alone, by the records, ± U", Kind::number},
+                     {"Unit", Kind::unit},
+                     {"p of none, all together", Kind::number},
+                     {"The size follows from"}};
+    for (const StoredEffect& each : considered.effects)
+      table.rows.push_back(effect_row(each, is_missing(each)));
+    const std::string summary = fmt::format("Effects ({})", table.rows.size());
+    blocks.emplace_back(doc::Fold{summary, {std::move(table)}});
+  }
+  if (!considered.left_out.empty())
+    blocks.emplace_back(doc::reading(
+        fmt::format("Left out by the campaign: {}.", fmt::join(considered.left_out, ", "))));
+}
+
+void add_stability(const StoredFit& fit, doc::Blocks& blocks) {
+  if (!fit.stability || fit.stability->empty()) return;
+  const char* const title = "Estimates from the validation records alone";
+  blocks.emplace_back(doc::Heading{{title}});
+  doc::Table table{title};
+  table.columns = {{"Parameter"},
+                   {"Value", Kind::number},
+                   {"Difference from the fit", Kind::number},
+                   {"Of which both uncertainties allow"},
+                   {"Unit", Kind::unit},
+                   {"Outcome, all together"}};
+  for (const StoredStability& each : *fit.stability) table.rows.push_back(stability_row(each));
+  blocks.emplace_back(std::move(table));
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,152 @@
+#include "calib/consider/consider.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "calib/consider/catalogue.hpp"
+#include "calib/fit.hpp"
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::WithinAbs;
+using Catch::WithinRel;
+
+/// A short campaign of which mass, bulk modulus and valve gain are free.
+struct SmallRig : Twin {
+  SmallRig() {
+    free("mass", 90.0, 20.0, 400.0);
+    free("bulk_modulus", 700e6, 1e8, 3e9);
+    free("valve_gain", 4e-5, 1e-5, 2e-4);
+    add("square", datasets::Waveform::square, 2.0, 0.01);
+    add("sine", datasets::Waveform::sine, 3.0, 0.02);
+  }
+
+  Fit fitted(unsigned seed = 1) const { return fit(campaign, records(1000, 1000.0, seed), {}); }
+};
+
+const ConsideredEffect* effect(const Fit& fit, const std::string& key) {
+  for (const ConsideredEffect& each : fit.considered.value().effects)
+    if (each.key == key) return &each;
+  return nullptr;
+}
+
+/// Rows of the effects at a fraction of their sizes, at the truth.
+Eigen::MatrixXd rows_at(const SmallRig& rig, const std::vector<datasets::Record>& records,
+                        double fraction, std::vector<std::string>& keys) {
+  std::vector<const datasets::Condition*> conditions;
+  for (const auto& each : rig.campaign.conditions) conditions.push_back(&each);
+  const Problem problem = make_problem(rig.campaign, records, conditions, false, nullptr);
+  auto effects = effects_of(problem, problem.start());
+  keys.clear();
+  for (Effect& each : effects) {
+    keys.push_back(each.about.key);
+    each.secant = fraction;
+  }
+  return effect_rows(problem, 0, problem.start(), effects, nullptr);
+}
+
+TEST_CASE("considered: secants at the plausible size are near those of a smaller step", "[calib]") {
+  const SmallRig rig;
+  const auto records = rig.records(1000, 1000.0, 1);
+  std::vector<std::string> keys;
+  const Eigen::MatrixXd whole = rows_at(rig, records, 1.0, keys);
+  const Eigen::MatrixXd part = rows_at(rig, records, 0.25, keys);
+  REQUIRE(whole.cols() > 10);
+  for (Eigen::Index k = 0; k < whole.cols(); ++k) {
+    CAPTURE(keys[static_cast<std::size_t>(k)]);
+    REQUIRE(whole.col(k).allFinite());
+    REQUIRE(whole.col(k).norm() > 0.0);
+    // Play is no linear operator: the larger, the more of the motion it hides.
+    const double allowed = keys[static_cast<std::size_t>(k)] == "position_hysteresis" ? 0.5 : 0.3;
+    CHECK((whole.col(k) - part.col(k)).norm() < allowed * whole.col(k).norm());
+  }
+}
+
+TEST_CASE("considered: the interval of the rig includes that of an exact model", "[calib]") {
+  const SmallRig rig;
+  const Fit found = rig.fitted();
+  REQUIRE(found.considered);
+  CHECK(found.considered->missing.empty());
+  int wider = 0;
+  for (const FittedParameter& each : found.parameters) {
+    if (!each.fitted) continue;
+    CAPTURE(each.value);
+    CHECK(each.ci95->first <= each.ci95_if_exact->first);
+    CHECK(each.ci95->second >= each.ci95_if_exact->second);
+    wider += each.ci95->second - each.ci95->first >
+                     1.1 * (each.ci95_if_exact->second - each.ci95_if_exact->first)
+                 ? 1
+                 : 0;
+  }
+  CHECK(wider > 0);
+}
+
+TEST_CASE("considered: the budget adds up by hand", "[calib]") {
+  const SmallRig rig;
+  for (const FittedParameter& each : rig.fitted().parameters) {
+    if (!each.fitted) continue;
+    const Budget95& budget = each.budget.value();
+    double sum = 0.0;
+    for (const BudgetLine& line : budget.lines) sum += line.uncertainty * line.uncertainty;
+    CHECK_THAT(std::sqrt(sum), WithinRel(budget.combined, 1e-9));
+    CHECK_THAT(budget.expanded, WithinRel(budget.coverage_factor * budget.combined, 1e-12));
+    CHECK(budget.coverage_factor > 1.95);
+    CHECK(each.ci95->second >= each.value + budget.shift + budget.expanded - 1e-9 * each.value);
+  }
+}
+
+TEST_CASE("considered: a valve lag that the model lacks is named with its size", "[calib]") {
+  SmallRig rig;
+  rig.truth.parameters.push_back(known(Twin::index("valve_time_constant"), 0.5e-3));
+  const Fit found = rig.fitted();
+  REQUIRE_FALSE(found.considered->missing.empty());
+  const ConsideredEffect& first = found.considered->effects[found.considered->missing.front()];
+  CHECK((first.key == "valve_time_constant" || first.key == "transport_delay"));
+  const ConsideredEffect* lag = effect(found, "valve_time_constant");
+  REQUIRE(lag != nullptr);
+  CHECK(lag->p_of_all.value() < 1e-3);
+  CHECK_THAT(lag->alone.value(), WithinRel(0.5e-3, 0.3));
+  const std::vector<std::pair<const char*, double>> truth{{"mass", 85.0}, {"valve_gain", 4.06e-5}};
+  for (const auto& [key, value] : truth) {
+    for (const FittedParameter& each : found.parameters) {
+      if (each.index != Twin::index(key)) continue;
+      CAPTURE(key, each.ci95->first, each.ci95->second);
+      CHECK(each.ci95->first <= value);
+      CHECK(value <= each.ci95->second);
+    }
+  }
+}
+
+TEST_CASE("considered: sizes and what is left out are the campaign's", "[calib]") {
+  SmallRig rig;
+  rig.campaign.considered.sizes["coulomb_friction"] = 7.0;
+  rig.campaign.considered.left_out = {"valve_dead_band"};
+  const Fit found = rig.fitted();
+  CHECK(effect(found, "coulomb_friction")->size == 7.0);
+  CHECK(effect(found, "valve_dead_band") == nullptr);
+  CHECK(found.considered->left_out == std::vector<std::string>{"valve_dead_band"});
+  rig.campaign.considered.none = true;
+  const Fit exact = rig.fitted();
+  CHECK(exact.considered->effects.empty());
+  for (const FittedParameter& each : exact.parameters)
+    if (each.fitted)
+      CHECK_THAT(each.ci95->second - each.ci95->first,
+                 WithinRel(each.ci95_if_exact->second - each.ci95_if_exact->first, 0.02));
+}
+
+TEST_CASE("considered: what is free or given is no effect beside it", "[calib]") {
+  SmallRig rig;
+  rig.free("valve_time_constant", 0.5e-3, 1e-6, 0.01);
+  rig.truth.parameters.push_back(known(Twin::index("valve_time_constant"), 0.5e-3));
+  rig.campaign.parameters.push_back(known(Twin::index("coulomb_friction"), 5.0));
+  rig.truth.parameters.push_back(known(Twin::index("coulomb_friction"), 5.0));
+  const Fit found = rig.fitted();
+  CHECK(effect(found, "valve_time_constant") == nullptr);
+  CHECK(effect(found, "coulomb_friction") == nullptr);
+  CHECK(effect(found, "transport_delay") != nullptr);
+}
+
+}  // namespace
+}  // namespace rigcal::calib
