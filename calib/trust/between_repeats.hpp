@@ -47,9 +47,8 @@ struct RepeatVariance {
 ///
 /// Freedom 0: no condition has single repeats.
 RepeatVariance repeat_variance(const std::vector<Eigen::MatrixXd>& scores,
-                               const std::vector<ScoreScatter>& scatter,
-                               const Eigen::MatrixXd& priors, const Eigen::MatrixXd& combinations,
-                               Eigen::Index combination);
+                               const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
+                               const ArrowRoot& combinations, Eigen::Index unknown);
 
 /// Whether repeats differ by so much more than the residuals tell that the interval has to rest on
 /// them: F of the two variances beyond its upper quartile. A variance that is pooled, or chosen,

@@ -24,10 +24,10 @@ std::vector<std::vector<bool>> noiseless_channels(const Problem& problem,
 ///
 /// @param rows          all conditions of the fit
 /// @param noiseless     per condition and channel
-/// @param combinations  of the directions, one per row
-/// @return              shape (combinations), 0 where all channels hold noise
+/// @param combinations  of the directions, one per unknown
+/// @return              shape (unknowns), 0 where all channels hold noise
 Eigen::VectorXd coherent_errors(const std::vector<ScoreRows>& rows,
                                 const std::vector<std::vector<bool>>& noiseless,
-                                const Eigen::MatrixXd& combinations);
+                                const ArrowRoot& combinations);
 
 }  // namespace rigcal::calib

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "calib/problem/arrow.hpp"
 #include "metrics/autoregression.hpp"
 
 namespace rigcal::calib {
@@ -11,16 +12,19 @@ namespace rigcal::calib {
 inline constexpr int kMostLags = 20;
 
 /// Weighted residuals r and their Jacobian J of one condition at the optimum. Jacobian rows are in
-/// coordinates in which the sum of J^T J over all conditions and priors is the identity.
+/// coordinates in which the sum of J^T J over all conditions and priors is the identity; those that
+/// belong to other conditions alone are left out.
 struct ScoreRows {
-  Eigen::MatrixXd jacobian;  ///< shape (channels * samples, directions), channel after channel
+  /// Shape (channels * samples, own directions + shared directions), channel after channel.
+  Eigen::MatrixXd jacobian;
   Eigen::VectorXd residual;  ///< shape (channels * samples)
   Eigen::Index channels = 1;
 };
 
-/// What one condition adds to the long-run covariance of the score J^T r.
+/// What one condition adds to the long-run covariance of the score J^T r. Its combinations are the
+/// unknowns that it has for itself, then the shared ones.
 struct ScoreScatter {
-  Eigen::MatrixXd covariance;  ///< shape (directions)^2, positive semidefinite
+  Eigen::MatrixXd covariance;  ///< shape (its directions)^2, positive semidefinite
   Eigen::VectorXd freedom;     ///< with which its variance of each combination is known
   /// What the error of each combination itself adds to that variance where it is one standard error
   /// large, over the expected variance of all conditions; empty: nothing.
@@ -52,10 +56,16 @@ struct ScoreScatter {
 ///
 /// @param rows          all conditions of the fit
 /// @param priors        J^T J of the priors, whose errors have the variance that they state
-/// @param combinations  of the directions, one per row
+/// @param combinations  of the directions, one per unknown
 std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
-                                        const Eigen::MatrixXd& priors,
-                                        const Eigen::MatrixXd& combinations, int threads = 1);
+                                        const ArrowMatrix& priors, const ArrowRoot& combinations,
+                                        int threads = 1);
+
+/// Degrees of freedom with which a condition knows its part of the variance of an unknown. What it
+/// tells of an own unknown of another condition it tells by way of the shared ones: the least of
+/// theirs.
+double freedom_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Eigen::Index unknown,
+                  std::size_t condition);
 
 /// Variance c^T (sum of all covariances + priors) c of a combination.
 struct RobustVariance {
@@ -73,8 +83,7 @@ struct RobustVariance {
 /// 97.5 % quantile of Student's t; freedom below 1 counts as 1.
 double student_t(double freedom);
 
-RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter,
-                               const Eigen::MatrixXd& priors, const Eigen::MatrixXd& combinations,
-                               Eigen::Index combination);
+RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
+                               const ArrowRoot& combinations, Eigen::Index unknown);
 
 }  // namespace rigcal::calib
