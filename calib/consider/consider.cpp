@@ -46,7 +46,8 @@ constexpr std::size_t kMostMissing = 3;
 /// Effects and what the fit and the residuals see of them, each in units of its plausible size.
 struct Seen {
   std::vector<Effect> effects;
-  MatrixXd taken;  ///< C: what the fit takes for a change, coordinates of the root
+  MatrixXd
+      taken;  ///< C: what the fit takes for a change, shape (all directions of the root, effects)
   MatrixXd left;   ///< M
   VectorXd score;  ///< s
   MatrixXd basis;  ///< T: left = T^-T T^-1 on the directions that the records determine
@@ -76,20 +77,25 @@ void drop_failed(std::vector<Effect>& effects, std::vector<MatrixXd>& columns,
   for (MatrixXd& each : columns) each = MatrixXd(each(Eigen::all, kept));
 }
 
+/// What the fit takes for a change in the directions of a condition.
+MatrixXd taken_in(std::size_t condition, const Uncertainty& found, const Seen& seen) {
+  return seen.taken(found.root.directions(condition), Eigen::all);
+}
+
 /// What fit and residuals see of the effects, whose columns are used up.
 Seen look_at(std::vector<Effect> effects, std::vector<MatrixXd>& columns,
-             const std::vector<ScoreRows>& scores) {
+             const Uncertainty& found) {
+  const std::vector<ScoreRows>& scores = found.scores;
   Seen seen;
   const auto count = static_cast<Index>(effects.size());
-  const Index rank = scores.front().jacobian.cols();
   seen.effects = std::move(effects);
-  seen.taken = MatrixXd::Zero(rank, count);
+  seen.taken = MatrixXd::Zero(found.root.directions(), count);
   for (std::size_t i = 0; i < scores.size(); ++i)
-    seen.taken += scores[i].jacobian.transpose() * columns[i];
+    seen.taken(found.root.directions(i), Eigen::all) += scores[i].jacobian.transpose() * columns[i];
   seen.left = MatrixXd::Zero(count, count);
   seen.score = VectorXd::Zero(count);
   for (std::size_t i = 0; i < scores.size(); ++i) {
-    columns[i] -= scores[i].jacobian * seen.taken;
+    columns[i] -= scores[i].jacobian * taken_in(i, found, seen);
     seen.left += columns[i].transpose() * columns[i];
     seen.score -= columns[i].transpose() * scores[i].residual;
   }
@@ -226,7 +232,8 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
   if (again.empty()) return false;
   const MatrixXd felt = seen.left * seen.basis;
   parallel_for(columns.size(), threads, [&](std::size_t i) {
-    columns[i] = seen.rows[i].jacobian * felt.transpose() + found.scores[i].jacobian * seen.taken;
+    columns[i] = seen.rows[i].jacobian * felt.transpose() +
+                 found.scores[i].jacobian * taken_in(i, found, seen);
     const MatrixXd anew = effect_rows(problem, i, z, again, cancel);
     for (std::size_t a = 0; a < which.size(); ++a) {
       const auto column = static_cast<Index>(a);
@@ -241,7 +248,7 @@ bool take_again(const Problem& problem, std::span<const double> z, const Uncerta
 /// secants, the sensitivities being those of the fit (chord iterations). With the sizes come the
 /// scores and the residuals as they would be if all were linear about the optimum.
 ///
-/// @param moved  of the estimate, in coordinates of the root
+/// @param moved  of the estimate, shape (all directions of the root)
 /// @return  whether it settled; else nothing has changed
 bool follow_curvature(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                       const MatrixXd& directions, int threads, const std::atomic<bool>* cancel,
@@ -256,10 +263,9 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
     base[i] = outputs_with(problem, i, z, seen.effects, none, cancel);
   });
   for (int chord = 0; chord < kMostChords; ++chord) {
-    const VectorXd step = found.root * move;
     std::vector<double> there(z.begin(), z.end());
     for (std::size_t j = 0; j < there.size(); ++j) {
-      there[j] += step(static_cast<Index>(j));
+      there[j] += found.root.times(static_cast<Index>(j), move)(0);
       if (!(there[j] >= 0.0 && there[j] <= 1.0)) return false;
     }
     std::vector<VectorXd> scores(base.size());
@@ -273,8 +279,10 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
       }
       const ScoreRows& rows = found.scores[i];
       next.rows[i].residual = rows.residual + outputs - base[i];
-      const VectorXd linear = seen.rows[i].jacobian * (felt.transpose() * at.mean) +
-                              rows.jacobian * (seen.taken * at.mean + move) - next.rows[i].residual;
+      const VectorXd linear =
+          seen.rows[i].jacobian * (felt.transpose() * at.mean) +
+          rows.jacobian * (taken_in(i, found, seen) * at.mean + move(found.root.directions(i))) -
+          next.rows[i].residual;
       scores[i] = seen.rows[i].jacobian.transpose() * linear;
       taken[i] = rows.jacobian.transpose() * linear;
     });
@@ -283,7 +291,7 @@ bool follow_curvature(const Problem& problem, std::span<const double> z, const U
     VectorXd free_move = VectorXd::Zero(move.size());
     for (std::size_t i = 0; i < base.size(); ++i) {
       score += scores[i];
-      free_move += taken[i];
+      free_move(found.root.directions(i)) += taken[i];
     }
     next.score = felt * score;
     at = sizes_of(next, directions);
@@ -429,11 +437,14 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
 ///
 /// @param rows  whose residuals are without the effects
 VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>& scores,
-                           const std::vector<ScoreRows>& rows, const MatrixXd& root) {
+                           const std::vector<ScoreRows>& rows, const ArrowRoot& root) {
   std::vector<LackOfFit> tests;
-  std::vector<VectorXd> moves;
+  std::vector<VectorXd> moves;  // of the unknowns that act in its condition
+  std::vector<const std::vector<int>*> whose;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ProblemCondition& condition = problem.conditions[i];
+    const std::vector<int>& acting = problem.map.acting(i);
+    const MatrixXd by_direction = root.rows(acting, i).transpose();
     const Index samples = rows[i].residual.size() / rows[i].channels;
     for (Index k = 0; k < rows[i].channels; ++k) {
       const ProblemChannel& channel = condition.channels[static_cast<std::size_t>(k)];
@@ -442,16 +453,17 @@ VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>&
           condition, channel, std::span(left.data(), static_cast<std::size_t>(left.size())));
       if (!test) continue;
       tests.push_back(*test);
-      const MatrixXd felt = scores[i].jacobian.middleRows(k * samples, samples) * root.transpose();
+      whose.push_back(&acting);
+      const MatrixXd felt = scores[i].jacobian.middleRows(k * samples, samples) * by_direction;
       const double error = std::sqrt(std::max(0.0, test->ratio - 1.0));
       moves.push_back(error * std::sqrt(static_cast<double>(samples)) *
                       felt.colwise().norm().transpose());
     }
   }
-  VectorXd squares = VectorXd::Zero(root.rows());
+  VectorXd squares = VectorXd::Zero(root.unknowns());
   for (std::size_t t = 0; t < tests.size(); ++t) {
     if (tests[t].p * static_cast<double>(tests.size()) < kUnexplainedLevel)
-      squares += moves[t].cwiseAbs2();
+      squares(*whose[t]) += moves[t].cwiseAbs2();
   }
   return squares.cwiseSqrt();
 }
@@ -476,7 +488,7 @@ void widen(const Problem& problem, std::size_t unknown, Budget95 budget, double 
 
 void consider_effects(const Problem& problem, std::span<const double> z, const Uncertainty& found,
                       int threads, const std::atomic<bool>* cancel, Fit& fit) {
-  if (found.scores.empty() || found.root.cols() == 0) return;
+  if (found.scores.empty() || found.root.directions() == 0) return;
   Considered considered;
   considered.left_out = left_out_effects(problem, z);
   std::vector<Effect> effects = effects_of(problem, z);
@@ -490,13 +502,13 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   Sizes sizes;
   VectorXd moved;
   if (!effects.empty()) {
-    seen = look_at(std::move(effects), columns, found.scores);
+    seen = look_at(std::move(effects), columns, found);
     ScoreCovariance scores = covariance_of(problem, z, *seen, threads);
     sizes = sizes_of(*seen, scores.directions);
     for (int i = 0; i < kMostSecants; ++i) {
       if (!take_again(problem, z, found, sizes, threads, cancel, *seen, columns)) break;
       if (cancel != nullptr && cancel->load()) return;
-      seen = look_at(std::move(seen->effects), columns, found.scores);
+      seen = look_at(std::move(seen->effects), columns, found);
       scores = covariance_of(problem, z, *seen, threads);
       sizes = sizes_of(*seen, scores.directions);
     }
@@ -518,9 +530,9 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
       about.standard_error = about.size * std::sqrt(std::max(0.0, sizes.covariance(k, k)));
     }
   } else {
-    moved = VectorXd::Zero(found.root.cols());
+    moved = VectorXd::Zero(found.root.directions());
     seen.emplace();
-    seen->taken = MatrixXd::Zero(found.root.cols(), 0);
+    seen->taken = MatrixXd::Zero(found.root.directions(), 0);
     sizes.mean = VectorXd::Zero(0);
     sizes.covariance = MatrixXd::Zero(0, 0);
     sizes.likeliest = VectorXd::Zero(0);
@@ -531,9 +543,8 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     FittedParameter& parameter = fit.parameters[j];
     if (!parameter.ci95) continue;
     const double slope = problem.map.slope(static_cast<int>(j), z[j]);
-    const VectorXd moves =
-        slope * (found.root.row(static_cast<Index>(j)) * seen->taken).transpose();
-    const double shift = slope * found.root.row(static_cast<Index>(j)).dot(moved);
+    const VectorXd moves = slope * found.root.times(static_cast<Index>(j), seen->taken);
+    const double shift = slope * found.root.times(static_cast<Index>(j), moved)(0);
     const double likeliest = shift - moves.dot(sizes.likeliest - sizes.mean);
     widen(problem, j, budget_of(found, j, parameter, slope, *seen, moves, sizes, shift), likeliest,
           parameter);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/problem/arrow_svd.hpp"
 #include "calib/problem/evaluation.hpp"
-#include "calib/problem/scaled_svd.hpp"
 #include "calib/search/optimum.hpp"
 #include "calib/trust/uncertainty.hpp"
 #include "metrics/distributions.hpp"
@@ -44,9 +44,8 @@ Evaluation evaluated(const Problem& problem, const std::vector<double>& z, int t
 
 /// z after a Gauss-Newton step within the box.
 std::vector<double> after_step(const Problem& problem, const Evaluation& at) {
-  const Linearisation system = linearise(problem, at);
   const Eigen::VectorXd step =
-      ScaledSvd(system.jacobian, rank_threshold(problem.tolerance)).step(system.residual);
+      ArrowSvd(linearise(problem, at), rank_threshold(problem.tolerance)).step();
   std::vector<double> z = at.z;
   for (std::size_t j = 0; j < z.size(); ++j)
     z[j] = std::clamp(z[j] + step(static_cast<Eigen::Index>(j)), 0.0, 1.0);

@@ -1,9 +1,9 @@
 #include "calib/descent/adaptive_descent.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "calib/descent/box_step.hpp"
 
@@ -38,25 +38,28 @@ struct Point {
   Eigen::VectorXd z;
   double cost = 0.0;
   Eigen::VectorXd gradient;
-  Eigen::MatrixXd square;  ///< J'J
+  ArrowSquare square;  ///< J'J
 };
 
 std::optional<Point> point_at(const DescentOptions& options, const Eigen::VectorXd& z) {
   const auto found =
       options.linearise({z.data(), static_cast<std::size_t>(z.size())}, /*jacobian=*/true);
   if (!found) return std::nullopt;
-  return Point{z, 0.5 * found->residual.squaredNorm(),
-               found->jacobian.transpose() * found->residual,
-               found->jacobian.transpose() * found->jacobian};
+  return Point{z, 0.5 * found->square(), found->gradient(), found->normal()};
 }
 
-/// Updates S after a step (Dennis, Gay and Welsch): the new S maps the step onto the change of the
-/// gradient that J'J does not explain, and otherwise is as close to the old S as possible.
-void learn(const Point& from, const Point& to, const Eigen::VectorXd& scale, Eigen::MatrixXd& s) {
-  const Eigen::VectorXd step = to.z - from.z;
-  const Eigen::VectorXd change = to.gradient - from.gradient;
-  const Eigen::VectorXd unexplained = change - 0.5 * (to.square + from.square) * step;
-  // S estimated where the residuals were larger is now too large.
+/// S after a step, by the update of Dennis, Gay and Welsch: S maps the step onto the change of the
+/// gradient that J'J does not explain, and is else as near to what it was as that allows. It is of
+/// the shared unknowns alone: a whole one would couple those that conditions have for themselves.
+void learn(const Point& from, const Point& to, const Eigen::VectorXd& scales, Eigen::MatrixXd& s) {
+  const std::vector<int>& shared = from.square.layout.shared;
+  const Eigen::VectorXd whole = to.z - from.z;
+  const Eigen::VectorXd explained = 0.5 * (to.square * whole + from.square * whole);
+  const Eigen::VectorXd step = whole(shared);
+  const Eigen::VectorXd scale = scales(shared);
+  const Eigen::VectorXd change = to.gradient(shared) - from.gradient(shared);
+  const Eigen::VectorXd unexplained = change - explained(shared);
+  // What was learnt where residuals were larger is too large by now.
   const double before = std::abs(step.dot(s * step));
   if (before > 0.0) s *= std::min(1.0, std::abs(step.dot(unexplained)) / before);
   const double along = change.dot(step);
@@ -78,9 +81,10 @@ void rescale(const Point& at, Eigen::VectorXd& scale) {
 /// Length of the Levenberg-Marquardt step, in units of the scale.
 double damped_length(const Point& at, const Eigen::VectorXd& scale, double damping) {
   const Eigen::VectorXd inverse = scale.cwiseInverse();
-  Eigen::MatrixXd damped = inverse.asDiagonal() * at.square * inverse.asDiagonal();
-  damped.diagonal().array() += damping;
-  return damped.llt().solve(inverse.cwiseProduct(at.gradient)).norm();
+  std::vector<Eigen::Index> all(static_cast<std::size_t>(scale.size()));
+  std::iota(all.begin(), all.end(), Eigen::Index{0});
+  return damped_step(at.square.part(all, inverse), inverse.cwiseProduct(at.gradient), damping)
+      .norm();
 }
 
 /// Fraction of a step at which the cost is least, by a parabola through its slope and actual fall.
@@ -109,14 +113,16 @@ Descent descend_adaptively(const DescentOptions& options, std::vector<double>& z
   Eigen::VectorXd scale = Eigen::VectorXd::Zero(n);
   rescale(*here, scale);
   double radius = damped_length(*here, scale, 1.0 / options.trust_radius);
-  Eigen::MatrixXd second = Eigen::MatrixXd::Zero(n, n);  // S
+  const Eigen::Index shared = here->square.blocks.shared.rows();
+  Eigen::MatrixXd second = Eigen::MatrixXd::Zero(shared, shared);  // S
   bool augmented = false;
   bool switched = false;  // the model was exchanged at this point, after a rejected step
   int invalid = 0;
   bool ended = enough(here->cost, 0.0);
   while (!ended && !result.converged && result.iterations < options.most_iterations) {
     const QuadraticModel plain{here->square, here->gradient};
-    const QuadraticModel full{here->square + second, here->gradient};
+    QuadraticModel full = plain;
+    full.hessian.blocks.shared += second;
     const BoxStep tried = box_step(augmented ? full : plain,
                                    {-here->z, Eigen::VectorXd::Ones(n) - here->z, scale, radius});
     const double length = scale.cwiseProduct(tried.step).norm();

@@ -20,48 +20,200 @@ struct BallStep {
   double multiplier = 0.0;  ///< multiplier of the constraint on the radius; 0 inside the ball
 };
 
-/// Minimises c' y + y' B y / 2 over |y| <= radius.
-BallStep ball_step(const Eigen::MatrixXd& b, const Eigen::VectorXd& c, double radius) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(b);
-  const double flat = kSquaredRounding * spectrum.eigenvalues().cwiseAbs().maxCoeff() + 1e-300;
-  Eigen::VectorXd curvature = spectrum.eigenvalues().unaryExpr(
-      [&](double value) { return std::abs(value) <= flat ? flat : value; });
-  const Eigen::VectorXd along = spectrum.eigenvectors().transpose() * c;
-  // The shift is counted from the point where the matrix ceases to be indefinite, to avoid
-  // cancellation.
-  const double least = std::max(0.0, -curvature(0));
-  curvature.array() += least;
-  const auto length_at = [&](double more) {
-    return (along.array() / (curvature.array() + more).max(1e-300)).matrix().norm();
-  };
+/// Eigenvalues that are rounding, as one that is small: directions along them are all but flat.
+Eigen::VectorXd without_rounding(const Eigen::VectorXd& eigenvalues, double flat) {
+  return eigenvalues.unaryExpr(
+      [flat](double value) { return std::abs(value) <= flat ? flat : value; });
+}
+
+/// (B + shift)^-1 of a dense matrix, in the coordinates of its eigenvectors.
+class ShiftedDense {
+ public:
+  explicit ShiftedDense(const Eigen::MatrixXd& b) : spectrum_(b) {
+    const double flat = kSquaredRounding * spectrum_.eigenvalues().cwiseAbs().maxCoeff() + 1e-300;
+    curvature_ = without_rounding(spectrum_.eigenvalues(), flat);
+    least_ = std::max(0.0, -curvature_(0));
+    // Counted from where the matrix is no longer indefinite, so that nothing cancels there.
+    curvature_.array() += least_;
+  }
+
+  /// The least shift that leaves nothing indefinite; those below come on top of it.
+  double least() const { return least_; }
+  Eigen::VectorXd into(const Eigen::VectorXd& x) const {
+    return spectrum_.eigenvectors().transpose() * x;
+  }
+  Eigen::VectorXd back(const Eigen::VectorXd& y) const { return spectrum_.eigenvectors() * y; }
+  Eigen::VectorXd solve(const Eigen::VectorXd& y, double more) const {
+    return (y.array() / (curvature_.array() + more).max(1e-300)).matrix();
+  }
+  /// Of the most negative curvature, of unit length.
+  Eigen::VectorXd lowest() const { return Eigen::VectorXd::Unit(curvature_.size(), 0); }
+
+ private:
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum_;
+  Eigen::VectorXd curvature_;
+  double least_ = 0.0;
+};
+
+/// The same of an arrow: own unknowns are eliminated, by the eigenvectors of their blocks, and the
+/// eigenvalues of what is left of the shared ones tell the rest.
+class ShiftedArrow {
+ public:
+  explicit ShiftedArrow(const ArrowSquare& b)
+      : b_(b),
+        spectra_(b.layout.own.size()),
+        coupling_(b.layout.own.size()),
+        curvature_(b.layout.own.size()) {
+    double largest = b.blocks.shared.size() > 0 ? b.blocks.shared.cwiseAbs().maxCoeff() : 0.0;
+    for (std::size_t i = 0; i < spectra_.size(); ++i) {
+      if (b.layout.own[i].empty()) continue;
+      spectra_[i].compute(b.blocks.own[i]);
+      coupling_[i] = spectra_[i].eigenvectors().transpose() * b.blocks.coupling[i];
+      curvature_[i] = spectra_[i].eigenvalues();
+      largest = std::max(largest, curvature_[i].cwiseAbs().maxCoeff());
+    }
+    flat_ = kSquaredRounding * largest + 1e-300;
+    for (Eigen::VectorXd& each : curvature_) each = without_rounding(each, flat_);
+    find_least();
+  }
+
+  double least() const { return least_; }
+  static const Eigen::VectorXd& into(const Eigen::VectorXd& x) { return x; }
+  static const Eigen::VectorXd& back(const Eigen::VectorXd& y) { return y; }
+
+  Eigen::VectorXd solve(const Eigen::VectorXd& x, double more) const {
+    const double shift = least_ + more;
+    Eigen::VectorXd left = x(b_.layout.shared);
+    std::vector<Eigen::VectorXd> own(spectra_.size());
+    for (std::size_t i = 0; i < spectra_.size(); ++i) {
+      if (curvature_[i].size() == 0) continue;
+      const Eigen::VectorXd in_block = x(b_.layout.own[i]);
+      own[i] = spectra_[i].eigenvectors().transpose() * in_block;
+      left -= coupling_[i].transpose() * over(own[i], i, shift);
+    }
+    Eigen::VectorXd result(x.size());
+    Eigen::VectorXd of_shared(left.size());
+    if (left.size() > 0) {
+      const Spectrum spectrum(schur(shift));
+      const Eigen::VectorXd curvature = without_rounding(spectrum.eigenvalues(), flat_);
+      of_shared = spectrum.eigenvectors() * ((spectrum.eigenvectors().transpose() * left).array() /
+                                             curvature.array().max(1e-300))
+                                                .matrix();
+    }
+    result(b_.layout.shared) = of_shared;
+    for (std::size_t i = 0; i < spectra_.size(); ++i) {
+      if (curvature_[i].size() == 0) continue;
+      result(b_.layout.own[i]) =
+          spectra_[i].eigenvectors() * over(own[i] - coupling_[i] * of_shared, i, shift);
+    }
+    return result;
+  }
+
+  Eigen::VectorXd lowest() const {
+    const Eigen::VectorXd of_shared = Spectrum(schur(least_)).eigenvectors().col(0);
+    Eigen::VectorXd result(b_.size());
+    result(b_.layout.shared) = of_shared;
+    for (std::size_t i = 0; i < spectra_.size(); ++i) {
+      if (curvature_[i].size() > 0)
+        result(b_.layout.own[i]) =
+            -spectra_[i].eigenvectors() * over(coupling_[i] * of_shared, i, least_);
+    }
+    return result.normalized();
+  }
+
+ private:
+  using Spectrum = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
+
+  Eigen::VectorXd over(const Eigen::VectorXd& x, std::size_t i, double shift) const {
+    return x.cwiseQuotient((curvature_[i].array() + shift).matrix());
+  }
+
+  /// What is left of the shared unknowns at a shift.
+  Eigen::MatrixXd schur(double shift) const {
+    Eigen::MatrixXd result = b_.blocks.shared;
+    result.diagonal().array() += shift;
+    for (std::size_t i = 0; i < spectra_.size(); ++i) {
+      if (curvature_[i].size() == 0) continue;
+      const Eigen::VectorXd inverse = (curvature_[i].array() + shift).inverse();
+      result -= coupling_[i].transpose() * inverse.asDiagonal() * coupling_[i];
+    }
+    return result;
+  }
+
+  /// B + shift has as many negative eigenvalues as the Schur complement, since the blocks of the
+  /// conditions have none: the least shift without any is found by halves.
+  void find_least() {
+    if (b_.blocks.shared.size() == 0) return;
+    const auto lowest_at = [&](double shift) {
+      return Spectrum(schur(shift), Eigen::EigenvaluesOnly).eigenvalues()(0);
+    };
+    const double curvature = lowest_at(0.0);
+    if (curvature >= -flat_) return;
+    double low = 0.0;
+    double high = -curvature;  // the complement grows at least as fast as the shift
+    for (int k = 0; k < kMostRadiusIterations && high - low > 1e-15 * high; ++k) {
+      const double middle = 0.5 * (low + high);
+      (lowest_at(middle) < 0.0 ? low : high) = middle;
+    }
+    least_ = high;
+  }
+
+  const ArrowSquare& b_;
+  std::vector<Spectrum> spectra_;  ///< of the blocks of the conditions
+  std::vector<Eigen::MatrixXd> coupling_;
+  std::vector<Eigen::VectorXd> curvature_;
+  double flat_ = 0.0;
+  double least_ = 0.0;
+};
+
+/// The least of c' y + y' B y / 2 over |y| <= radius.
+template <typename Shifted>
+BallStep ball_step(const Shifted& b, const Eigen::VectorXd& c, double radius) {
+  const Eigen::VectorXd along = b.into(c);
   double more = 0.0;
-  if (least > 0.0 || length_at(0.0) > radius) {
+  Eigen::VectorXd y = b.solve(along, more);
+  if (b.least() > 0.0 || y.norm() > radius) {
     double low = 0.0;
     double high = along.norm() / radius;
     more = std::clamp(1e-3 * high, low, high);
     for (int k = 0; k < kMostRadiusIterations; ++k) {
-      const Eigen::ArrayXd divisor = (curvature.array() + more).max(1e-300);
-      const double length = (along.array() / divisor).matrix().norm();
+      y = b.solve(along, more);
+      const double length = y.norm();
       if (std::abs(length - radius) <= kOnRadius * radius) break;
       (length > radius ? low : high) = more;
-      // Newton's method for 1 / length, which is nearly linear.
-      const double slope = (along.array().square() / divisor.cube()).sum();
+      // Newton's method for 1 / length, which is all but linear.
+      const double slope = y.dot(b.solve(y, more));
       const double next =
           more + (length / radius - 1.0) * length * length / std::max(slope, 1e-300);
       more = next > low && next < high ? next : 0.5 * (low + high);
       if (high - low <= 1e-15 * high) break;
     }
+    y = b.solve(along, more);
   }
-  Eigen::VectorXd y = -(along.array() / (curvature.array() + more).max(1e-300)).matrix();
-  // Hard case: the gradient has no component along the most negative curvature. The step goes on in
-  // that direction up to the radius.
+  y = -y;
+  // No gradient along the most negative curvature: that is where the rest of the way leads.
   const double short_of = radius * radius - y.squaredNorm();
-  if (least > 0.0 && short_of > 2.0 * kOnRadius * radius * radius)
-    y(0) += std::copysign(std::sqrt(short_of + y(0) * y(0)) - std::abs(y(0)), y(0));
-  return {spectrum.eigenvectors() * y, least + more};
+  if (b.least() > 0.0 && short_of > 2.0 * kOnRadius * radius * radius) {
+    const Eigen::VectorXd lowest = b.lowest();
+    const double part = lowest.dot(y);
+    y += std::copysign(std::sqrt(short_of + part * part) - std::abs(part), part) * lowest;
+  }
+  return {b.back(y), b.least() + more};
+}
+
+BallStep ball_step(const ArrowSquare& b, const Eigen::VectorXd& c, double radius) {
+  if (b.layout.own.empty()) return ball_step(ShiftedDense(b.blocks.shared), c, radius);
+  return ball_step(ShiftedArrow(b), c, radius);
 }
 
 }  // namespace
+
+Eigen::VectorXd damped_step(const ArrowSquare& b, const Eigen::VectorXd& c, double damping) {
+  const auto by = [&](const auto& shifted) {
+    return Eigen::VectorXd(-shifted.back(shifted.solve(shifted.into(c), damping)));
+  };
+  return b.layout.own.empty() ? by(ShiftedDense(b.blocks.shared)) : by(ShiftedArrow(b));
+}
 
 BoxStep box_step(const QuadraticModel& model, const StepLimits& limits) {
   const Eigen::Index n = model.gradient.size();
@@ -90,8 +242,7 @@ BoxStep box_step(const QuadraticModel& model, const StepLimits& limits) {
       const Eigen::VectorXd inverse = limits.scale(free).cwiseInverse();
       const Eigen::VectorXd slope = model.gradient + model.hessian * at_bounds;
       const BallStep ball =
-          ball_step(inverse.asDiagonal() * model.hessian(free, free) * inverse.asDiagonal(),
-                    inverse.cwiseProduct(slope(free)), radius);
+          ball_step(model.hessian.part(free, inverse), inverse.cwiseProduct(slope(free)), radius);
       multiplier = ball.multiplier;
       const Eigen::VectorXd there = inverse.cwiseProduct(ball.step);
       double reach = 1.0;

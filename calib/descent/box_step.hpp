@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 
+#include "calib/problem/arrow.hpp"
+
 namespace rigcal::calib {
 
 /// Model of how a cost changes with a step p: gradient' p + p' hessian p / 2.
 struct QuadraticModel {
-  Eigen::MatrixXd hessian;  ///< symmetric; may be indefinite
+  ArrowSquare hessian;  ///< may be indefinite, but not in the block of a condition
   Eigen::VectorXd gradient;
 
   /// Fall of the cost that the model predicts for a step.
@@ -30,10 +32,13 @@ struct BoxStep {
   bool at_radius = false;  ///< a larger trust region would give a longer step
 };
 
-/// Minimises a model in the ball, exactly, and then in the box by an active set. An unknown that
-/// meets its bound stays there while the others are solved for again. An unknown that the model
-/// pulls back inside is released, once. The solution in the ball follows Moré and Sorensen (SIAM J.
-/// Sci. Stat. Comput. 4, 1983), by eigenvalues since there are few unknowns.
+/// -(B + damping)^-1 c, of a matrix that is not indefinite.
+Eigen::VectorXd damped_step(const ArrowSquare& b, const Eigen::VectorXd& c, double damping);
+
+/// The least of a model in the ball, exactly, and then in the box by an active set: an unknown that
+/// meets its bound stays there and the others are solved for again; one that the model draws back
+/// inside is let go, once (Moré and Sorensen, SIAM J. Sci. Stat. Comput. 4, 1983; by eigenvalues,
+/// since there are few unknowns once those of the conditions are eliminated).
 BoxStep box_step(const QuadraticModel& model, const StepLimits& limits);
 
 }  // namespace rigcal::calib

@@ -24,6 +24,33 @@ double prior_cost(const Problem& problem, std::span<const double> z) {
   return cost;
 }
 
+/// Rows of a condition and of the priors of its own unknowns, over these, the shared ones, and the
+/// residual.
+///
+/// @param column  of each shared unknown
+Eigen::MatrixXd condition_rows(const Problem& problem, const Evaluation& evaluation, std::size_t i,
+                               const std::vector<int>& own, const std::vector<Eigen::Index>& column,
+                               Eigen::Index shared) {
+  const Eigen::MatrixXd& part = evaluation.conditions[i].r_factor;
+  const auto first = static_cast<Eigen::Index>(own.size());
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(part.rows() + first, first + shared + 1);
+  const std::vector<int>& acting = problem.map.acting(i);
+  for (std::size_t j = 0; j < acting.size(); ++j) {
+    const auto mine = std::find(own.begin(), own.end(), acting[j]);
+    const Eigen::Index at = mine != own.end() ? mine - own.begin()
+                                              : first + column[static_cast<std::size_t>(acting[j])];
+    rows.col(at).head(part.rows()) = part.col(static_cast<Eigen::Index>(j));
+  }
+  rows.col(first + shared).head(part.rows()) = part.col(part.cols() - 1);
+  for (Eigen::Index k = 0; k < first; ++k) {
+    const int unknown = own[static_cast<std::size_t>(k)];
+    const double at = evaluation.z[static_cast<std::size_t>(unknown)];
+    rows(part.rows() + k, k) = problem.map.prior_slope(unknown, at);
+    rows(part.rows() + k, first + shared) = problem.map.prior_residual(unknown, at);
+  }
+  return rows;
+}
+
 }  // namespace
 
 Eigen::MatrixXd weighted_rows(const ProblemCondition& condition, std::size_t channel,
@@ -177,27 +204,42 @@ Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int th
 }
 
 Linearisation linearise(const Problem& problem, const Evaluation& evaluation) {
-  const auto unknowns = static_cast<Eigen::Index>(problem.map.unknowns().size());
-  RFactor total(unknowns + 1);
+  const ArrowLayout& layout = problem.map.layout();
+  const auto shared = static_cast<Eigen::Index>(layout.shared.size());
+  std::vector<Eigen::Index> column(problem.map.unknowns().size(), -1);
+  for (Eigen::Index k = 0; k < shared; ++k)
+    column[static_cast<std::size_t>(layout.shared[static_cast<std::size_t>(k)])] = k;
+  RFactor total(shared + 1);
+  Linearisation result;
   for (std::size_t i = 0; i < evaluation.conditions.size(); ++i) {
-    const Eigen::MatrixXd& part = evaluation.conditions[i].r_factor;
-    const std::vector<int>& acting = problem.map.acting(i);
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(part.rows(), unknowns + 1);
-    for (std::size_t j = 0; j < acting.size(); ++j)
-      rows.col(acting[j]) = part.col(static_cast<Eigen::Index>(j));
-    rows.col(unknowns) = part.col(part.cols() - 1);
-    total.add(rows);
+    const bool alone = layout.own.empty() || layout.own[i].empty();
+    const std::vector<int> own = alone ? std::vector<int>() : layout.own[i];
+    Eigen::MatrixXd rows = condition_rows(problem, evaluation, i, own, column, shared);
+    const auto first = static_cast<Eigen::Index>(own.size());
+    if (first > 0) {
+      RFactor turned(rows.cols());
+      turned.add(std::move(rows));
+      rows = turned.get();
+    }
+    total.add(rows.bottomRightCorner(rows.rows() - first, shared + 1));
+    if (layout.own.empty()) continue;
+    result.own.push_back({own, rows.topLeftCorner(first, first),
+                          rows.block(0, first, first, shared),
+                          rows.col(rows.cols() - 1).head(first)});
   }
-  for (Eigen::Index j = 0; j < unknowns; ++j) {
-    const auto u = static_cast<std::size_t>(j);
+  for (Eigen::Index k = 0; k < shared; ++k) {
+    const int unknown = layout.shared[static_cast<std::size_t>(k)];
+    const auto u = static_cast<std::size_t>(unknown);
     if (!problem.map.unknowns()[u].prior) continue;
-    const int unknown = static_cast<int>(j);
-    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, unknowns + 1);
-    row(0, j) = problem.map.prior_slope(unknown, evaluation.z[u]);
-    row(0, unknowns) = problem.map.prior_residual(unknown, evaluation.z[u]);
+    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, shared + 1);
+    row(0, k) = problem.map.prior_slope(unknown, evaluation.z[u]);
+    row(0, shared) = problem.map.prior_residual(unknown, evaluation.z[u]);
     total.add(row);
   }
-  return {total.get().leftCols(unknowns), total.get().col(unknowns)};
+  result.jacobian = total.get().leftCols(shared);
+  result.residual = total.get().col(shared);
+  result.shared = layout.shared;
+  return result;
 }
 
 }  // namespace rigcal::calib

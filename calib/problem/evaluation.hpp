@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/problem/arrow.hpp"
 #include "calib/problem/problem.hpp"
 
 namespace rigcal::calib {
@@ -104,12 +105,8 @@ struct EvaluationOptions {
 Evaluation evaluate_at(const Problem& problem, std::span<const double> z, int threads,
                        const EvaluationOptions& options = {});
 
-/// Least-squares system of all conditions and priors at one point, as a R factor.
-struct Linearisation {
-  Eigen::MatrixXd jacobian;  ///< shape (unknowns + 1, unknowns), unit-box coordinates
-  Eigen::VectorXd residual;  ///< shape (unknowns + 1); half its squared norm is the cost
-};
-
+/// The system of all conditions and priors; its shared part has a row more than unknowns.
+///
 /// @param evaluation  one that is ok
 Linearisation linearise(const Problem& problem, const Evaluation& evaluation);
 

@@ -144,6 +144,22 @@ ParameterMap::ParameterMap(const Campaign& campaign,
       if (acts) acting.push_back(static_cast<int>(j));
     }
   }
+  const bool apart = unknowns_.size() > kMostTogether;
+  if (apart) layout_.own.resize(conditions.size());
+  std::vector<bool> taken(unknowns_.size(), false);
+  for (std::size_t i = 0; apart && i < conditions.size(); ++i) {
+    for (const int j : acting_[i]) {
+      const auto u = static_cast<std::size_t>(j);
+      if (unknowns_[u].scope != Scope::condition || taken[u]) continue;
+      layout_.own[i].push_back(j);
+      taken[u] = true;
+    }
+  }
+  for (std::size_t j = 0; j < unknowns_.size(); ++j) {
+    if (!taken[j]) layout_.shared.push_back(static_cast<int>(j));
+  }
+  const bool none = std::find(taken.begin(), taken.end(), true) == taken.end();
+  if (none) layout_.own.clear();
 }
 
 double ParameterMap::to_physical(int unknown, double z) const {

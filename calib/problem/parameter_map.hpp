@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/problem/arrow.hpp"
 #include "datasets/campaign/campaign.hpp"
 
 namespace rigcal::calib {
@@ -19,6 +20,9 @@ struct UnitInterval {
   /// d value / d z
   double slope(double z) const;
 };
+
+/// Number of unknowns up to which all are shared.
+inline constexpr std::size_t kMostTogether = 32;
 
 /// One unknown of the fit: a parameter of the rig, of one leak level, or of one condition.
 struct Unknown {
@@ -65,6 +69,9 @@ class ParameterMap {
   const std::vector<Unknown>& unknowns() const { return unknowns_; }
   /// Positions in unknowns() that act in condition i, in the order of their table index.
   const std::vector<int>& acting(std::size_t condition) const { return acting_[condition]; }
+  /// Which of them a condition has for itself. With few unknowns all are shared: dense matrices
+  /// cost nothing then.
+  const ArrowLayout& layout() const { return layout_; }
 
   double to_physical(int unknown, double z) const;
   double to_unit(int unknown, double value) const;
@@ -77,6 +84,7 @@ class ParameterMap {
  private:
   std::vector<Unknown> unknowns_;
   std::vector<std::vector<int>> acting_;
+  ArrowLayout layout_;
 };
 
 }  // namespace rigcal::calib

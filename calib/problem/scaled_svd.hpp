@@ -15,11 +15,17 @@ class ScaledSvd {
   /// @param jacobian   at least as many rows as columns
   /// @param threshold  size, relative to the largest, below which a singular value counts as zero
   ScaledSvd(const Eigen::MatrixXd& jacobian, double threshold);
+  /// Of a part of a Jacobian: columns are scaled by their length in the whole of it.
+  ///
+  /// @param inverse_lengths  0 of a column of zeros
+  /// @param threshold        relative to 1 where all singular values are less
+  ScaledSvd(const Eigen::MatrixXd& jacobian, Eigen::VectorXd inverse_lengths, double threshold);
 
   Eigen::Index rank() const { return rank_; }
   const Eigen::VectorXd& singular_values() const { return svd_.singularValues(); }
   /// Directions, in scaled coordinates; from column rank() on those that J does not determine.
   const Eigen::MatrixXd& V() const { return svd_.matrixV(); }
+  const Eigen::MatrixXd& U() const { return svd_.matrixU(); }
   /// 1 / length of each column; 0 of a column of zeros.
   const Eigen::VectorXd& inverse_lengths() const { return inverse_lengths_; }
 

@@ -63,6 +63,7 @@ struct FittedParameter {
   double upper = 0.0;
   bool fitted = false;
   bool nuisance = false;
+  bool correlated = true;  ///< where it has an error, it has a row in the matrix of correlations
   std::optional<double> standard_error;  ///< absent where the Jacobian does not determine it
   /// From the residuals themselves: larger if they are correlated in time.
   std::optional<double> robust_standard_error;

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "calib/problem/scaled_svd.hpp"
+#include "calib/problem/arrow_svd.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -23,17 +23,11 @@ constexpr double kPart = 0.1;
 /// empty.
 std::vector<std::size_t> valley(const Problem& problem, Linearisation system,
                                 const OptimumCheck& check) {
-  for (std::size_t j = 0; j < check.active_bound.size(); ++j) {
-    if (check.active_bound[j]) system.jacobian.col(static_cast<Eigen::Index>(j)).setZero();
-  }
-  const ScaledSvd svd(system.jacobian, rank_threshold(problem.tolerance));
-  if (svd.rank() == 0) return {};
-  const Eigen::VectorXd way =
-      svd.explained(system.residual).cwiseQuotient(svd.singular_values().head(svd.rank()));
-  Eigen::Index longest = 0;
-  way.cwiseAbs().maxCoeff(&longest);
-  if (svd.singular_values()(longest) > kValley) return {};
-  const Eigen::VectorXd parts = svd.V().col(longest).cwiseAbs2();
+  system.hold(check.active_bound);
+  const auto longest = ArrowSvd(system, rank_threshold(problem.tolerance)).longest_way();
+  if (!longest || longest->singular_value > kValley) return {};
+  Eigen::VectorXd parts = Eigen::VectorXd::Zero(system.unknowns());
+  parts(longest->unknowns) = longest->parts.cwiseAbs2();
   std::vector<std::size_t> unknowns(problem.map.unknowns().size());
   std::iota(unknowns.begin(), unknowns.end(), std::size_t{0});
   const auto part = [&](std::size_t j) { return parts(static_cast<Eigen::Index>(j)); };

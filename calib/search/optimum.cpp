@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calib/problem/scaled_svd.hpp"
+#include "calib/problem/arrow_svd.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -26,7 +26,7 @@ bool OptimumCheck::stationary() const { return relative_offset <= kStationary &&
 bool OptimumCheck::is_minimum() const { return fall_left <= kMinimumLeaves; }
 
 std::vector<bool> active_bounds(const Linearisation& system, std::span<const double> z) {
-  const Eigen::VectorXd gradient = system.jacobian.transpose() * system.residual;
+  const Eigen::VectorXd gradient = system.gradient();
   std::vector<bool> active;
   for (std::size_t j = 0; j < z.size(); ++j) {
     const double slope = gradient(static_cast<Eigen::Index>(j));
@@ -41,15 +41,13 @@ OptimumCheck check_optimum(const Problem& problem, const Evaluation& evaluation)
   Linearisation system = linearise(problem, evaluation);
   OptimumCheck check;
   check.active_bound = active_bounds(system, evaluation.z);
-  for (std::size_t j = 0; j < evaluation.z.size(); ++j) {
-    check.side.push_back(bound_side(evaluation.z[j]));
-    if (check.active_bound[j]) system.jacobian.col(static_cast<Eigen::Index>(j)).setZero();
-  }
-  const ScaledSvd svd(system.jacobian, rank_threshold(problem.tolerance));
-  check.step = svd.step(system.residual);
+  for (const double z : evaluation.z) check.side.push_back(bound_side(z));
+  system.hold(check.active_bound);
+  const ArrowSvd svd(system, rank_threshold(problem.tolerance));
+  check.step = svd.step();
   const auto rank = static_cast<double>(svd.rank());
-  const double explained = svd.explained(system.residual).squaredNorm();
-  const double all = system.residual.squaredNorm();
+  const double explained = svd.explained();
+  const double all = system.square();
   const double residuals = evaluation.share * static_cast<double>(problem.residual_count());
   const double freedom = std::max(1.0, residuals - rank);
   const double unexplained = std::sqrt(std::max(0.0, all - explained));

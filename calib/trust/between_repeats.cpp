@@ -170,19 +170,20 @@ MatrixXd repeat_scores(const MatrixXd& jacobian, const MatrixXd& deviations) {
 }
 
 RepeatVariance repeat_variance(const std::vector<MatrixXd>& scores,
-                               const std::vector<ScoreScatter>& scatter, const MatrixXd& priors,
-                               const MatrixXd& combinations, Index combination) {
-  const VectorXd c = combinations.row(combination).transpose();
-  double variance = c.dot(priors * c);
+                               const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
+                               const ArrowRoot& combinations, Index unknown) {
+  double variance = combinations.quadratic(unknown, priors);
   double squares = 0.0;
   bool any = false;
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const auto repeats = static_cast<double>(scores[i].cols());
     const bool single = scores[i].cols() > 1;
+    const VectorXd c = combinations.row(unknown, i);
     const double part =
         single ? (scores[i].transpose() * c).squaredNorm() / (repeats * (repeats - 1.0))
                : c.dot(scatter[i].covariance * c);
-    const double freedom = single ? repeats - 1.0 : scatter[i].freedom(combination);
+    const double freedom =
+        single ? repeats - 1.0 : freedom_in(scatter[i], combinations, unknown, i);
     any = any || (single && part > 0.0);
     variance += part;
     if (freedom > 0.0) squares += part * part / freedom;

@@ -48,9 +48,8 @@ struct RepeatVariance {
 ///
 /// Zero degrees of freedom: no condition has single repeats.
 RepeatVariance repeat_variance(const std::vector<Eigen::MatrixXd>& scores,
-                               const std::vector<ScoreScatter>& scatter,
-                               const Eigen::MatrixXd& priors, const Eigen::MatrixXd& combinations,
-                               Eigen::Index combination);
+                               const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
+                               const ArrowRoot& combinations, Eigen::Index unknown);
 
 /// Whether repeats differ by so much more than the residuals predict that the interval must be
 /// based on them: F of the two variances is beyond its upper quartile. A variance that is pooled or

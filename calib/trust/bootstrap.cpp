@@ -152,13 +152,13 @@ BootstrapSpread replicate_spread(std::vector<double> values, double estimate, do
 /// its variance.
 double freedom_of(const Uncertainty& found, const std::vector<Source>& sources,
                   Eigen::Index unknown) {
-  const Eigen::VectorXd c = found.root.row(unknown).transpose();
   double total = 0.0;
   double squares = 0.0;
   for (std::size_t i = 0; i < sources.size(); ++i) {
+    const Eigen::VectorXd c = found.root.row(unknown, i);
     const double variance = c.dot(found.scatter[i].covariance * c);
     const double freedom = sources[i].repeats.empty()
-                               ? found.scatter[i].freedom(unknown)
+                               ? freedom_in(found.scatter[i], found.root, unknown, i)
                                : static_cast<double>(sources[i].repeats.size() - 1);
     total += variance;
     if (freedom > 0.0) squares += variance * variance / freedom;

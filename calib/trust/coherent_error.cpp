@@ -1,5 +1,6 @@
 #include "calib/trust/coherent_error.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace rigcal::calib {
@@ -27,17 +28,20 @@ std::vector<std::vector<bool>> noiseless_channels(const Problem& problem,
 
 Eigen::VectorXd coherent_errors(const std::vector<ScoreRows>& rows,
                                 const std::vector<std::vector<bool>>& noiseless,
-                                const Eigen::MatrixXd& combinations) {
-  Eigen::VectorXd squares = Eigen::VectorXd::Zero(combinations.rows());
+                                const ArrowRoot& combinations) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(combinations.unknowns());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Eigen::Index samples = rows[i].residual.size() / rows[i].channels;
-    Eigen::VectorXd moved = Eigen::VectorXd::Zero(combinations.rows());
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(combinations.unknowns());
     for (Eigen::Index k = 0; k < rows[i].channels; ++k) {
       if (!noiseless[i][static_cast<std::size_t>(k)]) continue;
       const double residual = rows[i].residual.segment(k * samples, samples).norm();
-      const Eigen::MatrixXd felt =
-          rows[i].jacobian.middleRows(k * samples, samples) * combinations.transpose();
-      moved += residual * felt.colwise().norm().transpose();
+      const auto jacobian = rows[i].jacobian.middleRows(k * samples, samples);
+      const Eigen::MatrixXd square = jacobian.transpose() * jacobian;
+      for (Eigen::Index j = 0; j < moved.size(); ++j) {
+        const Eigen::VectorXd c = combinations.row(j, i);
+        moved(j) += residual * std::sqrt(std::max(0.0, c.dot(square * c)));
+      }
     }
     squares += moved.cwiseAbs2();
   }

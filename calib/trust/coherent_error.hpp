@@ -29,6 +29,6 @@ std::vector<std::vector<bool>> noiseless_channels(const Problem& problem,
 /// @return              shape (combinations), 0 if all channels have noise
 Eigen::VectorXd coherent_errors(const std::vector<ScoreRows>& rows,
                                 const std::vector<std::vector<bool>>& noiseless,
-                                const Eigen::MatrixXd& combinations);
+                                const ArrowRoot& combinations);
 
 }  // namespace rigcal::calib

@@ -62,19 +62,24 @@ std::string text_of(const Problem& problem, std::span<const double> z, const Pow
 }
 
 /// The partner with which the unknown makes the best-known product of powers.
-std::optional<PowerLaw> best_partner(const Eigen::MatrixXd& log_spread,
-                                     const std::vector<bool>& counts, std::size_t unknown) {
-  const Eigen::RowVectorXd own = log_spread.row(static_cast<Eigen::Index>(unknown));
+///
+/// @param to_log  of each unknown, d ln value / d z; 0 where it does not count
+std::optional<PowerLaw> best_partner(const ArrowRoot& spread, const std::vector<double>& to_log,
+                                     std::size_t unknown) {
+  const auto j = static_cast<Eigen::Index>(unknown);
+  const double own = to_log[unknown];
+  const double length = std::abs(own) * std::sqrt(spread.product(j, j));
   std::optional<PowerLaw> best;
-  for (std::size_t k = 0; k < counts.size(); ++k) {
-    if (k == unknown || !counts[k]) continue;
-    const Eigen::RowVectorXd other = log_spread.row(static_cast<Eigen::Index>(k));
-    const double square = other.squaredNorm();
-    if (!(square > 0.0)) continue;
-    const double power = simple_power(own.dot(other) / square);
-    const double half_width = metrics::kNormal95 * (own - power * other).norm();
+  for (std::size_t k = 0; k < to_log.size(); ++k) {
+    const auto partner = static_cast<Eigen::Index>(k);
+    const double other = to_log[k];
+    const double square = other * other * spread.product(partner, partner);
+    if (k == unknown || !(square > 0.0)) continue;
+    const double power = simple_power(own * other * spread.product(j, partner) / square);
+    const double half_width =
+        metrics::kNormal95 * std::sqrt(spread.square(j, own, partner, -power * other));
     const bool useful = half_width < kWeak &&
-                        half_width < kMuchBetter * metrics::kNormal95 * own.norm() &&
+                        half_width < kMuchBetter * metrics::kNormal95 * length &&
                         std::abs(power) > kLeastPower && std::abs(power) < kMostPower;
     if (useful && (!best || half_width < best->half_width))
       best = PowerLaw{unknown, k, power, half_width};
@@ -88,13 +93,12 @@ std::vector<std::string> name_combinations(const Problem& problem, std::span<con
                                            const Uncertainty& found,
                                            std::vector<FittedParameter>& parameters) {
   const std::size_t n = z.size();
-  Eigen::MatrixXd log_spread = found.spread;
-  std::vector<bool> counts(n, false);
+  std::vector<double> to_log(n, 0.0);
   for (std::size_t j = 0; j < n; ++j) {
     const int unknown = static_cast<int>(j);
     const double value = problem.map.to_physical(unknown, z[j]);
-    counts[j] = value > 0.0 && !problem.map.unknowns()[j].nuisance;
-    log_spread.row(unknown) *= counts[j] ? problem.map.slope(unknown, z[j]) / value : 0.0;
+    const bool counts = value > 0.0 && !problem.map.unknowns()[j].nuisance;
+    if (counts) to_log[j] = problem.map.slope(unknown, z[j]) / value;
   }
   std::vector<std::string> words;
   std::vector<bool> named(n, false);
@@ -102,8 +106,8 @@ std::vector<std::string> name_combinations(const Problem& problem, std::span<con
     const Identifiability grade = parameters[j].identifiability;
     const bool determined =
         grade == Identifiability::identified || grade == Identifiability::bounded;
-    if (!counts[j] || determined) continue;
-    const auto best = best_partner(log_spread, counts, j);
+    if (to_log[j] == 0.0 || determined) continue;
+    const auto best = best_partner(found.spread, to_log, j);
     if (!best) continue;
     const std::string text = text_of(problem, z, *best);
     parameters[j].reason += (parameters[j].reason.empty() ? "" : "; ") + text;

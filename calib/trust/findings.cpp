@@ -18,14 +18,20 @@
 namespace rigcal::calib {
 namespace {
 
+/// Of all unknowns that have an error but those that a condition has for itself where there are
+/// many: their number squared would be most of a result.
 void add_correlation(const Problem& problem, const Uncertainty& found, Fit& fit) {
   std::vector<Eigen::Index> rows;
   for (std::size_t j = 0; j < found.standard_error.size(); ++j) {
-    if (!found.standard_error[j]) continue;
-    rows.push_back(static_cast<Eigen::Index>(j));
+    const auto row = static_cast<Eigen::Index>(j);
+    if (!found.standard_error[j] || !fit.parameters[j].correlated) continue;
+    rows.push_back(row);
     fit.correlation_names.push_back(problem.name(j));
   }
-  fit.correlation = found.correlation(rows, rows);
+  const auto size = static_cast<Eigen::Index>(rows.size());
+  fit.correlation = Eigen::MatrixXd::NullaryExpr(size, size, [&](Eigen::Index i, Eigen::Index k) {
+    return found.correlation(rows[static_cast<std::size_t>(i)], rows[static_cast<std::size_t>(k)]);
+  });
 }
 
 void warn_of_noise(const Problem& problem, const Uncertainty& found, Fit& fit) {
@@ -129,7 +135,8 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
                   std::vector<FittedParameter>& parameters) {
   constexpr int kMostTried = 4;  // each takes the simulations of some records
   int tried = 0;
-  const Eigen::MatrixXd jacobian = linearise(problem, optimum).jacobian;
+  const Linearisation system = linearise(problem, optimum);
+  if (!system.own.empty()) return;  // what is tried is held dense over all unknowns
   for (std::size_t j = 0; j < parameters.size() && tried < kMostTried; ++j) {
     FittedParameter& each = parameters[j];
     if (each.nuisance || each.identifiability != Identifiability::not_identifiable) continue;
@@ -142,7 +149,7 @@ void add_remedies(const Problem& problem, const Evaluation& optimum,
       continue;
     }
     ++tried;
-    const auto words = remedies(problem, optimum.z, jacobian, j);
+    const auto words = remedies(problem, optimum.z, system.jacobian, j);
     if (!words.empty())
       each.reason += fmt::format("; {} would make it identifiable", fmt::join(words, ", or "));
   }

@@ -55,13 +55,16 @@ std::string number(const ParameterSpec& spec, double value) {
 std::string partner(const Problem& problem, const Uncertainty& found, std::size_t unknown) {
   const auto row = static_cast<Eigen::Index>(unknown);
   Eigen::Index best = -1;
-  for (Eigen::Index k = 0; k < found.correlation.cols(); ++k) {
+  double strongest = 0.0;
+  for (Eigen::Index k = 0; k < found.root.unknowns(); ++k) {
     if (k == row || !found.standard_error[static_cast<std::size_t>(k)]) continue;
-    if (best < 0 || std::abs(found.correlation(row, k)) > std::abs(found.correlation(row, best)))
-      best = k;
+    const double each = found.correlation(row, k);
+    if (best >= 0 && std::abs(each) <= std::abs(strongest)) continue;
+    best = k;
+    strongest = each;
   }
-  if (best < 0 || std::abs(found.correlation(row, best)) < kStrongCorrelation) return {};
-  return fmt::format("; correlated {:.3f} with {}", found.correlation(row, best),
+  if (best < 0 || std::abs(strongest) < kStrongCorrelation) return {};
+  return fmt::format("; correlated {:.3f} with {}", strongest,
                      problem.name(static_cast<std::size_t>(best)));
 }
 
@@ -241,6 +244,7 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
     parameter.upper = u.upper;
     parameter.fitted = true;
     parameter.nuisance = u.nuisance;
+    parameter.correlated = found.root.condition_of(static_cast<Eigen::Index>(j)) < 0;
     parameter.standard_error = found.standard_error[j];
     parameter.robust_standard_error = found.robust_standard_error[j];
     if (parameter.standard_error) {

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -101,26 +102,35 @@ std::vector<std::string> uncertain_names(const Problem& problem) {
 }
 
 KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
-                                   const std::vector<ConditionRows>& rows,
-                                   const Eigen::MatrixXd& root, int threads) {
+                                   const std::vector<ConditionRows>& rows, const ArrowRoot& root,
+                                   int threads) {
   KnownUncertainty result;
   const std::vector<Known> values = uncertain_values(problem);
   result.names = uncertain_names(problem);
   const auto knowns = static_cast<Eigen::Index>(values.size());
-  result.response = Eigen::MatrixXd::Zero(root.rows(), knowns);
+  result.response = Eigen::MatrixXd::Zero(root.unknowns(), knowns);
   if (values.empty()) return result;
   std::vector<Eigen::MatrixXd> parts(problem.conditions.size());
   parallel_for(parts.size(), threads, [&](std::size_t i) {
     const Eigen::MatrixXd known = known_rows(problem, i, z, values);
     if (known.size() == 0) return;
-    parts[i] = root(problem.map.acting(i), Eigen::all).transpose() *
-               (rows[i].jacobian.transpose() * known);
+    parts[i] =
+        root.rows(problem.map.acting(i), i).transpose() * (rows[i].jacobian.transpose() * known);
   });
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(root.cols(), knowns);
+  const Eigen::Index shared = root.shared().cols();
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(shared, knowns);
   for (const Eigen::MatrixXd& part : parts) {
-    if (part.size() > 0) sum += part;
+    if (part.size() > 0) sum += part.bottomRows(shared);
   }
-  result.response = -(root * sum);
+  for (Eigen::Index j = 0; j < root.unknowns(); ++j) {
+    const auto i = static_cast<std::size_t>(std::max(0, root.condition_of(j)));
+    const Eigen::VectorXd c = root.row(j, i);
+    result.response.row(j) = -(c.tail(shared).transpose() * sum);
+    if (root.condition_of(j) >= 0 && parts[i].size() > 0) {
+      const Eigen::Index own = root.own_directions(i);
+      result.response.row(j) -= c.head(own).transpose() * parts[i].topRows(own);
+    }
+  }
   return result;
 }
 

@@ -32,7 +32,7 @@ Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t conditio
 /// @param rows  of each condition at z
 /// @param root  R with R R^T = (J^T J)^-1 on the directions that the data determine
 KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
-                                   const std::vector<ConditionRows>& rows,
-                                   const Eigen::MatrixXd& root, int threads);
+                                   const std::vector<ConditionRows>& rows, const ArrowRoot& root,
+                                   int threads);
 
 }  // namespace rigcal::calib

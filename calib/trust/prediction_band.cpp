@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/parallel.hpp"
 #include "model/simulate.hpp"
@@ -12,16 +13,96 @@ namespace {
 constexpr double kHalf95 = 1.96;
 
 /// Sum of the covariances of all conditions and of the priors, in coordinates of `root`.
-Eigen::MatrixXd long_run_covariance(const Problem& problem, std::span<const double> z,
-                                    const Uncertainty& uncertainty) {
-  const Eigen::MatrixXd& root = uncertainty.root;
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(root.cols(), root.cols());
-  for (const ScoreScatter& each : uncertainty.scatter) sum += each.covariance;
-  add_prior_information(problem, z, root, sum);
+ArrowMatrix long_run_covariance(const Problem& problem, std::span<const double> z,
+                                const Uncertainty& uncertainty) {
+  ArrowMatrix sum = uncertainty.root.zero();
+  for (std::size_t i = 0; i < uncertainty.scatter.size(); ++i)
+    sum.add(i, uncertainty.scatter[i].covariance);
+  add_prior_information(problem, z, uncertainty.root, sum);
   return sum;
 }
 
-/// Whether an estimate of the fit acts in a condition that has no known value of its own.
+/// Unknowns that a simulation may know together: those of a condition with the shared ones, or
+/// these alone. Rows are in the unit box.
+struct Joint {
+  std::vector<std::size_t> unknowns;  ///< own ones first
+  std::size_t own = 0;
+  Eigen::MatrixXd determined;  ///< S of their covariance, before it is widened
+  Eigen::MatrixXd open;        ///< directions that the data do not determine
+};
+
+/// @param condition   negative: the shared ones alone
+/// @param covariance  of the score; none: the plain errors count
+Joint joint_of(const Uncertainty& found, int condition,
+               const std::optional<ArrowMatrix>& covariance) {
+  const bool alone = condition < 0;
+  const auto i = static_cast<std::size_t>(std::max(0, condition));
+  Joint joint;
+  for (Eigen::Index j = 0; j < found.root.unknowns() && !alone; ++j) {
+    if (found.root.condition_of(j) == condition)
+      joint.unknowns.push_back(static_cast<std::size_t>(j));
+  }
+  joint.own = joint.unknowns.size();
+  for (Eigen::Index j = 0; j < found.root.unknowns(); ++j) {
+    if (found.root.condition_of(j) < 0) joint.unknowns.push_back(static_cast<std::size_t>(j));
+  }
+  const Eigen::MatrixXd root = alone ? found.root.shared() : found.root.rows(i);
+  joint.determined =
+      covariance
+          ? Eigen::MatrixXd(root * square_root(alone ? covariance->shared : covariance->of(i)))
+          : Eigen::MatrixXd(std::sqrt(std::max(1.0, found.reduced_chi_square)) * root);
+  // What is not determined comes last among the own directions and among the shared ones.
+  const Eigen::MatrixXd spread = alone ? found.spread.shared() : found.spread.rows(i);
+  const Eigen::Index own = alone ? 0 : found.spread.own_directions(i);
+  const Eigen::Index open = own - (alone ? 0 : found.root.own_directions(i));
+  const Eigen::Index open_shared = found.spread.shared().cols() - found.root.shared().cols();
+  joint.open.resize(spread.rows(), open + open_shared);
+  joint.open << spread.middleCols(own - open, open), spread.rightCols(open_shared);
+  return joint;
+}
+
+/// The most by which an interval is wider than by the covariance.
+double widening(const Problem& problem, std::span<const double> z, const Uncertainty& found,
+                const Joint& joint) {
+  const bool robust = !found.scatter.empty();
+  double widen = 1.0;
+  for (std::size_t k = 0; k < joint.unknowns.size(); ++k) {
+    const std::size_t u = joint.unknowns[k];
+    const auto& error = robust ? found.robust_standard_error[u] : found.standard_error[u];
+    const double sd = joint.determined.row(static_cast<Eigen::Index>(k)).norm();
+    if (!error || !(sd > 0.0)) continue;
+    const double stretched =
+        robust && found.robust_quantile[u] > 0.0 ? found.robust_quantile[u] / kHalf95 : 1.0;
+    const double in_box = *error / std::abs(problem.map.slope(static_cast<int>(u), z[u]));
+    const double carried =
+        found.known.names.empty()
+            ? 0.0
+            : found.known.response.row(static_cast<Eigen::Index>(u)).squaredNorm();
+    widen = std::max(widen, stretched * std::sqrt(std::max(0.0, in_box * in_box - carried)) / sd);
+  }
+  return widen;
+}
+
+/// S of the covariance of all that is uncertain of them, SI.
+Eigen::MatrixXd spread_of(const Problem& problem, std::span<const double> z,
+                          const Uncertainty& found, const Joint& joint, double widen) {
+  const auto n = static_cast<Eigen::Index>(joint.unknowns.size());
+  const Eigen::Index determined = joint.determined.cols();
+  const Eigen::Index carried = found.known.names.empty() ? 0 : found.known.response.cols();
+  Eigen::MatrixXd root(n, determined + carried + joint.open.cols());
+  root.leftCols(determined) = widen * joint.determined;
+  root.rightCols(joint.open.cols()) = joint.open;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const std::size_t u = joint.unknowns[static_cast<std::size_t>(k)];
+    if (carried > 0)
+      root.row(k).segment(determined, carried) =
+          found.known.response.row(static_cast<Eigen::Index>(u));
+    root.row(k) *= problem.map.slope(static_cast<int>(u), z[u]);
+  }
+  return root;
+}
+
+/// Whether an estimate of the fit acts in a condition, known values of its own aside.
 bool acts(const Problem& problem, const ProblemCondition& condition,
           const EstimateSpread::Estimate& estimate) {
   if (known_in(*problem.campaign, *condition.condition, estimate.index)) return false;
@@ -39,17 +120,23 @@ bool acts(const Problem& problem, const ProblemCondition& condition,
 void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
             const EstimateSpread& spread, ConditionScore& score) {
   const ProblemCondition& condition = problem.conditions[i];
+  const auto own = std::find_if(spread.own.begin(), spread.own.end(), [&](const auto& each) {
+    return each.estimates.front().level == condition.condition->id;
+  });
+  std::vector<EstimateSpread::Estimate> estimates;
+  if (own != spread.own.end()) estimates = own->estimates;
+  estimates.insert(estimates.end(), spread.estimates.begin(), spread.estimates.end());
   std::vector<int> free;
   std::vector<Eigen::Index> rows;
-  for (std::size_t j = 0; j < spread.estimates.size(); ++j) {
-    const int index = spread.estimates[j].index;
-    if (!acts(problem, condition, spread.estimates[j])) continue;
-    // A value of the condition or level replaces that of the rig, and comes after it here.
+  for (std::size_t j = 0; j < estimates.size(); ++j) {
+    const int index = estimates[j].index;
+    if (!acts(problem, condition, estimates[j])) continue;
+    // A value of the condition or level goes before that of the rig: it stands behind it here.
     const auto same = std::find(free.begin(), free.end(), index);
     if (same == free.end()) {
       free.push_back(index);
       rows.push_back(static_cast<Eigen::Index>(j));
-    } else if (spread.estimates[j].scope != datasets::Scope::rig) {
+    } else if (estimates[j].scope != datasets::Scope::rig) {
       rows[static_cast<std::size_t>(same - free.begin())] = static_cast<Eigen::Index>(j);
     }
   }
@@ -57,7 +144,8 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
       model::simulate(condition.rig, problem.values_at(i, z), free, condition.inputs, score.time_s,
                       condition.outputs, problem.simulation_options());
   if (!run.ok()) return;
-  const Eigen::MatrixXd root = spread.root(rows, Eigen::all);
+  const Eigen::MatrixXd root =
+      (own != spread.own.end() ? own->root : spread.root)(rows, Eigen::all);
   for (std::size_t k = 0; k < condition.channels.size(); ++k) {
     const Eigen::MatrixXd gradient =
         free.empty() ? Eigen::MatrixXd(run.outputs.rows(), 0)
@@ -70,42 +158,28 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
 }  // namespace
 
 EstimateSpread estimate_spread(const Problem& problem, std::span<const double> z,
-                               const Uncertainty& uncertainty) {
-  const auto n = static_cast<Eigen::Index>(z.size());
-  const Eigen::Index rank = uncertainty.root.cols();
-  const bool robust = !uncertainty.scatter.empty();
-  Eigen::MatrixXd determined =
-      robust ? Eigen::MatrixXd(uncertainty.root *
-                               square_root(long_run_covariance(problem, z, uncertainty)))
-             : Eigen::MatrixXd(std::sqrt(std::max(1.0, uncertainty.reduced_chi_square)) *
-                               uncertainty.root);
-  const bool known = !uncertainty.known.names.empty();
-  const Eigen::MatrixXd carried = known ? uncertainty.known.response : Eigen::MatrixXd::Zero(n, 0);
-  double widen = 1.0;
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const auto u = static_cast<std::size_t>(j);
-    const auto& error =
-        robust ? uncertainty.robust_standard_error[u] : uncertainty.standard_error[u];
-    const double sd = determined.row(j).norm();
-    if (!error || !(sd > 0.0)) continue;
-    const double stretched = robust && uncertainty.robust_quantile[u] > 0.0
-                                 ? uncertainty.robust_quantile[u] / kHalf95
-                                 : 1.0;
-    const double in_box = *error / std::abs(problem.map.slope(static_cast<int>(j), z[u]));
-    const double own =
-        std::sqrt(std::max(0.0, in_box * in_box - (known ? carried.row(j).squaredNorm() : 0.0)));
-    widen = std::max(widen, stretched * own / sd);
+                               const Uncertainty& found) {
+  std::optional<ArrowMatrix> covariance;
+  if (!found.scatter.empty()) covariance = long_run_covariance(problem, z, found);
+  std::vector<Joint> joints{joint_of(found, -1, covariance)};
+  for (int i = 0; i < static_cast<int>(problem.conditions.size()); ++i) {
+    if (found.root.own_unknowns(static_cast<std::size_t>(i)) > 0)
+      joints.push_back(joint_of(found, i, covariance));
   }
-  determined *= widen;
-
+  double widen = 1.0;
+  for (const Joint& joint : joints) widen = std::max(widen, widening(problem, z, found, joint));
+  const auto estimate = [&](std::size_t unknown) {
+    const Unknown& u = problem.map.unknowns()[unknown];
+    return EstimateSpread::Estimate{u.index, u.scope, u.level};
+  };
   EstimateSpread result;
-  result.root.resize(n, determined.cols() + carried.cols() + n - rank);
-  result.root << determined, carried, uncertainty.spread.rightCols(n - rank);
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const auto u = static_cast<std::size_t>(j);
-    const Unknown& unknown = problem.map.unknowns()[u];
-    result.estimates.push_back({unknown.index, unknown.scope, unknown.level});
-    result.root.row(j) *= problem.map.slope(static_cast<int>(j), z[u]);
+  result.root = spread_of(problem, z, found, joints.front(), widen);
+  for (const std::size_t u : joints.front().unknowns) result.estimates.push_back(estimate(u));
+  for (auto joint = joints.begin() + 1; joint != joints.end(); ++joint) {
+    EstimateSpread::Own& own = result.own.emplace_back();
+    own.root = spread_of(problem, z, found, *joint, widen);
+    for (std::size_t k = 0; k < joint->own; ++k)
+      own.estimates.push_back(estimate(joint->unknowns[k]));
   }
   return result;
 }

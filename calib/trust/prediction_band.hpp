@@ -19,7 +19,7 @@ namespace rigcal::calib {
 /// of freedom, are wider. Directions that the data do not determine get the standard deviation of
 /// the least singular value that would count.
 EstimateSpread estimate_spread(const Problem& problem, std::span<const double> z,
-                               const Uncertainty& uncertainty);
+                               const Uncertainty& found);
 
 /// Standard deviation of a prediction, sqrt(|g S|^2 + sd^2) for each row g of the gradient.
 ///

@@ -109,18 +109,17 @@ std::vector<ChannelNoise> channels_of(const std::vector<ScoreRows>& rows) {
   return channels;
 }
 
-/// Adds in the order of the channels, whichever was computed first.
-MatrixXd total_of(const MatrixXd& priors, const std::vector<ChannelNoise>& channels) {
-  MatrixXd total = priors;
-  for (const ChannelNoise& each : channels) total += each.expected;
+/// In the order of the channels, whichever of them was made first.
+ArrowMatrix total_of(const ArrowMatrix& priors, const std::vector<ChannelNoise>& channels) {
+  ArrowMatrix total = priors;
+  for (const ChannelNoise& each : channels) total.add(each.condition, each.expected);
   return total;
 }
 
-/// Autoregressions of all channels, corrected for the part that the fit has removed. The rows of a
-/// channel are computed twice, since those of all channels together would be the largest memory of
-/// a fit.
-std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows, const MatrixXd& priors,
-                                       int threads) {
+/// Autoregressions of all channels, corrected for what the fit has removed. The rows of a channel
+/// are taken twice: those of all of them at once would be the most memory that a fit holds.
+std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows,
+                                       const ArrowMatrix& priors, int threads) {
   std::vector<ChannelNoise> channels = channels_of(rows);
   parallel_for(channels.size(), threads, [&](std::size_t i) {
     ChannelNoise& each = channels[i];
@@ -132,13 +131,14 @@ std::vector<ChannelNoise> noise_models(const std::vector<ScoreRows>& rows, const
     each.expected = expected(own, each.noise);
     each.gamma.resize(each.noise.phi.size() + 1);
   });
-  const MatrixXd total = total_of(priors, channels);
+  const ArrowMatrix total = total_of(priors, channels);
   parallel_for(channels.size(), threads, [&](std::size_t i) {
     ChannelNoise& each = channels[i];
     const ChannelRows own = channel_rows(rows[each.condition], each.channel);
     std::vector<double>& gamma = each.gamma;
-    const auto removed = bias(own, each.noise, total, static_cast<Index>(gamma.size()) - 1);
-    // The fit has removed more than half, so too little is left to determine the noise.
+    const auto removed =
+        bias(own, each.noise, total.of(each.condition), static_cast<Index>(gamma.size()) - 1);
+    // More than half taken away: the fit has left too little to tell the noise by.
     if (removed.front() < 0.5 * (gamma.front() + removed.front())) {
       for (std::size_t h = 0; h < gamma.size(); ++h) gamma[h] += removed[h];
       // Far from an optimum residuals are not the noise that the correction supposes.
@@ -257,34 +257,61 @@ ScoreScatter scatter_of(const ScoreRows& rows, std::vector<Autoregression> noise
   return result;
 }
 
+/// What `own` of a condition is for an unknown: nothing by way of shared ones.
+double own_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Index unknown,
+              std::size_t condition) {
+  const int whose = combinations.condition_of(unknown);
+  if (scatter.own.size() == 0 || (whose >= 0 && whose != static_cast<int>(condition))) return 0.0;
+  const Index row = combinations.row_of(unknown);
+  return scatter.own(whose < 0 ? combinations.own_unknowns(condition) + row : row);
+}
+
 }  // namespace
 
-std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows, const MatrixXd& priors,
-                                        const MatrixXd& combinations, int threads) {
+std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
+                                        const ArrowMatrix& priors, const ArrowRoot& combinations,
+                                        int threads) {
   std::vector<ChannelNoise> channels = noise_models(rows, priors, threads);
-  const MatrixXd total = total_of(priors, channels);
+  const ArrowMatrix total = total_of(priors, channels);
   std::vector<std::vector<Autoregression>> noise(rows.size());
   for (ChannelNoise& each : channels) noise[each.condition].push_back(std::move(each.noise));
   std::vector<ScoreScatter> result(rows.size());
   parallel_for(rows.size(), threads, [&](std::size_t i) {
-    result[i] = scatter_of(rows[i], std::move(noise[i]), total, combinations);
+    result[i] = scatter_of(rows[i], std::move(noise[i]), total.of(i), combinations.rows(i));
   });
   return result;
 }
 
-RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const MatrixXd& priors,
-                               const MatrixXd& combinations, Index combination) {
+double freedom_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Index unknown,
+                  std::size_t condition) {
+  const int whose = combinations.condition_of(unknown);
+  const Index row = combinations.row_of(unknown);
+  if (whose == static_cast<int>(condition)) return scatter.freedom(row);
+  const Index own = combinations.own_unknowns(condition);
+  if (whose < 0) return scatter.freedom(own + row);
+  double least = 0.0;
+  for (Index j = own; j < scatter.freedom.size(); ++j) {
+    const double each = scatter.freedom(j);
+    if (each > 0.0 && (least == 0.0 || each < least)) least = each;
+  }
+  return least;
+}
+
+RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
+                               const ArrowRoot& combinations, Index unknown) {
   RobustVariance result;
-  const VectorXd c = combinations.row(combination).transpose();
-  result.variance = c.dot(priors * c);
-  for (const ScoreScatter& each : scatter) {
-    result.variance += c.dot(each.covariance * c);
-    if (each.own.size() > combination) result.own += each.own(combination);
+  result.variance = combinations.quadratic(unknown, priors);
+  std::vector<double> parts;
+  for (std::size_t i = 0; i < scatter.size(); ++i) {
+    const VectorXd c = combinations.row(unknown, i);
+    parts.push_back(c.dot(scatter[i].covariance * c));
+    result.variance += parts.back();
+    result.own += own_in(scatter[i], combinations, unknown, i);
   }
   double squares = 0.0;
-  for (const ScoreScatter& each : scatter) {
-    const double share = c.dot(each.covariance * c) / result.variance;
-    const double freedom = each.freedom(combination);
+  for (std::size_t i = 0; i < scatter.size(); ++i) {
+    const double share = parts[i] / result.variance;
+    const double freedom = freedom_in(scatter[i], combinations, unknown, i);
     if (freedom > 0.0 && share > 0.0) squares += share * share / freedom;
   }
   result.freedom = squares > 0.0 ? 1.0 / squares : std::numeric_limits<double>::infinity();

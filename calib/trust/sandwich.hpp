@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "calib/problem/arrow.hpp"
 #include "metrics/autoregression.hpp"
 
 namespace rigcal::calib {
@@ -11,9 +12,11 @@ namespace rigcal::calib {
 inline constexpr int kMostLags = 20;
 
 /// Weighted residuals r and their Jacobian J of one condition at the optimum. Jacobian rows are in
-/// coordinates in which the sum of J^T J over all conditions and priors is the identity.
+/// coordinates in which the sum of J^T J over all conditions and priors is the identity; those that
+/// belong to other conditions alone are left out.
 struct ScoreRows {
-  Eigen::MatrixXd jacobian;  ///< shape (channels * samples, directions), channel after channel
+  /// Shape (channels * samples, own directions + shared directions), channel after channel.
+  Eigen::MatrixXd jacobian;
   Eigen::VectorXd residual;  ///< shape (channels * samples)
   Eigen::Index channels = 1;
 };
@@ -54,10 +57,16 @@ struct ScoreScatter {
 ///
 /// @param rows          all conditions of the fit
 /// @param priors        J^T J of the priors, whose errors have the variance that they state
-/// @param combinations  of the directions, one per row
+/// @param combinations  of the directions, one per unknown
 std::vector<ScoreScatter> score_scatter(const std::vector<ScoreRows>& rows,
-                                        const Eigen::MatrixXd& priors,
-                                        const Eigen::MatrixXd& combinations, int threads = 1);
+                                        const ArrowMatrix& priors, const ArrowRoot& combinations,
+                                        int threads = 1);
+
+/// Degrees of freedom with which a condition knows its part of the variance of an unknown. What it
+/// tells of an own unknown of another condition it tells by way of the shared ones: the least of
+/// theirs.
+double freedom_in(const ScoreScatter& scatter, const ArrowRoot& combinations, Eigen::Index unknown,
+                  std::size_t condition);
 
 /// Variance c^T (sum of all covariances + priors) c of a combination.
 struct RobustVariance {
@@ -76,8 +85,7 @@ struct RobustVariance {
 /// 97.5 % quantile of Student's t; degrees of freedom below 1 count as 1.
 double student_t(double freedom);
 
-RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter,
-                               const Eigen::MatrixXd& priors, const Eigen::MatrixXd& combinations,
-                               Eigen::Index combination);
+RobustVariance robust_variance(const std::vector<ScoreScatter>& scatter, const ArrowMatrix& priors,
+                               const ArrowRoot& combinations, Eigen::Index unknown);
 
 }  // namespace rigcal::calib

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calib/problem/arrow_svd.hpp"
 #include "calib/problem/repeat_inputs.hpp"
-#include "calib/problem/scaled_svd.hpp"
 #include "calib/search/optimum.hpp"
 #include "calib/trust/coherent_error.hpp"
 #include "common/parallel.hpp"
@@ -20,16 +20,18 @@ namespace {
 /// the motion in the box relative to the largest one.
 constexpr double kFelt = 0.1;
 constexpr double kMoves = 0.05;
+/// Partners that are named; an offset for all records goes with that of each.
+constexpr std::size_t kMostPartners = 12;
 /// Significance level of a difference between repeats whose cause can be named: it is looked for in
 /// every fit.
 constexpr double kDifferenceLevel = 0.01;
 
 /// Scores of every condition in coordinates of `root`.
 std::vector<ScoreRows> score_rows(const Problem& problem, std::vector<ConditionRows> rows,
-                                  const Eigen::MatrixXd& root) {
+                                  const ArrowRoot& root) {
   std::vector<ScoreRows> result(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    result[i].jacobian = rows[i].jacobian * root(problem.map.acting(i), Eigen::all);
+    result[i].jacobian = rows[i].jacobian * root.rows(problem.map.acting(i), i);
     result[i].residual = std::move(rows[i].residual);
     rows[i].jacobian.resize(0, 0);
     result[i].channels = static_cast<Eigen::Index>(problem.conditions[i].channels.size());
@@ -37,12 +39,20 @@ std::vector<ScoreRows> score_rows(const Problem& problem, std::vector<ConditionR
   return result;
 }
 
-std::string null_reason(const Problem& problem, const std::vector<std::size_t>& members,
+std::string null_reason(const Problem& problem, const std::vector<int>& members,
                         std::size_t unknown) {
   std::vector<std::string> partners;
-  for (const std::size_t member : members) {
-    if (member != unknown) partners.push_back(problem.name(member));
+  std::size_t unnamed = 0;
+  for (const int member : members) {
+    const auto u = static_cast<std::size_t>(member);
+    if (u == unknown) continue;
+    if (partners.size() < kMostPartners) {
+      partners.push_back(problem.name(u));
+    } else {
+      ++unnamed;
+    }
   }
+  if (unnamed > 0) partners.push_back(fmt::format("{} others", unnamed));
   if (partners.empty())
     return fmt::format("no output of these conditions responds to {}", problem.name(unknown));
   return fmt::format("these conditions determine {} only in a combination with {}, not by itself",
@@ -64,13 +74,22 @@ std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span
   return result;
 }
 
-void add_prior_information(const Problem& problem, std::span<const double> z,
-                           const Eigen::MatrixXd& root, Eigen::MatrixXd& sum) {
+void add_prior_information(const Problem& problem, std::span<const double> z, const ArrowRoot& root,
+                           ArrowMatrix& sum) {
   for (std::size_t j = 0; j < z.size(); ++j) {
     const double weight = problem.map.prior_slope(static_cast<int>(j), z[j]);
     if (weight == 0.0) continue;
-    const auto row = root.row(static_cast<Eigen::Index>(j));
-    sum += weight * weight * row.transpose() * row;
+    const auto unknown = static_cast<Eigen::Index>(j);
+    // Shared unknowns are over shared directions, which are those of any condition.
+    const int whose = root.condition_of(unknown);
+    if (whose < 0) {
+      const auto row = root.shared().row(root.row_of(unknown));
+      sum.shared += weight * weight * row.transpose() * row;
+    } else {
+      const auto i = static_cast<std::size_t>(whose);
+      const Eigen::VectorXd row = root.row(unknown, i);
+      sum.add(i, weight * weight * row * row.transpose());
+    }
   }
 }
 
@@ -80,15 +99,20 @@ bool Uncertainty::repeats_differ() const {
          *least * static_cast<double>(repeats_p.size()) < metrics::kWarningLevel;
 }
 
+double Uncertainty::correlation(Eigen::Index a, Eigen::Index b) const {
+  if (a == b) return 1.0;
+  const double scale = std::sqrt(root.product(a, a) * root.product(b, b));
+  return scale > 0.0 ? std::clamp(root.product(a, b) / scale, -1.0, 1.0) : 0.0;
+}
+
 Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
                         std::vector<ConditionRows> rows, int threads, Detail detail) {
   const Linearisation system = linearise(problem, optimum);
   const auto n = static_cast<Eigen::Index>(optimum.z.size());
-  const ScaledSvd svd(system.jacobian, rank_threshold(problem.tolerance));
+  const ArrowSvd svd(system, rank_threshold(problem.tolerance));
   const Eigen::Index rank = svd.rank();
-  const Eigen::VectorXd& s = svd.singular_values();
+  const Eigen::VectorXd s = svd.singular_values();
   const Eigen::VectorXd& inverse_lengths = svd.inverse_lengths();
-  const Eigen::MatrixXd& V = svd.V();
 
   Uncertainty result;
   result.detail = detail;
@@ -99,15 +123,13 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   result.freedom = std::max(freedom, 1.0);
 
   // (J^T J)^-1 in the unit box, on the directions that the data determine.
-  const Eigen::MatrixXd root = svd.root();
-  const Eigen::MatrixXd inverse = root * root.transpose();
+  const ArrowRoot root = svd.root();
   const double sigma = std::sqrt(std::max(1.0, result.reduced_chi_square));
   const double least = std::max(s(0) * rank_threshold(problem.tolerance), 1e-150);
-  const Eigen::VectorXd lengths = sigma * s.cwiseMax(least).cwiseInverse();
-  result.spread = inverse_lengths.asDiagonal() * V * lengths.asDiagonal();
+  result.spread = svd.spread(sigma, least);
   result.root = root;
   result.known = known_uncertainty(problem, optimum.z, rows, root, threads);
-  Eigen::MatrixXd priors = Eigen::MatrixXd::Zero(root.cols(), root.cols());
+  ArrowMatrix priors = root.zero();
   add_prior_information(problem, optimum.z, root, priors);
   std::vector<ScoreRows> scores;
   std::vector<Eigen::MatrixXd> repeats;
@@ -125,13 +147,14 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   }
 
   // A parameter is named with those that share a null direction with it.
-  std::vector<std::vector<std::size_t>> directions;
-  for (Eigen::Index k = rank; k < n; ++k) {
-    std::vector<std::size_t>& members = directions.emplace_back();
-    const Eigen::VectorXd moves = (inverse_lengths.array() * V.col(k).array()).abs();
-    for (Eigen::Index j = 0; j < n; ++j) {
-      if (std::abs(V(j, k)) > kFelt || moves(j) > kMoves * moves.maxCoeff())
-        members.push_back(static_cast<std::size_t>(j));
+  std::vector<std::vector<int>> directions;
+  for (const ArrowSvd::Direction& each : svd.undetermined()) {
+    std::vector<int>& members = directions.emplace_back();
+    const Eigen::VectorXd moves =
+        inverse_lengths(each.unknowns).cwiseProduct(each.parts).cwiseAbs();
+    for (Eigen::Index j = 0; j < moves.size(); ++j) {
+      if (std::abs(each.parts(j)) > kFelt || moves(j) > kMoves * moves.maxCoeff())
+        members.push_back(each.unknowns[static_cast<std::size_t>(j)]);
     }
   }
   result.standard_error.resize(optimum.z.size());
@@ -142,7 +165,6 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   result.repeats_ratio.resize(optimum.z.size(), 0.0);
   result.repeats_p.resize(optimum.z.size(), 1.0);
   result.reason.resize(optimum.z.size());
-  result.correlation = Eigen::MatrixXd::Identity(n, n);
   for (Eigen::Index j = 0; j < n; ++j) {
     const auto u = static_cast<std::size_t>(j);
     if (inverse_lengths(j) == 0.0) {
@@ -151,7 +173,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
     }
     const auto direction =
         std::find_if(directions.begin(), directions.end(), [u](const auto& members) {
-          return std::find(members.begin(), members.end(), u) != members.end();
+          return std::find(members.begin(), members.end(), static_cast<int>(u)) != members.end();
         });
     if (direction != directions.end()) {
       result.reason[u] = null_reason(problem, *direction, u);
@@ -160,7 +182,7 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
     const double slope = problem.map.slope(static_cast<int>(j), optimum.z[u]);
     const bool exact = result.known.names.empty();
     const double carried = exact ? 0.0 : result.known.response.row(j).norm();
-    const double plain = std::max(sigma * std::sqrt(inverse(j, j)), coherent(j));
+    const double plain = std::max(sigma * std::sqrt(root.product(j, j)), coherent(j));
     result.standard_error[u] = slope * std::hypot(plain, carried);
     if (!result.scatter.empty()) {
       const RobustVariance robust = robust_variance(result.scatter, priors, root, j);
@@ -175,11 +197,6 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
       result.robust_standard_error[u] = slope * std::hypot(std::max(error, coherent(j)), carried);
       result.robust_freedom[u] = repeated ? spread.freedom : robust.freedom;
       result.robust_quantile[u] = repeated ? student_t(spread.freedom) : robust.quantile();
-    }
-    for (Eigen::Index k = 0; k < n; ++k) {
-      const double scale = std::sqrt(inverse(j, j) * inverse(k, k));
-      if (k != j && scale > 0.0)
-        result.correlation(j, k) = std::clamp(inverse(j, k) / scale, -1.0, 1.0);
     }
   }
   if (detail == Detail::plain) return result;

@@ -38,17 +38,16 @@ struct Uncertainty {
   std::optional<LikelyDifference> difference;  ///< if they differ by more than their noise
   int noiseless = 0;  ///< channels of conditions whose residual is no noise, see coherent_error.hpp
   std::vector<std::string> reason;  ///< in words, where there is no standard error
-  Eigen::MatrixXd correlation;      ///< shape (unknowns)^2; meaningful where there are errors
   int rank = 0;
   std::vector<double> singular_values;  ///< Jacobian with columns of length 1, descending
   double reduced_chi_square = 0.0;      ///< 2 cost / (residuals - rank)
   double freedom = 1.0;                 ///< degrees of freedom of standard_error, at least 1
   /// S with S S^T the covariance in the unit box; directions that the data do not determine have
-  /// the least singular value that would count. Shape (unknowns)^2.
-  Eigen::MatrixXd spread;
-  /// R with R R^T = (J^T J)^-1 in the directions that the data determine, shape (unknowns, rank);
-  /// `scatter` is in these coordinates.
-  Eigen::MatrixXd root;
+  /// the least singular value that would count.
+  ArrowRoot spread;
+  /// R with R R^T = (J^T J)^-1 on the directions that the data determine; `scatter` is in its
+  /// coordinates.
+  ArrowRoot root;
   KnownUncertainty known;              ///< is in all errors
   std::vector<ScoreRows> scores;       ///< that `scatter` is made of
   std::vector<ScoreScatter> scatter;   ///< per condition; empty: no robust errors
@@ -57,11 +56,13 @@ struct Uncertainty {
   /// Whether repeats differ by more than the residuals predict, at 5 % for all unknowns together
   /// (Bonferroni).
   bool repeats_differ() const;
+  /// Of two unknowns; meaningful where both have errors.
+  double correlation(Eigen::Index a, Eigen::Index b) const;
 };
 
 /// Adds J^T J of the priors, in coordinates of `root`.
-void add_prior_information(const Problem& problem, std::span<const double> z,
-                           const Eigen::MatrixXd& root, Eigen::MatrixXd& sum);
+void add_prior_information(const Problem& problem, std::span<const double> z, const ArrowRoot& root,
+                           ArrowMatrix& sum);
 
 /// Scores of the single repeats of every condition, by rows whose residuals are left alone.
 std::vector<Eigen::MatrixXd> scores_of_repeats(const Problem& problem, std::span<const double> z,

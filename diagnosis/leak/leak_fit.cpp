@@ -252,6 +252,7 @@ RigFit rig_fit_of(const calib::Fit& fit) {
     if (!p.fitted) continue;
     if (!p.nuisance) rig.values.push_back({p.index, p.scope, p.level, p.value});
     const bool of_rig = !p.nuisance && p.scope == datasets::Scope::rig;
+    if (p.standard_error && !p.correlated) continue;  // of a condition, and without a row
     if (!p.standard_error || row >= fit.correlation.rows()) {
       if (!of_rig) continue;
       without_error.push_back(p.index);

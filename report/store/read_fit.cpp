@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "common/error.hpp"
 #include "metrics/distributions.hpp"
@@ -49,7 +51,9 @@ double undetermined_error(const StoredParameter& p, const JsonNode& node) {
 struct Estimates {
   std::vector<calib::EstimateSpread::Estimate> list;
   Eigen::MatrixXd covariance;  ///< SI, by the larger of standard and robust error
-  double widened = 1.0;        ///< the most by which an interval is wider than by its error
+  /// Those of conditions whose correlations are not stored, with their errors.
+  std::map<std::string, std::vector<std::pair<calib::EstimateSpread::Estimate, double>>> own;
+  double widened = 1.0;  ///< the most by which an interval is wider than by its error
 };
 
 /// Half of a 95 % interval in standard errors.
@@ -102,10 +106,17 @@ Estimates estimates_of(const StoredFit& stored, const JsonNode& root, model::Pla
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const StoredParameter& p = stored.parameters[i];
     if (!p.fitted || p.nuisance) continue;
-    result.list.push_back({parameter_row(nodes[i]["name"], plant), p.scope, p.level.value_or("")});
     const auto place =
         std::find(names.begin(), names.end(), parameter_label(p.name, p.scope, p.level));
     const auto error = error_of(p);
+    const calib::EstimateSpread::Estimate estimate{parameter_row(nodes[i]["name"], plant), p.scope,
+                                                   p.level.value_or("")};
+    if (p.scope == Scope::condition && error && *error > 0.0 && place == names.end()) {
+      result.own[estimate.level].emplace_back(estimate, *error);
+      result.widened = std::max(result.widened, half_in_errors(p, *error) / metrics::kNormal95);
+      continue;
+    }
+    result.list.push_back(estimate);
     const bool determined = error && place != names.end();
     places.push_back(determined ? std::optional(static_cast<std::size_t>(place - names.begin()))
                                 : std::nullopt);
@@ -142,9 +153,21 @@ void read_covariance(const StoredFit& stored, const JsonNode& root, model::Plant
     fit.indices.push_back(estimates.list[i].index);
   }
   fit.covariance = estimates.covariance(of_rig, of_rig);
-  if (stored.status == calib::FitStatus::converged)
-    fit.spread = calib::EstimateSpread{
-        estimates.list, estimates.widened * calib::square_root(estimates.covariance)};
+  if (stored.status != calib::FitStatus::converged) return;
+  fit.spread = calib::EstimateSpread{estimates.list,
+                                     estimates.widened * calib::square_root(estimates.covariance)};
+  const Eigen::MatrixXd& shared = fit.spread->root;
+  for (const auto& [condition, values] : estimates.own) {
+    calib::EstimateSpread::Own& own = fit.spread->own.emplace_back();
+    const auto count = static_cast<Eigen::Index>(values.size());
+    own.root = Eigen::MatrixXd::Zero(count + shared.rows(), count + shared.cols());
+    own.root.bottomRightCorner(shared.rows(), shared.cols()) = shared;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const auto& [estimate, error] = values[static_cast<std::size_t>(k)];
+      own.estimates.push_back(estimate);
+      own.root(k, k) = estimates.widened * error;
+    }
+  }
 }
 
 calib::Aspect aspect_of(const StoredAspect& stored) {

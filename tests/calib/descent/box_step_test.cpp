@@ -76,8 +76,8 @@ TEST_CASE("box_step: an unknown at its bound stays there, or is drawn back insid
   QuadraticModel model{Eigen::Matrix2d::Identity(), Eigen::Vector2d(0.5, -1.0)};
   CHECK(box_step(model, limits).step(0) == 0.0);
   CHECK(box_step(model, limits).step(1) == Approx(1.0));
-  // The step of the second unknown reverses the slope: -0.8 * 1 + 0.5 < 0.
-  model.hessian(0, 1) = model.hessian(1, 0) = -0.8;
+  // The step of the other one turns the slope round: -0.8 * 1 + 0.5 < 0.
+  model.hessian.blocks.shared(0, 1) = model.hessian.blocks.shared(1, 0) = -0.8;
   const BoxStep found = box_step(model, limits);
   CHECK((model.hessian * found.step + model.gradient).norm() < 1e-12);
   CHECK(found.step(0) > 0.0);
@@ -101,8 +101,8 @@ TEST_CASE("box_step: within the box it is the least of a convex model", "[calib]
     Eigen::Vector3d x = Eigen::Vector3d::Zero();
     for (int sweep = 0; sweep < 3000; ++sweep) {
       for (int j = 0; j < 3; ++j) {
-        const double slope = model.gradient(j) + model.hessian.row(j).dot(x);
-        x(j) = std::clamp(x(j) - slope / model.hessian(j, j), limits.lower(j), limits.upper(j));
+        const double slope = model.gradient(j) + model.hessian.blocks.shared.row(j).dot(x);
+        x(j) = std::clamp(x(j) - slope / model.hessian.blocks.shared(j, j), limits.lower(j), limits.upper(j));
       }
     }
     at_bounds += (x - limits.lower).minCoeff() == 0.0 || (limits.upper - x).minCoeff() == 0.0;

@@ -81,7 +81,7 @@ void require_box(const Scene& scene, double first, double second) {
 TEST_CASE("estimate_spread: without scatter, sigma^2 (J^T J)^-1 of the misfit", "[calib]") {
   Scene scene;
   require_box(scene, 1.0, 1.0);
-  scene.uncertainty.root << 2.0, 0.0, 0.0, 3.0;
+  scene.uncertainty.root = (Eigen::Matrix2d() << 2.0, 0.0, 0.0, 3.0).finished();
   require_box(scene, 2.0, 3.0);
   // If the model fits worse than the noise, standard deviations grow with the root of chi-square.
   scene.uncertainty.reduced_chi_square = 4.0;
@@ -95,7 +95,7 @@ TEST_CASE("estimate_spread: without scatter, sigma^2 (J^T J)^-1 of the misfit", 
 
 TEST_CASE("estimate_spread: estimates with whose they are, and their correlation", "[calib]") {
   Scene scene;
-  scene.uncertainty.root << 1.0, 0.0, -2.0, 1.0;
+  scene.uncertainty.root = (Eigen::Matrix2d() << 1.0, 0.0, -2.0, 1.0).finished();
   const EstimateSpread spread = estimate_spread(scene.problem, scene.z, scene.uncertainty);
   REQUIRE(spread.estimates.size() == 2);
   CHECK(spread.estimates[0].index == Twin::index("bulk_modulus"));
@@ -114,7 +114,7 @@ TEST_CASE("estimate_spread: with scatter, the sum of that of all conditions", "[
   require_box(scene, 2.0, 1.0);
   scene.add_scatter(5.0, 24.0);
   require_box(scene, 3.0, 5.0);
-  scene.uncertainty.root << 2.0, 0.0, 0.0, 3.0;
+  scene.uncertainty.root = (Eigen::Matrix2d() << 2.0, 0.0, 0.0, 3.0).finished();
   require_box(scene, 6.0, 15.0);
   scene.add_scatter(0.0, 0.0, 9.0);
   const EstimateSpread spread = estimate_spread(scene.problem, scene.z, scene.uncertainty);
@@ -134,8 +134,8 @@ TEST_CASE("estimate_spread: a prior is one more source of scatter", "[calib]") {
 
 TEST_CASE("estimate_spread: as wide as the widest interval by its own error", "[calib]") {
   Scene scene;
-  scene.uncertainty.root << 2.0, 0.0, 0.0, 3.0;
-  scene.uncertainty.standard_error[0] = scene.error(0, 1.5);  // below 2
+  scene.uncertainty.root = (Eigen::Matrix2d() << 2.0, 0.0, 0.0, 3.0).finished();
+  scene.uncertainty.standard_error[0] = scene.error(0, 1.5);  // less than 2
   require_box(scene, 2.0, 3.0);
   scene.uncertainty.standard_error[0] = scene.error(0, 5.0);
   require_box(scene, 5.0, 7.5);  // one factor for all, so that correlations stay
@@ -188,9 +188,8 @@ TEST_CASE("estimate_spread: known values add theirs, unwidened", "[calib]") {
 TEST_CASE("estimate_spread: directions that are not determined have the spread of the least",
           "[calib]") {
   Scene scene;
-  scene.uncertainty.root = MatrixXd(2, 1);
-  scene.uncertainty.root << 1.0, 0.0;
-  scene.uncertainty.spread << 1.0, 0.0, 0.0, 7.0;
+  scene.uncertainty.root = Eigen::Vector2d(1.0, 0.0);
+  scene.uncertainty.spread = (Eigen::Matrix2d() << 1.0, 0.0, 0.0, 7.0).finished();
   require_box(scene, 1.0, 7.0);
   // This widens only the determined direction.
   scene.uncertainty.standard_error[0] = scene.error(0, 3.0);

@@ -28,7 +28,7 @@ struct Graded {
     found.robust_quantile = {2.0};
     found.from_repeats = {false};
     found.reason.resize(1);
-    found.correlation = Eigen::MatrixXd::Identity(1, 1);
+    found.root = Eigen::MatrixXd::Identity(1, 1);
     found.reduced_chi_square = 1.0;
     found.freedom = 1e9;  // Student's t is the normal distribution
   }

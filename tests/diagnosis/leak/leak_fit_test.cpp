@@ -113,6 +113,21 @@ TEST_CASE("rig_fit_of: the larger error of each value, and their correlation", "
   CHECK_THAT(rig.covariance(0, 1), WithinRel(0.5 * 3.0 * 5.0, 1e-12));
 }
 
+TEST_CASE("rig_fit_of: values of conditions may have no row of correlations", "[diagnosis]") {
+  calib::Fit fit;
+  fit.parameters = {fitted(2, 7.0, 4.0), fitted(1, 2.0, 3.0), fitted(4, 5.0, 4.0)};
+  fit.parameters[0].scope = datasets::Scope::condition;
+  fit.parameters[0].correlated = false;
+  fit.correlation = Eigen::MatrixXd::Identity(2, 2);
+  fit.correlation(0, 1) = fit.correlation(1, 0) = 0.5;
+  const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
+  CHECK(rig.values.size() == 3);
+  CHECK(rig.indices == std::vector<int>{1, 4});
+  REQUIRE(rig.covariance.rows() == 2);
+  CHECK_THAT(rig.covariance(1, 1), WithinRel(25.0, 1e-12));
+  CHECK_THAT(rig.covariance(0, 1), WithinRel(0.5 * 3.0 * 5.0, 1e-12));
+}
+
 TEST_CASE("rig_fit_of: what has no error counts with its whole range", "[diagnosis]") {
   calib::Fit fit;
   fit.parameters = {fitted(4, 1.0, {}), fitted(1, 1.0, {}), fitted(2, 1.0, {})};

@@ -48,3 +48,33 @@ TEST_CASE("read_fit: correlations are some that can be", "[report]") {
     CHECK_THROWS_WITH(read(matrix), Contains("fit.json") && Contains("correlation.matrix"));
   }
 }
+
+TEST_CASE("read_fit: own values of conditions without correlations have their errors", "[report]") {
+  Json fit = fit_of({{1.0, -0.5}, {-0.5, 1.0}});
+  for (const char* condition : {"first", "second"}) {
+    Json own = fit["parameters"][0];
+    own["name"] = "valve_gain_m_per_v";
+    own["key"] = "valve_gain";
+    own["scope"] = "condition";
+    own["level"] = condition;
+    own["ci95"] = nullptr;
+    own["standard_error"] = std::string(condition) == "first" ? 0.5 : 0.25;
+    fit["parameters"].push_back(own);
+  }
+  const auto spread =
+      earlier_fit(fit, "fit.json", rigcal::model::PlantKind::load_pressure).spread.value();
+  CHECK(spread.estimates.size() == 2);
+  const Eigen::MatrixXd shared = spread.root * spread.root.transpose();
+  REQUIRE(spread.own.size() == 2);
+  CHECK(spread.own[0].estimates.at(0).level == "first");
+  CHECK(spread.own[1].estimates.at(0).level == "second");
+  const double widened = shared(0, 0) / (0.026 * 0.026);  // to the interval of mass
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Eigen::MatrixXd all = spread.own[i].root * spread.own[i].root.transpose();
+    REQUIRE(all.rows() == 3);
+    const double error = i == 0 ? 0.5 : 0.25;
+    CHECK_THAT(all(0, 0), Catch::WithinRel(widened * error * error, 1e-12));
+    CHECK(all(0, 1) == 0.0);
+    CHECK((all.bottomRightCorner(2, 2) - shared).norm() < 1e-15);
+  }
+}
