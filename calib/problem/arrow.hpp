@@ -50,6 +50,8 @@ struct ArrowSquare {
   Eigen::Index size() const;
   Eigen::VectorXd diagonal() const;
   Eigen::VectorXd operator*(const Eigen::VectorXd& x) const;
+  /// (A + B) / 2 of two with one layout.
+  ArrowSquare mean(const ArrowSquare& other) const;
   /// S (rows and columns of some unknowns) S.
   ///
   /// @param kept   ascending
