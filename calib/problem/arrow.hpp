@@ -24,7 +24,8 @@ struct ArrowMatrix {
   std::vector<Eigen::MatrixXd> coupling;  ///< shape (own, shared)
 
   ArrowMatrix() = default;
-  template <typename Matrix>  // NOLINTNEXTLINE(google-explicit-constructor): an arrow without blocks
+  template <typename Matrix>
+  // NOLINTNEXTLINE(google-explicit-constructor): a matrix is an arrow without blocks
   ArrowMatrix(const Eigen::EigenBase<Matrix>& all) : shared(all.derived()) {}
 
   /// What a condition sees of it: its own rows and columns, then the shared ones.
@@ -39,7 +40,8 @@ struct ArrowSquare {
   ArrowMatrix blocks;
 
   ArrowSquare() = default;
-  template <typename Matrix>  // NOLINTNEXTLINE(google-explicit-constructor): an arrow without blocks
+  template <typename Matrix>
+  // NOLINTNEXTLINE(google-explicit-constructor): a matrix is an arrow without blocks
   ArrowSquare(const Eigen::EigenBase<Matrix>& all) : blocks(all) {
     layout.shared.resize(static_cast<std::size_t>(blocks.shared.rows()));
     std::iota(layout.shared.begin(), layout.shared.end(), 0);
@@ -92,7 +94,8 @@ struct Linearisation {
 class ArrowRoot {
  public:
   ArrowRoot() = default;
-  template <typename Matrix>  // NOLINTNEXTLINE(google-explicit-constructor): no own directions
+  template <typename Matrix>
+  // NOLINTNEXTLINE(google-explicit-constructor): a matrix has no own directions
   ArrowRoot(const Eigen::EigenBase<Matrix>& all) : shared_(all.derived()) {
     for (Eigen::Index j = 0; j < shared_.rows(); ++j) places_.push_back({-1, j});
   }
