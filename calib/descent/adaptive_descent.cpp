@@ -54,7 +54,7 @@ std::optional<Point> point_at(const DescentOptions& options, const Eigen::Vector
 void learn(const Point& from, const Point& to, const Eigen::VectorXd& scales, Eigen::MatrixXd& s) {
   const std::vector<int>& shared = from.square.layout.shared;
   const Eigen::VectorXd whole = to.z - from.z;
-  const Eigen::VectorXd explained = 0.5 * (to.square * whole + from.square * whole);
+  const Eigen::VectorXd explained = to.square.mean(from.square) * whole;
   const Eigen::VectorXd step = whole(shared);
   const Eigen::VectorXd scale = scales(shared);
   const Eigen::VectorXd change = to.gradient(shared) - from.gradient(shared);

@@ -1,5 +1,6 @@
 #include "calib/descent/box_step.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -45,6 +46,10 @@ class ShiftedDense {
   Eigen::VectorXd back(const Eigen::VectorXd& y) const { return spectrum_.eigenvectors() * y; }
   Eigen::VectorXd solve(const Eigen::VectorXd& y, double more) const {
     return (y.array() / (curvature_.array() + more).max(1e-300)).matrix();
+  }
+  /// Half of the slope of -|y|^2 with the shift, where y solves it for x.
+  double slope(const Eigen::VectorXd& x, const Eigen::VectorXd& /*y*/, double more) const {
+    return (x.array().square() / (curvature_.array() + more).max(1e-300).cube()).sum();
   }
   /// Of the most negative curvature, of unit length.
   Eigen::VectorXd lowest() const { return Eigen::VectorXd::Unit(curvature_.size(), 0); }
@@ -107,6 +112,10 @@ class ShiftedArrow {
           spectra_[i].eigenvectors() * over(own[i] - coupling_[i] * of_shared, i, shift);
     }
     return result;
+  }
+
+  double slope(const Eigen::VectorXd& /*x*/, const Eigen::VectorXd& y, double more) const {
+    return y.dot(solve(y, more));
   }
 
   Eigen::VectorXd lowest() const {
@@ -182,7 +191,7 @@ BallStep ball_step(const Shifted& b, const Eigen::VectorXd& c, double radius) {
       if (std::abs(length - radius) <= kOnRadius * radius) break;
       (length > radius ? low : high) = more;
       // Newton's method for 1 / length, which is all but linear.
-      const double slope = y.dot(b.solve(y, more));
+      const double slope = b.slope(along, y, more);
       const double next =
           more + (length / radius - 1.0) * length * length / std::max(slope, 1e-300);
       more = next > low && next < high ? next : 0.5 * (low + high);
@@ -209,10 +218,10 @@ BallStep ball_step(const ArrowSquare& b, const Eigen::VectorXd& c, double radius
 }  // namespace
 
 Eigen::VectorXd damped_step(const ArrowSquare& b, const Eigen::VectorXd& c, double damping) {
-  const auto by = [&](const auto& shifted) {
-    return Eigen::VectorXd(-shifted.back(shifted.solve(shifted.into(c), damping)));
-  };
-  return b.layout.own.empty() ? by(ShiftedDense(b.blocks.shared)) : by(ShiftedArrow(b));
+  if (!b.layout.own.empty()) return -ShiftedArrow(b).solve(c, damping);
+  Eigen::MatrixXd damped = b.blocks.shared;
+  damped.diagonal().array() += damping;
+  return -damped.llt().solve(c);
 }
 
 BoxStep box_step(const QuadraticModel& model, const StepLimits& limits) {

@@ -37,6 +37,15 @@ VectorXd ArrowSquare::operator*(const VectorXd& x) const {
   return result;
 }
 
+ArrowSquare ArrowSquare::mean(const ArrowSquare& other) const {
+  ArrowSquare result(layout, 0.5 * (blocks.shared + other.blocks.shared));
+  for (std::size_t i = 0; i < blocks.own.size(); ++i) {
+    result.blocks.own.emplace_back(0.5 * (blocks.own[i] + other.blocks.own[i]));
+    result.blocks.coupling.emplace_back(0.5 * (blocks.coupling[i] + other.blocks.coupling[i]));
+  }
+  return result;
+}
+
 ArrowSquare ArrowSquare::part(const std::vector<Index>& kept, const VectorXd& scale) const {
   if (layout.own.empty()) {
     return MatrixXd(scale.asDiagonal() * blocks.shared(kept, kept) * scale.asDiagonal());

@@ -53,6 +53,8 @@ struct ArrowSquare {
   Eigen::Index size() const;
   Eigen::VectorXd diagonal() const;
   Eigen::VectorXd operator*(const Eigen::VectorXd& x) const;
+  /// (A + B) / 2 of two with one layout.
+  ArrowSquare mean(const ArrowSquare& other) const;
   /// S (rows and columns of some unknowns) S.
   ///
   /// @param kept   ascending
@@ -93,7 +95,8 @@ struct Linearisation {
 class ArrowRoot {
  public:
   ArrowRoot() = default;
-  template <typename Matrix>  // NOLINTNEXTLINE(google-explicit-constructor): no own directions
+  template <typename Matrix>
+  // NOLINTNEXTLINE(google-explicit-constructor): a matrix has no own directions
   ArrowRoot(const Eigen::EigenBase<Matrix>& all) : shared_(all.derived()) {
     for (Eigen::Index j = 0; j < shared_.rows(); ++j) places_.push_back({-1, j});
   }

@@ -102,7 +102,8 @@ TEST_CASE("box_step: within the box it is the least of a convex model", "[calib]
     for (int sweep = 0; sweep < 3000; ++sweep) {
       for (int j = 0; j < 3; ++j) {
         const double slope = model.gradient(j) + model.hessian.blocks.shared.row(j).dot(x);
-        x(j) = std::clamp(x(j) - slope / model.hessian.blocks.shared(j, j), limits.lower(j), limits.upper(j));
+        x(j) = std::clamp(x(j) - slope / model.hessian.blocks.shared(j, j), limits.lower(j),
+                          limits.upper(j));
       }
     }
     at_bounds += (x - limits.lower).minCoeff() == 0.0 || (limits.upper - x).minCoeff() == 0.0;
