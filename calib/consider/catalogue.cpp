@@ -75,7 +75,7 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"valve_offset", EffectKind::parameter, false, "null shift of the valve",
                  [](const RigScale& rig) {
-                   return EffectSize{1e-3 * rig.command_v, "0.1 % of full command"};
+                   return EffectSize{3e-4 * rig.command_v, "0.03 % of full command"};
                  }},
     CatalogueRow{"valve_dead_band", EffectKind::parameter, true, "overlap of the spool",
                  [](const RigScale& rig) {
@@ -97,7 +97,7 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"ki", EffectKind::parameter, true, "integral gain of the controller",
                  [](const RigScale& rig) {
-                   return EffectSize{0.02 * rig.kp_v_per_m, "a reset time of 50 s"};
+                   return EffectSize{5e-3 * rig.kp_v_per_m, "a reset time of 200 s"};
                  }},
     CatalogueRow{"total_volume", EffectKind::parameter, true, "oil of hoses and ports",
                  [](const RigScale& rig) {
@@ -123,7 +123,7 @@ constexpr std::array kCatalogue{
                  }},
     CatalogueRow{"position_offset", EffectKind::parameter, false, "offset of the position sensor",
                  [](const RigScale& rig) {
-                   return EffectSize{5e-4 * rig.travel_m, "0.05 % of the travel"};
+                   return EffectSize{2e-4 * rig.travel_m, "0.02 % of the travel"};
                  }},
     CatalogueRow{"position_bow", EffectKind::bow, false,
                  "nonlinearity of the position sensor, even",

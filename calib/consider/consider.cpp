@@ -160,6 +160,18 @@ ScoreCovariance covariance_of(const Problem& problem, std::span<const double> z,
   return result;
 }
 
+/// Covariance of the scores of the columns Q if the residuals were white noise of their own size.
+MatrixXd white_covariance(const Seen& seen) {
+  double squares = 0.0;
+  double count = 0.0;
+  for (const ScoreRows& rows : seen.rows) {
+    squares += rows.residual.squaredNorm();
+    count += static_cast<double>(rows.residual.size());
+  }
+  const Index determined = seen.basis.cols();
+  return squares / std::max(1.0, count) * MatrixXd::Identity(determined, determined);
+}
+
 /// Sizes of the effects by prior and records, over their plausible sizes.
 struct Sizes {
   VectorXd mean;
@@ -503,15 +515,16 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
   VectorXd moved;
   if (!effects.empty()) {
     seen = look_at(std::move(effects), columns, found);
-    ScoreCovariance scores = covariance_of(problem, z, *seen, threads);
-    sizes = sizes_of(*seen, scores.directions);
+    // White noise tells well enough at which size to take a secant.
+    sizes = sizes_of(*seen, white_covariance(*seen));
     for (int i = 0; i < kMostSecants; ++i) {
       if (!take_again(problem, z, found, sizes, threads, cancel, *seen, columns)) break;
       if (cancel != nullptr && cancel->load()) return;
       seen = look_at(std::move(seen->effects), columns, found);
-      scores = covariance_of(problem, z, *seen, threads);
-      sizes = sizes_of(*seen, scores.directions);
+      sizes = sizes_of(*seen, white_covariance(*seen));
     }
+    const ScoreCovariance scores = covariance_of(problem, z, *seen, threads);
+    sizes = sizes_of(*seen, scores.directions);
     moved = -seen->taken * sizes.mean;
     for (const Effect& each : seen->effects) considered.effects.push_back(each.about);
     test_alone(*seen, scores, considered.effects);

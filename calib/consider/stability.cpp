@@ -15,6 +15,8 @@ namespace {
 
 /// The second step is that of a model which is not quite linear between both estimates.
 constexpr int kSteps = 2;
+/// Of the value: a wider interval is not symmetrical, and to hold it against another is a guess.
+constexpr double kWidestInterval = 0.25;
 
 const FittedParameter* same_unknown(const std::vector<FittedParameter>& parameters,
                                     const Unknown& unknown) {
@@ -82,6 +84,10 @@ void repeat_on_validation(Problem validation, const std::vector<FittedParameter>
   for (std::size_t j = 0; j < unknowns.size(); ++j) {
     if (fitted[j] == nullptr || !fitted[j]->budget || !found.robust_standard_error[j]) continue;
     if (bound_side(at.z[j]) != BoundSide::inside) continue;  // its error is not that of a minimum
+    const double value = validation.map.to_physical(static_cast<int>(j), at.z[j]);
+    if (student_t(found.robust_freedom[j]) * *found.robust_standard_error[j] >
+        kWidestInterval * std::abs(value))
+      continue;
     const Budget95& own = *fitted[j]->budget;
     const std::vector<metrics::ErrorPart> parts{
         {own.combined * own.combined, own.degrees_of_freedom},
@@ -94,7 +100,7 @@ void repeat_on_validation(Problem validation, const std::vector<FittedParameter>
     check.index = unknowns[j].index;
     check.scope = unknowns[j].scope;
     check.level = unknowns[j].level;
-    check.value = validation.map.to_physical(static_cast<int>(j), at.z[j]);
+    check.value = value;
     check.difference = check.value - fitted[j]->value;
     check.expanded = student_t(error.freedom) * error.standard_error;
     p_values.push_back(metrics::difference_p_value(check.difference, error));

@@ -8,8 +8,8 @@ namespace rigcal::calib {
 /// Estimates the parameters of a fit once more, from the validation records alone: Gauss-Newton
 /// steps from the fit's values, and the error of each by the scatter of their residuals. Into
 /// `stability` of the fit goes how far each estimate moves, and whether that is more than both
-/// uncertainties allow (5 %, all parameters together by Holm). What the validation records do not
-/// determine is left out.
+/// uncertainties allow (5 %, all parameters together by Holm). What the validation records
+/// determine to no better than 25 % is left out.
 ///
 /// @param validation  the problem of the validation records with the unknowns of the fit
 /// @param nuisance    estimated from the validation records already
