@@ -123,8 +123,8 @@ void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blo
   if (table.rows.empty()) return;
   blocks.emplace_back(std::move(table));
   blocks.emplace_back(doc::reading(
-      "The 95 % interval is value + shift ± U, and wherever it would be narrower, that of an exact "
-      "model."));
+      "The 95 % interval extends by U beyond the value as it is, beyond value + shift, and beyond "
+      "the value that the likeliest sizes of the effects would give."));
   const std::string summary = fmt::format("Contributions one by one ({})", lines.rows.size());
   blocks.emplace_back(doc::Fold{summary, {std::move(lines)}});
 }
