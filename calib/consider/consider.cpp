@@ -561,7 +561,15 @@ void consider_effects(const Problem& problem, std::span<const double> z, const U
     const double likeliest = shift - moves.dot(sizes.likeliest - sizes.mean);
     widen(problem, j, budget_of(found, j, parameter, slope, *seen, moves, sizes, shift), likeliest,
           parameter);
+    const std::string exact = fmt::format("{}: {}", problem.name(j), parameter.reason);
     grade_widened(problem, found, j, parameter);
+    // The warning about an estimate says what its interval says now.
+    const std::string widened = fmt::format("{}: {}", problem.name(j), parameter.reason);
+    const auto warning = std::find(fit.warnings.begin(), fit.warnings.end(), exact);
+    if (warning != fit.warnings.end())
+      *warning = widened;
+    else if (parameter.identifiability != Identifiability::identified)
+      fit.warnings.push_back(widened);
     parameter.moved_by_unexplained = slope * unexplained(static_cast<Index>(j));
     for (const std::size_t e : considered.missing) {
       const double by_it = moves(static_cast<Index>(e)) / considered.effects[e].size *

@@ -176,7 +176,7 @@ void judge_stability(const Campaign& campaign, const Fit& fit, std::vector<Reaso
       {"differ", static_cast<double>(words.size())},
       {"estimated", static_cast<double>(fit.stability.size())}};
   if (words.empty()) {
-    reasons.push_back(reason(AspectState::note, "stable",
+    reasons.push_back(reason(AspectState::pass, "stable",
                              "the validation records alone lead to the same estimates, within the "
                              "uncertainty of both",
                              {}, numbers));

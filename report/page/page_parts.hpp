@@ -36,7 +36,9 @@ inline RowUnit unit_of(const StoredParameter& p) { return row_unit(p.value.value
 /// Larger distance from the value to an end of the 95 % interval, divided by the value. The larger
 /// one is not cut by a bound. Infinite without an interval or for a value of zero.
 double relative_half_width(const StoredParameter& parameter);
-/// "± 2.1 %", "± 220 %"; "not determined" beyond ten times the value.
+/// Up to ten times the value.
+bool is_determined(double relative_half_width);
+/// "± 2.1 %", "± 220 %"; "not determined" beyond that.
 std::string half_width_text(double relative);
 
 /// Estimated, but not well.

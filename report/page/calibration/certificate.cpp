@@ -121,14 +121,25 @@ void add_numbers(const StoredFit& fit, Line& sentence) {
     sentence.emplace_back(" " + tolerance_words(signals) + ".");
   }
   double widest = 0.0;
+  std::size_t determined = 0;
   const auto found = signed_estimates(fit);
-  for (const StoredParameter* p : found) widest = std::max(widest, relative_half_width(*p));
-  if (!found.empty() && std::isfinite(widest)) {
-    sentence.emplace_back(
-        fmt::format(" {} determined to {}{}.",
-                    found.size() == 1 ? std::string("The one parameter is")
-                                      : fmt::format("All {} parameters are", found.size()),
-                    half_width_text(widest), found.size() == 1 ? "" : " or better"));
+  for (const StoredParameter* p : found) {
+    // A parameter that is only bounded is known by its limit, not by a half width.
+    if (p->identifiability == calib::Identifiability::bounded) continue;
+    widest = std::max(widest, relative_half_width(*p));
+    ++determined;
+  }
+  if (determined > 0 && is_determined(widest)) {
+    const std::string which = found.size() == 1 ? std::string("The one parameter is")
+                              : determined == found.size()
+                                  ? fmt::format("All {} parameters are", determined)
+                                  : fmt::format("{} of {} parameters {}", determined, found.size(),
+                                                determined == 1 ? "is" : "are");
+    sentence.emplace_back(fmt::format(" {} determined to {}{}{}.", which, half_width_text(widest),
+                                      determined == 1 ? "" : " or better",
+                                      determined == found.size()      ? ""
+                                      : found.size() - determined > 1 ? ", the others bounded"
+                                                                      : ", the other is bounded"));
   }
 }
 
@@ -176,8 +187,10 @@ doc::Doubts doubts_of(const StoredFit& fit) {
       const std::vector<StoredReason>& reasons = ((*fit.assessment).*aspect.aspect).reasons;
       for (std::size_t i = 0; i < reasons.size(); ++i) {
         const StoredReason& reason = reasons[i];
-        // The table of values names these below it.
-        if (reason.state == AspectState::pass || reason.code == "exact_values") continue;
+        // The table of values names exact ones below it; that starts were looked at is no doubt.
+        if (reason.state == AspectState::pass || reason.code == "exact_values" ||
+            reason.code == "further_starts")
+          continue;
         const auto same = [&](const StoredReason& other) {
           return other.code == reason.code && other.state == reason.state;
         };
@@ -399,7 +412,8 @@ std::string signal_words(const StoredCondition& condition) {
 /// Adds the score of the deciding check: "rho2 0.9987 ± 0.0002, limit 0.99".
 void add_score(const Judged& signal, doc::Cell& cell) {
   const StoredLimitCheck& check = *signal.check;
-  cell.line = {spaced(check.metric) + " ", doc::score(check.metric, check.value)};
+  cell.line = {check.metric == "absolute_error_percent" ? "error % " : spaced(check.metric) + " ",
+               doc::score(check.metric, check.value)};
   Line limit;
   const auto& all = signal.condition->expanded_uncertainty;
   const auto* known = all ? find(*all, signal.channel) : nullptr;

@@ -142,7 +142,11 @@ doc::Facts three_numbers(const StoredFit& fit) {
   if (least == nullptr || (fit.status == calib::FitStatus::stopped && !searched_to_the_end(fit)))
     return numbers;
   const bool bounded = least->identifiability == calib::Identifiability::bounded;
-  add("Least certain estimate", half_width_text(relative_half_width(*least)),
+  const auto ends = doc::Interval(least->ci95).ends;
+  add("Least certain estimate",
+      bounded && ends && ends->low == 0.0
+          ? "at most " + readable(ends->high, least->unit, kErrorDigits)
+          : half_width_text(relative_half_width(*least)),
       parameter_label(*least) + (bounded ? ", not different from zero" : ""));
   return numbers;
 }

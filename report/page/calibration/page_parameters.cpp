@@ -155,9 +155,13 @@ double relative_half_width(const StoredParameter& parameter) {
   return std::max(ends->high - value, value - ends->low) / std::abs(value);
 }
 
-std::string half_width_text(double relative) {
+bool is_determined(double relative_half_width) {
   constexpr double kMeaningless = 10.0;
-  if (!(relative <= kMeaningless)) return "not determined";
+  return relative_half_width <= kMeaningless;
+}
+
+std::string half_width_text(double relative) {
+  if (!is_determined(relative)) return "not determined";
   return fmt::format("± {} %", significant(100.0 * relative, kErrorDigits));
 }
 
