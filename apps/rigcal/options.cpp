@@ -132,7 +132,7 @@ report::Style terminal_style() {
 report::Style terminal_style(const PrintOptions& options) {
   report::Style style = terminal_style();
   // What goes elsewhere is for programs and logs.
-  if (style.columns > 0 && !options.verbose) style.lines = report::kTerminalLines;
+  if (::isatty(STDOUT_FILENO) == 1 && !options.verbose) style.lines = report::kTerminalLines;
   return style;
 }
 

@@ -174,14 +174,15 @@ std::vector<doc::Section> average_sections(const AverageFiles& stored) {
   table.style = "repeatability";
   table.columns = {{"Condition"},
                    {"Channel"},
-                   {"Samples", Kind::number},
+                   {"Samples", Kind::number, 1},
                    {"Repeats", Kind::number},
                    {"sd of one", Kind::number},
-                   {"sd of the mean", Kind::number},
-                   {"Floor of rho2", Kind::number},
+                   {"sd of the mean", Kind::number, 3},
+                   {"Floor of rho2", Kind::number, 2},
                    {"Floor of the error, %", Kind::number},
                    {"Offsets", Kind::number},
                    {"Outliers", Kind::number}};
+  table.keys = 2;
   doc::Section means{"means", "Means"};
   const std::vector<StoredRecord>& records = stored.result.records;
   for (std::size_t i = 0; i < records.size(); ++i) {
