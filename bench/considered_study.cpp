@@ -211,7 +211,7 @@ std::vector<std::vector<double>> readings_of_all(const ForeignRig& rig) {
   return all;
 }
 
-struct Outcome {
+struct StudyOutcome {
   bool converged = false;
   std::vector<bool> holds, exact;
   std::vector<double> half_width, error;  ///< over the truth
@@ -220,8 +220,8 @@ struct Outcome {
   std::string named;  ///< the effect that the residuals ask for first
 };
 
-Outcome outcome_of(const calib::Fit& fit) {
-  Outcome result;
+StudyOutcome outcome_of(const calib::Fit& fit) {
+  StudyOutcome result;
   result.converged = fit.status == calib::FitStatus::converged;
   if (!result.converged) return result;
   for (const Estimate& each : kEstimates) {
@@ -256,7 +256,7 @@ std::string of_each(const Each& text) {
 }
 
 void study_row(const Row& row, std::size_t asked, int repeats, int threads) {
-  std::vector<Outcome> outcomes(asked);
+  std::vector<StudyOutcome> outcomes(asked);
   std::vector<std::vector<double>> same_readings;
   if (!row.drawn) {
     boost::random::mt19937_64 unused;
@@ -275,47 +275,47 @@ void study_row(const Row& row, std::size_t asked, int repeats, int threads) {
       records.push_back(record_of(campaign, campaign.conditions[c], readings[c], repeats, stream));
     outcomes[i] = outcome_of(calib::fit(campaign, records, {}));
   });
-  std::erase_if(outcomes, [](const Outcome& each) { return !each.converged; });
+  std::erase_if(outcomes, [](const StudyOutcome& each) { return !each.converged; });
   const std::size_t campaigns = outcomes.size();
   if (campaigns == 0) throw std::runtime_error("no fit of this row has converged");
   const auto count = [&](const auto& holds) {
     return static_cast<std::size_t>(std::count_if(outcomes.begin(), outcomes.end(), holds));
   };
-  const auto covered = [&](std::vector<bool> Outcome::*member) {
+  const auto covered = [&](std::vector<bool> StudyOutcome::*member) {
     return of_each([&](std::size_t j) {
-      return percent(count([&](const Outcome& each) { return bool((each.*member)[j]); }),
+      return percent(count([&](const StudyOutcome& each) { return bool((each.*member)[j]); }),
                      campaigns);
     });
   };
   const auto median = [&](std::size_t j) {
     std::vector<double> widths;
-    for (const Outcome& each : outcomes) widths.push_back(each.half_width[j]);
+    for (const StudyOutcome& each : outcomes) widths.push_back(each.half_width[j]);
     std::nth_element(widths.begin(), widths.begin() + static_cast<std::ptrdiff_t>(campaigns / 2),
                      widths.end());
     return widths[campaigns / 2];
   };
   const auto rms = [&](std::size_t j) {
     double sum = 0.0;
-    for (const Outcome& each : outcomes) sum += each.error[j] * each.error[j];
+    for (const StudyOutcome& each : outcomes) sum += each.error[j] * each.error[j];
     return std::sqrt(sum / static_cast<double>(campaigns));
   };
   const auto verdicts = fmt::format(
-      "{}/{}/{}{}", count([](const Outcome& o) { return o.verdict == calib::Verdict::pass; }),
-      count([](const Outcome& o) { return o.verdict == calib::Verdict::warn; }),
-      count([](const Outcome& o) { return o.verdict == calib::Verdict::fail; }),
+      "{}/{}/{}{}", count([](const StudyOutcome& o) { return o.verdict == calib::Verdict::pass; }),
+      count([](const StudyOutcome& o) { return o.verdict == calib::Verdict::warn; }),
+      count([](const StudyOutcome& o) { return o.verdict == calib::Verdict::fail; }),
       campaigns == asked ? "" : fmt::format(", {} not converged", asked - campaigns));
-  const std::size_t falsely =
-      count([](const Outcome& o) { return o.verdict == calib::Verdict::pass && o.worst > 3.0; });
+  const std::size_t falsely = count(
+      [](const StudyOutcome& o) { return o.verdict == calib::Verdict::pass && o.worst > 3.0; });
   const std::size_t named =
-      count([&](const Outcome& o) { return !o.named.empty() && o.named == row.effect; });
+      count([&](const StudyOutcome& o) { return !o.named.empty() && o.named == row.effect; });
   std::map<std::string, int> others;
-  for (const Outcome& each : outcomes)
+  for (const StudyOutcome& each : outcomes)
     if (!each.named.empty() && each.named != row.effect) ++others[each.named];
   std::string other;
   for (const auto& [name, times] : others) other += fmt::format(" {} {}", name, times);
   std::cout << fmt::format(
                    "| {} | {} | {} | {} | {} | {} | {} | {}{} |\n", row.name,
-                   covered(&Outcome::holds), covered(&Outcome::exact),
+                   covered(&StudyOutcome::holds), covered(&StudyOutcome::exact),
                    of_each([&](std::size_t j) { return significant(100.0 * median(j), 2); }),
                    of_each([&](std::size_t j) { return significant(median(j) / rms(j), 2); }),
                    verdicts, percent(falsely, campaigns), percent(named, campaigns),

@@ -26,8 +26,7 @@ struct ArrowMatrix {
   ArrowMatrix() = default;
   template <typename Matrix>  // NOLINTNEXTLINE(google-explicit-constructor): an arrow without
                               // blocks
-                              ArrowMatrix(const Eigen::EigenBase<Matrix>& all)
-      : shared(all.derived()) {}
+  ArrowMatrix(const Eigen::EigenBase<Matrix>& all) : shared(all.derived()) {}
 
   /// What a condition sees of it: its own rows and columns, then the shared ones.
   Eigen::MatrixXd of(std::size_t condition) const;
@@ -43,7 +42,7 @@ struct ArrowSquare {
   ArrowSquare() = default;
   template <typename Matrix>  // NOLINTNEXTLINE(google-explicit-constructor): an arrow without
                               // blocks
-                              ArrowSquare(const Eigen::EigenBase<Matrix>& all) : blocks(all) {
+  ArrowSquare(const Eigen::EigenBase<Matrix>& all) : blocks(all) {
     layout.shared.resize(static_cast<std::size_t>(blocks.shared.rows()));
     std::iota(layout.shared.begin(), layout.shared.end(), 0);
   }
