@@ -110,6 +110,7 @@ void add_budget(const std::vector<StoredParameter>& parameters, doc::Blocks& blo
                    {"Shift", Kind::number},
                    {"Largest effect"}};
   doc::Table lines{"Contributions one by one"};
+  lines.style = "dense";
   lines.columns = {{"Parameter"},
                    {"Source"},
                    {"u", Kind::number},
@@ -143,6 +144,7 @@ void add_considered(const StoredFit& fit, doc::Blocks& blocks) {
             ? std::string("The residuals ask for none of them.")
             : fmt::format("The residuals ask for {}.", fmt::join(considered.missing, ", then "))));
     doc::Table table{"Effects"};
+    table.style = "dense";
     table.columns = {{"Effect"},
                      {"Plausible size", Kind::number},
                      {"By prior and records, ± u", Kind::number},
