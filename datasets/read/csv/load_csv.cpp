@@ -310,7 +310,9 @@ class RowReader {
           fail_on_time(line, line_number, field, *value, column.back());
         column.push_back(*value);
       }
-    const bool lacks_last = header_.last_may_lack && count + 1 == header_.names.size();
+    // A comment that a row omits is no number: who wants the column gets an error.
+    const bool lacks_last =
+        header_.last_may_lack && count + 1 == header_.names.size() && next == wanted_.end();
     if (count != header_.names.size() && !lacks_last) fail_on_count(line, line_number, count);
     if (bad) fail_on_number(line, line_number, *bad, bad_index);
   }

@@ -59,6 +59,13 @@ TEST_CASE("csv_layout: LabVIEW's .lvm", "[datasets]") {
   CHECK(csv_full_header(lvm.path) == std::vector<std::string>{"X_Value", "Voltage", "Comment"});
 }
 
+TEST_CASE("csv_layout: a comment that rows omit is no number", "[datasets]") {
+  const ReadText lvm("X_Value\tVoltage\tComment\n0.0\t1.5\n0.1\t2.5\n0.2\t3.5\n");
+  CHECK(lvm.table("X_Value", "Voltage").columns == kNumbers);
+  CHECK_THROWS_WITH(lvm.table("X_Value", "Comment"),
+                    Contains("a.txt:2:") && Contains("2 columns; expected 3"));
+}
+
 TEST_CASE("csv_layout: columns between blanks", "[datasets]") {
   const ReadText aligned("  t [s]    x [mm]\n  0.0      1.5\n  0.1      2.5\n  0.2\t3.5\n");
   CHECK(aligned.table("t", "x").columns == kNumbers);
