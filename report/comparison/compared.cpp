@@ -75,6 +75,8 @@ StoredComparison load_comparison(const ReadFile& read, const std::string& where)
     require_each(condition.scores, "conditions.scores");
   for (const StoredComparedMetric& metric : comparison.metrics)
     require_each(metric.against_first, "metrics.against_first");
+  for (const StoredComparedRecord& record : comparison.records)
+    require_each(record.in, "records.in");
   return comparison;
 }
 

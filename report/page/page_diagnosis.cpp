@@ -51,15 +51,19 @@ doc::Cell probability_cell(const std::optional<double>& p) {
   return cell;
 }
 
-doc::Row average_row(const StoredDiagnosedRecord& record, std::size_t number) {
+/// @param classes  those that have a column
+doc::Row average_row(const StoredDiagnosedRecord& record, std::size_t number,
+                     const std::vector<std::string>& classes) {
   doc::Cell name = doc::Cell(record.condition);
   if (record.is_reference) name.below = {{"reference"}};
   doc::Row row{{fmt::format("{}", number), std::move(name), leak_badge(record),
                 value_cell(record.leak.leak_share_percent, record.leak.leak_share_ci95_percent),
                 doc::in_unit(record.leak.leak_flow_l_per_min, 1.0, 3),
                 value_cell(record.leak.leakage_coefficient, record.leak.ci95)}};
-  for (const auto& [name_of_class, p] : record.leak.class_probabilities)
-    row.cells.push_back(probability_cell(p));
+  for (const std::string& each : classes) {
+    const auto* p = find(record.leak.class_probabilities, each);
+    row.cells.push_back(probability_cell(p != nullptr ? *p : std::nullopt));
+  }
   row.cells.push_back(class_text(record.class_by_features));
   row.cells.push_back(class_text(record.true_class));
   if (record.failure) row.notes = {*record.failure};
@@ -331,14 +335,18 @@ void add_averages(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
                    {"Share, %", Kind::number, 0, "95 % interval"},
                    {"Leak, L/min", Kind::number},
                    {"Coefficient", Kind::number, 0, "95 % interval"}};
+  std::vector<std::string> classes;
   if (!diagnosis.records.empty()) {
     for (const auto& [name, value] : diagnosis.records.front().leak.class_probabilities)
-      table.columns.push_back({name, Kind::number, 0, "probability"});
+      classes.push_back(name);
   }
+  for (const std::string& each : classes)
+    table.columns.push_back({each, Kind::number, 0, "probability"});
   table.columns.push_back({"By features"});
   table.columns.push_back({"Known"});
   for (const StoredDiagnosedRecord& record : diagnosis.records)
-    if (record.is_average()) table.rows.push_back(average_row(record, table.rows.size() + 1));
+    if (record.is_average())
+      table.rows.push_back(average_row(record, table.rows.size() + 1, classes));
   if (table.rows.empty()) return;
   blocks.emplace_back(figure_of(share_plot(diagnosis)));
   blocks.emplace_back(doc::about_picture(

@@ -461,6 +461,10 @@ TEST_CASE("comparison: a comparison.json whose lists are too short is refused by
              Contains("'conditions.scores': " + expected));
   CHECK_THAT(broken([](auto& c) { c.metrics.front().against_first.pop_back(); }),
              Contains("'metrics.against_first': " + expected));
+  CHECK_THAT(broken([](auto& c) {
+               c.records.push_back({"a.csv", "0f", {true}});
+             }),
+             Contains("'records.in': " + expected));
 }
 
 TEST_CASE("comparison: estimates of one fit, each of its own conditions, make a trend",
