@@ -203,7 +203,7 @@ datasets::Record record_of(const datasets::Campaign& campaign, const datasets::C
   return datasets::average_of(campaign, condition, all, true);
 }
 
-/// Of every condition, in the order of the campaign's.
+/// One entry per condition, in the order of the campaign.
 std::vector<std::vector<double>> readings_of_all(const ForeignRig& rig) {
   std::vector<std::vector<double>> all;
   for (const Reference& reference : kFitted) all.push_back(foreign_readings(rig, reference));

@@ -26,7 +26,7 @@ std::vector<EffectName> effect_names(model::PlantKind plant);
 struct ConsideredSettings {
   bool none = false;                    ///< `considered = false`: the model counts as exact
   std::map<std::string, double> sizes;  ///< standard deviation, SI, in place of the usual one
-  std::set<std::string> left_out;       ///< of which the campaign says `false`
+  std::set<std::string> left_out;       ///< effects that the campaign sets to `false`
 
   bool leaves_out(const std::string& effect) const { return none || left_out.contains(effect); }
   std::optional<double> size(const std::string& effect) const {

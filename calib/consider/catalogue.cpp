@@ -312,7 +312,7 @@ Eigen::VectorXd with_play(const Eigen::VectorXd& x, double half_width) {
 
 /// Change of a reading by an error of its sensor of a size.
 Eigen::VectorXd reading_error(const Effect& effect, const Eigen::VectorXd& reading, double size) {
-  const Eigen::ArrayXd turn = reading.array() / effect.range;  // of the whole range
+  const Eigen::ArrayXd turn = reading.array() / effect.range;  // fraction of the range
   if (effect.kind == EffectKind::bow) return size * (2.0 * turn).square();
   if (effect.kind == EffectKind::wave) return size * (2.0 * std::numbers::pi * turn).sin();
   return with_play(reading, size) - reading;

@@ -24,7 +24,7 @@ enum class EffectKind {
 struct Effect {
   EffectKind kind = EffectKind::parameter;
   int index = -1;      ///< row of the parameter table; -1: no parameter describes it
-  double range = 0.0;  ///< of the sensor or the flow that it is a fraction of, SI
+  double range = 0.0;  ///< range of the sensor or the flow to which the size relates, SI
   /// Whether its secant depends on the size at which it is taken: friction, overlap, play.
   bool curved = false;
   double secant = 1.0;  ///< size at which that is taken, over the plausible size

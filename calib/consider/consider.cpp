@@ -451,7 +451,7 @@ Budget95 budget_of(const Uncertainty& found, std::size_t unknown, const FittedPa
 VectorXd unexplained_moves(const Problem& problem, const std::vector<ScoreRows>& scores,
                            const std::vector<ScoreRows>& rows, const ArrowRoot& root) {
   std::vector<LackOfFit> tests;
-  std::vector<VectorXd> moves;  // of the unknowns that act in its condition
+  std::vector<VectorXd> moves;  // entries: unknowns that act in the condition
   std::vector<const std::vector<int>*> whose;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const ProblemCondition& condition = problem.conditions[i];

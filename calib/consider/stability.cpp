@@ -15,7 +15,7 @@ namespace {
 
 /// The second step is that of a model which is not quite linear between both estimates.
 constexpr int kSteps = 2;
-/// Of the value: a wider interval is not symmetrical, and to hold it against another is a guess.
+/// Fraction of the value: a wider interval is not symmetrical, and comparing it is a guess.
 constexpr double kWidestInterval = 0.25;
 
 const FittedParameter* same_unknown(const std::vector<FittedParameter>& parameters,

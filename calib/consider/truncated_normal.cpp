@@ -20,7 +20,7 @@ struct Moments {
   double variance = 0.0;
 };
 
-/// Of N(mean, variance) above zero.
+/// Moments of N(mean, variance) cut off below zero.
 Moments above_zero(const Moments& normal) {
   const double sd = std::sqrt(normal.variance);
   const double a = -normal.mean / sd;

@@ -51,7 +51,7 @@ class ShiftedDense {
   double slope(const Eigen::VectorXd& x, const Eigen::VectorXd& /*y*/, double more) const {
     return (x.array().square() / (curvature_.array() + more).max(1e-300).cube()).sum();
   }
-  /// Of the most negative curvature, of unit length.
+  /// Direction of the most negative curvature, of unit length.
   Eigen::VectorXd lowest() const { return Eigen::VectorXd::Unit(curvature_.size(), 0); }
 
  private:
@@ -168,7 +168,7 @@ class ShiftedArrow {
   }
 
   const ArrowSquare& b_;
-  std::vector<Spectrum> spectra_;  ///< of the blocks of the conditions
+  std::vector<Spectrum> spectra_;  ///< one per block of a condition
   std::vector<Eigen::MatrixXd> coupling_;
   std::vector<Eigen::VectorXd> curvature_;
   double flat_ = 0.0;

@@ -14,7 +14,7 @@ namespace rigcal::calib {
 /// (docs/decisions/0042-own-unknowns.md).
 struct ArrowLayout {
   std::vector<int> shared;            ///< positions among the unknowns, ascending
-  std::vector<std::vector<int>> own;  ///< of each condition; empty: all unknowns are shared
+  std::vector<std::vector<int>> own;  ///< per condition; empty: all unknowns are shared
 };
 
 /// Symmetric matrix in the shape of an arrow: of unknowns, or of directions.
@@ -78,7 +78,7 @@ struct Linearisation {
   std::vector<Own> own = {};     ///< per condition; empty: all unknowns are shared, in their order
 
   Eigen::Index unknowns() const;
-  double square() const;             ///< of all residuals
+  double square() const;             ///< sum over all residuals
   Eigen::VectorXd gradient() const;  ///< J^T r
   ArrowSquare normal() const;        ///< J^T J
   /// Takes the unknowns that are marked for known.

@@ -17,7 +17,7 @@ class ArrowSvd {
   ArrowSvd(const Linearisation& system, double threshold);
 
   Eigen::Index rank() const;
-  /// Of all blocks, descending.
+  /// Singular values of all blocks, descending.
   Eigen::VectorXd singular_values() const;
   /// Square of what a step can take away of the residual.
   double explained() const;
@@ -34,7 +34,7 @@ class ArrowSvd {
   /// A direction of unit length in scaled coordinates.
   struct Direction {
     std::vector<int> unknowns;
-    Eigen::VectorXd parts;  ///< of each of them
+    Eigen::VectorXd parts;  ///< one per unknown
     double singular_value = 0.0;
   };
   /// Those that the system does not determine.
@@ -60,7 +60,7 @@ class ArrowSvd {
   std::vector<Block> blocks_;
   std::vector<int> shared_;  ///< unknowns
   std::optional<ScaledSvd> svd_;
-  Eigen::VectorXd explained_;  ///< of the shared residual, shape (rank)
+  Eigen::VectorXd explained_;  ///< part of the shared residual, shape (rank)
   Eigen::VectorXd inverse_lengths_;
 };
 

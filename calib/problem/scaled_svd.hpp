@@ -15,7 +15,7 @@ class ScaledSvd {
   /// @param jacobian   at least as many rows as columns
   /// @param threshold  size, relative to the largest, below which a singular value counts as zero
   ScaledSvd(const Eigen::MatrixXd& jacobian, double threshold);
-  /// Of a part of a Jacobian: columns are scaled by their length in the whole of it.
+  /// Decomposes a part of a Jacobian; columns are scaled by their length in the whole one.
   ///
   /// @param inverse_lengths  0 of a column of zeros
   /// @param threshold        relative to 1 where all singular values are less

@@ -24,7 +24,7 @@ struct ConsideredEffect {
   std::optional<double> estimate, standard_error;
   /// By the records, if it were the only effect; absent where they do not respond to it.
   std::optional<double> alone, alone_error;
-  std::optional<double> alone_half_width;  ///< of its 95 % interval
+  std::optional<double> alone_half_width;  ///< half width of its 95 % interval
   std::optional<double> p_value;           ///< score test of none
   std::optional<double> p_of_all;          ///< the same for all effects together (Holm)
   double explains = 0.0;  ///< by how much it alone would lower the sum of the squared residuals
@@ -64,7 +64,7 @@ struct StabilityCheck {
   datasets::Scope scope = datasets::Scope::rig;
   std::string level;
   double value = 0.0;       ///< by the validation records
-  double difference = 0.0;  ///< of that from the fit's
+  double difference = 0.0;  ///< estimate from validation records minus that of the fit
   double expanded = 0.0;    ///< half width of its 95 % interval
   bool differs = false;     ///< significantly, all parameters together
 };

@@ -67,14 +67,14 @@ struct FittedParameter {
   std::optional<double> standard_error;  ///< absent where the Jacobian does not determine it
   /// From the residuals themselves: larger if they are correlated in time.
   std::optional<double> robust_standard_error;
-  /// Of the rig: with what the model leaves out, where that was considered.
+  /// Interval of the rig: includes what the model leaves out, where that was considered.
   std::optional<std::pair<double, double>> ci95;
   /// What it would be if the model were exact.
   std::optional<std::pair<double, double>> ci95_if_exact;
-  IntervalSource interval = IntervalSource::none;  ///< of ci95_if_exact
+  IntervalSource interval = IntervalSource::none;  ///< basis of ci95_if_exact
   /// With which the error that ci95_if_exact rests on is known; at most metrics::kManyDegrees.
   std::optional<double> degrees_of_freedom;
-  std::optional<Budget95> budget;  ///< of ci95; absent where nothing was considered
+  std::optional<Budget95> budget;  ///< contributions to ci95; absent where nothing was considered
   /// The most that an effect which the residuals ask for would move the estimate, SI.
   double moved_by_missing = 0.0;
   /// The most that a significant error of the model which no effect explains could, SI.

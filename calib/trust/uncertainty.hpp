@@ -56,7 +56,7 @@ struct Uncertainty {
   /// Whether repeats differ by more than the residuals predict, at 5 % for all unknowns together
   /// (Bonferroni).
   bool repeats_differ() const;
-  /// Of two unknowns; meaningful where both have errors.
+  /// Correlation of two unknowns; meaningful where both have errors.
   double correlation(Eigen::Index a, Eigen::Index b) const;
 };
 

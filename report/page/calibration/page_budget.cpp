@@ -37,7 +37,7 @@ doc::Row budget_row(const StoredParameter& p) {
 
 /// The lines of one budget; those that hardly count are one line together.
 void add_lines(const StoredParameter& p, std::vector<doc::Row>& rows) {
-  constexpr double kHardly = 1e-3;  // of the variance
+  constexpr double kHardly = 1e-3;  // fraction of the variance
   const RowUnit unit = unit_of(p);
   const StoredBudget& budget = *p.budget;
   const double whole = budget.combined * budget.combined;

@@ -156,9 +156,9 @@ struct StoredParameter {
   bool fitted = false;
   bool nuisance = false;
   std::optional<double> standard_error, robust_standard_error;
-  std::optional<Range> ci95;                              ///< of the rig
+  std::optional<Range> ci95;                              ///< interval of the rig
   Later<std::optional<Range>> ci95_if_exact;              ///< if the model were exact
-  Later<std::optional<calib::IntervalSource>> ci95_from;  ///< of ci95_if_exact
+  Later<std::optional<calib::IntervalSource>> ci95_from;  ///< basis of ci95_if_exact
   Later<std::optional<double>> degrees_of_freedom;  ///< of the error that ci95_if_exact rests on
   Omittable<StoredBudget> budget;
   Omittable<StoredBootstrap> bootstrap;
