@@ -150,6 +150,7 @@ class Scripts(unittest.TestCase):
             self.skipTest(f"no recordings in {records}")
         self.assertIn("1 of 1 starts end within", self.run_script("start-study", records, "1"))
 
+    @unittest.skipUnless(shutil.which("git"), "git is not installed")
     def test_tag_version(self):
         def git(*arguments):
             return subprocess.run(["git", *arguments], cwd=self.tree, capture_output=True, text=True, check=True).stdout
