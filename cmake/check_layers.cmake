@@ -47,7 +47,7 @@ set(report_page json store text figure document comparison batch)
 set(report_comparison json store text page figure document)
 set(report_live json store text page figure document run)
 set(report_run json store text page)
-set(report_job json store text page document leak comparison run)
+set(report_job json store text page document leak comparison fmu run)
 
 # A header and its source count as one.
 set(most_units 20)

@@ -150,6 +150,7 @@ JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, cons
   if (!request.table.empty()) limits = take_table(request.table, earlier, campaign);
   diagnosis::DiagnosisOptions settings;
   settings.threads = terms.threads;
+  settings.cancel = &terms.cancel;
   settings.truth = truth_beside(campaign);
   settings.progress = [&](int done, int all) { terms.progress("records", done, all); };
   const LeakRecords records = load_leak_records(campaign, settings.threads);

@@ -6,6 +6,8 @@ EarlierFit FitSource::read(model::PlantKind plant) const {
   return made ? *made : read_fit(file, plant);
 }
 
+std::string FitSource::name() const { return made ? "fit" : file.string(); }
+
 std::vector<std::filesystem::path> FitSource::inputs() const {
   if (file.empty()) return {};
   return {file};

@@ -53,6 +53,8 @@ struct FitSource {
   bool given() const { return made || !file.empty(); }
   /// @throws InputError  as read_fit()
   EarlierFit read(model::PlantKind plant) const;
+  /// For messages.
+  std::string name() const;
   /// The file, for the hashes of the inputs; nothing for a fit of this process.
   std::vector<std::filesystem::path> inputs() const;
 };

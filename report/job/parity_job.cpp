@@ -59,6 +59,7 @@ JobResult parity_job(datasets::Campaign campaign, const ParityRequest& request,
   diagnosis::ParityOptions settings;
   settings.false_alarm = false_alarm;
   settings.threads = terms.threads;
+  settings.cancel = &terms.cancel;
   settings.progress = [&](int done, int all) { terms.progress("conditions", done, all); };
   found = diagnosis::parity(campaign, records.conditions,
                             {earlier.values, earlier.indices, earlier.covariance}, settings);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "calib/problem/known_values.hpp"
 #include "common/error.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "report/figure/decimate.hpp"
@@ -267,13 +268,22 @@ Json waveforms_made() { return {"sine", "square", "chirp"}; }
 
 }  // namespace
 
-std::vector<LiveCase> live_cases(const Campaign& campaign) {
+std::vector<LiveCase> live_cases(const Campaign& campaign,
+                                 const std::vector<datasets::FittedValue>& fitted) {
   std::vector<LiveCase> cases;
-  if (const auto settings = leak_table_of(campaign)) add_leak_table(campaign, *settings, cases);
+  if (const auto settings = fitted.empty() ? leak_table_of(campaign) : std::nullopt)
+    add_leak_table(campaign, *settings, cases);
   std::optional<InputError> problem;
   for (const Condition& condition : campaign.conditions) {
     if (condition.use == datasets::Use::ignore) continue;
-    model::ParameterValues values = values_in(campaign, condition);
+    model::ParameterValues values;
+    try {
+      values = fitted.empty() ? values_in(campaign, condition)
+                              : calib::values_with(campaign, condition, fitted);
+    } catch (const InputError& error) {  // the fit has no value for its leak level
+      if (!problem) problem.emplace(error);
+      continue;
+    }
     if (const auto missing = values.missing(); !missing.empty()) {
       if (!problem)
         problem.emplace(condition.where,

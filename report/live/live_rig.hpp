@@ -21,8 +21,12 @@ struct LiveCase {
 /// Lists the signals of a [leak_table] with its assumed values, then every condition that is not
 /// ignored and whose rig is known.
 ///
+/// @param fitted  estimates in place of the campaign's values; then without the leak table, whose
+/// values
+///                are assumed
 /// @throws InputError  no case can be simulated, or a recording cannot be read (names its place)
-std::vector<LiveCase> live_cases(const datasets::Campaign& campaign);
+std::vector<LiveCase> live_cases(const datasets::Campaign& campaign,
+                                 const std::vector<datasets::FittedValue>& fitted = {});
 
 /// Data of the rig for the script: parameters with units and ranges, cases, leak levels, classes.
 ///

@@ -17,16 +17,20 @@ using datasets::Campaign;
 using datasets::Condition;
 using datasets::Record;
 
+bool needs_record(const Condition& condition) {
+  const bool generated = condition.waveform != datasets::Waveform::recorded &&
+                         condition.duration_s && condition.sample_rate_hz;
+  return !generated && condition.has_record();
+}
+
 SimulationTask simulation_task(const Campaign& campaign, const Condition& condition,
-                               model::ParameterValues values) {
+                               model::ParameterValues values, std::optional<Record> known) {
   SimulationTask task;
   task.condition = &condition;
   task.rig = campaign.rig;
   task.values = std::move(values);
-  const bool generated = condition.waveform != datasets::Waveform::recorded &&
-                         condition.duration_s && condition.sample_rate_hz;
-  if (!generated && condition.has_record()) {
-    task.record = datasets::load_record(campaign, condition);
+  if (needs_record(condition)) {
+    task.record = known ? std::move(known) : datasets::load_record(campaign, condition);
     datasets::require_no_holes(campaign, *task.record);
     const calib::InitialPlan plan =
         calib::plan_initial_state(campaign, condition, *task.record, task.values);
@@ -61,7 +65,7 @@ std::vector<model::Simulation> simulate(const std::vector<SimulationTask>& tasks
   std::vector<model::Simulation> simulations(tasks.size());
   parallel_for(tasks.size(), threads, [&](std::size_t i) {
     const SimulationTask& task = tasks[i];
-    simulations[i] = model::simulate(task.rig, task.values, {}, task.inputs, task.time_s,
+    simulations[i] = model::simulate(task.rig, task.values, task.free, task.inputs, task.time_s,
                                      model::kAllOutputs, options);
   });
   return simulations;

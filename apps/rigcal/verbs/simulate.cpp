@@ -4,10 +4,10 @@
 #include <memory>
 #include <utility>
 
-#include "apps/rigcal/chosen_condition.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/suggest.hpp"
+#include "report/run/chosen_condition.hpp"
 #include "report/run/simulation.hpp"
 #include "report/store/folder.hpp"
 
@@ -34,7 +34,7 @@ std::vector<const Condition*> wanted(const Campaign& campaign,
     return result;
   }
   for (const std::string& id : ids) {
-    const Condition* condition = &chosen_condition(campaign, id);
+    const Condition* condition = &report::chosen_condition(campaign, id);
     if (std::find(result.begin(), result.end(), condition) == result.end()) {
       result.push_back(condition);
     }
