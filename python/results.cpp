@@ -355,6 +355,7 @@ Raises:
             return path;
           },
           py::arg("path"), "Writes the page. Returns the path.")
+      .def("__repr__", [](const Page&) { return "<rigcal.Page>"; })
       .def("_repr_html_", [](const Page& self) { return frame_of(self.html); });
 }
 
