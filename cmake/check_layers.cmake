@@ -43,10 +43,10 @@ set(report_fmu json store text)
 set(report_leak json store text)
 set(report_batch json store text comparison)
 set(report_document json text figure)
-set(report_page json store text figure document comparison batch)
+set(report_page json store text figure document comparison batch live)
 set(report_comparison json store text page figure document)
-set(report_live json store text page figure document run)
-set(report_run json store text page)
+set(report_live json store text figure document)
+set(report_run json store text page live)
 set(report_job json store text page document leak comparison fmu run)
 
 # A header and its source count as one.

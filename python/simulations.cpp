@@ -20,7 +20,7 @@
 #include "python/holding.hpp"
 #include "python/interruptible.hpp"
 #include "python/result.hpp"
-#include "report/run/simulation.hpp"
+#include "report/run/simulation_file.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/provenance.hpp"
 
@@ -93,15 +93,15 @@ int row_of(const char* argument, const std::string& key, model::PlantKind plant)
   throw UsageError(std::string(argument) + ": " + unknown_name_message("parameter", key, known));
 }
 
-report::SimulationTask task_of(const Campaign& self, const datasets::Condition& condition,
-                               const Wanted& wanted) {
+calib::SimulationTask task_of(const Campaign& self, const datasets::Condition& condition,
+                              const Wanted& wanted) {
   model::ParameterValues values = datasets::values_in(self.campaign, condition);
   for (const auto& [key, value] : wanted.values)
     values.set(row_of("values", key, values.plant), value);
   std::optional<datasets::Record> record;
-  if (report::needs_record(condition)) record = self.record(condition);
-  report::SimulationTask task =
-      report::simulation_task(self.campaign, condition, std::move(values), std::move(record));
+  if (calib::needs_record(condition)) record = self.record(condition);
+  calib::SimulationTask task =
+      calib::simulation_task(self.campaign, condition, std::move(values), std::move(record));
   for (const std::string& key : wanted.free)
     task.free.push_back(row_of("sensitivities", key, task.values.plant));
   return task;
@@ -133,7 +133,7 @@ std::optional<std::string> id_of(const ConditionArgument& condition) {
 std::vector<SimulatedPtr> simulated(const Campaign& self, const Wanted& asked, int threads,
                                     const std::optional<fs::path>& out, bool force,
                                     const std::atomic<bool>& cancel) {
-  std::vector<report::SimulationTask> tasks;
+  std::vector<calib::SimulationTask> tasks;
   std::vector<datasets::Record> records;
   for (const datasets::Condition* condition : wanted(self.campaign, asked.condition)) {
     tasks.push_back(task_of(self, *condition, asked));
@@ -146,9 +146,9 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const Wanted& asked, i
     for (const auto& task : tasks) planned.files.emplace_back(task.condition->id + ".csv");
     held->plan(std::move(planned));
   }
-  model::SimulationOptions options = report::simulation_options(self.campaign);
+  model::SimulationOptions options = calib::simulation_options(self.campaign);
   options.cancel = &cancel;
-  auto simulations = report::simulate(tasks, options, threads);
+  auto simulations = calib::simulate(tasks, options, threads);
   std::vector<SimulatedPtr> results;
   std::vector<report::ResultFile> files;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -157,7 +157,7 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const Wanted& asked, i
           {tasks[i].condition->id + ".csv", report::simulation_file(tasks[i], simulations[i])});
     }
     results.push_back(std::make_shared<Simulated>(
-        Simulated{tasks[i].condition->id, tasks[i].time_s, report::reference_of(tasks[i]),
+        Simulated{tasks[i].condition->id, tasks[i].time_s, calib::reference_of(tasks[i]),
                   tasks[i].rig.feedback == model::Feedback::position, asked.free,
                   std::move(simulations[i])}));
   }

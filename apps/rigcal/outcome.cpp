@@ -5,6 +5,7 @@
 
 #include "apps/rigcal/progress.hpp"
 #include "report/document/render_terminal.hpp"
+#include "report/live/live_fit.hpp"
 #include "report/run/result_page.hpp"
 #include "report/run/write_result.hpp"
 #include "report/store/json.hpp"
@@ -20,7 +21,8 @@ std::string text_of(const CampaignOptions& options, const report::Result& result
                     const std::vector<std::filesystem::path>& files) {
   std::vector<std::string> paths;
   for (auto file = files.rbegin(); file != files.rend(); ++file)  // the page and the result first
-    if (!file->has_parent_path()) paths.push_back((options.out / *file).string());
+    if (!file->has_parent_path() && *file != report::kLiveFile)
+      paths.push_back((options.out / *file).string());
   paths.push_back((options.out / "residuals" / "").string());
   return report::result_text(result, paths, terminal_style(options.print));
 }

@@ -10,9 +10,9 @@
 
 #include "calib/problem/known_values.hpp"
 #include "calib/problem/parameter_map.hpp"
+#include "calib/problem/simulation_task.hpp"
 #include "common/suggest.hpp"
 #include "report/run/chosen_condition.hpp"
-#include "report/run/simulation.hpp"
 #include "report/run/validation.hpp"
 
 namespace rigcal::report {
@@ -195,7 +195,7 @@ void require_simulable(const Campaign& campaign, const model::ExportedRig& rig) 
 }
 
 /// Recorded inputs start from their first sample; the importer sets what follows.
-void start_from_record(const SimulationTask& task, ParameterValues& values,
+void start_from_record(const calib::SimulationTask& task, ParameterValues& values,
                        std::vector<std::string>& warnings) {
   std::vector<std::string_view> recorded;
   const auto take = [&](const std::optional<model::Signal>& signal, std::string_view key,
@@ -265,7 +265,7 @@ ExportChoice choose_export(const Campaign& campaign, const CampaignChoice& choic
   fmu.rig.tolerance = campaign.simulation.tolerance.value_or(fmu.rig.tolerance);
   std::vector<datasets::Record> records;
   if (request.condition) {
-    SimulationTask task = simulation_task(campaign, *condition, values);
+    calib::SimulationTask task = calib::simulation_task(campaign, *condition, values);
     fmu.rig.rig = task.rig;
     values = task.values;
     start_from_record(task, values, made.warnings);

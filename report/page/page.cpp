@@ -8,9 +8,9 @@
 
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "report/document/assets.hpp"
 #include "report/document/render_html.hpp"
 #include "report/figure/pdf.hpp"
-#include "report/page/assets.hpp"
 #include "report/page/section.hpp"
 #include "report/text/escape.hpp"
 
@@ -202,8 +202,9 @@ std::string page_of(const Parts& parts, const std::string& sha256, Extent extent
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
       "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
       "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-      "'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:\">\n<meta "
+      "'unsafe-inline'; script-src 'unsafe-inline'{}; img-src data: blob:\">\n<meta "
       "name=\"color-scheme\" content=\"light dark\">\n<title>{} – {} – {}</title>\n",
+      first.live && extent == Extent::whole ? " 'wasm-unsafe-eval'; worker-src blob:" : "",
       escaped(badge.words), escaped(first.campaign), escaped(first.name));
   page += fmt::format("<style>{}{}{}</style>\n</head>\n", asset("report.css"), asset("uPlot.css"),
                       foot_style(first, bad, sha256));
@@ -229,6 +230,7 @@ std::string page_of(const Parts& parts, const std::string& sha256, Extent extent
   add_link("formulas", "Formulas");
   page += "\n</nav>\n</header>\n<main>\n";
   add_first_page(parts, synthetic, sha256, page);
+  if (first.live) page += first.live->html;
   doc::Section provenance{
       "provenance",
       "Provenance",
@@ -244,6 +246,7 @@ std::string page_of(const Parts& parts, const std::string& sha256, Extent extent
   // The licence of the plot library requires its notice in every copy, and each page is one.
   page += fmt::format("</main>\n<script>/*! uPlot\n\n{}*/\n{}</script>\n<script>{}</script>\n",
                       asset("uPlot.LICENSE"), asset("uPlot.js"), asset("report.js"));
+  if (first.live) page += first.live->scripts;
   return page + "</body>\n</html>\n";
 }
 

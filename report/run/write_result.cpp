@@ -6,6 +6,7 @@
 
 #include "common/file.hpp"
 #include "common/parallel.hpp"
+#include "report/live/live_fit.hpp"
 #include "report/page/page.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/csv.hpp"
@@ -93,6 +94,8 @@ std::vector<ResultFile> files_of(const fs::path& out, const Result& result,
   files.push_back({"residual_tests.json", json_line(json_of(stored_curves(result)))});
   if (result.kind == ResultKind::fit && stored.status != FitStatus::failed)
     files.push_back({"fitted.toml", fitted_toml(out, result)});
+  if (const auto live = live_fit(result))
+    files.push_back({kLiveFile, json_line(*live)});
   name_files(residuals, files, stored.provenance);
   // Last, so that its presence means that the others are there.
   files.push_back({main_file(result.kind), json_text(json_of(stored))});
@@ -105,6 +108,7 @@ PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign)
   PlannedFiles planned{
       {"scorecard.csv", "parameters.csv", "residual_tests.json", "report.html", main_file(kind)},
       {"residuals"}};
+  planned.files.emplace_back(kLiveFile);
   if (kind == ResultKind::fit) planned.files.emplace_back("fitted.toml");
   for (const datasets::Condition& condition : campaign.conditions) {
     if (condition.use == datasets::Use::fit || condition.use == datasets::Use::validate)

@@ -1,4 +1,4 @@
-#include "report/run/simulation.hpp"
+#include "calib/problem/simulation_task.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,8 @@
 #include "common/parallel.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/prepare/time_holes.hpp"
-#include "report/store/csv.hpp"
 
-namespace rigcal::report {
+namespace rigcal::calib {
 
 using datasets::Campaign;
 using datasets::Condition;
@@ -29,11 +28,10 @@ SimulationTask simulation_task(const Campaign& campaign, const Condition& condit
   task.condition = &condition;
   task.rig = campaign.rig;
   task.values = std::move(values);
-  if (needs_record(condition)) {
+  if (known || needs_record(condition)) {
     task.record = known ? std::move(known) : datasets::load_record(campaign, condition);
     datasets::require_no_holes(campaign, *task.record);
-    const calib::InitialPlan plan =
-        calib::plan_initial_state(campaign, condition, *task.record, task.values);
+    const InitialPlan plan = plan_initial_state(campaign, condition, *task.record, task.values);
     task.rig.initial = plan.state;
     for (const auto& [index, value] : plan.known) task.values.set(index, value);
   } else if (condition.waveform == datasets::Waveform::recorded) {
@@ -79,14 +77,4 @@ std::vector<double> reference_of(const SimulationTask& task) {
   return reference;
 }
 
-std::string simulation_file(const SimulationTask& task, const model::Simulation& simulation) {
-  std::span<const model::Output> outputs = model::kAllOutputs;
-  // The last output is that of the second mass, which some plants lack.
-  const int payload = model::parameter_index(task.values.plant, "payload_mass");
-  if (payload < 0 || !task.values.given[static_cast<std::size_t>(payload)])
-    outputs = outputs.first(outputs.size() - 1);
-  return simulation_csv(task.time_s, info(datasets::drive_channel(task.rig)).name,
-                        reference_of(task), outputs, simulation);
-}
-
-}  // namespace rigcal::report
+}  // namespace rigcal::calib

@@ -8,7 +8,7 @@
 #include "datasets/record.hpp"
 #include "model/simulate.hpp"
 
-namespace rigcal::report {
+namespace rigcal::calib {
 
 /// A condition with all that its simulation needs.
 struct SimulationTask {
@@ -25,7 +25,8 @@ struct SimulationTask {
 bool needs_record(const datasets::Condition& condition);
 
 /// @param values  for the condition
-/// @param record  its record, if it has been read before
+/// @param record  its record, if it has been read before: then its samples, also for a generated
+/// drive
 /// @throws InputError  its record cannot be read, or a recorded waveform has none
 SimulationTask simulation_task(const datasets::Campaign& campaign,
                                const datasets::Condition& condition, model::ParameterValues values,
@@ -45,7 +46,4 @@ std::vector<model::Simulation> simulate(const std::vector<SimulationTask>& tasks
 /// Reference of the loop at the samples, SI; empty without a controller.
 std::vector<double> reference_of(const SimulationTask& task);
 
-/// The file of `simulate`: <condition>.csv.
-std::string simulation_file(const SimulationTask& task, const model::Simulation& simulation);
-
-}  // namespace rigcal::report
+}  // namespace rigcal::calib
