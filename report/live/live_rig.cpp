@@ -171,9 +171,7 @@ Json live_parameter(const Campaign& campaign, int index, double value) {
 
 /// Times and inputs of a recording, as 32-bit floats (relative error up to 6e-8).
 Json recorded_inputs(const Campaign& campaign, const SimulationTask& task) {
-  const datasets::Channel channel = campaign.rig.controller == model::ControllerKind::pid
-                                        ? datasets::Channel::reference
-                                        : datasets::Channel::command;
+  const datasets::Channel channel = datasets::drive_channel(campaign);
   const auto at_samples = [&task](const model::Signal& signal) {
     std::vector<double> values;
     values.reserve(task.time_s.size());
