@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/quantity.hpp"
+#include "datasets/between_days_settings.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "datasets/campaign/report_settings.hpp"
 #include "datasets/campaign/waveform.hpp"
@@ -220,6 +221,7 @@ struct Campaign {
   FitSettings fit;
   SimulationSettings simulation;
   ConsideredSettings considered;
+  BetweenDaysSettings between_days;
   DiagnosisSettings diagnosis;
   ReportSettings report;
   std::optional<SyntheticSettings> synthetic_settings;

@@ -140,8 +140,8 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   const TomlNode root(parsed, file.string(), "");
   check_schema(root);
   root.allow_only({"schema", "name", "synthetic", "rig", "leak_level", "recording", "averaging",
-                   "acceptance", "fit", "considered", "simulation", "leak_table", "diagnosis",
-                   "report", "condition"});
+                   "acceptance", "fit", "considered", "between_days", "simulation", "leak_table",
+                   "diagnosis", "report", "condition"});
   Campaign campaign;
   campaign.file = file;
   campaign.file_state = file_state;
@@ -158,6 +158,8 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   if (const auto node = root.find("fit")) campaign.fit = read_fit(*node, campaign);
   if (const auto node = root.find("considered"))
     campaign.considered = read_considered(*node, campaign);
+  if (const auto node = root.find("between_days"))
+    campaign.between_days = read_between_days(*node, campaign);
   if (const auto node = root.find("report")) campaign.report = read_report(*node);
   apply_sensors(root, campaign);
   if (const auto node = root.find("simulation")) campaign.simulation = read_simulation(*node);

@@ -1,5 +1,7 @@
 #include "diagnosis/diagnose.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include "calib/published/leak_table.hpp"
@@ -171,6 +173,79 @@ TEST_CASE("diagnose: what healthy records lack too is no leak", "[diagnosis]") {
   CHECK(found.single.off_by_two == 0);
   for (const auto& record : found.records)
     CHECK(record.reference_repeats == (record.truth == LeakClass::normal && record.repeat ? 2 : 3));
+}
+
+TEST_CASE("diagnose: a supply half a percent lower on another day is no leak", "[diagnosis]") {
+  Campaign campaign = small_campaign();
+  campaign.conditions.resize(2);
+  campaign.conditions[1].overrides.front().second = 0.0;
+  Campaign lower = campaign;
+  set_true(lower, "supply_pressure", 0.995 * 6.2e6);
+  auto records = records_of(campaign);
+  records[1] = records_of(lower)[1];
+  const auto diagnosed = [&] {
+    auto found = diagnosis::diagnose(campaign, records, known_rig(campaign), {});
+    REQUIRE(found.records.at(4).condition == campaign.conditions[1].id);
+    REQUIRE(found.records.at(4).fit.ok());
+    return found;
+  };
+  // On the day of the reference, as both dates say, it is one.
+  const Diagnosis same = diagnosed();
+  CHECK(same.records.at(4).estimate.leak_detected);
+  CHECK(same.other_days.empty());
+  CHECK_FALSE(same.signals.front().of_another_day);
+
+  campaign.conditions[1].date = "2026-03-01";
+  const Diagnosis other = diagnosed();
+  CHECK_FALSE(other.records.at(4).estimate.leak_detected);
+  CHECK_FALSE(other.records.at(4).estimate.incompatible);
+  CHECK(other.records.at(4).estimate.ci95.first == 0.0);
+  CHECK(other.other_days == std::vector<std::string>{"2026-03-01"});
+  CHECK(other.warnings.front().find("2026-03-01") != std::string::npos);
+  CHECK(other.states.at(1).ok());
+  CHECK_FALSE(other.states.at(1).estimate.leak_detected);
+  CHECK(other.states.at(1).pooled.error.days_se > 0.0);
+  const auto& limits = other.signals.front();
+  CHECK(limits.of_another_day);
+  REQUIRE(limits.smallest_leak_same_day);
+  CHECK(limits.smallest_leak_same_day->coefficient ==
+        same.signals.front().smallest_leak->coefficient);
+  CHECK(limits.smallest_leak->coefficient > 2.0 * limits.smallest_leak_same_day->coefficient);
+  // A share moves with the day, too.
+  CHECK(other.records.at(4).estimate.share_ci95.second >
+        same.records.at(4).estimate.share_ci95.second);
+
+  // Without a date no one knows.
+  campaign.conditions[1].date.reset();
+  CHECK_FALSE(diagnosed().records.at(4).estimate.leak_detected);
+  campaign.conditions[1].date = "2026-03-01";
+  campaign.between_days.none = true;
+  CHECK(diagnosed().records.at(4).estimate.leak_detected);
+}
+
+TEST_CASE("diagnose: healthy records of many dates tell how days differ", "[diagnosis]") {
+  Campaign campaign = small_campaign();
+  const Condition healthy = campaign.conditions.front();
+  campaign.conditions.clear();
+  std::vector<datasets::RepeatRecords> records;
+  const std::vector<double> supplies{1.0, 1.011, 0.99, 1.008, 0.992};
+  Campaign truth = campaign;
+  for (std::size_t i = 0; i < supplies.size(); ++i) {
+    Condition& condition = campaign.conditions.emplace_back(healthy);
+    condition.id = fmt::format("day_{}", i);
+    condition.date = fmt::format("2026-03-{:02d}", i + 1);
+    truth.conditions = {condition};
+    set_true(truth, "supply_pressure", supplies[i] * 6.2e6);
+    records.push_back(records_of(truth, i + 1).front());
+    truth.synthetic_settings->parameters.pop_back();
+  }
+  const Diagnosis found = diagnosis::diagnose(campaign, records, known_rig(campaign), {});
+  CHECK(found.between_days.source == diagnosis::DaySource::estimated);
+  CHECK(found.between_days.dates == 5);
+  CHECK(found.between_days.freedom == 4.0);
+  // Supplies differ by 1 % (standard deviation), twice the usual size.
+  CHECK(std::sqrt(found.between_days.variance) > 1.0);
+  CHECK(std::sqrt(found.between_days.variance) < 4.0);
 }
 
 TEST_CASE("diagnose: another fault is not called a leak", "[diagnosis]") {

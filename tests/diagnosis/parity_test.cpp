@@ -133,6 +133,59 @@ TEST_CASE("parity: false alarms on another day are as many as stated", "[diagnos
   CHECK(alarms < 45);
 }
 
+TEST_CASE("parity: the stated rate holds where repeats differ by their supply", "[diagnosis]") {
+  Campaign campaign = three_conditions(0.1);
+  campaign.conditions.resize(2);
+  const int supply = model::parameter_index(campaign.rig.plant, "supply_pressure");
+  campaign.synthetic_settings->variation[supply] = 0.02;
+  diagnosis::ParityOptions options;
+  options.false_alarm = 0.05;
+  options.threads = 2;
+  int alarms = 0;
+  int records = 0;
+  int with_cause = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    const auto found =
+        diagnosis::parity(campaign, made(campaign, seed), true_rig(campaign), options);
+    alarms += found.check.alarms;
+    records += found.check.records;
+    with_cause += found.signals.front().common_causes > 0 ? 1 : 0;
+  }
+  CAPTURE(alarms, with_cause);
+  CHECK(records == 300);
+  // 0.05 +- 0.033 is two standard errors of campaigns that share one threshold.
+  CHECK(alarms > 4);
+  CHECK(alarms < 26);
+  CHECK(with_cause > 50);
+}
+
+TEST_CASE("parity: a record of another day has a threshold of its own", "[diagnosis]") {
+  Campaign campaign = three_conditions(0.1);
+  Campaign lower = campaign;
+  lower.synthetic_settings->parameters.emplace_back(
+      model::parameter_index(campaign.rig.plant, "supply_pressure"), 0.99 * 6.2e6);
+  auto records = made(campaign, 1);
+  records[1] = made(lower, 1)[1];
+  const auto alarms_of = [](const Parity& found) {
+    int alarms = 0;
+    for (const auto& record : found.conditions[1].records) alarms += record.alarm ? 1 : 0;
+    return alarms;
+  };
+  const Parity same = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  CHECK(alarms_of(same) == 5);
+  CHECK(same.other_days.empty());
+  campaign.conditions[1].date = "2026-03-01";
+  const Parity other = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  CHECK(alarms_of(other) == 0);
+  CHECK(other.other_days == std::vector<std::string>{"2026-03-01"});
+  CHECK_FALSE(other.warnings.empty());
+  const auto& signal = other.signals.front();
+  CHECK(signal.threshold_m == same.signals.front().threshold_m);
+  REQUIRE(signal.threshold_of_another_day_m);
+  CHECK(*signal.threshold_of_another_day_m > 1.5 * *signal.threshold_m);
+  CHECK(other.conditions[1].records.front().threshold_m == signal.threshold_of_another_day_m);
+}
+
 TEST_CASE("parity: a record less the others' mean, sample by sample", "[diagnosis]") {
   const Campaign campaign = three_conditions(0.1);
   const Parity found = diagnosis::parity(campaign, made(campaign, 3), true_rig(campaign), {});

@@ -82,7 +82,7 @@ ExitCode run_parity(const ParityRequest& options, const Invocation& invocation) 
     found = diagnosis::parity(campaign, records.conditions,
                               {earlier.values, earlier.indices, earlier.covariance}, settings);
   }
-  found.warnings = records.left_out;
+  found.warnings.insert(found.warnings.end(), records.left_out.begin(), records.left_out.end());
   for (const auto& warning : gathered_doubts(records.averages()))
     found.warnings.push_back(warning.with_conditions());
   if (earlier.status == calib::FitStatus::stopped)
