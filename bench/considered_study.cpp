@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/foreign_rig.hpp"
+#include "bench/foreign_campaign.hpp"
 #include "calib/fit.hpp"
 #include "common/parallel.hpp"
 #include "common/significant.hpp"
@@ -143,26 +143,7 @@ datasets::Condition condition_of(const Reference& reference, datasets::Use use) 
 
 /// The campaign of its user: exact but for what the rig's effects add.
 datasets::Campaign campaign_of(const ForeignRig& rig) {
-  datasets::Campaign campaign;
-  const std::map<std::string, double> known{{"stiffness", 0.0},
-                                            {"piston_area", rig.area_m2},
-                                            {"total_volume", rig.volume_m3},
-                                            {"supply_pressure", rig.supply_pa},
-                                            {"density", rig.density_kg_per_m3},
-                                            {"discharge_coefficient", rig.discharge},
-                                            {"area_gradient", rig.gradient_m},
-                                            {"leakage_area", rig.leak_area_m2},
-                                            {"leakage_smoothing", rig.straight_below_pa},
-                                            {"kp", rig.kp_v_per_m},
-                                            {"kd", rig.kd_v_s_per_m},
-                                            {"derivative_filter", rig.filter_rad_per_s},
-                                            {"output_limit", rig.limit_v}};
-  for (const auto& [key, value] : known) {
-    datasets::ParameterSetting setting;
-    setting.index = row_of(key);
-    setting.value = value;
-    campaign.parameters.push_back(setting);
-  }
+  datasets::Campaign campaign = foreign_campaign(rig);
   for (const Estimate& each : kEstimates) {
     datasets::ParameterSetting setting;
     setting.index = row_of(each.key);
@@ -172,11 +153,6 @@ datasets::Campaign campaign_of(const ForeignRig& rig) {
     setting.upper = each.truth * 5.0;
     campaign.parameters.push_back(setting);
   }
-  datasets::ChannelSetting position;
-  position.channel = Channel::position;
-  campaign.channels[position.channel] = position;
-  campaign.rig.before = model::Before::rest;
-  campaign.before_stated = true;
   for (const Reference& each : kFitted)
     campaign.conditions.push_back(condition_of(each, datasets::Use::fit));
   campaign.conditions.push_back(condition_of(kValidated, datasets::Use::validate));

@@ -26,6 +26,21 @@ std::optional<double> alarm_threshold(std::span<const double> healthy, double fa
   return std::exp(mean + quantile * sd * std::sqrt(1.0 + 1.0 / n));
 }
 
+double threshold_with(double own, std::span<const CausePart> causes, double false_alarm) {
+  double sum = 0.0;
+  double squares = 0.0;
+  double of_estimates = 0.0;
+  for (const CausePart& each : causes) {
+    sum += each.square;
+    squares += each.square * each.square;
+    of_estimates += each.square * each.square / each.freedom;
+  }
+  if (!(sum > 0.0)) return own;
+  const double quantile =
+      metrics::fisher_f_upper_quantile(false_alarm, sum * sum / squares, sum * sum / of_estimates);
+  return std::sqrt(own * own + sum * quantile);
+}
+
 std::vector<double> moving_rms(std::span<const double> x, std::size_t window) {
   std::vector<double> result(x.size(), std::numeric_limits<double>::quiet_NaN());
   double sum = 0.0;

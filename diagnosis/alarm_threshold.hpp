@@ -19,6 +19,21 @@ inline constexpr std::size_t kLeastHealthyRecords = 3;
 /// @param false_alarm  alpha, in (0, 1)
 std::optional<double> alarm_threshold(std::span<const double> healthy, double false_alarm);
 
+/// A cause that may change a record as a whole: the square that a value of a record has by one
+/// standard deviation of it, and the degrees of freedom with which that is known.
+struct CausePart {
+  double square = 0.0;
+  double freedom = 0.0;
+};
+
+/// Threshold where causes add to what records have of their own: squares add up, and that of the
+/// causes together is exceeded as F is, with the degrees of freedom of Satterthwaite for their sum
+/// (F. E. Satterthwaite, Biometrics 2, 1946). A single cause of n records is the prediction bound
+/// of Student's t, two-sided.
+///
+/// @param own  threshold without the causes
+double threshold_with(double own, std::span<const CausePart> causes, double false_alarm);
+
 /// Root mean square of the last `window` samples at each sample. Samples before the series, or
 /// before a gap (NaN), count as zero: a large residual raises it before the window is full, and
 /// noise gives no larger values there than later. NaN in a gap.

@@ -72,13 +72,15 @@ std::vector<Reference> references_of(const Campaign& campaign, const std::vector
 }
 
 RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, const Task& task,
-                                const std::vector<Prepared>& all, const DiagnosisOptions& options) {
+                                const std::vector<Prepared>& all, const BetweenDays& between,
+                                const DiagnosisOptions& options) {
   const Prepared& prepared = *task.prepared;
   const datasets::RepeatRecords& records = *prepared.records;
   RecordDiagnosis result;
   result.condition = prepared.condition->id;
   result.signal = signal_name(problem.campaign, *prepared.condition);
   result.true_share = prepared.true_share;
+  result.days = day_weights(between, problem.campaign, *prepared.condition, {});
   if (!prepared.failure.empty()) {
     result.fit.failure = prepared.failure;
     return result;
@@ -109,9 +111,13 @@ RecordDiagnosis diagnose_record(const LeakProblem& problem, const RigFit& rig, c
   }
   if (!references.empty()) {
     std::vector<TimedResidual> residuals;
-    for (const Reference& each : references)
+    std::vector<const Condition*> conditions;
+    for (const Reference& each : references) {
       residuals.push_back({&each.prepared->residuals[each.index], &each.prepared->time_s()});
+      conditions.push_back(each.prepared->condition);
+    }
     take_off(residuals, record);
+    result.days = day_weights(between, problem.campaign, *prepared.condition, conditions);
   }
   result.reference_repeats = static_cast<int>(references.size());
 
@@ -207,9 +213,12 @@ Accuracy accuracy(const std::vector<RecordDiagnosis>& records, Method method, bo
 /// Estimates the share of each record, and the smallest detectable leak of healthy ones. A record
 /// whose share cannot be simulated counts as not diagnosed.
 void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& prepared,
-              const SignalErrors& errors, RecordDiagnosis& record) {
-  const CoefficientError error =
+              const SignalErrors& errors, const BetweenDays& between, RecordDiagnosis& record) {
+  const CoefficientError of_its_day =
       coefficient_error(record.fit, errors, record.repeats, record.reference_repeats);
+  const double distance = record.days.norm();
+  const CoefficientError error =
+      with_days(of_its_day, between.error(distance, record.fit.day_effects), between.freedom);
   const datasets::Record& average = prepared.records->average;
   const double least = prepared.least_reach();
   try {
@@ -219,47 +228,107 @@ void estimate(const LeakProblem& problem, const RigFit& rig, const Prepared& pre
     const double share_rig_se =
         share_rig_error(problem, rig, *prepared.condition, average, record.fit,
                         curve.share_slope(record.fit.coefficient), prepared.negligible());
-    record.estimate = estimate_leak(record.fit.coefficient, error, curve, share_rig_se,
-                                    problem.campaign.diagnosis);
+    const double share_slope = curve.share_slope(record.fit.coefficient);
+    const double share_days_se =
+        distance > 0.0 ? between.error(distance, share_day_effects(problem, *prepared.condition,
+                                                                   average, record.fit, share_slope,
+                                                                   prepared.negligible()))
+                       : 0.0;
+    record.estimate =
+        estimate_leak(record.fit.coefficient, error, curve, std::hypot(share_rig_se, share_days_se),
+                      problem.campaign.diagnosis);
     if (!prepared.is_healthy) return;
     // A record that is its own reference has no deviation from it.
     const auto of_healthy =
         record.is_reference
             ? error_of_averages(record.fit, errors, record.repeats, record.reference_repeats)
-            : std::optional(error);
+            : std::optional(of_its_day);
     if (!of_healthy || !(of_healthy->total() > 0.0)) return;
-    const double limit = detection_limit(*of_healthy, problem.campaign.diagnosis);
-    const LeakCurve beyond = leak_curve_of(problem, *prepared.condition, average, limit,
-                                           std::max(limit, least), *prepared.leaks);
-    const double share = beyond.share(limit);
-    if (share <= 1.0) record.smallest_leak = {limit, beyond.leak_flow_m3_per_s(limit), share};
+    const auto limit_of = [&](const CoefficientError& each) -> std::optional<DetectionLimit> {
+      const double limit = detection_limit(each, problem.campaign.diagnosis);
+      const LeakCurve beyond = leak_curve_of(problem, *prepared.condition, average, limit,
+                                             std::max(limit, least), *prepared.leaks);
+      const double share = beyond.share(limit);
+      if (share > 1.0) return std::nullopt;
+      return DetectionLimit{limit, beyond.leak_flow_m3_per_s(limit), share};
+    };
+    record.smallest_leak = limit_of(*of_healthy);
+    const double another = record.days.norm_of_another_day();
+    record.smallest_leak_of_another_day = limit_of(
+        with_days(*of_healthy, between.error(another, record.fit.day_effects), between.freedom));
   } catch (const NoResultError& failure) {
     record.fit.failure = failure.what();
   }
 }
 
+/// The largest limits of the healthy records of a signal, of averages and of single repeats.
+void take_limits(const SignalRecords& records,
+                 std::optional<DetectionLimit> RecordDiagnosis::*limit, bool others,
+                 std::optional<DetectionLimit>& averaged, std::optional<DetectionLimit>& single) {
+  for (const RecordDiagnosis* each : records.healthy) {
+    if (!each->fit.ok() || !(each->*limit) || (others && each->is_reference)) continue;
+    keep_larger(*(each->*limit), each->repeat ? single : averaged);
+  }
+}
+
 SignalDiagnosis limits_of(const SignalRecords& records, const SignalErrors& errors,
-                          const std::string& signal) {
+                          const std::string& signal, bool of_another_day) {
   SignalDiagnosis result;
   result.signal = signal;
   result.errors = errors;
+  result.of_another_day = of_another_day;
   // Another healthy average is better evidence than one that is its own reference.
   const auto is_other = [](const RecordDiagnosis* each) {
     return !each->repeat && !each->is_reference && each->smallest_leak.has_value();
   };
   const bool others = std::any_of(records.healthy.begin(), records.healthy.end(), is_other);
   for (const RecordDiagnosis* each : records.healthy) {
-    if (!each->fit.ok() || !each->smallest_leak || (others && each->is_reference)) continue;
-    if (!each->repeat) result.repeats = each->repeats;
-    keep_larger(*each->smallest_leak,
-                each->repeat ? result.smallest_single_leak : result.smallest_leak);
+    if (!each->repeat && each->smallest_leak && !(others && each->is_reference))
+      result.repeats = each->repeats;
   }
+  take_limits(records, &RecordDiagnosis::smallest_leak, others, result.smallest_leak_same_day,
+              result.smallest_single_leak_same_day);
+  take_limits(records,
+              of_another_day ? &RecordDiagnosis::smallest_leak_of_another_day
+                             : &RecordDiagnosis::smallest_leak,
+              others, result.smallest_leak, result.smallest_single_leak);
   if (records.healthy.empty()) {
     result.reason = "no healthy record of this signal";
   } else if (!result.smallest_leak) {
     result.reason = "no repeats tell how healthy records of this signal scatter";
   }
   return result;
+}
+
+/// Days of records that are not those of their reference, in order of their first appearance.
+std::vector<std::string> days_off_reference(const Campaign& campaign,
+                                            const std::vector<RecordDiagnosis>& records) {
+  std::vector<std::string> days;
+  for (const RecordDiagnosis& record : records) {
+    if (!(record.days.norm() > 0.0)) continue;
+    const std::string day = day_label(*campaign.find(record.condition));
+    if (std::find(days.begin(), days.end(), day) == days.end()) days.push_back(day);
+  }
+  return days;
+}
+
+/// What healthy averages tell of the days.
+std::vector<HealthyDay> healthy_days(const Campaign& campaign,
+                                     const std::vector<RecordDiagnosis>& records,
+                                     const std::map<std::string, SignalErrors>& errors) {
+  std::vector<HealthyDay> days;
+  for (const RecordDiagnosis& record : records) {
+    const Condition& condition = *campaign.find(record.condition);
+    if (!record.fit.ok() || record.repeat || record.is_reference || !condition.date ||
+        !is_healthy(campaign, condition))
+      continue;
+    const double own = coefficient_error(record.fit, errors.at(record.signal), record.repeats,
+                                         record.reference_repeats)
+                           .total();
+    const double by_days = record.days.norm() * record.fit.day_effects.norm();
+    days.push_back({record.fit.coefficient, own * own, by_days * by_days});
+  }
+  return days;
 }
 
 }  // namespace
@@ -294,6 +363,10 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   // The problem's own campaign no longer has the known leaks.
   for (Prepared& each : prepared)
     each.is_healthy = is_healthy(campaign, *campaign.find(each.condition->id));
+  if (!campaign.conditions.empty())
+    result.between_days =
+        between_days_of(campaign, rig_values(problem), shortest_interval(records));
+  problem.day_quantities = result.between_days.quantities;
   std::vector<Task> tasks;
   for (const Prepared& each : prepared) {
     for (int single = -1; single < static_cast<int>(each.records->singles.size()); ++single)
@@ -307,7 +380,8 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
     if (options.progress) options.progress(done, static_cast<int>(tasks.size()));
   };
   parallel_for(tasks.size(), options.threads, [&](std::size_t i) {
-    result.records[i] = diagnose_record(problem, rig, tasks[i], prepared, options);
+    result.records[i] =
+        diagnose_record(problem, rig, tasks[i], prepared, result.between_days, options);
     half_done();
   });
 
@@ -317,22 +391,30 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
   for (const auto& [signal, members] : signals)
     all_errors.push_back(&(errors[signal] = errors_of(members)));
   separate_noise(all_errors);
+  BetweenDays& between = result.between_days;
+  result.other_days = days_off_reference(campaign, result.records);
+  estimate_days(healthy_days(campaign, result.records, errors), between);
   parallel_for(tasks.size(), options.threads, [&](std::size_t i) {
     RecordDiagnosis& record = result.records[i];
     if (record.fit.ok())
-      estimate(problem, rig, *tasks[i].prepared, errors.at(record.signal), record);
+      estimate(problem, rig, *tasks[i].prepared, errors.at(record.signal), between, record);
     half_done();
   });
   for (const auto& [signal, members] : signals) {
     const double healthy_m = healthy_misfit(members);
     for (RecordDiagnosis& record : result.records) {
-      if (record.fit.ok() && record.signal == signal)
-        judge(record, errors.at(signal), healthy_m, campaign.diagnosis);
+      if (!record.fit.ok() || record.signal != signal) continue;
+      // What days may differ by is no other fault.
+      const double of_days_m =
+          record.days.norm() * std::sqrt(between.variance) * record.fit.day_rms_m;
+      judge(record, errors.at(signal), std::hypot(healthy_m, of_days_m), campaign.diagnosis);
     }
-    result.signals.push_back(limits_of(members, errors.at(signal), signal));
+    result.signals.push_back(
+        limits_of(members, errors.at(signal), signal, !result.other_days.empty()));
   }
-  result.states = machine_states(problem, rig, prepared, result.records, errors);
-  result.trends = leak_trends(result.states, rig.covariance, campaign.diagnosis);
+  result.states = machine_states(problem, rig, prepared, result.records, errors,
+                                 {between.variance, between.freedom});
+  result.trends = leak_trends(result.states, rig.covariance, campaign.diagnosis, between.variance);
   for (RecordDiagnosis& record : result.records) set_truth(campaign, record);
   classify_by_features(result.records);
   const auto by_leak = [](const RecordDiagnosis& record) { return record.leak_class; };
@@ -344,7 +426,8 @@ Diagnosis diagnose(const Campaign& campaign, const std::vector<datasets::RepeatR
       accuracy(result.records, Method::features, true,
                [](const RecordDiagnosis& record) { return record.by_features_of_other_signals; });
   for (const std::string& each : confounded(campaign)) result.warnings.push_back(each);
-  for (const std::string& each : other_days(campaign)) result.warnings.push_back(each);
+  if (const std::string text = in_words(between, result.other_days); !text.empty())
+    result.warnings.push_back(text);
   for (const std::string& each : too_few_dates(result.states)) result.warnings.push_back(each);
   return result;
 }

@@ -8,6 +8,7 @@
 
 #include "datasets/campaign/campaign.hpp"
 #include "diagnosis/accuracy.hpp"
+#include "diagnosis/between_days.hpp"
 #include "diagnosis/leak/leak_estimate.hpp"
 #include "diagnosis/leak/leak_fit.hpp"
 #include "diagnosis/leak_trend.hpp"
@@ -38,10 +39,13 @@ struct RecordDiagnosis {
   bool corrects_others = false;
   /// It is itself that reference, so that its leak is zero by construction.
   bool is_reference = false;
+  DayWeights days;                     ///< its day against those of its reference
   LeakFit fit;                         ///< gives the reason if nothing was found
   metrics::ResidualFeatures features;  ///< for the parity residual, eq. 14, uncorrected [m]
   LeakEstimate estimate;               ///< valid only if fit.ok()
-  std::optional<DetectionLimit> smallest_leak;  ///< for a healthy record, if its errors are known
+  /// For a healthy record whose errors are known: of a record of the reference's day, and of one of
+  /// another day.
+  std::optional<DetectionLimit> smallest_leak, smallest_leak_of_another_day;
   /// The leak leaves more than a third of the difference from the healthy model unexplained: there
   /// is another fault.
   bool unexplained = false;
@@ -61,14 +65,20 @@ struct SignalDiagnosis {
   SignalErrors errors;
   std::optional<DetectionLimit> smallest_leak;         ///< in an average
   std::optional<DetectionLimit> smallest_single_leak;  ///< in a single repeat
-  int repeats = 1;                                     ///< repeats in that average
-  std::string reason;                                  ///< why there is no limit, in words
+  /// The two above are those of a record of another day than its reference, since there are such.
+  bool of_another_day = false;
+  /// On the day of the reference.
+  std::optional<DetectionLimit> smallest_leak_same_day, smallest_single_leak_same_day;
+  int repeats = 1;     ///< repeats in that average
+  std::string reason;  ///< why there is no limit, in words
 };
 
 struct Diagnosis {
   std::vector<RecordDiagnosis> records;  ///< campaign order; the average, then its repeats
   std::vector<SignalDiagnosis> signals;  ///< in order of their first appearance
   std::vector<MachineState> states;      ///< in order of their first appearance
+  BetweenDays between_days;              ///< what was taken of it
+  std::vector<std::string> other_days;   ///< days of records that are not of their reference's
   std::vector<LeakTrend> trends;         ///< trends over states that differ only in their date
   Accuracy single;                       ///< fitted leak, single repeats
   Accuracy averaged;                     ///< fitted leak, averages

@@ -44,21 +44,27 @@ std::vector<DatedMachine> dated_machines(const std::vector<MachineState>& states
 }
 
 metrics::Trend line_through(const std::vector<DatedState>& states,
-                            const Eigen::MatrixXd& rig_covariance) {
+                            const Eigen::MatrixXd& rig_covariance, double days_factor) {
   std::vector<double> days, coefficients;
   std::vector<metrics::EstimateError> errors;
   Eigen::MatrixXd moves(static_cast<Eigen::Index>(states.size()), rig_covariance.rows());
+  const Eigen::Index quantities = states.front().state->pooled.day_moves.size();
+  Eigen::MatrixXd day_moves = Eigen::MatrixXd::Zero(moves.rows(), quantities);
   for (const DatedState& each : states) {
     const PooledLeak& pooled = each.state->pooled;
+    if (pooled.day_moves.size() == quantities)
+      day_moves.row(static_cast<Eigen::Index>(days.size())) = pooled.day_moves.transpose();
     if (moves.cols() > 0)
       moves.row(static_cast<Eigen::Index>(days.size())) = pooled.rig_moves.transpose();
     days.push_back(each.day - states.front().day);
     coefficients.push_back(pooled.coefficient);
     errors.push_back({pooled.error.own_se, pooled.error.freedom});
   }
-  // Errors of the rig's parameters shift the coefficients of all dates together.
-  return metrics::weighted_trend(days, coefficients, errors,
-                                 moves * rig_covariance * moves.transpose());
+  // Errors of the rig's parameters shift the coefficients of all dates together, and so do those of
+  // the reference's day; each date has a day of its own.
+  return metrics::weighted_trend(
+      days, coefficients, errors,
+      moves * rig_covariance * moves.transpose() + days_factor * day_moves * day_moves.transpose());
 }
 
 /// When the line reaches the next limit.
@@ -77,8 +83,8 @@ void foresee(const MachineState& last, const datasets::DiagnosisSettings& settin
 }
 
 LeakTrend trend_of(const DatedMachine& machine, const Eigen::MatrixXd& rig_covariance,
-                   const datasets::DiagnosisSettings& settings) {
-  const metrics::Trend line = line_through(machine.states, rig_covariance);
+                   const datasets::DiagnosisSettings& settings, double days_factor) {
+  const metrics::Trend line = line_through(machine.states, rig_covariance, days_factor);
   const MachineState& last = *machine.states.back().state;
   LeakTrend trend;
   trend.leak_level = machine.leak_level;
@@ -103,11 +109,12 @@ LeakTrend trend_of(const DatedMachine& machine, const Eigen::MatrixXd& rig_covar
 
 std::vector<LeakTrend> leak_trends(const std::vector<MachineState>& states,
                                    const Eigen::MatrixXd& rig_covariance,
-                                   const datasets::DiagnosisSettings& settings) {
+                                   const datasets::DiagnosisSettings& settings,
+                                   double days_factor) {
   std::vector<LeakTrend> trends;
   for (const DatedMachine& machine : dated_machines(states)) {
     if (machine.states.size() >= metrics::kLeastTrendPoints)
-      trends.push_back(trend_of(machine, rig_covariance, settings));
+      trends.push_back(trend_of(machine, rig_covariance, settings, days_factor));
   }
   return trends;
 }

@@ -37,12 +37,14 @@ struct LeakTrend {
 /// appearance. A machine is the states of one leak level and specimen.
 ///
 /// The trend is metrics::weighted_trend() of the coefficients; each has its own error, and all have
-/// that of the rig's parameters in common.
+/// that of the rig's parameters in common. What differs between days is in the covariance, too.
 ///
 /// @param rig_covariance  of the rig's parameters, shape (rig_moves)^2
+/// @param days_factor     variance between days over the squares of PooledLeak::day_moves
 std::vector<LeakTrend> leak_trends(const std::vector<MachineState>& states,
                                    const Eigen::MatrixXd& rig_covariance,
-                                   const datasets::DiagnosisSettings& settings);
+                                   const datasets::DiagnosisSettings& settings,
+                                   double days_factor = 0.0);
 
 /// Lists, in words, machines that were diagnosed on two dates only. Their difference could be the
 /// usual one between two days, so they get no trend.

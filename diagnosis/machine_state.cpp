@@ -39,22 +39,32 @@ std::string StateKey::name() const {
   return text;
 }
 
+Eigen::VectorXd StateMember::day_moves() const {
+  Eigen::VectorXd moves(day_weights.size() * day_effects.size());
+  for (Eigen::Index day = 0; day < day_weights.size(); ++day)
+    moves.segment(day * day_effects.size(), day_effects.size()) = day_weights(day) * day_effects;
+  return moves;
+}
+
 PooledLeak pooled_leak(const std::vector<StateMember>& members,
-                       const Eigen::MatrixXd& rig_covariance) {
+                       const Eigen::MatrixXd& rig_covariance, const DayVariance& days) {
   if (members.empty()) throw std::invalid_argument("pooled_leak: expected a member");
   const auto n = static_cast<Eigen::Index>(members.size());
   const Eigen::Index rig = rig_covariance.rows();
   Eigen::VectorXd coefficients(n);
   Eigen::VectorXd own(n);
   Eigen::MatrixXd moves(n, rig);
+  Eigen::MatrixXd day_moves(n, members.front().day_moves().size());
   for (Eigen::Index i = 0; i < n; ++i) {
     const StateMember& member = members[static_cast<std::size_t>(i)];
     if (!(member.own_se > 0.0)) throw std::invalid_argument("pooled_leak: a member without error");
     coefficients(i) = member.coefficient;
     own(i) = square_of(member.own_se);
     if (rig > 0) moves.row(i) = member.rig_moves.transpose();
+    day_moves.row(i) = member.day_moves().transpose();
   }
-  Eigen::MatrixXd covariance = moves * rig_covariance * moves.transpose();
+  Eigen::MatrixXd covariance =
+      moves * rig_covariance * moves.transpose() + days.factor * day_moves * day_moves.transpose();
   covariance.diagonal() += own;
   const Eigen::LLT<Eigen::MatrixXd> root(covariance);
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(n);
@@ -64,6 +74,10 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
   PooledLeak pooled;
   pooled.coefficient = weights.dot(coefficients);
   pooled.rig_moves = moves.transpose() * weights;
+  pooled.day_moves = day_moves.transpose() * weights;
+  pooled.day_weights = Eigen::VectorXd::Zero(members.front().day_weights.size());
+  for (Eigen::Index i = 0; i < n; ++i)
+    pooled.day_weights += weights(i) * members[static_cast<std::size_t>(i)].day_weights;
   const Eigen::VectorXd left = coefficients - pooled.coefficient * ones;
   pooled.chi_squared = left.dot(root.solve(left));
   pooled.freedom = static_cast<double>(n - 1);
@@ -83,7 +97,11 @@ PooledLeak pooled_leak(const std::vector<StateMember>& members,
       std::max(0.0, pooled.rig_moves.dot(rig_covariance * pooled.rig_moves));
   pooled.error.own_se = pooled.widened * std::sqrt(variance);
   pooled.error.rig_se = pooled.widened * std::sqrt(rig_variance);
-  pooled.error.freedom = std::clamp(square_of(variance + rig_variance) / squares, 1.0, 1e6);
+  const double days_variance = days.factor * pooled.day_moves.squaredNorm();
+  squares += square_of(days_variance) / days.freedom;
+  pooled.error.days_se = pooled.widened * std::sqrt(days_variance);
+  pooled.error.freedom =
+      std::clamp(square_of(variance + rig_variance + days_variance) / squares, 1.0, 1e6);
   return pooled;
 }
 

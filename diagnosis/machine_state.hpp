@@ -6,6 +6,7 @@
 
 #include "diagnosis/leak/leak_estimate.hpp"
 #include "diagnosis/leak/leak_fit.hpp"
+#include "metrics/significance.hpp"
 
 namespace rigcal::diagnosis {
 
@@ -26,30 +27,44 @@ struct StateMember {
   double coefficient = 0.0;
   double own_se = 0.0;  ///< without the rig's parameters
   double freedom = 1.0;
-  Eigen::VectorXd rig_moves;  ///< like LeakFit::rig_moves
+  Eigen::VectorXd rig_moves;    ///< like LeakFit::rig_moves
+  Eigen::VectorXd day_effects;  ///< like LeakFit::day_effects
+  Eigen::VectorXd day_weights;  ///< of each day, see DayWeights::difference()
+
+  /// Change of the coefficient by each quantity of each day, shape (days * quantities).
+  Eigen::VectorXd day_moves() const;
+};
+
+/// How large the variation between days is, over the sizes of the quantities.
+struct DayVariance {
+  double factor = 0.0;
+  double freedom = metrics::kManyDegrees;
 };
 
 /// One leak that all members share.
 struct PooledLeak {
   double coefficient = 0.0;
-  CoefficientError error;     ///< widened where members disagree
-  Eigen::VectorXd rig_moves;  ///< moves of the pooled coefficient
-  double chi_squared = 0.0;   ///< disagreement of the members
-  double freedom = 0.0;       ///< members - 1
-  double p = 1.0;             ///< probability of as much disagreement by their errors alone
-  bool disagree = false;      ///< at 5 %
-  double widened = 1.0;       ///< factor of the error, at least 1
+  CoefficientError error;       ///< widened where members disagree
+  Eigen::VectorXd rig_moves;    ///< moves of the pooled coefficient
+  Eigen::VectorXd day_moves;    ///< by each quantity of each day
+  Eigen::VectorXd day_weights;  ///< of each day
+  double chi_squared = 0.0;     ///< disagreement of the members
+  double freedom = 0.0;         ///< members - 1
+  double p = 1.0;               ///< probability of as much disagreement by their errors alone
+  bool disagree = false;        ///< at 5 %
+  double widened = 1.0;         ///< factor of the error, at least 1
 };
 
 /// Pools by generalised least squares. Members have errors of their own and a common one from the
-/// rig's parameters, which shifts all of them together. If they disagree by more than their errors,
-/// the error is multiplied by Birge's ratio, the root of chi-square over its degrees of freedom
-/// (Phys. Rev. 40, 1932), since it is unknown which of them is wrong.
+/// rig's parameters and from what differs between days, which shifts all of them together. If they
+/// disagree by more than their errors, the error is multiplied by Birge's ratio, the root of
+/// chi-square over its degrees of freedom (Phys. Rev. 40, 1932), since it is unknown which of them
+/// is wrong.
 ///
 /// @param members         at least one; own_se above 0
 /// @param rig_covariance  of the rig's parameters, shape (rig_moves)^2
 PooledLeak pooled_leak(const std::vector<StateMember>& members,
-                       const Eigen::MatrixXd& rig_covariance);
+                       const Eigen::MatrixXd& rig_covariance, const DayVariance& days = {});
 
 /// Position of a share among the limits of the classes.
 struct LimitDistance {

@@ -53,14 +53,32 @@ void add_average(const RecordDiagnosis& record, const SignalErrors& errors, Mach
       coefficient_error(record.fit, errors, record.repeats, record.reference_repeats);
   if (!(error.own_se > 0.0)) return leave_out("its residuals hold no noise, so its error is open");
   state.members.push_back({record.condition, record.signal, record.fit.coefficient, error.own_se,
-                           error.freedom, record.fit.rig_moves});
+                           error.freedom, record.fit.rig_moves, record.fit.day_effects,
+                           record.days.difference()});
+}
+
+/// Error of the share at the duty from what differs between days: with the coefficient, and by
+/// itself.
+double share_days_error(const LeakProblem& problem, const Prepared& duty, const DayVariance& days,
+                        const LeakFit& leak, const MachineState& state) {
+  const Eigen::VectorXd& weights = state.pooled.day_weights;
+  if (!(days.factor > 0.0) || weights.size() == 0 || !(weights.norm() > 0.0)) return 0.0;
+  LeakFit itself = leak;
+  const auto quantities = static_cast<Eigen::Index>(problem.day_quantities.size());
+  itself.day_effects = Eigen::VectorXd::Zero(quantities);
+  StateMember direct;
+  direct.day_effects = share_day_effects(problem, *duty.condition, duty.records->average, itself,
+                                         state.share_slope, duty.negligible());
+  direct.day_weights = weights;
+  return std::sqrt(days.factor) *
+         (state.share_slope * state.pooled.day_moves + direct.day_moves()).norm();
 }
 
 void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& duty,
-                 MachineState& state) {
+                 const DayVariance& days, MachineState& state) {
   if (state.members.empty()) return;
   const Campaign& campaign = problem.campaign;
-  state.pooled = pooled_leak(state.members, rig.covariance);
+  state.pooled = pooled_leak(state.members, rig.covariance, days);
   state.leak_area_m2 =
       state.pooled.coefficient * datasets::values_in(campaign, *duty.condition)["leakage_area"];
   state.duty = signal_name(campaign, *duty.condition);
@@ -75,8 +93,10 @@ void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& 
     state.share_slope = curve.share_slope(leak.coefficient);
     const double share_rig_se = share_rig_error(problem, rig, *duty.condition, average, leak,
                                                 state.share_slope, duty.negligible());
+    const double share_se =
+        std::hypot(share_rig_se, share_days_error(problem, duty, days, leak, state));
     state.estimate = estimate_leak(leak.coefficient, state.pooled.error, curve,
-                                   state.pooled.widened * share_rig_se, campaign.diagnosis);
+                                   state.pooled.widened * share_se, campaign.diagnosis);
   } catch (const NoResultError& failure) {
     state.failure = failure.what();
     return;
@@ -93,7 +113,8 @@ void judge_state(const LeakProblem& problem, const RigFit& rig, const Prepared& 
 std::vector<MachineState> machine_states(const LeakProblem& problem, const RigFit& rig,
                                          const std::vector<Prepared>& all,
                                          const std::vector<RecordDiagnosis>& records,
-                                         const std::map<std::string, SignalErrors>& errors) {
+                                         const std::map<std::string, SignalErrors>& errors,
+                                         const DayVariance& days) {
   std::vector<MachineState> states;
   if (all.empty()) return states;
   for (const RecordDiagnosis& record : records) {
@@ -113,7 +134,7 @@ std::vector<MachineState> machine_states(const LeakProblem& problem, const RigFi
   const Prepared& duty = duty_of(problem.campaign, all);
   for (MachineState& state : states) {
     if (!duty.failure.empty()) state.failure = duty.failure;
-    if (state.failure.empty()) judge_state(problem, rig, duty, state);
+    if (state.failure.empty()) judge_state(problem, rig, duty, days, state);
   }
   return states;
 }

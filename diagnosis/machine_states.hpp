@@ -19,6 +19,7 @@ namespace rigcal::diagnosis {
 std::vector<MachineState> machine_states(const LeakProblem& problem, const RigFit& rig,
                                          const std::vector<Prepared>& all,
                                          const std::vector<RecordDiagnosis>& records,
-                                         const std::map<std::string, SignalErrors>& errors);
+                                         const std::map<std::string, SignalErrors>& errors,
+                                         const DayVariance& days = {});
 
 }  // namespace rigcal::diagnosis

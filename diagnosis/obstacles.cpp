@@ -118,40 +118,6 @@ std::vector<std::string> confounded(const Campaign& campaign) {
   return result;
 }
 
-std::vector<std::string> other_days(const Campaign& campaign) {
-  const std::vector<const Condition*> all = diagnosed_conditions(campaign);
-  const bool healthy = std::any_of(
-      all.begin(), all.end(), [&](const Condition* each) { return is_healthy(campaign, *each); });
-  std::set<std::string> reference, others;
-  bool undated = false;
-  for (const Condition* each : all) {
-    const bool refers = healthy ? is_healthy(campaign, *each) : each->use == datasets::Use::fit;
-    if (!each->date) {
-      undated = true;
-    } else {
-      (refers ? reference : others).insert(*each->date);
-    }
-  }
-  const auto supply = campaign.channels.find(Channel::supply_pressure);
-  const bool recorded =
-      supply != campaign.channels.end() && supply->second.role == datasets::ChannelRole::input;
-  const std::string taken =
-      fmt::format("{} taken as on the day of the {}", recorded ? "oil is" : "supply and oil are",
-                  healthy ? "healthy reference" : "fit");
-  const char* const counts =
-      recorded ? "what the oil has changed by since counts as a leak"
-               : "what they have changed by since counts as a leak, unless the supply is recorded";
-  std::vector<std::string> texts;
-  std::erase_if(others, [&](const auto& each) { return reference.contains(each); });
-  if (!reference.empty() && !others.empty()) {
-    texts.push_back(fmt::format("{}, {}, for records of {}: {}", taken, fmt::join(reference, ", "),
-                                fmt::join(others, ", "), counts));
-  } else if (undated) {
-    texts.push_back(fmt::format("{}; not all conditions are dated: {}", taken, counts));
-  }
-  return texts;
-}
-
 std::vector<std::string> obstacles(const Campaign& campaign, bool has_fit) {
   const auto conditions = diagnosed_conditions(campaign);
   if (conditions.empty())

@@ -34,9 +34,4 @@ std::vector<std::string> obstacles(const datasets::Campaign& campaign, bool has_
 /// Factors that differ wherever the leak level differs, in words.
 std::vector<std::string> confounded(const datasets::Campaign& campaign);
 
-/// Lists, in words, what the diagnosis assumes to be as on the day of the reference: oil, and
-/// supply unless it was recorded. The reference is the healthy conditions, or the fitted ones if
-/// there are none. Empty if all conditions have dates of the reference.
-std::vector<std::string> other_days(const datasets::Campaign& campaign);
-
 }  // namespace rigcal::diagnosis

@@ -1,6 +1,7 @@
 #include "diagnosis/parity.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include "common/error.hpp"
 #include "common/parallel.hpp"
 #include "diagnosis/alarm_threshold.hpp"
+#include "diagnosis/common_causes.hpp"
 #include "diagnosis/obstacles.hpp"
 #include "diagnosis/signal_name.hpp"
 #include "metrics/distributions.hpp"
@@ -48,6 +50,7 @@ ParityCondition residuals_of(const LeakProblem& problem, const Condition& condit
     for (std::size_t k = 0; k < result.records.size(); ++k)
       result.records[k].parity_m =
           residuals[records.singles.empty() ? 0 : k + 1].at(Channel::position);
+    result.day_changes_m = healthy_day_changes(problem, condition, records.average);
   } catch (const NoResultError& error) {
     for (ParityRecord& record : result.records) record.failure = error.what();
   }
@@ -96,21 +99,62 @@ std::vector<double> corrected(const ParityCondition& condition, const ParityReco
   return result;
 }
 
+/// What is compared of a residual: its largest moving root mean square, and its features.
+struct ResidualValues {
+  std::vector<double> moving_rms_m;
+  double peak_m = 0.0;
+  metrics::ResidualFeatures features;
+};
+
+/// Empty where fewer than two samples count.
+std::optional<ResidualValues> values_of(const std::vector<double>& residual_m,
+                                        const std::vector<double>& time_s, double window_s) {
+  std::vector<double> counted;
+  for (const double value : residual_m)
+    if (!std::isnan(value)) counted.push_back(value);
+  if (counted.size() < 2) return std::nullopt;
+  ResidualValues values;
+  values.features = metrics::residual_features(counted);
+  const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  const auto window = static_cast<std::size_t>(std::max(1.0, std::round(window_s / step_s)));
+  values.moving_rms_m = moving_rms(residual_m, std::min(window, counted.size()));
+  for (const double value : values.moving_rms_m) values.peak_m = std::fmax(values.peak_m, value);
+  return values;
+}
+
 /// Fills in the description of a residual except for the alarm.
 void describe(const std::vector<double>& time_s, double window_s, ParityRecord& record) {
-  std::vector<double> counted;
-  for (const double value : record.residual_m)
-    if (!std::isnan(value)) counted.push_back(value);
-  if (counted.size() < 2) {
+  const auto values = values_of(record.residual_m, time_s, window_s);
+  if (!values) {
     record.failure = "fewer than two samples count";
     return;
   }
-  record.features = metrics::residual_features(counted);
-  const double step_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-  const auto window = static_cast<std::size_t>(std::max(1.0, std::round(window_s / step_s)));
-  record.moving_rms_m = moving_rms(record.residual_m, std::min(window, counted.size()));
-  for (const double value : record.moving_rms_m) record.peak_m = std::fmax(record.peak_m, value);
+  record.features = values->features;
+  record.moving_rms_m = values->moving_rms_m;
+  record.peak_m = values->peak_m;
 }
+
+/// The values of patterns, NaN where a sample does not count.
+std::vector<ResidualValues> values_of_patterns(const Eigen::MatrixXd& patterns,
+                                               const std::vector<double>& like,
+                                               const std::vector<double>& time_s, double window_s) {
+  std::vector<ResidualValues> values;
+  for (Eigen::Index c = 0; c < patterns.cols(); ++c) {
+    std::vector<double> residual = like;
+    for (std::size_t i = 0; i < residual.size(); ++i)
+      if (!std::isnan(residual[i])) residual[i] = patterns(static_cast<Eigen::Index>(i), c);
+    if (auto each = values_of(residual, time_s, window_s)) values.push_back(std::move(*each));
+  }
+  return values;
+}
+
+/// What the healthy records of a signal differ by, as far as the thresholds need it.
+struct HealthyScatter {
+  std::vector<ResidualValues> own;     ///< of each record, without the causes
+  std::vector<ResidualValues> causes;  ///< per standard deviation of each
+  std::vector<ResidualValues> days;    ///< per standard deviation of each quantity between days
+  double records = 0.0;
+};
 
 double window_of(const Condition& condition, const std::vector<double>& time_s) {
   const double length_s = time_s.back() - time_s.front();
@@ -135,6 +179,8 @@ class Work {
     ParitySignal& signal = result_.signals.emplace_back();
     signal.signal = group.signal;
     const std::vector<Healthy> references = references_of(group);
+    for (const Healthy& each : references)
+      conditions_.push_back(campaign_.find(each.condition->condition));
     signal.healthy_records = static_cast<int>(references.size());
     for (const std::size_t place : group.places) {
       ParityCondition& condition = result_.conditions[place];
@@ -148,6 +194,7 @@ class Work {
       for (ParityRecord& record : result_.conditions[place].records)
         raise(result_.conditions[place].time_s, signal, record);
     }
+    conditions_.clear();
   }
 
   void check_false_alarms() {
@@ -202,13 +249,21 @@ class Work {
     std::vector<Healthy> others = references;
     std::erase_if(others, [&](const Healthy& each) { return each.record == &record; });
     record.reference_records = static_cast<int>(others.size());
+    std::vector<const Condition*> of;
+    for (const Healthy& each : others) of.push_back(campaign_.find(each.condition->condition));
+    const Condition& own = *campaign_.find(condition.condition);
+    record.days = day_weights(result_.between_days, campaign_, own, of);
+    // Only dates say that a record is of another day.
+    if (!own.date ||
+        std::any_of(of.begin(), of.end(), [](const auto* each) { return !each->date; }))
+      record.days.own = record.days.reference;
     record.residual_m = corrected(condition, record, repeat, records, others);
     describe(condition.time_s, window_s, record);
   }
 
   /// A healthy record less the mean of the n - 1 others varies by 1 + 1 / (n - 1), a new one less
   /// the mean of all n by 1 + 1 / n of the variance of one.
-  void set_thresholds(const std::vector<Healthy>& references, ParitySignal& signal) const {
+  void set_thresholds(const std::vector<Healthy>& references, ParitySignal& signal) {
     if (references.size() < kLeastHealthyRecords) {
       signal.reason = fmt::format(
           "{} healthy record{} of this signal: expected {} or more. Healthy is a leak level whose "
@@ -217,28 +272,93 @@ class Work {
           references.size(), references.size() == 1 ? "" : "s", kLeastHealthyRecords);
       return;
     }
-    const auto n = static_cast<double>(references.size());
-    const double scale = std::sqrt((1.0 + 1.0 / n) / (1.0 + 1.0 / (n - 1.0)));
-    const auto threshold = [&](const auto& value) {
-      std::vector<double> values;
-      for (const Healthy& each : references) values.push_back(scale * value(*each.record));
-      return alarm_threshold(values, options_.false_alarm);
-    };
-    signal.threshold_m = threshold([](const ParityRecord& r) { return r.peak_m; });
-    signal.features.mean = threshold([](const ParityRecord& r) { return r.features.mean; });
-    signal.features.rms = threshold([](const ParityRecord& r) { return r.features.rms; });
-    signal.features.std = threshold([](const ParityRecord& r) { return r.features.std; });
+    scatter_ = scatter_of(references, signal.window_s);
+    signal.common_causes = static_cast<int>(scatter_.causes.size());
+    signal.threshold_m = threshold(kPeak, 0.0);
+    signal.features = feature_thresholds(0.0);
+    const auto days =
+        day_weights(result_.between_days, campaign_, *conditions_.front(), conditions_);
+    if (signal.threshold_m)
+      signal.threshold_of_another_day_m = threshold(kPeak, days.norm_of_another_day());
     if (!signal.threshold_m)
       signal.reason =
           "healthy records do not differ from one another, so nothing tells how much "
           "such records scatter";
   }
 
-  static void raise(const std::vector<double>& time_s, const ParitySignal& signal,
-                    ParityRecord& record) {
-    if (!signal.threshold_m || !record.failure.empty() || record.sets_threshold) return;
+  using ValueOf = double (*)(const ResidualValues&);
+  static constexpr ValueOf kPeak = [](const ResidualValues& v) { return v.peak_m; };
+
+  /// Residuals of records on one time base are separated into causes and what each has of its own;
+  /// others are taken as they are.
+  HealthyScatter scatter_of(const std::vector<Healthy>& references, double window_s) const {
+    HealthyScatter scatter;
+    scatter.records = static_cast<double>(references.size());
+    const ParityCondition& first = *references.front().condition;
+    std::vector<double> like = references.front().record->residual_m;
+    const bool one_base = std::all_of(references.begin(), references.end(), [&](const auto& each) {
+      return each.condition->time_s == first.time_s;
+    });
+    Eigen::MatrixXd residuals(static_cast<Eigen::Index>(like.size()),
+                              one_base ? static_cast<Eigen::Index>(references.size()) : 0);
+    for (Eigen::Index j = 0; j < residuals.cols(); ++j) {
+      const auto& own = references[static_cast<std::size_t>(j)].record->residual_m;
+      for (std::size_t i = 0; i < like.size(); ++i) {
+        residuals(static_cast<Eigen::Index>(i), j) = own[i];
+        if (std::isnan(own[i])) like[i] = kNan;
+      }
+    }
+    for (std::size_t i = 0; i < like.size(); ++i)
+      if (std::isnan(like[i])) residuals.row(static_cast<Eigen::Index>(i)).setZero();
+    if (one_base) {
+      const CommonCauses causes = common_causes(residuals);
+      scatter.causes = values_of_patterns(causes.patterns, like, first.time_s, window_s);
+      scatter.own = values_of_patterns(causes.rest, like, first.time_s, window_s);
+    } else {
+      for (const Healthy& each : references) {
+        if (auto values = values_of(each.record->residual_m, each.condition->time_s, window_s))
+          scatter.own.push_back(std::move(*values));
+      }
+    }
+    scatter.days = values_of_patterns(first.day_changes_m, references.front().record->residual_m,
+                                      first.time_s, window_s);
+    return scatter;
+  }
+
+  /// @param day_norm  how far the day of a record is from those of the healthy ones; 0: no distance
+  std::optional<double> threshold(ValueOf value, double day_norm) const {
+    const double n = scatter_.records;
+    const double scale = std::sqrt((1.0 + 1.0 / n) / (1.0 + 1.0 / (n - 1.0)));
+    std::vector<double> values;
+    for (const ResidualValues& each : scatter_.own) values.push_back(scale * value(each));
+    const auto own = alarm_threshold(values, options_.false_alarm);
+    if (!own) return std::nullopt;
+    std::vector<CausePart> parts;
+    for (const ResidualValues& each : scatter_.causes)
+      parts.push_back({square(value(each)) * (1.0 + 1.0 / n), n - 1.0});
+    for (const ResidualValues& each : scatter_.days) {
+      parts.push_back({square(day_norm * value(each)) * result_.between_days.variance,
+                       result_.between_days.freedom});
+    }
+    return threshold_with(*own, parts, options_.false_alarm);
+  }
+
+  FeatureThresholds feature_thresholds(double day_norm) const {
+    return {threshold([](const ResidualValues& v) { return v.features.mean; }, day_norm),
+            threshold([](const ResidualValues& v) { return v.features.rms; }, day_norm),
+            threshold([](const ResidualValues& v) { return v.features.std; }, day_norm)};
+  }
+
+  static double square(double x) { return x * x; }
+
+  void raise(const std::vector<double>& time_s, const ParitySignal& signal,
+             ParityRecord& record) const {
+    if (!signal.threshold_m || !record.failure.empty()) return;
+    record.threshold_m = threshold(kPeak, record.days.norm());
+    record.feature_thresholds = feature_thresholds(record.days.norm());
+    if (record.sets_threshold) return;
     const auto first = std::find_if(record.moving_rms_m.begin(), record.moving_rms_m.end(),
-                                    [&](double value) { return value > *signal.threshold_m; });
+                                    [&](double value) { return value > *record.threshold_m; });
     if (first == record.moving_rms_m.end()) return;
     record.alarm = true;
     record.alarm_time_s =
@@ -249,7 +369,22 @@ class Work {
   const std::vector<RepeatRecords>& records_;
   const ParityOptions& options_;
   Parity& result_;
+  // Of the signal that is being judged.
+  HealthyScatter scatter_;
+  std::vector<const Condition*> conditions_;  ///< of each reference
 };
+
+/// Says that records without a date count as of the day of the healthy ones.
+void warn_of_undated(const Campaign& campaign, Parity& result) {
+  std::vector<std::string> undated;
+  for (const ParityCondition& condition : result.conditions)
+    if (!campaign.find(condition.condition)->date) undated.push_back(condition.condition);
+  if (undated.empty() || result.between_days.quantities.empty()) return;
+  result.warnings.push_back(fmt::format(
+      "no date: {}. Records without a date count as of the day of the healthy ones: what differs "
+      "between days (supply, oil, zero, trigger) is in none of their thresholds",
+      fmt::join(undated, ", ")));
+}
 
 }  // namespace
 
@@ -263,7 +398,11 @@ bool Parity::usable() const {
 Parity parity(const Campaign& campaign, const std::vector<RepeatRecords>& records,
               const RigFit& rig, const ParityOptions& options) {
   Parity result;
-  const LeakProblem problem(campaign, rig);
+  LeakProblem problem(campaign, rig);
+  if (!campaign.conditions.empty())
+    result.between_days =
+        between_days_of(campaign, rig_values(problem), shortest_interval(records));
+  problem.day_quantities = result.between_days.quantities;
   result.conditions.resize(records.size());
   std::atomic<int> done{0};
   parallel_for(records.size(), options.threads, [&](std::size_t i) {
@@ -293,6 +432,17 @@ Parity parity(const Campaign& campaign, const std::vector<RepeatRecords>& record
   Work work(campaign, records, options, result);
   for (const Group& group : groups) work.judge(group);
   work.check_false_alarms();
+  for (const ParityCondition& condition : result.conditions) {
+    for (const ParityRecord& record : condition.records) {
+      const std::string day = day_label(*campaign.find(condition.condition));
+      auto& days = result.other_days;
+      if (record.days.norm() > 0.0 && std::find(days.begin(), days.end(), day) == days.end())
+        days.push_back(day);
+    }
+  }
+  if (const std::string text = in_words(result.between_days, result.other_days); !text.empty())
+    result.warnings.push_back(text);
+  warn_of_undated(campaign, result);
   return result;
 }
 

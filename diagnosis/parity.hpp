@@ -8,6 +8,7 @@
 
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
+#include "diagnosis/between_days.hpp"
 #include "diagnosis/leak/leak_fit.hpp"
 #include "metrics/residual_features.hpp"
 
@@ -41,8 +42,12 @@ struct ParityRecord {
   std::vector<double> moving_rms_m;    ///< over the window of the signal
   metrics::ResidualFeatures features;  ///< features of residual_m
   double peak_m = 0.0;                 ///< largest moving_rms_m
-  bool alarm = false;                  ///< it exceeds the threshold of the signal
-  double alarm_time_s = 0.0;           ///< from the first sample to the first that exceeds it
+  DayWeights days;                     ///< its day against those of its reference
+  /// What peak_m and the features are compared with: of its day.
+  std::optional<double> threshold_m;
+  FeatureThresholds feature_thresholds;
+  bool alarm = false;         ///< it exceeds the threshold of the signal
+  double alarm_time_s = 0.0;  ///< from the first sample to the first that exceeds it
 };
 
 /// Records of one condition on one time base.
@@ -50,6 +55,9 @@ struct ParityCondition {
   std::string condition;
   std::vector<double> time_s;
   std::vector<double> model_m;  ///< position of the healthy model; empty where it failed
+  /// Change of that position by each quantity that differs between days, per standard deviation,
+  /// shape (samples, quantities).
+  Eigen::MatrixXd day_changes_m;
   std::vector<ParityRecord> records;
 };
 
@@ -58,7 +66,10 @@ struct ParitySignal {
   std::string signal;
   double window_s = 0.0;    ///< moving root mean square: a period, else a tenth of the record
   int healthy_records = 0;  ///< number of records behind the thresholds
-  std::optional<double> threshold_m;  ///< threshold for peak_m
+  std::optional<double> threshold_m;  ///< threshold for peak_m, of a record of the same day
+  /// The same of a record of a day that the healthy records do not have.
+  std::optional<double> threshold_of_another_day_m;
+  int common_causes = 0;  ///< by which the healthy records differ beyond noise
   FeatureThresholds features;
   std::string reason;  ///< why there is no threshold, in words
 };
@@ -74,6 +85,8 @@ struct Parity {
   std::vector<ParityCondition> conditions;  ///< campaign order
   std::vector<ParitySignal> signals;        ///< in order of their first appearance
   FalseAlarmCheck check;
+  BetweenDays between_days;
+  std::vector<std::string> other_days;  ///< days of records that are not of their reference's
   std::vector<std::string> warnings;
   bool usable() const;  ///< there is a residual at least
 };

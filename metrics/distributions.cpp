@@ -37,6 +37,12 @@ double fisher_f_exceedance(double x, double numerator_freedom, double denominato
   return boost::math::cdf(boost::math::complement(distribution, x));
 }
 
+double fisher_f_upper_quantile(double probability, double numerator_freedom,
+                               double denominator_freedom) {
+  const boost::math::fisher_f distribution(numerator_freedom, denominator_freedom);
+  return boost::math::quantile(boost::math::complement(distribution, probability));
+}
+
 double binomial_cdf(int successes, int trials, double probability) {
   return boost::math::cdf(boost::math::binomial(trials, probability), successes);
 }

@@ -37,6 +37,13 @@ double chi_squared_exceedance(double x, double freedom);
 /// @throws std::domain_error  invalid x or degrees of freedom
 double fisher_f_exceedance(double x, double numerator_freedom, double denominator_freedom);
 
+/// Value that Fisher's F exceeds with a probability.
+///
+/// @param probability  in (0, 1)
+/// @throws std::domain_error  invalid probability or degrees of freedom
+double fisher_f_upper_quantile(double probability, double numerator_freedom,
+                               double denominator_freedom);
+
 /// Probability of at most `successes` in `trials` >= 0 that each succeed with `probability`.
 ///
 /// @throws std::domain_error  no such count or probability

@@ -96,8 +96,11 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
   score.channel = channel.channel;
   try {
     score.agreement = metrics::agreement(channel.measured, simulated);
-    score.expanded_uncertainty =
-        metrics::agreement_uncertainty(measured_mean(campaign, condition, channel), simulated);
+    if (const auto found = metrics::agreement_uncertainty(
+            measured_mean(campaign, condition, channel), simulated)) {
+      score.expanded_uncertainty = found->one_sided;
+      score.two_sided_uncertainty = found->two_sided;
+    }
   } catch (const std::logic_error& error) {  // constant, or fewer than two samples
     add_problem(score, error.what());
   }
@@ -171,6 +174,22 @@ std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<c
   parallel_for(scores.size(), threads,
                [&](std::size_t i) { scores[i] = score_condition(problem, i, z); });
   return scores;
+}
+
+void test_predictions(const Problem& problem, std::vector<ConditionScore>& scores) {
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const ProblemCondition& condition = problem.conditions[i];
+    for (std::size_t k = 0; k < scores[i].channels.size(); ++k) {
+      ChannelScore& channel = scores[i].channels[k];
+      if (channel.explained.empty()) continue;
+      const std::vector<double>& whole = scores[i].series.at(channel.channel).second;
+      std::vector<double> simulated;
+      for (std::size_t j = 0; j < condition.rows.size(); ++j)
+        simulated.push_back(whole[condition.rows[j]] + channel.explained[j]);
+      channel.residual_tests =
+          test_residual(condition, condition.channels[k].measured, simulated, scores[i].drive);
+    }
+  }
 }
 
 std::vector<ConditionScore> unscored_conditions(const Problem& problem, const std::string& why) {

@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/quantity.hpp"
+#include "datasets/between_days_settings.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "datasets/campaign/report_settings.hpp"
 #include "datasets/campaign/waveform.hpp"
@@ -135,6 +136,7 @@ struct Condition {
   std::vector<RepeatPattern> repeats;
   std::optional<std::string> averaged;  ///< file that is averaged already
   int repeats_averaged = 1;
+  std::optional<int> planned_repeats;  ///< of a record that `plan` plans
   std::vector<TimeWindow> windows;  ///< empty: the whole record counts
   bool moving_windows = false;      ///< `windows = "moving"`: found from the record
   std::optional<std::vector<AcceptanceLimit>> acceptance;  ///< in place of the campaign's
@@ -215,11 +217,13 @@ struct Campaign {
   bool time_in_counts = false;  ///< samples are numbered, and their interval is unknown
   std::map<Channel, ChannelSetting> channels;
   Alignment alignment = Alignment::correlate;
+  bool leave_out_outliers = false;  ///< repeats far from the others are not in the mean
   std::vector<AcceptanceLimit> acceptance;
   AcceptanceBounds acceptance_bounds;
   FitSettings fit;
   SimulationSettings simulation;
   ConsideredSettings considered;
+  BetweenDaysSettings between_days;
   DiagnosisSettings diagnosis;
   ReportSettings report;
   std::optional<SyntheticSettings> synthetic_settings;

@@ -122,11 +122,14 @@ void read_synthetic_entry(const TomlNode& node, Campaign& campaign) {
   }
 }
 
-Alignment read_alignment(const TomlNode& node) {
-  node.allow_only({"align"});
-  const auto align = node.find("align");
-  if (!align) return Alignment::correlate;
-  return align->choice<Alignment>({{"correlate", Alignment::correlate}, {"none", Alignment::none}});
+void read_averaging(const TomlNode& node, Campaign& campaign) {
+  node.allow_only({"align", "outliers"});
+  if (const auto align = node.find("align")) {
+    campaign.alignment =
+        align->choice<Alignment>({{"correlate", Alignment::correlate}, {"none", Alignment::none}});
+  }
+  if (const auto outliers = node.find("outliers"))
+    campaign.leave_out_outliers = outliers->choice<bool>({{"keep", false}, {"leave_out", true}});
 }
 
 }  // namespace
@@ -140,8 +143,8 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   const TomlNode root(parsed, file.string(), "");
   check_schema(root);
   root.allow_only({"schema", "name", "synthetic", "rig", "leak_level", "recording", "averaging",
-                   "acceptance", "fit", "considered", "simulation", "leak_table", "diagnosis",
-                   "report", "condition"});
+                   "acceptance", "fit", "considered", "between_days", "simulation", "leak_table",
+                   "diagnosis", "report", "condition"});
   Campaign campaign;
   campaign.file = file;
   campaign.file_state = file_state;
@@ -153,11 +156,13 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   // The order matters: the later sections are checked against the earlier ones.
   if (const auto node = root.find("leak_level")) read_leak_levels(*node, campaign);
   if (const auto node = root.find("recording")) read_recording(*node, campaign);
-  if (const auto node = root.find("averaging")) campaign.alignment = read_alignment(*node);
+  if (const auto node = root.find("averaging")) read_averaging(*node, campaign);
   if (const auto node = root.find("acceptance")) read_acceptance(*node, campaign);
   if (const auto node = root.find("fit")) campaign.fit = read_fit(*node, campaign);
   if (const auto node = root.find("considered"))
     campaign.considered = read_considered(*node, campaign);
+  if (const auto node = root.find("between_days"))
+    campaign.between_days = read_between_days(*node, campaign);
   if (const auto node = root.find("report")) campaign.report = read_report(*node);
   apply_sensors(root, campaign);
   if (const auto node = root.find("simulation")) campaign.simulation = read_simulation(*node);

@@ -29,6 +29,9 @@ FitSettings read_fit(const TomlNode& node, const Campaign& campaign);
 /// [considered]; needs the rig.
 ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaign);
 
+/// [between_days]; needs the rig.
+BetweenDaysSettings read_between_days(const TomlNode& node, const Campaign& campaign);
+
 /// [diagnosis]
 DiagnosisSettings read_diagnosis(const TomlNode& node);
 /// @throws InputError  `duty` names no condition of the campaign

@@ -16,6 +16,8 @@ constexpr const char* kDecision = "decision";
 constexpr const char* kModelError = "model_error_to_noise";
 constexpr const char* kNegligible = "negligible";
 constexpr const char* kNotJudged = "not_judged";
+/// Records that begin a second apart from their drive are no day-to-day variation.
+constexpr double kMostTriggerSd_s = 1.0;
 
 using metrics::kMetrics;
 using metrics::MetricSpec;
@@ -271,6 +273,47 @@ ConsideredSettings read_considered(const TomlNode& node, const Campaign& campaig
     considered.sizes[key] = size;
   }
   return considered;
+}
+
+BetweenDaysSettings read_between_days(const TomlNode& node, const Campaign& campaign) {
+  BetweenDaysSettings days;
+  if (node.is_boolean()) {
+    if (node.boolean())
+      node.fail("is true: expected a table of sizes, or false where no day differs from another");
+    days.none = true;
+    return days;
+  }
+  const model::PlantKind plant = campaign.rig.plant;
+  const auto names = day_quantity_names(plant);
+  for (const auto& [key, entry] : node.entries()) {
+    const auto name = std::find_if(names.begin(), names.end(),
+                                   [&key = key](const auto& each) { return each.key == key; });
+    if (name == names.end()) {
+      std::vector<std::string> known;
+      for (const DayQuantityName& each : names) known.push_back(each.key);
+      node.fail_unknown(key, "quantity", known);
+    }
+    if (entry.is_boolean()) {
+      if (entry.boolean())
+        entry.fail("is true: expected a standard deviation, or false where it does not differ");
+      days.left_out.insert(key);
+      continue;
+    }
+    const double sd = entry.difference(name->unit);
+    if (!(sd > 0.0))
+      entry.fail("is not above zero: expected a standard deviation between days, or false");
+    const int index = model::parameter_index(plant, key);
+    const auto* setting = index < 0 ? nullptr : campaign.setting(index);
+    double most = index < 0 ? kMostTriggerSd_s : spec_of(plant, index).upper;
+    if (setting != nullptr && setting->value > 0.0) most = setting->value;
+    if (!(sd <= most))
+      entry.fail(
+          fmt::format("is larger than {:g} {}, which it may be at most: expected a standard "
+                      "deviation between days",
+                      most, name->unit));
+    days.sds[key] = sd;
+  }
+  return days;
 }
 
 SimulationSettings read_simulation(const TomlNode& node) {

@@ -124,7 +124,7 @@ void set_interval(double half_width, LeakEstimate& estimate) {
 
 }  // namespace
 
-double CoefficientError::total() const { return std::hypot(own_se, rig_se); }
+double CoefficientError::total() const { return std::hypot(own_se, rig_se, days_se); }
 
 double CoefficientError::half_width() const {
   return metrics::student_t_quantile(0.975, freedom) * total();

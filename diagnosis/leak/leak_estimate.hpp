@@ -45,14 +45,16 @@ struct LeakEstimate {
   bool has_class() const { return !incompatible && has_share(); }
 };
 
-/// Error of the coefficient of one record, from four independent parts: the residuals (by clusters
+/// Error of the coefficient of one record, from independent parts: the residuals (by clusters
 /// if the signal has a lack of fit and the record shows it), variation between repeats beyond their
 /// white noise (divided by the root of their number for an average), the apparent leak of healthy
-/// records, and the rig's parameters.
+/// records, the rig's parameters, and the days.
 struct CoefficientError {
-  double own_se = 0.0;  ///< without the rig's parameters
+  double own_se = 0.0;  ///< without the rig's parameters and the days
   double rig_se = 0.0;
   double freedom = 1.0;  ///< Welch and Satterthwaite
+  /// From what differs between the day of the record and that of its reference (with_days()).
+  double days_se = 0.0;
   double total() const;
   /// Half the width of the 95 % interval.
   double half_width() const;

@@ -120,9 +120,36 @@ std::string in_words(const model::Simulation& run) {
                      model::to_string(run.status));
 }
 
+/// Sets what the quantities that differ between days do to the coefficient and to the position.
+///
+/// @param weight  of each weighted residual in the coefficient, channel after channel
+void set_day_effects(const calib::ProblemCondition& condition, const model::Simulation& run,
+                     std::size_t position, const std::vector<int>& free,
+                     const std::vector<calib::DayQuantity>& quantities,
+                     const Eigen::VectorXd& weight, LeakFit& fit) {
+  if (quantities.empty()) return;
+  const auto samples = static_cast<Eigen::Index>(condition.rows.size());
+  const auto& times = condition.record->time_s;
+  const std::vector<Eigen::Index> rows(condition.rows.begin(), condition.rows.end());
+  fit.day_effects = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(quantities.size()));
+  for (std::size_t k = 0; k < condition.channels.size(); ++k) {
+    const Eigen::MatrixXd changes = calib::day_changes(condition, run, static_cast<Eigen::Index>(k),
+                                                       free, times, quantities)(rows, Eigen::all);
+    fit.day_effects += changes.transpose() *
+                       weight.segment(static_cast<Eigen::Index>(k) * samples, samples) /
+                       condition.channels[k].sd;
+  }
+  const Eigen::MatrixXd of_position = calib::day_changes(
+      condition, run, static_cast<Eigen::Index>(position), free, times, quantities);
+  fit.day_rms_m = std::sqrt(of_position(rows, Eigen::all).squaredNorm() /
+                            static_cast<double>(std::max<Eigen::Index>(1, samples)));
+}
+
 /// Results of simulations at the end of the fit, with and without the leak.
-void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, int reference,
-              const model::ParameterValues& values, const std::atomic<bool>* cancel, LeakFit& fit) {
+void describe(const calib::Problem& problem, const RigFit& rig, const LeakProblem& leak_problem,
+              int reference, const model::ParameterValues& values, const std::atomic<bool>* cancel,
+              LeakFit& fit) {
+  const int leak_row = leak_problem.leak;
   const calib::ProblemCondition& condition = problem.conditions.front();
   std::vector<int> free = condition.free;
   std::vector<int> rig_columns;  // in the covariance, for each rig parameter that is free here
@@ -131,17 +158,20 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
     free.push_back(rig.indices[j]);
     rig_columns.push_back(static_cast<int>(j));
   }
+  const std::vector<int> without_days = free;
+  const std::vector<int> of_days = calib::further_rows(leak_problem.day_quantities, free);
+  free.insert(free.end(), of_days.begin(), of_days.end());
   std::vector<model::Output> outputs = condition.outputs;
   const std::size_t position = outputs.size();
   outputs.push_back(model::Output::position);
-  const auto simulated = [&](double coefficient) {
+  const auto simulated = [&](double coefficient, const std::vector<int>& rows) {
     model::ParameterValues at = values;
     at.set(leak_row, coefficient);
-    return model::simulate(condition.rig, at, free, condition.inputs, condition.record->time_s,
+    return model::simulate(condition.rig, at, rows, condition.inputs, condition.record->time_s,
                            outputs, problem.simulation_options(cancel));
   };
-  const auto run = simulated(values[kLeak]);
-  const auto healthy = simulated(0.0);
+  const auto run = simulated(values[kLeak], free);
+  const auto healthy = simulated(0.0, without_days);
   if (!run.ok() || !healthy.ok()) {
     fit.failure = in_words(run.ok() ? healthy : run);
     return;
@@ -186,12 +216,14 @@ void describe(const calib::Problem& problem, const RigFit& rig, int leak_row, in
     return;
   }
 
+  const Eigen::VectorXd weight = linear.jacobian * bread.col(leak);
+  set_day_effects(condition, run, position, free, leak_problem.day_quantities, weight, fit);
   fit.rig_moves = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(rig.indices.size()));
   if (!rig_columns.empty()) {
     // Effects of the rig's parameters without a leak are already in the healthy reference.
-    Eigen::MatrixXd rig_jacobian = linear.rig_jacobian;
+    const auto columns = static_cast<Eigen::Index>(rig_columns.size());
+    Eigen::MatrixXd rig_jacobian = linear.rig_jacobian.leftCols(columns);
     if (reference > 0) rig_jacobian -= linearise(problem, healthy).rig_jacobian;
-    const Eigen::VectorXd weight = linear.jacobian * bread.col(leak);
     fit.rig_moves(rig_columns) = -(rig_jacobian.transpose() * weight);
     fit.rig_se = std::sqrt(std::max(0.0, fit.rig_moves.dot(rig.covariance * fit.rig_moves)));
   }
@@ -331,7 +363,7 @@ LeakFit fit_leak(const LeakProblem& leak_problem, const RigFit& rig, const Condi
     return fit;
   }
   const model::ParameterValues values = problem.values_at(0, best.z);
-  describe(problem, rig, leak_problem.leak, reference, values, cancel, fit);
+  describe(problem, rig, leak_problem, reference, values, cancel, fit);
   return fit;
 }
 
@@ -378,6 +410,30 @@ double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
   return std::sqrt(std::max(0.0, moves.dot(rig.covariance * moves)));
 }
 
+Eigen::VectorXd share_day_effects(const LeakProblem& leak_problem, const Condition& condition,
+                                  const Record& average, const LeakFit& fit, double share_slope,
+                                  double negligible) {
+  Eigen::VectorXd moves = share_slope * fit.day_effects;
+  if (!(fit.coefficient > negligible) || moves.size() == 0) return moves;
+  const std::vector<int> rows = calib::further_rows(leak_problem.day_quantities, {});
+  const std::vector<Record> records{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), records);
+  const calib::ProblemCondition& prepared = problem.conditions.front();
+  model::ParameterValues values = prepared.values;
+  values.set(leak_problem.leak, fit.coefficient);
+  const Eigen::VectorXd slopes =
+      steady_leak(problem, prepared, values, rows, leak_problem.cancel).share_slope;
+  const bool supply_recorded = prepared.inputs.supply_pressure_pa.has_value();
+  for (std::size_t q = 0; q < leak_problem.day_quantities.size(); ++q) {
+    const calib::DayQuantity& quantity = leak_problem.day_quantities[q];
+    const int place = column_of(rows, quantity.index);
+    if (place < 0 || (supply_recorded && quantity.key == "supply_pressure")) continue;
+    moves(static_cast<Eigen::Index>(q)) += quantity.sd * slopes(place);
+  }
+  return moves;
+}
+
 Residuals healthy_residuals(const LeakProblem& leak_problem, const Condition& condition,
                             const Record& average, const std::vector<const Record*>& records) {
   const std::vector<Record> averages{average};
@@ -404,6 +460,24 @@ Residuals healthy_residuals(const LeakProblem& leak_problem, const Condition& co
     }
   }
   return result;
+}
+
+Eigen::MatrixXd healthy_day_changes(const LeakProblem& leak_problem, const Condition& condition,
+                                    const Record& average) {
+  const std::vector<Record> averages{average};
+  const calib::Problem problem =
+      problem_of(leak_problem, own_condition(leak_problem, condition), averages);
+  const calib::ProblemCondition& prepared = problem.conditions.front();
+  model::ParameterValues values = prepared.values;
+  values.set(leak_problem.leak, 0.0);
+  const std::vector<int> rows = calib::further_rows(leak_problem.day_quantities, {});
+  const auto run = model::simulate(prepared.rig, values, rows, prepared.inputs, average.time_s,
+                                   std::vector{model::Output::position},
+                                   problem.simulation_options(leak_problem.cancel));
+  if (!run.ok())
+    throw NoResultError(
+        fmt::format("condition \"{}\": healthy model: {}", condition.id, in_words(run)));
+  return calib::day_changes(prepared, run, 0, rows, average.time_s, leak_problem.day_quantities);
 }
 
 double share_at(const Campaign& campaign, const Condition& condition, const Record& record,

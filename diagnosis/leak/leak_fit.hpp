@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "calib/problem/day_effects.hpp"
 #include "calib/fit.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
@@ -34,6 +35,8 @@ struct LeakProblem {
   std::vector<datasets::FittedValue> values;  ///< values of the rig
   int leak = 0;                               ///< table row of the leakage coefficient
   const std::atomic<bool>* cancel = nullptr;  ///< ends the simulations when it becomes true
+  /// What differs between days; empty: nothing.
+  std::vector<calib::DayQuantity> day_quantities;
 
   LeakProblem(const datasets::Campaign& original, const RigFit& rig);
   /// The same with another upper bound of the coefficient.
@@ -60,6 +63,10 @@ struct LeakFit {
   double rig_se = 0.0;    ///< from the uncertainty of the rig's parameters
   /// Change of the coefficient per unit of each of the rig's parameters, shape (RigFit::indices).
   Eigen::VectorXd rig_moves;
+  /// Change of the coefficient by each day quantity, per standard deviation between days; empty
+  /// where there are none.
+  Eigen::VectorXd day_effects;
+  double day_rms_m = 0.0;     ///< rms change of position by all of them together [m]
   double effect_m = 0.0;      ///< rms change of position per unit of the coefficient [m]
   double parity_rms_m = 0.0;  ///< record (corrected, if it was) minus healthy model
   double misfit_rms_m = 0.0;  ///< record minus leaking model
@@ -103,6 +110,14 @@ Residuals healthy_residuals(const LeakProblem& leak_problem, const datasets::Con
                             const datasets::Record& average,
                             const std::vector<const datasets::Record*>& records);
 
+/// Change of the healthy model's position by each day quantity, per standard deviation, at the
+/// times of the average, shape (samples, quantities).
+///
+/// @throws NoResultError  the model cannot be simulated
+Eigen::MatrixXd healthy_day_changes(const LeakProblem& leak_problem,
+                                    const datasets::Condition& condition,
+                                    const datasets::Record& average);
+
 /// Scan of a condition by its average record.
 LeakScan leak_scan_of(const LeakProblem& leak_problem, const datasets::Condition& condition,
                       const datasets::Record& average);
@@ -124,6 +139,13 @@ LeakCurve leak_curve_of(const LeakProblem& leak_problem, const datasets::Conditi
 double share_rig_error(const LeakProblem& leak_problem, const RigFit& rig,
                        const datasets::Condition& condition, const datasets::Record& average,
                        const LeakFit& fit, double share_slope, double negligible = 0.0);
+
+/// Change of the share by each day quantity, per standard deviation between days: by itself, and
+/// with the coefficient, which moves by `day_effects`.
+Eigen::VectorXd share_day_effects(const LeakProblem& leak_problem,
+                                  const datasets::Condition& condition,
+                                  const datasets::Record& average, const LeakFit& fit,
+                                  double share_slope, double negligible = 0.0);
 
 /// Share of the servo flow that leaks in a condition at given values: of a truth that is known.
 double share_at(const datasets::Campaign& campaign, const datasets::Condition& condition,

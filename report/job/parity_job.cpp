@@ -63,7 +63,7 @@ JobResult parity_job(datasets::Campaign campaign, const ParityRequest& request,
   settings.progress = [&](int done, int all) { terms.progress("conditions", done, all); };
   found = diagnosis::parity(campaign, records.conditions,
                             {earlier.values, earlier.indices, earlier.covariance}, settings);
-  found.warnings = records.left_out;
+  found.warnings.insert(found.warnings.end(), records.left_out.begin(), records.left_out.end());
   for (const auto& warning : gathered_doubts(records.averages()))
     found.warnings.push_back(warning.with_conditions());
   if (earlier.status == calib::FitStatus::stopped)

@@ -1,3 +1,6 @@
+#include <array>
+#include <cmath>
+
 #include "report/leak/diagnosis.hpp"
 #include "report/leak/leak_estimate.hpp"
 #include "report/leak/leak_trend.hpp"
@@ -72,6 +75,28 @@ StoredSmallestLeak stored(const diagnosis::SignalDiagnosis& signal) {
   told.repeat_sd_m = signal.errors.repeat_m;
   told.healthy_leak_m = signal.errors.healthy_m;
   told.reason = unless_empty(signal.reason);
+  if (signal.of_another_day) {
+    told.of_another_day = true;
+    if (const auto limit = flow(signal.smallest_leak_same_day)) told.averaged_same_day = *limit;
+    if (const auto limit = flow(signal.smallest_single_leak_same_day))
+      told.single_same_day = *limit;
+  }
+  return told;
+}
+
+StoredBetweenDays stored(const diagnosis::BetweenDays& between,
+                         const std::vector<std::string>& other_days) {
+  constexpr std::array kSources{"usual", "stated", "estimated"};
+  StoredBetweenDays told;
+  told.other_days = other_days;
+  told.source = kSources.at(static_cast<std::size_t>(between.source));
+  told.factor = std::sqrt(between.variance);
+  if (between.source == diagnosis::DaySource::estimated) told.freedom = between.freedom;
+  told.healthy_dates = between.dates;
+  for (const calib::DayQuantity& each : between.quantities)
+    told.quantities.push_back(
+        {each.key, each.meaning, each.unit, told.factor * each.sd, each.sd_from});
+  told.sentence = unless_empty(diagnosis::in_words(between, other_days));
   return told;
 }
 
@@ -112,6 +137,7 @@ StoredDiagnosis stored(const DiagnosisResult& result) {
   file.accuracy = single.accuracy;
   file.accuracy_ci95 = single.accuracy_ci95;
   for (const auto& signal : found.signals) file.smallest_leak_l_per_min.push_back(stored(signal));
+  if (found.usable()) file.between_days = stored(found.between_days, found.other_days);
   file.warnings = found.warnings;
   file.provenance = stored(result.provenance);
   return file;

@@ -53,8 +53,9 @@ StoredParityRecord stored(const ParityResult& result, const ParityRecord& record
   }
   told.features = {value(record.features.mean), value(record.features.rms),
                    value(record.features.std)};
-  if (ok && signal != nullptr) {
-    const diagnosis::FeatureThresholds& limits = signal->features;
+  if (ok && record.threshold_m) told.threshold_m = *record.threshold_m;
+  if (ok) {
+    const diagnosis::FeatureThresholds& limits = record.feature_thresholds;
     told.exceeds = {exceeds(limits.mean, record.features.mean),
                     exceeds(limits.rms, record.features.rms),
                     exceeds(limits.std, record.features.std)};
@@ -63,12 +64,17 @@ StoredParityRecord stored(const ParityResult& result, const ParityRecord& record
 }
 
 StoredParitySignal stored(const ParitySignal& signal) {
-  return {signal.signal,
-          signal.window_s,
-          signal.healthy_records,
-          signal.threshold_m,
-          {signal.features.mean, signal.features.rms, signal.features.std},
-          unless_empty(signal.reason)};
+  StoredParitySignal told;
+  told.signal = signal.signal;
+  told.window_s = signal.window_s;
+  told.healthy_records = signal.healthy_records;
+  told.threshold_m = signal.threshold_m;
+  told.feature_thresholds = {signal.features.mean, signal.features.rms, signal.features.std};
+  told.reason = unless_empty(signal.reason);
+  if (signal.threshold_of_another_day_m)
+    told.threshold_of_another_day_m = *signal.threshold_of_another_day_m;
+  told.common_causes = signal.common_causes;
+  return told;
 }
 
 std::string repeat_name(const ParityRecord& record) {

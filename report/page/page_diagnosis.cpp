@@ -388,12 +388,31 @@ void add_smallest_leaks(const StoredDiagnosis& diagnosis, doc::Blocks& blocks) {
   table.columns = {{"Signal"},
                    {"Single record, L/min", Kind::number},
                    {"Average, L/min", Kind::number},
-                   {"Average, share %", Kind::number},
-                   {"Note"}};
-  for (const StoredSmallestLeak& each : diagnosis.smallest_leak_l_per_min)
-    table.rows.push_back(
-        {{each.signal, doc::in_unit(each.single, 1.0, 3), doc::in_unit(each.averaged, 1.0, 3),
-          doc::in_unit(each.averaged_share_percent, 1.0, 3), each.reason.value_or("")}});
+                   {"Average, share %", Kind::number}};
+  const auto& limits = diagnosis.smallest_leak_l_per_min;
+  const bool another_day = std::any_of(limits.begin(), limits.end(), [](const auto& each) {
+    return each.of_another_day.value_or(false);
+  });
+  if (another_day) {
+    table.columns.push_back({"Same day, single", Kind::number});
+    table.columns.push_back({"Same day, average", Kind::number});
+  }
+  table.columns.push_back({"Note"});
+  for (const StoredSmallestLeak& each : limits) {
+    std::vector<doc::Cell> row{each.signal, doc::in_unit(each.single, 1.0, 3),
+                               doc::in_unit(each.averaged, 1.0, 3),
+                               doc::in_unit(each.averaged_share_percent, 1.0, 3)};
+    if (another_day) {
+      row.push_back(doc::in_unit(each.single_same_day, 1.0, 3));
+      row.push_back(doc::in_unit(each.averaged_same_day, 1.0, 3));
+    }
+    row.push_back(each.reason.value_or(""));
+    table.rows.push_back({std::move(row)});
+  }
+  if (another_day)
+    blocks.emplace_back(
+        doc::reading("The smallest leaks are those of a record of another day than its reference; "
+                     "on the day of the reference smaller ones are found."));
   blocks.emplace_back(std::move(table));
 }
 

@@ -26,6 +26,7 @@ const StoredParitySignal* signal_of(const StoredParity& parity, const std::strin
 struct Summary {
   std::string condition, level;
   const StoredParitySignal* signal = nullptr;
+  std::optional<double> threshold_m;  ///< of its day
   bool healthy = false;
   bool reference = false;  ///< its records set the threshold
   int judged = 0;
@@ -43,10 +44,12 @@ std::vector<Summary> summaries(const StoredParity& parity) {
       fresh.condition = record.condition;
       fresh.level = record.leak_level.value_or("");
       fresh.signal = signal_of(parity, record.signal);
+      if (fresh.signal != nullptr) fresh.threshold_m = fresh.signal->threshold_m;
       fresh.healthy = record.healthy;
     }
     Summary& own = list.back();
     if (record.failure) own.failure = *record.failure;
+    if (record.threshold_m) own.threshold_m = *record.threshold_m;
     own.reference = own.reference || record.sets_threshold;
     own.largest_m = std::max(own.largest_m, record.peak_m.value_or(0.0));
     if (!record.alarm) continue;
@@ -106,8 +109,7 @@ Plot alarm_plot(const Summary& summary, const Table& series) {
   plot.y_label = "moving rms [mm]";
   plot.height = 160.0;
   add_lines(series, "moving_rms", "model", "each repeat", plot);
-  if (summary.signal != nullptr && summary.signal->threshold_m)
-    plot.levels.push_back(kMillimetres * *summary.signal->threshold_m);
+  if (summary.threshold_m) plot.levels.push_back(kMillimetres * *summary.threshold_m);
   return plot;
 }
 
@@ -195,7 +197,7 @@ doc::Table alarm_table(const std::vector<Summary>& list) {
                   {std::move(level)},
                   alarm_badge(each),
                   {millimetres(each.largest_m)},
-                  {millimetres(each.signal != nullptr ? each.signal->threshold_m : std::nullopt)},
+                  {millimetres(each.threshold_m)},
                   doc::in_unit(each.first_s, 1.0, kLengthDigits)}};
     if (!each.failure.empty()) row.notes = {each.failure};
     table.rows.push_back(std::move(row));

@@ -1,5 +1,6 @@
 #include "diagnosis/alarm_threshold.hpp"
 
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
@@ -50,4 +51,18 @@ TEST_CASE("moving_rms: of the last samples; what is not there counts as zero", "
   CHECK_THAT(found[5], Catch::WithinRel(std::sqrt(50.0), 1e-14));
   CHECK_THAT(found[6], Catch::WithinRel(std::sqrt(32.0), 1e-14));
   CHECK(moving_rms(x, 1)[1] == 4.0);
+}
+
+TEST_CASE("threshold_with: one cause is the prediction bound of t, several are wider than each",
+          "[diagnosis]") {
+  using diagnosis::CausePart;
+  // sqrt(F(0.99; 1, 4)) = t(0.995; 4) = 4.6041.
+  const std::array<CausePart, 1> one{CausePart{4.0, 4.0}};
+  CHECK_THAT(diagnosis::threshold_with(0.0, one, 0.01), Catch::WithinRel(2.0 * 4.604095, 1e-6));
+  CHECK_THAT(diagnosis::threshold_with(3.0, one, 0.01),
+             Catch::WithinRel(std::hypot(3.0, 2.0 * 4.604095), 1e-6));
+  CHECK(diagnosis::threshold_with(3.0, {}, 0.01) == 3.0);
+  // Known exactly, and two alike: chi-square of two degrees of freedom, 9.2103 at 1 %.
+  const std::array<CausePart, 2> two{CausePart{1.0, 1e9}, CausePart{1.0, 1e9}};
+  CHECK_THAT(diagnosis::threshold_with(0.0, two, 0.01), Catch::WithinRel(std::sqrt(9.21034), 1e-4));
 }

@@ -1,10 +1,13 @@
 #include "diagnosis/diagnose.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include "calib/published/leak_table.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
+#include "metrics/distributions.hpp"
 
 using namespace rigcal;
 using datasets::Campaign;
@@ -171,6 +174,130 @@ TEST_CASE("diagnose: what healthy records lack too is no leak", "[diagnosis]") {
   CHECK(found.single.off_by_two == 0);
   for (const auto& record : found.records)
     CHECK(record.reference_repeats == (record.truth == LeakClass::normal && record.repeat ? 2 : 3));
+}
+
+TEST_CASE("diagnose: a supply half a percent lower on another day is no leak", "[diagnosis]") {
+  Campaign campaign = small_campaign();
+  campaign.conditions.resize(2);
+  campaign.conditions[1].overrides.front().second = 0.0;
+  Campaign lower = campaign;
+  set_true(lower, "supply_pressure", 0.995 * 6.2e6);
+  auto records = records_of(campaign);
+  records[1] = records_of(lower)[1];
+  const auto diagnosed = [&] {
+    auto found = diagnosis::diagnose(campaign, records, known_rig(campaign), {});
+    REQUIRE(found.records.at(4).condition == campaign.conditions[1].id);
+    REQUIRE(found.records.at(4).fit.ok());
+    return found;
+  };
+  // On the day of the reference, as both dates say, it is one.
+  const Diagnosis same = diagnosed();
+  CHECK(same.records.at(4).estimate.leak_detected);
+  CHECK(same.other_days.empty());
+  CHECK_FALSE(same.signals.front().of_another_day);
+
+  campaign.conditions[1].date = "2026-03-01";
+  const Diagnosis other = diagnosed();
+  CHECK_FALSE(other.records.at(4).estimate.leak_detected);
+  CHECK_FALSE(other.records.at(4).estimate.incompatible);
+  CHECK(other.records.at(4).estimate.ci95.first == 0.0);
+  CHECK(other.other_days == std::vector<std::string>{"2026-03-01"});
+  CHECK(other.warnings.front().find("2026-03-01") != std::string::npos);
+  CHECK(other.states.at(1).ok());
+  CHECK_FALSE(other.states.at(1).estimate.leak_detected);
+  CHECK(other.states.at(1).pooled.error.days_se > 0.0);
+  const auto& limits = other.signals.front();
+  CHECK(limits.of_another_day);
+  REQUIRE(limits.smallest_leak_same_day);
+  CHECK(limits.smallest_leak_same_day->coefficient ==
+        same.signals.front().smallest_leak->coefficient);
+  CHECK(limits.smallest_leak->coefficient > 2.0 * limits.smallest_leak_same_day->coefficient);
+  // A share moves with the day, too.
+  CHECK(other.records.at(4).estimate.share_ci95.second >
+        same.records.at(4).estimate.share_ci95.second);
+
+  // Without a date no one knows.
+  campaign.conditions[1].date.reset();
+  CHECK_FALSE(diagnosed().records.at(4).estimate.leak_detected);
+  campaign.conditions[1].date = "2026-03-01";
+  campaign.between_days.none = true;
+  CHECK(diagnosed().records.at(4).estimate.leak_detected);
+}
+
+TEST_CASE("diagnose: over many days alarms are as stated, and the smallest leak is found",
+          "[diagnosis]") {
+  // The small version of bench/days_study.cpp: supplies at the quantiles of the difference of two
+  // days, of which the reference's is one.
+  constexpr int kDays = 20;
+  Campaign campaign = small_campaign();
+  campaign.conditions.resize(1);
+  const Condition healthy = campaign.conditions.front();
+  campaign.between_days.sds["supply_pressure"] = 31e3;
+  campaign.between_days.left_out = {"bulk_modulus", "position_offset", datasets::kTriggerKey};
+  const auto reference = records_of(campaign);
+  const auto diagnosed = [&](double coefficient) {
+    campaign.conditions.resize(1);
+    auto records = reference;
+    for (int i = 0; i < kDays; ++i) {
+      Condition& condition = campaign.conditions.emplace_back(healthy);
+      condition.id = fmt::format("day_{}", i);
+      condition.date = fmt::format("2026-03-{:02d}", i + 1);
+      condition.leak_level = "unknown";
+      condition.use = datasets::Use::diagnose;
+      condition.overrides = {{row_of(campaign, "leakage_coefficient"), coefficient}};
+      Campaign truth = campaign;
+      truth.conditions = {condition};
+      set_true(truth, "supply_pressure",
+               6.2e6 + std::sqrt(2.0) * 31e3 * metrics::normal_quantile((i + 0.5) / kDays));
+      records.push_back(records_of(truth, 100 + static_cast<std::uint64_t>(i)).front());
+      records.back().singles.clear();
+      records.back().covered.clear();
+    }
+    campaign.leak_levels["unknown"] = {};
+    return diagnosis::diagnose(campaign, records, known_rig(campaign), {});
+  };
+  const auto alarms_of = [](const Diagnosis& found) {
+    int alarms = 0;
+    for (const auto& record : found.records)
+      alarms += record.condition.starts_with("day_") && record.estimate.leak_detected ? 1 : 0;
+    return alarms;
+  };
+  const Diagnosis none = diagnosed(0.0);
+  CHECK(alarms_of(none) <= 1);
+  for (const auto& record : none.records) CHECK_FALSE(record.estimate.incompatible);
+  REQUIRE(none.signals.front().smallest_leak);
+  const double limit = none.signals.front().smallest_leak->coefficient;
+  CHECK(alarms_of(diagnosed(limit)) >= 18);
+  // The days themselves make the limit: half the leak is missed in half of them.
+  CHECK(alarms_of(diagnosed(0.5 * limit)) < 17);
+  campaign.between_days = {};
+  campaign.between_days.none = true;
+  CHECK(alarms_of(diagnosed(0.0)) > 5);
+}
+
+TEST_CASE("diagnose: healthy records of many dates tell how days differ", "[diagnosis]") {
+  Campaign campaign = small_campaign();
+  const Condition healthy = campaign.conditions.front();
+  campaign.conditions.clear();
+  std::vector<datasets::RepeatRecords> records;
+  const std::vector<double> supplies{1.0, 1.011, 0.99, 1.008, 0.992};
+  Campaign truth = campaign;
+  for (std::size_t i = 0; i < supplies.size(); ++i) {
+    Condition& condition = campaign.conditions.emplace_back(healthy);
+    condition.id = fmt::format("day_{}", i);
+    condition.date = fmt::format("2026-03-{:02d}", i + 1);
+    truth.conditions = {condition};
+    set_true(truth, "supply_pressure", supplies[i] * 6.2e6);
+    records.push_back(records_of(truth, i + 1).front());
+    truth.synthetic_settings->parameters.pop_back();
+  }
+  const Diagnosis found = diagnosis::diagnose(campaign, records, known_rig(campaign), {});
+  CHECK(found.between_days.source == diagnosis::DaySource::estimated);
+  CHECK(found.between_days.dates == 5);
+  CHECK(found.between_days.freedom == 4.0);
+  // Supplies differ by 1 % (standard deviation), twice the usual size.
+  CHECK(std::sqrt(found.between_days.variance) > 1.0);
+  CHECK(std::sqrt(found.between_days.variance) < 4.0);
 }
 
 TEST_CASE("diagnose: another fault is not called a leak", "[diagnosis]") {

@@ -95,22 +95,6 @@ TEST_CASE("is_healthy: class normal, or a coefficient that is known to be 0", "[
   CHECK_FALSE(healthy("[diagnosis]\nlevel_class = { x = \"slight\" }\n" + level("0")));
 }
 
-TEST_CASE("other_days: supply and oil are those of the day of the reference", "[diagnosis]") {
-  const auto said = [&](const std::string& healthy, const std::string& other) {
-    const std::string levels = "[diagnosis]\nlevel_class = { none = \"normal\" }\n";
-    const datasets::Campaign campaign =
-        load_text(kHead + kChannels + levels + condition("a", "leak_level = \"none\"\n" + healthy) +
-                  condition("b", "leak_level = \"seal\"\n" + other));
-    return all(diagnosis::other_days(campaign));
-  };
-  const std::string first = "date = 2019-09-11\n";
-  CHECK(said(first, first).empty());
-  CHECK_THAT(said(first, "date = 2019-10-02\n"), Contains("supply and oil") &&
-                                                     Contains("healthy reference, 2019-09-11") &&
-                                                     Contains("2019-10-02"));
-  CHECK_THAT(said("", ""), Contains("not all conditions are dated"));
-}
-
 TEST_CASE("confounded: level with specimen and date, but not where both appear", "[diagnosis]") {
   const std::string levels = "[diagnosis]\nlevel_class = { none = \"normal\" }\n";
   const auto with = [&](const std::string& second_date) {

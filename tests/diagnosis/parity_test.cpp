@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <iostream>
 
 #include "common/error.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
@@ -58,6 +59,32 @@ diagnosis::RigFit true_rig(const Campaign& campaign) {
   for (const auto& [index, value] : campaign.synthetic_settings->parameters)
     rig.values.push_back({index, datasets::Scope::rig, "", value});
   return rig;
+}
+
+struct AlarmCounts {
+  int alarms = 0;
+  int records = 0;
+  int with_cause = 0;  ///< campaigns whose repeats are found to have a cause in common
+};
+
+/// Alarms of healthy records of campaigns whose repeats differ by their supply, all alike.
+AlarmCounts alarms_of_healthy(double rate, double supply_sd, std::uint64_t first, int campaigns) {
+  Campaign campaign = three_conditions(0.1);
+  campaign.conditions.resize(2);
+  const int supply = model::parameter_index(campaign.rig.plant, "supply_pressure");
+  if (supply_sd > 0.0) campaign.synthetic_settings->variation[supply] = supply_sd;
+  diagnosis::ParityOptions options;
+  options.false_alarm = rate;
+  options.threads = 2;
+  AlarmCounts counts;
+  for (int i = 0; i < campaigns; ++i) {
+    const auto records = made(campaign, first + static_cast<std::uint64_t>(i));
+    const auto found = diagnosis::parity(campaign, records, true_rig(campaign), options);
+    counts.alarms += found.check.alarms;
+    counts.records += found.check.records;
+    counts.with_cause += found.signals.front().common_causes > 0 ? 1 : 0;
+  }
+  return counts;
 }
 
 }  // namespace
@@ -131,6 +158,60 @@ TEST_CASE("parity: false alarms on another day are as many as stated", "[diagnos
   // 0.1 +- 0.05 is three standard errors.
   CHECK(alarms > 15);
   CHECK(alarms < 45);
+}
+
+TEST_CASE("parity: the stated rate holds where repeats differ by their supply", "[diagnosis]") {
+  const AlarmCounts found = alarms_of_healthy(0.05, 0.02, 1, 60);
+  CAPTURE(found.alarms, found.with_cause);
+  CHECK(found.records == 300);
+  // 0.05 +- 0.033 is two standard errors of campaigns that share one threshold.
+  CHECK(found.alarms > 4);
+  CHECK(found.alarms < 26);
+  CHECK(found.with_cause > 50);
+}
+
+// The table of docs/parity.md: diagnosis_tests "[parity-study]".
+TEST_CASE("parity: alarms at stated rates, printed", "[.parity-study]") {
+  for (const double supply_sd : {0.0, 0.005, 0.02}) {
+    for (const double rate : {0.01, 0.05}) {
+      const AlarmCounts found = alarms_of_healthy(rate, supply_sd, 7001, 200);
+      std::cout << "| " << 100.0 * supply_sd << " | " << 100.0 * rate << " | " << found.alarms
+                << " of " << found.records << " | " << found.with_cause << " of 200 |\n";
+    }
+  }
+}
+
+TEST_CASE("parity: a record of another day has a threshold of its own", "[diagnosis]") {
+  Campaign campaign = three_conditions(0.1);
+  Campaign lower = campaign;
+  lower.synthetic_settings->parameters.emplace_back(
+      model::parameter_index(campaign.rig.plant, "supply_pressure"), 0.99 * 6.2e6);
+  auto records = made(campaign, 1);
+  records[1] = made(lower, 1)[1];
+  const auto alarms_of = [](const Parity& found) {
+    int alarms = 0;
+    for (const auto& record : found.conditions[1].records) alarms += record.alarm ? 1 : 0;
+    return alarms;
+  };
+  const Parity same = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  CHECK(alarms_of(same) == 5);
+  CHECK(same.other_days.empty());
+  campaign.conditions[1].date = "2026-03-01";
+  const Parity other = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  CHECK(alarms_of(other) == 0);
+  CHECK(other.other_days == std::vector<std::string>{"2026-03-01"});
+  CHECK_FALSE(other.warnings.empty());
+  const auto& signal = other.signals.front();
+  CHECK(signal.threshold_m == same.signals.front().threshold_m);
+  REQUIRE(signal.threshold_of_another_day_m);
+  CHECK(*signal.threshold_of_another_day_m > 1.5 * *signal.threshold_m);
+  CHECK(other.conditions[1].records.front().threshold_m == signal.threshold_of_another_day_m);
+  // Without a date it counts as of the day of the healthy ones, and a warning says so.
+  campaign.conditions[1].date.reset();
+  const Parity undated = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  CHECK(alarms_of(undated) == 5);
+  REQUIRE(undated.warnings.size() == 1);
+  CHECK(undated.warnings.front().find("no date: another_day") == 0);
 }
 
 TEST_CASE("parity: a record less the others' mean, sample by sample", "[diagnosis]") {

@@ -149,8 +149,31 @@ struct StoredSmallestLeak {
   std::optional<double> averaged_share_percent;
   std::optional<double> repeat_sd_m, healthy_leak_m;
   std::optional<std::string> reason;  ///< why there is none
+  /// The limits above are those of a record of another day than its reference; nothing: of its day.
+  Omittable<bool> of_another_day;
+  Omittable<double> averaged_same_day, single_same_day;
   RIGCAL_DESCRIBE(signal, repeats_averaged, averaged, single, averaged_share_percent, repeat_sd_m,
-                  healthy_leak_m, reason)
+                  healthy_leak_m, reason, of_another_day, averaged_same_day, single_same_day)
+};
+
+/// A quantity that differs between days.
+struct StoredDayQuantity {
+  std::string quantity, meaning, unit;
+  double sd = 0.0;
+  std::string sd_from;
+  RIGCAL_DESCRIBE(quantity, meaning, unit, sd, sd_from)
+};
+
+/// What was taken of the variation between days.
+struct StoredBetweenDays {
+  std::vector<std::string> other_days;  ///< of records that are not of their reference's day
+  std::string source;                   ///< "usual", "stated", "estimated"
+  double factor = 1.0;                  ///< on the usual sizes, where it is estimated
+  std::optional<double> freedom;        ///< of that; nothing: none is estimated
+  int healthy_dates = 0;
+  std::vector<StoredDayQuantity> quantities;
+  std::optional<std::string> sentence;
+  RIGCAL_DESCRIBE(other_days, source, factor, freedom, healthy_dates, quantities, sentence)
 };
 
 struct StoredDiagnosis {
@@ -170,11 +193,12 @@ struct StoredDiagnosis {
   std::optional<Range> accuracy_ci95;
   StoredMethods methods;
   std::vector<StoredSmallestLeak> smallest_leak_l_per_min;  ///< per signal
+  Omittable<StoredBetweenDays> between_days;
   std::vector<std::string> warnings;
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(status, schema, reasons, campaign, synthetic, report, settings, class_limits,
                   states, trends, records, confusion, accuracy, accuracy_ci95, methods,
-                  smallest_leak_l_per_min, warnings, provenance)
+                  smallest_leak_l_per_min, between_days, warnings, provenance)
 };
 
 }  // namespace rigcal::report

@@ -21,7 +21,11 @@ struct StoredParitySignal {
   std::optional<double> threshold_m;
   ByFeature<std::optional<double>> feature_thresholds;
   std::optional<std::string> reason;  ///< why there is no threshold
-  RIGCAL_DESCRIBE(signal, window_s, healthy_records, threshold_m, feature_thresholds, reason)
+  /// Of a record of a day that the healthy records do not have.
+  Omittable<double> threshold_of_another_day_m;
+  Omittable<int> common_causes;  ///< by which the healthy records differ beyond noise
+  RIGCAL_DESCRIBE(signal, window_s, healthy_records, threshold_m, feature_thresholds, reason,
+                  threshold_of_another_day_m, common_causes)
 };
 
 struct StoredParityRecord {
@@ -38,8 +42,9 @@ struct StoredParityRecord {
   std::optional<double> time_to_alarm_s;
   ByFeature<std::optional<double>> features;
   ByFeature<std::optional<bool>> exceeds;  ///< nothing: no threshold
+  Omittable<double> threshold_m;           ///< of its day
   RIGCAL_DESCRIBE(condition, repeat, signal, leak_level, healthy, sets_threshold, reference_records,
-                  failure, peak_m, alarm, time_to_alarm_s, features, exceeds)
+                  failure, peak_m, alarm, time_to_alarm_s, features, exceeds, threshold_m)
 };
 
 struct StoredFalseAlarmCheck {

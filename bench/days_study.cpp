@@ -1,0 +1,421 @@
+// What a diagnosis says of records of other days than its reference: alarms of healthy records,
+// leaks of the stated smallest size that are found, intervals that hold the truth, trends. The
+// records are those of bench/foreign_rig.hpp, which shares no line with the product; supply, oil,
+// zero and trigger are drawn for every day. Prints the tables of docs/diagnosis.md.
+//   rigcal_days_study [campaigns] [first seed] [threads] [part of a row's name] [file]
+// A file keeps what each campaign gave, so that a study that was stopped goes on from there.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/random/mersenne_twister.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <map>
+#include <mutex>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bench/foreign_campaign.hpp"
+#include "calib/fit.hpp"
+#include "common/parallel.hpp"
+#include "datasets/prepare/load_record.hpp"
+#include "datasets/prepare/single_repeats.hpp"
+#include "diagnosis/diagnose.hpp"
+
+namespace rigcal::bench {
+namespace {
+
+using datasets::Channel;
+
+constexpr double kNoise_m = 0.05e-3;
+constexpr int kRepeats = 5;
+constexpr int kOtherDays = 4;
+/// Coefficient of the seal whose trend is looked for.
+constexpr double kWornSeal = 0.1;
+constexpr double kStandardErrors = 4.0;  ///< slope of that trend
+const std::vector<Reference> kSignals{
+    {"square", 1.0, 0.05, 2.0}, {"sine", 5.0, 0.02, 1.0}, {"sine", 2.0, 0.05, 1.0}};
+
+/// Standard deviations between days.
+struct DaySizes {
+  double supply = 0.0;        ///< of its value
+  double bulk_modulus = 0.0;  ///< of its value
+  double zero_m = 0.0;
+  double trigger_s = 0.0;
+};
+
+/// The usual sizes on this rig (docs/diagnosis.md).
+constexpr DaySizes kUsual{5e-3, 0.03, 2e-4 * 0.1524, 0.5e-3};
+
+DaySizes times(double factor, const DaySizes& sizes) {
+  return {factor * sizes.supply, factor * sizes.bulk_modulus, factor * sizes.zero_m,
+          factor * sizes.trigger_s};
+}
+
+using DaysStream = boost::random::mt19937_64;
+
+ForeignRig rig_of_day(const DaySizes& sizes, DaysStream& stream) {
+  boost::random::normal_distribution<double> normal;
+  ForeignRig rig;
+  rig.leak_coefficient = 0.0;
+  rig.supply_pa *= 1.0 + sizes.supply * normal(stream);
+  rig.bulk_modulus_pa *= 1.0 + sizes.bulk_modulus * normal(stream);
+  rig.sensor_offset_m = sizes.zero_m * normal(stream);
+  rig.delay_s = sizes.trigger_s * normal(stream);
+  return rig;
+}
+
+struct DaysRow {
+  std::string name;
+  DaySizes drawn;
+  bool same_day = false;  ///< all records are of the reference's day
+  bool trend = false;
+  int healthy_dates = 1;
+  std::function<void(datasets::BetweenDaysSettings&)> state = [](auto&) {};
+};
+
+const std::vector<DaysRow>& days_rows() {
+  static const std::vector<DaysRow> rows = [] {
+    std::vector<DaysRow> all;
+    all.push_back({"the day of the reference", {}, true});
+    all.push_back({"other days, usual sizes", kUsual});
+    DaysRow supply{"other days, the supply alone, stated", {5e-3, 0.0, 0.0, 0.0}};
+    supply.state = [](datasets::BetweenDaysSettings& days) {
+      days.sds["supply_pressure"] = 31e3;
+      days.left_out = {"bulk_modulus", "position_offset", datasets::kTriggerKey};
+    };
+    all.push_back(supply);
+    DaysRow ignored = supply;
+    ignored.name = "other days, the supply alone, between_days = false";
+    ignored.state = [](datasets::BetweenDaysSettings& days) { days.none = true; };
+    all.push_back(ignored);
+    DaysRow dates{"other days, twice the usual sizes, six healthy dates", times(2.0, kUsual)};
+    dates.healthy_dates = 6;
+    all.push_back(dates);
+    DaysRow trend{"trend over four other days, usual sizes", kUsual};
+    trend.trend = true;
+    all.push_back(trend);
+    return all;
+  }();
+  return rows;
+}
+
+int days_row_of(const char* key) {
+  return model::parameter_index(model::PlantKind::load_pressure, key);
+}
+
+datasets::ParameterSetting free_setting(const char* key, double truth) {
+  datasets::ParameterSetting setting;
+  setting.index = days_row_of(key);
+  setting.fit = true;
+  setting.value = 1.1 * truth;
+  setting.lower = truth / 5.0;
+  setting.upper = 5.0 * truth;
+  return setting;
+}
+
+datasets::Campaign days_campaign(const DaysRow& row) {
+  const ForeignRig rig;
+  datasets::Campaign campaign = foreign_campaign(rig);
+  const std::pair<const char*, double> known[] = {
+      {"mass", rig.mass_kg}, {"damping", rig.damping_n_s_per_m}, {"leakage_coefficient", 0.0}};
+  for (const auto& [key, value] : known) {
+    datasets::ParameterSetting setting;
+    setting.index = days_row_of(key);
+    setting.value = value;
+    campaign.parameters.push_back(setting);
+  }
+  campaign.parameters.push_back(free_setting("bulk_modulus", rig.bulk_modulus_pa));
+  campaign.parameters.push_back(free_setting("valve_gain", rig.valve_gain_m_per_v));
+  campaign.leak_levels["healthy"] = {{days_row_of("leakage_coefficient"), 0.0}};
+  campaign.considered.none = true;  // ci95 of the fit is not used
+  row.state(campaign.between_days);
+  return campaign;
+}
+
+std::string date_of(int day) {
+  return fmt::format("2026-{:02d}-{:02d}", 1 + day / 28, 1 + day % 28);
+}
+
+/// A campaign that grows condition by condition, with the records of each.
+struct DaysMade {
+  datasets::Campaign campaign;
+  std::vector<datasets::RepeatRecords> records;
+
+  /// @param singles  how many repeats are diagnosed on their own
+  void add(const ForeignRig& rig, const std::string& level, int day, datasets::Use use,
+           std::size_t singles, DaysStream& stream, const std::vector<double>& leaks = {}) {
+    for (std::size_t s = 0; s < kSignals.size(); ++s) {
+      ForeignRig own = rig;
+      if (!leaks.empty()) own.leak_coefficient = leaks[s];
+      const Reference& signal = kSignals[s];
+      datasets::Condition condition;
+      condition.id = fmt::format("{}_{}Hz_{}_{}", signal.waveform, signal.frequency_hz, level, day);
+      condition.waveform =
+          signal.waveform == "sine" ? datasets::Waveform::sine : datasets::Waveform::square;
+      condition.frequency_hz = signal.frequency_hz;
+      condition.amplitude = signal.amplitude_m;
+      condition.duration_s = signal.duration_s;
+      condition.leak_level = level;
+      condition.date = date_of(day);
+      condition.use = use;
+      boost::random::normal_distribution<double> normal(0.0, kNoise_m);
+      const std::vector<double> readings = foreign_readings(own, signal);
+      std::vector<datasets::Repeat> repeats;
+      for (int r = 0; r < kRepeats; ++r) {
+        datasets::Repeat& repeat = repeats.emplace_back();
+        repeat.source = fmt::format("repeat {}", r + 1);
+        for (std::size_t k = 0; k < readings.size(); ++k) {
+          repeat.time_s.push_back(static_cast<double>(k) / 1000.0);
+          repeat.values[Channel::position].push_back(readings[k] + normal(stream));
+        }
+      }
+      campaign.conditions.push_back(condition);
+      datasets::RepeatRecords made = datasets::repeat_records(campaign, condition, repeats);
+      if (use == datasets::Use::fit)
+        made.average = datasets::average_of(campaign, condition, repeats, true);
+      made.singles.resize(std::min(singles, made.singles.size()));
+      made.covered.resize(std::min(singles, made.covered.size()));
+      records.push_back(std::move(made));
+    }
+  }
+
+  diagnosis::Diagnosis diagnosed(const diagnosis::RigFit& rig) const {
+    return diagnosis::diagnose(campaign, records, rig, {});
+  }
+};
+
+/// Counts of one campaign; their names are the columns of the kept file.
+struct DaysCounts {
+  int averages = 0, average_alarms = 0, incompatible = 0;
+  int singles = 0, single_alarms = 0;
+  int states = 0, state_alarms = 0;
+  int leaks = 0, found = 0, held = 0;
+  int trends = 0, significant = 0, slopes = 0, slopes_found = 0;
+  double limit_l_per_min = 0.0;  ///< of an average, mean over the signals
+
+  template <typename Take>
+  void for_each(Take take) {
+    for (int* each :
+         {&averages, &average_alarms, &incompatible, &singles, &single_alarms, &states,
+          &state_alarms, &leaks, &found, &held, &trends, &significant, &slopes, &slopes_found})
+      take(*each);
+    take(limit_l_per_min);
+  }
+};
+
+void count_healthy(const diagnosis::Diagnosis& found, const std::string& level,
+                   DaysCounts& counts) {
+  for (const diagnosis::RecordDiagnosis& record : found.records) {
+    if (record.condition.find(level) == std::string::npos) continue;
+    if (!record.fit.ok()) throw std::runtime_error(record.fit.failure);
+    const bool alarm = record.estimate.leak_detected;
+    if (record.repeat) {
+      ++counts.singles;
+      counts.single_alarms += alarm ? 1 : 0;
+      continue;
+    }
+    ++counts.averages;
+    counts.average_alarms += alarm ? 1 : 0;
+    counts.incompatible += record.estimate.incompatible ? 1 : 0;
+  }
+  for (const diagnosis::MachineState& state : found.states) {
+    if (!state.ok() || state.key.leak_level != level) continue;
+    ++counts.states;
+    counts.state_alarms += state.estimate.leak_detected ? 1 : 0;
+  }
+}
+
+void count_leaks(const diagnosis::Diagnosis& found, const std::vector<double>& leaks,
+                 DaysCounts& counts) {
+  std::size_t next = 0;
+  for (const diagnosis::RecordDiagnosis& record : found.records) {
+    if (record.repeat || record.condition.find("leaking") == std::string::npos) continue;
+    const double truth = leaks[next++ % leaks.size()];
+    ++counts.leaks;
+    counts.found += record.estimate.leak_detected ? 1 : 0;
+    counts.held += record.estimate.ci95.first <= truth && truth <= record.estimate.ci95.second;
+  }
+}
+
+DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
+  DaysStream stream(seed);
+  DaysCounts counts;
+  DaysMade made{days_campaign(row), {}};
+  const ForeignRig first = rig_of_day(row.drawn, stream);
+  made.add(first, "healthy", 0, datasets::Use::fit, kRepeats, stream);
+  std::vector<datasets::Record> fitted;
+  for (const auto& each : made.records) fitted.push_back(each.average);
+  const calib::Fit fit = calib::fit(made.campaign, fitted, {});
+  if (!fit.usable()) throw std::runtime_error("the fit failed: " + fit.message);
+  const diagnosis::RigFit rig = diagnosis::rig_fit_of(fit);
+  for (int day = 1; day < row.healthy_dates; ++day)
+    made.add(rig_of_day(row.drawn, stream), "healthy", day, datasets::Use::validate, 0, stream);
+
+  std::vector<ForeignRig> others;
+  for (int i = 0; i < kOtherDays; ++i)
+    others.push_back(row.same_day ? first : rig_of_day(row.drawn, stream));
+  const auto with_others = [&](const std::string& level, const std::function<double(int)>& leak,
+                               const std::vector<double>& leaks) {
+    DaysMade all = made;
+    for (int i = 0; i < kOtherDays; ++i) {
+      ForeignRig own = others[static_cast<std::size_t>(i)];
+      own.leak_coefficient = leak(i);
+      const std::string name = row.same_day ? fmt::format("{}{}", level, i) : level;
+      all.add(own, name, row.same_day ? 0 : 10 + 7 * i, datasets::Use::diagnose, row.trend ? 0 : 1,
+              stream, leaks);
+    }
+    return all.diagnosed(rig);
+  };
+  if (row.trend) {
+    const auto constant = with_others("seal", [](int) { return kWornSeal; }, {}).trends;
+    counts.trends = static_cast<int>(constant.size());
+    counts.significant = constant.front().significant ? 1 : 0;
+    const auto& [low, high] = constant.front().share_per_day_ci95;
+    const double error = (high - low) / 2.0 / 1.96 * constant.front().coefficient_per_day /
+                         constant.front().share_per_day;
+    const auto rising =
+        with_others("seal", [&](int i) { return kWornSeal + kStandardErrors * error * 7.0 * i; },
+                    {})
+            .trends;
+    counts.slopes = 1;
+    counts.slopes_found = rising.front().significant ? 1 : 0;
+    return counts;
+  }
+  const diagnosis::Diagnosis healthy = with_others("unknown", [](int) { return 0.0; }, {});
+  count_healthy(healthy, "unknown", counts);
+  std::vector<double> leaks(kSignals.size());
+  for (std::size_t s = 0; s < kSignals.size(); ++s) {
+    const std::string& id = made.campaign.conditions[s].id;
+    const auto record = std::find_if(healthy.records.begin(), healthy.records.end(),
+                                     [&](const auto& each) { return each.condition == id; });
+    const auto signal =
+        std::find_if(healthy.signals.begin(), healthy.signals.end(),
+                     [&](const auto& each) { return each.signal == record->signal; });
+    leaks[s] = signal->smallest_leak.value().coefficient;
+    counts.limit_l_per_min +=
+        60e3 * signal->smallest_leak->leak_flow_m3_per_s / static_cast<double>(kSignals.size());
+  }
+  count_leaks(with_others(
+                  "leaking", [](int) { return 0.0; }, leaks),
+              leaks, counts);
+  return counts;
+}
+
+/// What campaigns gave so far, in a text file: row, seed and counts.
+class KeptCounts {
+ public:
+  explicit KeptCounts(std::string file) : file_(std::move(file)) {
+    std::ifstream in(file_);
+    std::string line;
+    while (std::getline(in, line)) {
+      const auto bar = line.find('|');
+      if (bar == std::string::npos) continue;
+      std::istringstream numbers(line.substr(bar + 1));
+      std::uint64_t seed = 0;
+      DaysCounts counts;
+      numbers >> seed;
+      counts.for_each([&](auto& each) { numbers >> each; });
+      if (numbers) kept_[line.substr(0, bar)][seed] = counts;
+    }
+  }
+
+  DaysCounts of(const DaysRow& row, std::uint64_t seed) {
+    {
+      const std::lock_guard lock(mutex_);
+      const auto found = kept_[row.name].find(seed);
+      if (found != kept_[row.name].end()) return found->second;
+    }
+    DaysCounts counts = counts_of(row, seed);
+    if (file_.empty()) return counts;
+    std::string line = fmt::format("{}|{}", row.name, seed);
+    counts.for_each([&](auto& each) { line += fmt::format(" {}", each); });
+    const std::lock_guard lock(mutex_);
+    std::ofstream(file_, std::ios::app) << line << "\n";
+    return counts;
+  }
+
+ private:
+  std::string file_;
+  std::map<std::string, std::map<std::uint64_t, DaysCounts>> kept_;
+  std::mutex mutex_;
+};
+
+/// A rate in percent, with its standard error by the scatter between campaigns.
+std::string rate_of(const std::vector<DaysCounts>& all, int DaysCounts::*hits,
+                    int DaysCounts::*trials) {
+  double hit = 0.0;
+  double tried = 0.0;
+  for (const DaysCounts& each : all) {
+    hit += each.*hits;
+    tried += each.*trials;
+  }
+  if (tried == 0.0) return "-";
+  const double rate = hit / tried;
+  double squares = 0.0;
+  for (const DaysCounts& each : all) squares += std::pow(each.*hits - rate * each.*trials, 2);
+  return fmt::format("{:.1f} +- {:.1f} ({:.0f} of {:.0f})", 100.0 * rate,
+                     100.0 * std::sqrt(squares) / tried, hit, tried);
+}
+
+std::vector<DaysCounts> study(const DaysRow& row, int campaigns, std::uint64_t first, int threads,
+                              KeptCounts& kept) {
+  std::vector<DaysCounts> all(static_cast<std::size_t>(campaigns));
+  parallel_for(all.size(), threads, [&](std::size_t i) { all[i] = kept.of(row, first + i); });
+  return all;
+}
+
+void print_row(const DaysRow& row, const std::vector<DaysCounts>& all) {
+  double limit = 0.0;
+  for (const DaysCounts& each : all)
+    limit += each.limit_l_per_min / static_cast<double>(all.size());
+  if (row.trend) {
+    std::cout << fmt::format(
+        "\n{}: a seal that does not change is called one that does in {} %; a "
+        "slope of four standard errors is found in {} %\n",
+        row.name, rate_of(all, &DaysCounts::significant, &DaysCounts::trends),
+        rate_of(all, &DaysCounts::slopes_found, &DaysCounts::slopes));
+    return;
+  }
+  std::cout << fmt::format("| {} | {} | {} | {} | {} | {:.3f} | {} | {} |\n", row.name,
+                           rate_of(all, &DaysCounts::average_alarms, &DaysCounts::averages),
+                           rate_of(all, &DaysCounts::single_alarms, &DaysCounts::singles),
+                           rate_of(all, &DaysCounts::state_alarms, &DaysCounts::states),
+                           rate_of(all, &DaysCounts::incompatible, &DaysCounts::averages), limit,
+                           rate_of(all, &DaysCounts::found, &DaysCounts::leaks),
+                           rate_of(all, &DaysCounts::held, &DaysCounts::leaks))
+            << std::flush;
+}
+
+}  // namespace
+}  // namespace rigcal::bench
+
+int main(int argc, char** argv) {
+  using namespace rigcal::bench;
+  const int campaigns = argc > 1 ? std::atoi(argv[1]) : 100;
+  const int first = argc > 2 ? std::atoi(argv[2]) : 1;
+  const int threads = argc > 3 ? std::atoi(argv[3]) : 1;
+  const std::string only = argc > 4 ? argv[4] : "";
+  if (campaigns < 1 || first < 1 || threads < 1 || argc > 6) {
+    std::cerr << "usage: rigcal_days_study [campaigns] [first seed] [threads] [part of a row's "
+                 "name] [file that keeps]\n";
+    return 2;
+  }
+  KeptCounts kept(argc > 5 ? argv[5] : "");
+  std::cout << fmt::format(
+      "| {} campaigns from seed {} | alarms of healthy averages, % | of single repeats, % | of "
+      "states, % | incompatible averages, % | smallest leak, L/min | found at that size, % | "
+      "intervals that hold it, % |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n",
+      campaigns, first);
+  for (const DaysRow& row : days_rows()) {
+    if (row.name.find(only) == std::string::npos) continue;
+    print_row(row, study(row, campaigns, static_cast<std::uint64_t>(first), threads, kept));
+  }
+  return 0;
+}

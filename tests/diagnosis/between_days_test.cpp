@@ -1,0 +1,210 @@
+#include "diagnosis/between_days.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "diagnosis/leak_trend.hpp"
+#include "diagnosis/machine_state.hpp"
+#include "tests/diagnosis/healthy_sine.hpp"
+
+using namespace rigcal;
+using Catch::Contains;
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using diagnosis::BetweenDays;
+using diagnosis::DaySource;
+
+namespace {
+
+datasets::Condition dated(const std::string& date, datasets::Use use = datasets::Use::diagnose) {
+  datasets::Condition condition;
+  condition.id = "of_" + date;
+  condition.leak_level = "seal";
+  if (!date.empty()) condition.date = date;
+  condition.use = use;
+  return condition;
+}
+
+BetweenDays days(const std::vector<std::string>& names) {
+  BetweenDays between;
+  between.days = names;
+  between.quantities = {{"supply_pressure", "supply", "Pa", 31e3, "0.5 % of the supply", 0}};
+  return between;
+}
+
+}  // namespace
+
+TEST_CASE("day_weights: the record's own day less those of its reference", "[diagnosis]") {
+  const datasets::Campaign campaign;
+  const BetweenDays between = days({"the day of the fit", "2026-01-01", "2026-01-02"});
+  const auto first = dated("2026-01-01");
+  const auto second = dated("2026-01-02");
+  CHECK(day_weights(between, campaign, first, {&first, &first}).norm() == 0.0);
+  const auto other = day_weights(between, campaign, second, {&first, &first});
+  CHECK_THAT(other.norm(), WithinRel(std::sqrt(2.0), 1e-12));
+  CHECK_THAT(other.norm_of_another_day(), WithinRel(std::sqrt(2.0), 1e-12));
+  // Half of the reference is of the record's own day: 1 - 1/2, and -1/2.
+  const auto mixed = day_weights(between, campaign, second, {&first, &second});
+  CHECK_THAT(mixed.norm(), WithinRel(std::sqrt(0.5), 1e-12));
+  CHECK_THAT(mixed.norm_of_another_day(), WithinRel(std::sqrt(1.5), 1e-12));
+  // Without a reference the fit is one, which may be of records that the campaign does not have.
+  CHECK_THAT(day_weights(between, campaign, first, {}).norm(), WithinRel(std::sqrt(2.0), 1e-12));
+}
+
+TEST_CASE("day_label: only a date says that two records are of one day", "[diagnosis]") {
+  CHECK(diagnosis::day_label(dated("2026-01-01")) == "2026-01-01");
+  CHECK(diagnosis::day_label(dated("", datasets::Use::fit)) == "the day of the fit");
+  CHECK_THAT(diagnosis::day_label(dated("")), Contains("seal"));
+}
+
+TEST_CASE("estimate_days: healthy records of four dates tell how days differ", "[diagnosis]") {
+  // Squares of 5 and 10 in each signal, of which 1 is its own error, where the usual sizes would
+  // cause 2: (4 + 9) / (2 + 2).
+  const std::vector<diagnosis::HealthyDay> healthy{{std::sqrt(5.0), 1.0, 2.0},
+                                                   {-std::sqrt(10.0), 1.0, 2.0}};
+  BetweenDays between = days({});
+  between.dates = 4;
+  diagnosis::estimate_days(healthy, between);
+  CHECK(between.source == DaySource::estimated);
+  CHECK_THAT(between.variance, WithinRel(13.0 / 4.0, 1e-12));
+  CHECK(between.freedom == 3.0);
+
+  BetweenDays few = days({});
+  few.dates = 3;
+  diagnosis::estimate_days(healthy, few);
+  CHECK(few.source == DaySource::usual);
+  CHECK(few.variance == 1.0);
+  BetweenDays stated = days({});
+  stated.dates = 9;
+  stated.source = DaySource::stated;
+  diagnosis::estimate_days(healthy, stated);
+  CHECK(stated.variance == 1.0);
+  // No more scatter than the records' own.
+  BetweenDays alike = days({});
+  alike.dates = 5;
+  diagnosis::estimate_days({{0.1, 1.0, 2.0}}, alike);
+  CHECK(alike.variance == 0.0);
+}
+
+TEST_CASE("with_days: the error of the days adds in squares, its freedom by Satterthwaite",
+          "[diagnosis]") {
+  const diagnosis::CoefficientError own{3.0, 0.0, 10.0, 0.0};
+  const auto all = with_days(own, 4.0, 5.0);
+  CHECK_THAT(all.total(), WithinRel(5.0, 1e-12));
+  CHECK_THAT(all.freedom, WithinRel(625.0 / (81.0 / 10.0 + 256.0 / 5.0), 1e-12));
+  CHECK(with_days(own, 0.0, 5.0).freedom == 10.0);
+}
+
+TEST_CASE("in_words: what was taken of the days, or that nothing was", "[diagnosis]") {
+  BetweenDays between = days({});
+  CHECK(diagnosis::in_words(between, {}).empty());
+  CHECK_THAT(diagnosis::in_words(between, {"2026-01-02"}),
+             Contains("2026-01-02") && Contains("supply 31 kPa") && Contains("usual sizes"));
+  between.source = DaySource::estimated;
+  between.variance = 4.0;
+  between.dates = 5;
+  CHECK_THAT(diagnosis::in_words(between, {"2026-01-02"}),
+             Contains("supply 62 kPa") && Contains("2 times") && Contains("5 dates"));
+  between.quantities.clear();
+  CHECK_THAT(diagnosis::in_words(between, {"2026-01-02"}), Contains("counts as a leak"));
+}
+
+TEST_CASE("pooled_leak: the day of a state does not average out", "[diagnosis]") {
+  diagnosis::StateMember member;
+  member.coefficient = 1.0;
+  member.own_se = 0.1;
+  member.freedom = 1e6;
+  member.rig_moves = Eigen::VectorXd::Zero(0);
+  member.day_effects = Eigen::VectorXd::Constant(1, 0.3);
+  member.day_weights = (Eigen::VectorXd(2) << 1.0, -1.0).finished();
+  const Eigen::MatrixXd exact = Eigen::MatrixXd::Zero(0, 0);
+  const auto pooled = diagnosis::pooled_leak({member, member, member, member}, exact, {1.0, 1e6});
+  CHECK_THAT(pooled.error.own_se, WithinRel(0.05, 1e-12));
+  CHECK_THAT(pooled.error.days_se, WithinRel(0.3 * std::sqrt(2.0), 1e-12));
+  CHECK_THAT(pooled.error.total(), WithinRel(std::sqrt(0.0025 + 0.18), 1e-12));
+  const auto known = diagnosis::pooled_leak({member, member}, exact, {1.0, 3.0});
+  CHECK(known.error.freedom < 4.0);
+  CHECK(diagnosis::pooled_leak({member}, exact).error.days_se == 0.0);
+}
+
+TEST_CASE("leak_trends: each date has a day of its own, and all share the reference's",
+          "[diagnosis]") {
+  const auto trend_with = [](bool own_days) {
+    std::vector<diagnosis::MachineState> states;
+    for (int i = 0; i < 4; ++i) {
+      diagnosis::MachineState& state = states.emplace_back();
+      state.key = {"seal", "", "2026-01-0" + std::to_string(1 + 2 * i)};
+      state.members.emplace_back();
+      state.pooled.coefficient = 0.3 + 0.02 * i;
+      state.pooled.error.own_se = 0.01;
+      state.pooled.error.freedom = 1e6;
+      state.pooled.rig_moves = Eigen::VectorXd::Zero(0);
+      state.pooled.day_moves = Eigen::VectorXd::Zero(5);
+      state.pooled.day_moves(0) = -0.1;
+      if (own_days) state.pooled.day_moves(1 + i) = 0.1;
+      state.share_slope = 0.2;
+    }
+    const auto trends = diagnosis::leak_trends(states, Eigen::MatrixXd::Zero(0, 0), {}, 1.0);
+    REQUIRE(trends.size() == 1);
+    return trends.front();
+  };
+  CHECK(trend_with(false).significant);
+  CHECK_FALSE(trend_with(true).significant);
+}
+
+TEST_CASE("fit_leak: a supply of another day moves the coefficient as it says", "[diagnosis]") {
+  const test::HealthySine made = test::healthy_sine(0.3);
+  diagnosis::RigFit rig = test::rig_of(made.campaign);
+  const auto fitted = [&](double supply_pa) {
+    diagnosis::LeakProblem problem(made.campaign, rig);
+    problem.day_quantities = calib::day_quantities(made.campaign, rig_values(problem), 4e-3);
+    const int supply = problem.day_quantities.front().index;
+    for (auto& setting : problem.campaign.parameters)
+      if (setting.index == supply) setting.value = supply_pa;
+    return diagnosis::fit_leak(problem.up_to(1.0), rig, problem.campaign.conditions.front(),
+                               made.record, std::nullopt, 0, nullptr, nullptr);
+  };
+  const auto fit = fitted(6.2e6);
+  REQUIRE(fit.ok());
+  REQUIRE(fit.day_effects.size() == 4);
+  // The model's supply is as much too low as the record's would be too high.
+  const double step = 3.1e3;
+  const double moved =
+      (fitted(6.2e6 - step).coefficient - fitted(6.2e6 + step).coefficient) / (2.0 * step);
+  CHECK_THAT(std::abs(fit.day_effects(0)), WithinRel(std::abs(moved) * 31e3, 0.02));
+  CHECK(fit.day_rms_m > 0.0);
+}
+
+TEST_CASE("healthy_day_changes: differences of simulations, per standard deviation",
+          "[diagnosis]") {
+  const test::HealthySine made = test::healthy_sine();
+  const diagnosis::RigFit rig = test::rig_of(made.campaign);
+  diagnosis::LeakProblem problem(made.campaign, rig);
+  problem.day_quantities = calib::day_quantities(made.campaign, rig_values(problem), 4e-3);
+  REQUIRE(problem.day_quantities.size() == 4);
+  const datasets::Condition& condition = problem.campaign.conditions.front();
+  const Eigen::MatrixXd changes = diagnosis::healthy_day_changes(problem, condition, made.record);
+  const auto residual = [&](double supply_pa) {
+    diagnosis::LeakProblem other = problem;
+    for (auto& setting : other.campaign.parameters)
+      if (setting.index == problem.day_quantities.front().index) setting.value = supply_pa;
+    return diagnosis::healthy_residuals(other, other.campaign.conditions.front(), made.record,
+                                        {&made.record})
+        .front()
+        .at(datasets::Channel::position);
+  };
+  const auto low = residual(6.2e6 - 31e3);
+  const auto high = residual(6.2e6 + 31e3);
+  const double largest = changes.col(0).cwiseAbs().maxCoeff();
+  CHECK(largest > 1e-6);
+  for (std::size_t i = 0; i < low.size(); ++i)
+    CHECK_THAT(changes(static_cast<Eigen::Index>(i), 0),
+               WithinAbs((low[i] - high[i]) / 2.0, 0.05 * largest));
+  // A shifted zero shifts every sample; a later start is speed times time.
+  CHECK_THAT(changes(100, 2), WithinRel(problem.day_quantities[2].sd, 1e-9));
+  CHECK_THAT(problem.day_quantities[3].sd, WithinRel(0.5e-3, 1e-12));
+  const auto model = residual(6.2e6);
+  const auto& record = made.record.channels.at(datasets::Channel::position).mean;
+  const auto position = [&](std::size_t i) { return record[i] - model[i]; };
+  CHECK_THAT(changes(100, 3), WithinRel(0.5e-3 * (position(101) - position(99)) / 8e-3, 1e-6));
+}
