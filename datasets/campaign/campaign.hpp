@@ -13,6 +13,7 @@
 #include "common/error.hpp"
 #include "common/file.hpp"
 #include "common/quantity.hpp"
+#include "datasets/campaign/design/design_settings.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "datasets/campaign/report_settings.hpp"
 #include "datasets/campaign/waveform.hpp"
@@ -222,6 +223,7 @@ struct Campaign {
   ConsideredSettings considered;
   DiagnosisSettings diagnosis;
   ReportSettings report;
+  std::optional<DesignSettings> design;
   std::optional<SyntheticSettings> synthetic_settings;
   std::vector<Condition> conditions;
 
@@ -307,5 +309,14 @@ struct FittedValue {
 };
 std::string fitted_campaign_text(const Campaign& campaign, const std::vector<FittedValue>& values,
                                  const std::filesystem::path& out_dir);
+
+/// The campaign file for the records of a designed test: its one condition in place of all others,
+/// with the recorded drive, a file for each planned repeat, and the planned noise where the
+/// campaign states none. Changes by --set and --free are included.
+///
+/// @param noise_sd  of a sample of one repeat, by channel, SI
+/// @throws InputError  as fitted_campaign_text()
+std::string designed_campaign_text(const Campaign& campaign, const DesignSettings& design,
+                                   DriveFamily family, const std::map<Channel, double>& noise_sd);
 
 }  // namespace rigcal::datasets
