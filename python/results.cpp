@@ -143,13 +143,16 @@ ResultPtr leak_table(const CampaignPtr& self, const std::optional<FitArgument>& 
 }
 
 ResultPtr plan(const CampaignPtr& self, const std::optional<FitArgument>& fit,
-               const std::optional<Integer>& threads) {
-  const report::FitSource source = fit_source(fit, self->campaign.rig.plant);
+               const std::optional<std::vector<std::string>>& design,
+               const std::optional<Integer>& threads, const ProgressFunction& progress) {
+  const report::PlanRequest request{fit_source(fit, self->campaign.rig.plant),
+                                    design.value_or(std::vector<std::string>{})};
   CallText call(self->call + ".plan");
   if (fit) call.add(written_fit(*fit));
-  return job_result("plan", self->campaign.name, call.text(), self->choice, threads, std::nullopt,
+  call.add("design", design);
+  return job_result("plan", self->campaign.name, call.text(), self->choice, threads, progress,
                     [&](const report::JobTerms& terms) {
-                      return report::plan_job(self->campaign, source, terms);
+                      return report::plan_job(self->campaign, request, terms);
                     });
 }
 
@@ -406,12 +409,14 @@ Raises:
     UsageError: a signal is unknown
     ValueError: a target is out of its range)");
   campaign.def("plan", &plan, py::arg("fit") = py::none(), py::kw_only(),
-               py::arg("threads") = py::none(),
+               py::arg("design") = py::none(), py::arg("threads") = py::none(),
+               py::arg("progress") = py::none(),
                R"(What the records of the campaign will determine, as `rigcal plan`.
 
 Args:
     fit: a Fit, or the path of a fit.json, whose values are taken; None: the campaign's own
-    threads: None: as many as the machine has; results do not depend on it
+    design: parameters that a test is designed for, within the limits of [design]
+    threads, progress: as those of diagnose()
 
 Raises:
     InputError: the campaign or fit is wrong)");

@@ -152,6 +152,58 @@ std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<
   return result;
 }
 
+std::vector<double> point_at(const Problem& problem,
+                             const std::vector<datasets::FittedValue>* values) {
+  std::vector<double> z = problem.start();
+  if (values == nullptr) return z;
+  for (std::size_t j = 0; j < z.size(); ++j) {
+    const Unknown& unknown = problem.map.unknowns()[j];
+    for (const auto& value : *values) {
+      if (value.index == unknown.index && value.level == unknown.level)
+        z[j] = problem.map.to_unit(static_cast<int>(j), value.value);
+    }
+  }
+  return z;
+}
+
+FittedParameter parameter_at(const Problem& problem, std::span<const double> z,
+                             std::size_t unknown) {
+  const Unknown& from = problem.map.unknowns()[unknown];
+  FittedParameter parameter;
+  parameter.index = from.index;
+  parameter.scope = from.scope;
+  parameter.level = from.level;
+  parameter.value = problem.map.to_physical(static_cast<int>(unknown), z[unknown]);
+  parameter.lower = from.lower;
+  parameter.upper = from.upper;
+  parameter.nuisance = from.nuisance;
+  return parameter;
+}
+
+Eigen::MatrixXd weighted_jacobian(const Problem& problem, const Evaluation& at,
+                                  const std::vector<double>& weights) {
+  const auto n = static_cast<Eigen::Index>(at.z.size());
+  RFactor total(n);
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (weights[i] == 0.0 || !at.conditions[i].ok()) continue;
+    const Eigen::MatrixXd part = std::sqrt(weights[i]) * at.conditions[i].r_factor;
+    const std::vector<int>& acting = problem.map.acting(i);
+    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(part.rows(), n);
+    for (std::size_t j = 0; j < acting.size(); ++j)
+      rows.col(acting[j]) = part.col(static_cast<Eigen::Index>(j));
+    total.add(rows);
+  }
+  for (Eigen::Index j = 0; j < n; ++j) {
+    const double slope =
+        problem.map.prior_slope(static_cast<int>(j), at.z[static_cast<std::size_t>(j)]);
+    if (slope == 0.0) continue;
+    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, n);
+    row(0, j) = slope;
+    total.add(row);
+  }
+  return total.get();
+}
+
 std::optional<double> relative_half_width(const std::optional<double>& sd, double value) {
   if (!sd || value == 0.0) return std::nullopt;
   return metrics::kNormal95 * *sd / std::abs(value);

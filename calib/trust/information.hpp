@@ -6,7 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "calib/problem/evaluation.hpp"
 #include "calib/problem/problem.hpp"
+#include "calib/result/fitted_parameter.hpp"
 
 namespace rigcal::calib {
 
@@ -15,6 +17,23 @@ namespace rigcal::calib {
 /// if it takes part in a direction that the rows do not determine.
 std::vector<std::optional<double>> cramer_rao(const Problem& problem, std::span<const double> z,
                                               const Eigen::MatrixXd& jacobian);
+
+/// The start values of a problem, with those of an earlier fit where it has them.
+///
+/// @param values  may be null
+std::vector<double> point_at(const Problem& problem,
+                             const std::vector<datasets::FittedValue>* values);
+
+/// Value and bounds of an unknown, without errors.
+FittedParameter parameter_at(const Problem& problem, std::span<const double> z,
+                             std::size_t unknown);
+
+/// Jacobian of all priors, and of conditions whose information counts so many times. Those that
+/// could not be simulated do not count.
+///
+/// @param weights  shape (conditions), not negative
+Eigen::MatrixXd weighted_jacobian(const Problem& problem, const Evaluation& at,
+                                  const std::vector<double>& weights);
 
 /// Half width of the 95 % interval of such a standard deviation, as a share of the value; empty
 /// without one, or where the value is 0.

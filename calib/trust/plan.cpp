@@ -3,130 +3,20 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 
-#include "calib/problem/r_factor.hpp"
 #include "calib/search/evaluator.hpp"
 #include "calib/trust/information.hpp"
 #include "calib/trust/known_uncertainty.hpp"
+#include "calib/trust/planned_record.hpp"
 #include "calib/trust/symmetry.hpp"
-#include "datasets/synthetic/model_output.hpp"
 
 namespace rigcal::calib {
 namespace {
 
 using datasets::Campaign;
-using datasets::Channel;
 using datasets::Condition;
 using datasets::Record;
-
-bool takes_part(const Condition& condition) {
-  return condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
-}
-
-/// Noise of the mean of as many repeats as the condition plans; without a number it is that of a
-/// file as the campaign describes one, of the repeats of [synthetic], or of a record that exists.
-double planned_sd(const Campaign& campaign, const Condition& condition, Channel channel,
-                  const std::vector<Record>& records) {
-  const auto of_mean = [&](double of_one, double otherwise) {
-    const auto& repeats = condition.planned_repeats;
-    return repeats ? of_one / std::sqrt(static_cast<double>(*repeats)) : otherwise;
-  };
-  const auto setting = campaign.channels.find(channel);
-  if (const auto& sd = setting->second.sd) return of_mean(*sd, *sd);
-  if (campaign.synthetic_settings) {
-    const auto& synthetic = *campaign.synthetic_settings;
-    const auto noise = synthetic.noise_sd.find(channel);
-    if (noise != synthetic.noise_sd.end())
-      return of_mean(noise->second, noise->second / std::sqrt(synthetic.repeats));
-  }
-  for (const Record& record : records) {
-    const auto series = record.channels.find(channel);
-    if (series == record.channels.end() || !(series->second.sd_of_mean > 0.0)) continue;
-    const double sd = series->second.sd_of_mean;
-    return of_mean(sd * std::sqrt(static_cast<double>(record.repeats)), sd);
-  }
-  throw InputError(condition.where,
-                   fmt::format("condition \"{}\": nothing tells the noise of channel {}, so what "
-                               "the planned record tells cannot be said: expected `sd`",
-                               condition.id, datasets::info(channel).key));
-}
-
-/// A record that a condition would give, without noise.
-Record planned_record(const Campaign& campaign, const Condition& condition,
-                      const std::vector<Record>& records) {
-  Record record;
-  record.condition = condition.id;
-  record.time_s = datasets::sample_times(condition, nullptr);
-  std::vector<Channel> channels;
-  std::vector<model::Output> outputs;
-  for (const auto& [channel, setting] : campaign.channels) {
-    if (setting.role != datasets::ChannelRole::output || !datasets::info(channel).is_output)
-      continue;
-    channels.push_back(channel);
-    outputs.push_back(datasets::model_output(channel).value());
-  }
-  const auto values = datasets::values_in(campaign, condition);
-  model::Rig rig = campaign.rig;
-  rig.initial = model::InitialState::rest;
-  model::SimulationOptions options;
-  options.method = campaign.simulation.method;
-  const auto run =
-      model::simulate(rig, values, {}, datasets::inputs_of(campaign, condition, values, nullptr),
-                      record.time_s, outputs, options);
-  for (std::size_t k = 0; k < channels.size(); ++k) {
-    datasets::Series series;
-    if (run.ok()) {
-      const auto column = run.outputs.col(static_cast<Eigen::Index>(k));
-      series.mean.assign(column.begin(), column.end());
-    } else {
-      series.mean.assign(record.time_s.size(), 0.0);  // its evaluation will say why
-    }
-    series.sd_of_mean = planned_sd(campaign, condition, channels[k], records);
-    record.channels[channels[k]] = series;
-  }
-  return record;
-}
-
-std::vector<double> point_of(const Problem& problem,
-                             const std::vector<datasets::FittedValue>* values) {
-  std::vector<double> z = problem.start();
-  if (values == nullptr) return z;
-  for (std::size_t j = 0; j < z.size(); ++j) {
-    const Unknown& unknown = problem.map.unknowns()[j];
-    for (const auto& value : *values) {
-      if (value.index == unknown.index && value.level == unknown.level)
-        z[j] = problem.map.to_unit(static_cast<int>(j), value.value);
-    }
-  }
-  return z;
-}
-
-/// Jacobian of some conditions and all priors.
-Eigen::MatrixXd jacobian_of(const Problem& problem, const Evaluation& at,
-                            const std::vector<bool>& counts) {
-  const auto n = static_cast<Eigen::Index>(at.z.size());
-  RFactor total(n);
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (!counts[i] || !at.conditions[i].ok()) continue;
-    const Eigen::MatrixXd& part = at.conditions[i].r_factor;
-    const std::vector<int>& acting = problem.map.acting(i);
-    Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(part.rows(), n);
-    for (std::size_t j = 0; j < acting.size(); ++j)
-      rows.col(acting[j]) = part.col(static_cast<Eigen::Index>(j));
-    total.add(rows);
-  }
-  for (Eigen::Index j = 0; j < n; ++j) {
-    const auto u = static_cast<std::size_t>(j);
-    const auto& prior = problem.map.unknowns()[u].prior;
-    if (!prior) continue;
-    Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, n);
-    row(0, j) = problem.map.slope(static_cast<int>(j), at.z[u]) / prior->sd;
-    total.add(row);
-  }
-  return total.get();
-}
 
 /// Only the smoothing of the orifice roots determines what a scaling symmetry leaves open, and that
 /// is no physics.
@@ -159,10 +49,14 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
   std::vector<bool> recorded;
   std::vector<Record> all_records = records;
   for (const Condition& condition : campaign.conditions) {
-    if (!takes_part(condition)) continue;
+    if (!is_planned_with(condition)) continue;
     conditions.push_back(&condition);
     recorded.push_back(condition.has_record());
-    if (!recorded.back()) all_records.push_back(planned_record(campaign, condition, records));
+    if (recorded.back()) continue;
+    const auto sd = [&](datasets::Channel channel) {
+      return planned_sd(campaign, condition, channel, records);
+    };
+    all_records.push_back(planned_record(campaign, condition, sd));
   }
   if (conditions.empty()) {
     throw InputError({campaign.file.string()},
@@ -173,24 +67,17 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
     throw InputError({campaign.file.string()},
                      "nothing is free: expected `fit = true` at a parameter, or --free");
   }
-  const std::vector<double> z = point_of(problem, values);
+  const std::vector<double> z = point_at(problem, values);
   const Evaluation at = evaluate_at(problem, z, threads);
 
   Plan result;
   for (std::size_t j = 0; j < z.size(); ++j) {
-    const Unknown& unknown = problem.map.unknowns()[j];
-    FittedParameter& parameter = result.parameters.emplace_back();
-    parameter.index = unknown.index;
-    parameter.scope = unknown.scope;
-    parameter.level = unknown.level;
-    parameter.value = problem.map.to_physical(static_cast<int>(j), z[j]);
-    parameter.lower = unknown.lower;
-    parameter.upper = unknown.upper;
-    parameter.nuisance = unknown.nuisance;
+    result.parameters.push_back(parameter_at(problem, z, j));
   }
-  const std::vector<bool> everything(conditions.size(), true);
-  const Eigen::MatrixXd all = jacobian_of(problem, at, everything);
-  result.recorded = cramer_rao(problem, z, jacobian_of(problem, at, recorded));
+  const std::vector<double> everything(conditions.size(), 1.0);
+  const std::vector<double> existing(recorded.begin(), recorded.end());
+  const Eigen::MatrixXd all = weighted_jacobian(problem, at, everything);
+  result.recorded = cramer_rao(problem, z, weighted_jacobian(problem, at, existing));
   result.all = cramer_rao(problem, z, all);
   for (std::size_t i = 0; i < conditions.size(); ++i) {
     PlannedRecord& record = result.records.emplace_back();
@@ -201,12 +88,12 @@ Plan plan(const Campaign& campaign, const std::vector<Record>& records,
                                    at.conditions[i].failed_at_s, at.conditions[i].reason);
       continue;
     }
-    std::vector<bool> alone(conditions.size(), false);
-    alone[i] = true;
-    std::vector<bool> without = everything;
-    without[i] = false;
-    record.alone = cramer_rao(problem, z, jacobian_of(problem, at, alone));
-    record.without = cramer_rao(problem, z, jacobian_of(problem, at, without));
+    std::vector<double> alone(conditions.size(), 0.0);
+    alone[i] = 1.0;
+    std::vector<double> without = everything;
+    without[i] = 0.0;
+    record.alone = cramer_rao(problem, z, weighted_jacobian(problem, at, alone));
+    record.without = cramer_rao(problem, z, weighted_jacobian(problem, at, without));
   }
   if (values == nullptr) {
     result.messages.push_back(

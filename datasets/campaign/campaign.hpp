@@ -14,6 +14,7 @@
 #include "common/file.hpp"
 #include "common/quantity.hpp"
 #include "datasets/between_days_settings.hpp"
+#include "datasets/campaign/design/design_settings.hpp"
 #include "datasets/campaign/diagnosis_settings.hpp"
 #include "datasets/campaign/report_settings.hpp"
 #include "datasets/campaign/waveform.hpp"
@@ -137,8 +138,8 @@ struct Condition {
   std::optional<std::string> averaged;  ///< file that is averaged already
   int repeats_averaged = 1;
   std::optional<int> planned_repeats;  ///< of a record that `plan` plans
-  std::vector<TimeWindow> windows;  ///< empty: the whole record counts
-  bool moving_windows = false;      ///< `windows = "moving"`: found from the record
+  std::vector<TimeWindow> windows;     ///< empty: the whole record counts
+  bool moving_windows = false;         ///< `windows = "moving"`: found from the record
   std::optional<std::vector<AcceptanceLimit>> acceptance;  ///< in place of the campaign's
   std::vector<Channel> not_judged;                         ///< in addition to those of the campaign
   std::optional<double> duration_s;
@@ -226,6 +227,7 @@ struct Campaign {
   BetweenDaysSettings between_days;
   DiagnosisSettings diagnosis;
   ReportSettings report;
+  std::optional<DesignSettings> design;
   std::optional<SyntheticSettings> synthetic_settings;
   std::vector<Condition> conditions;
 
@@ -311,5 +313,14 @@ struct FittedValue {
 };
 std::string fitted_campaign_text(const Campaign& campaign, const std::vector<FittedValue>& values,
                                  const std::filesystem::path& out_dir);
+
+/// The campaign file for the records of a designed test: its one condition in place of all others,
+/// with the recorded drive, a file for each planned repeat, and the planned noise where the
+/// campaign states none. Changes by --set and --free are included.
+///
+/// @param noise_sd  of a sample of one repeat, by channel, SI
+/// @throws InputError  as fitted_campaign_text()
+std::string designed_campaign_text(const Campaign& campaign, const DesignSettings& design,
+                                   DriveFamily family, const std::map<Channel, double>& noise_sd);
 
 }  // namespace rigcal::datasets

@@ -144,7 +144,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   check_schema(root);
   root.allow_only({"schema", "name", "synthetic", "rig", "leak_level", "recording", "averaging",
                    "acceptance", "fit", "considered", "between_days", "simulation", "leak_table",
-                   "diagnosis", "report", "condition"});
+                   "diagnosis", "report", "design", "condition"});
   Campaign campaign;
   campaign.file = file;
   campaign.file_state = file_state;
@@ -170,6 +170,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   if (const auto node = root.find("synthetic")) read_synthetic_entry(*node, campaign);
   if (const auto node = root.find("condition")) read_conditions(*node, campaign);
   if (const auto node = root.find("diagnosis")) check_duty(*node, campaign);
+  if (const auto node = root.find("design")) campaign.design = read_design(*node, campaign);
   fill_times(campaign);
   // Only its own verbs use this section, but a check of the campaign must cover it.
   if (const auto node = root.find("leak_table")) read_leak_table(*node, campaign);

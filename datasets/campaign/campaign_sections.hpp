@@ -45,6 +45,9 @@ ReportSettings read_report(const TomlNode& node);
 /// @throws InputError  two statements about one channel differ (names both places)
 void apply_sensors(const TomlNode& root, Campaign& campaign);
 
+/// [design]; needs the rig, the channels and the conditions.
+DesignSettings read_design(const TomlNode& node, const Campaign& campaign);
+
 /// [simulation]
 SimulationSettings read_simulation(const TomlNode& node);
 

@@ -4,6 +4,7 @@
 
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/campaign/campaign_parameters.hpp"
+#include "datasets/campaign/design/drive_file.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "datasets/campaign/toml/toml_reader.hpp"
 #include "datasets/campaign/toml/toml_writer.hpp"
@@ -156,6 +157,73 @@ void rebase_records(toml::table& root, const fs::path& data, const fs::path& out
   }
 }
 
+/// Writes which parameters are fitted, as --free changed that.
+void write_changed_freedom(toml::table& root, const Campaign& campaign) {
+  const Campaign original = load_campaign(campaign.file, campaign.data_dir, campaign.root);
+  for (const ParameterSetting& setting : campaign.parameters) {
+    const ParameterSetting* before = original.setting(setting.index);
+    const bool was_free = before != nullptr && before->fit;
+    if (setting.fit == was_free && (!setting.fit || before->value == setting.value)) continue;
+    if (!setting.fit) continue;  // write_changed_values() did
+    const model::ParameterSpec& spec = spec_of(campaign.rig.plant, setting.index);
+    toml::table& table = rig_table(root, spec);
+    if (!table[spec.key].is_table()) {
+      toml::table entry;
+      entry.is_inline(true);
+      table.insert_or_assign(spec.key, std::move(entry));
+    }
+    toml::table& entry = *table.get_as<toml::table>(spec.key);
+    put(entry, spec, "start", setting.value);
+    put(entry, spec, "lower", setting.lower);
+    put(entry, spec, "upper", setting.upper);
+    entry.insert_or_assign("fit", true);
+  }
+}
+
+/// Each channel of a designed test has a column: the campaign's, or one by its key.
+void write_designed_channels(toml::table& root, const Campaign& campaign,
+                             const std::map<Channel, double>& noise_sd) {
+  toml::table& channels = child(child(root, "recording", false), "channels", false);
+  const auto add = [&](std::string_view key) -> toml::table& {
+    toml::table& entry = child(channels, key, true);
+    if (!entry.contains("column")) entry.insert("column", key);
+    return entry;
+  };
+  toml::table& time = child(channels, "time", true);
+  if (!time.contains("column")) {
+    time.insert("column", "time_s");
+    time.insert("unit", "s");
+  }
+  toml::table& drive = add(info(drive_channel(campaign)).key);
+  if (!drive.contains("unit")) drive.insert("unit", drive_unit(campaign).name);
+  drive.insert_or_assign("role", "input");
+  for (const auto& [channel, sd] : noise_sd) {
+    toml::table& entry = add(info(channel).key);
+    if (!entry.contains("sd"))
+      entry.insert("sd", fmt::format("{} {}", toml_number(sd), info(channel).unit));
+  }
+}
+
+toml::table designed_condition(toml::table& root, const DesignSettings& design,
+                               DriveFamily family) {
+  toml::table condition;
+  const std::string id = designed_condition_id(family);
+  condition.insert("id", id);
+  condition.insert("waveform", "recorded");
+  condition.insert("use", "fit");
+  toml::table* like = design.like ? condition_table(root, *design.like) : nullptr;
+  for (const char* key : {"leak_level", "specimen", "parameters", "controller"}) {
+    toml::node* value = like == nullptr ? nullptr : like->get(key);
+    if (value != nullptr) value->visit([&](const auto& known) { condition.insert(key, known); });
+  }
+  condition.insert("duration", fmt::format("{} s", toml_number(design.duration_s)));
+  toml::array repeats;
+  for (int repeat = 1; repeat <= design.repeats; ++repeat)
+    repeats.push_back(fmt::format("records/{}_r{}.csv", id, repeat));
+  condition.insert("repeats", std::move(repeats));
+  return condition;
+}
+
 fs::path resolved(const fs::path& folder) {
   return fs::weakly_canonical(fs::absolute(folder.empty() ? fs::path(".") : folder));
 }
@@ -183,6 +251,26 @@ std::string fitted_campaign_text(const Campaign& campaign, const std::vector<Fit
   return fmt::format(
       "# Written by rigcal fit from {}: the fitted values stand in place of the starts.\n"
       "# Nuisance parameters stay free. Record paths start at the folder of this file.\n\n{}",
+      toml_quoted(campaign.file.filename().string()), toml_text(root));
+}
+
+std::string designed_campaign_text(const Campaign& campaign, const DesignSettings& design,
+                                   DriveFamily family, const std::map<Channel, double>& noise_sd) {
+  toml::table root = parse_toml_file(campaign.file);
+  write_changed_values(root, campaign);
+  write_changed_freedom(root, campaign);
+  write_designed_channels(root, campaign, noise_sd);
+  toml::array conditions;
+  conditions.push_back(designed_condition(root, design, family));
+  // These name conditions, or say how to make records.
+  for (const char* key : {"condition", "design", "diagnosis", "synthetic"}) root.erase(key);
+  root.insert("condition", std::move(conditions));
+  return fmt::format(
+      "# Written by rigcal plan --design from {}: the test is in design.csv, which the controller\n"
+      "# plays. Put the recordings at the paths below, with the columns of [recording.channels]. "
+      "The\n"
+      "# drive is compared sample by sample: record it as the controller has it, without "
+      "noise.\n\n{}",
       toml_quoted(campaign.file.filename().string()), toml_text(root));
 }
 

@@ -157,7 +157,14 @@ class Campaign:
         signals: Sequence[str] | None = None,
         threads: SupportsIndex | None = None,
     ) -> Result: ...
-    def plan(self, fit: Fit | Path_ | None = None, *, threads: SupportsIndex | None = None) -> Result: ...
+    def plan(
+        self,
+        fit: Fit | Path_ | None = None,
+        *,
+        design: Sequence[str] | None = None,
+        threads: SupportsIndex | None = None,
+        progress: Callable[[Pieces], object] | None = None,
+    ) -> Result: ...
     def explore(self) -> Page: ...
     def export_fmu(
         self,

@@ -92,10 +92,15 @@ struct LeakTableRequest {
 JobResult leak_table_job(const CampaignChoice& choice, const LeakTableRequest& request,
                          const JobTerms& terms);
 
-/// What the records of a campaign will determine.
+struct PlanRequest {
+  FitSource fit;                    ///< values that are taken; none: the campaign's own
+  std::vector<std::string> design;  ///< parameters that a test is designed for; may be empty
+};
+/// What the records of a campaign will determine, and a test within the limits of its [design].
 ///
 /// @throws InputError, UsageError
-JobResult plan_job(const datasets::Campaign& campaign, const FitSource& fit, const JobTerms& terms);
+JobResult plan_job(const datasets::Campaign& campaign, const PlanRequest& request,
+                   const JobTerms& terms);
 
 /// Results of two folders or more beside each other; the first is what the others are compared
 /// with.

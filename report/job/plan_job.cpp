@@ -1,39 +1,102 @@
-#include <optional>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "calib/design/design.hpp"
 #include "calib/trust/plan.hpp"
+#include "calib/trust/planned_record.hpp"
+#include "datasets/campaign/design/drive_file.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/prepare/time_holes.hpp"
 #include "report/job/job.hpp"
 #include "report/page/page_plan.hpp"
+#include "report/store/csv.hpp"
 #include "report/store/plan.hpp"
+#include "report/store/result_files.hpp"
 
 namespace rigcal::report {
+namespace {
 
-JobResult plan_job(const datasets::Campaign& campaign, const FitSource& fit,
-                   const JobTerms& terms) {
-  std::optional<EarlierFit> earlier;
-  if (fit.given()) earlier = fit.read(campaign.rig.plant);
+std::vector<datasets::Record> records_of(const datasets::Campaign& campaign) {
   std::vector<datasets::Record> records;
   for (const datasets::Condition& condition : campaign.conditions) {
-    const bool taken =
-        condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
-    if (!taken || !condition.has_record()) continue;
+    if (!calib::is_planned_with(condition) || !condition.has_record()) continue;
     records.push_back(datasets::load_record(campaign, condition));
     datasets::require_no_holes(campaign, records.back());
   }
-  terms.hold({{"plan.json", "report.html"}, {}});
-  const Provenance provenance{terms.command, 1, terms.options,
-                              hash_inputs(campaign, records, fit.inputs())};
-  const calib::Plan plan =
-      calib::plan(campaign, records, earlier ? &earlier->values : nullptr, terms.threads);
-  const StoredPlan result = stored(campaign, plan, provenance);
+  return records;
+}
+
+/// What the records tell; nothing where a design is asked for and the campaign has no condition.
+StoredPlan plan_of_records(const datasets::Campaign& campaign,
+                           const std::vector<datasets::Record>& records,
+                           const std::vector<datasets::FittedValue>* values, bool has_design,
+                           const Provenance& provenance, int threads) {
+  const bool any =
+      std::any_of(campaign.conditions.begin(), campaign.conditions.end(), calib::is_planned_with);
+  if (!any && has_design) return stored(campaign, {}, provenance);
+  return stored(campaign, calib::plan(campaign, records, values, threads), provenance);
+}
+
+/// Designs a test and adds it to the result and to its files.
+Table add_design(const datasets::Campaign& campaign, const std::vector<datasets::Record>& records,
+                 const std::vector<datasets::FittedValue>* values,
+                 const std::vector<std::string>& names, const JobTerms& terms,
+                 Omittable<StoredDesign>& designed, std::vector<ResultFile>& files) {
+  const auto progress = [&](datasets::DriveFamily family, int tried, int most) {
+    terms.progress(fmt::format("drives ({})", datasets::to_string(family)).c_str(), tried, most);
+  };
+  const calib::Design design =
+      calib::design(campaign, records, names, values, {terms.threads, &terms.cancel, progress});
+  designed.emplace(stored(campaign, design));
+  Table response = response_of(campaign, design);
+  files.push_back({kDriveFile, datasets::drive_csv(campaign, design.time_s, design.drive)});
+  files.push_back({kResponseFile, csv_of(response)});
+  files.push_back(
+      {kDesignedCampaignFile, datasets::designed_campaign_text(campaign, *campaign.design,
+                                                               design.family, design.noise_sd)});
+  return response;
+}
+
+}  // namespace
+
+JobResult plan_job(const datasets::Campaign& campaign, const PlanRequest& request,
+                   const JobTerms& terms) {
+  std::optional<EarlierFit> earlier;
+  if (request.fit.given()) earlier = request.fit.read(campaign.rig.plant);
+  const std::vector<datasets::Record> records = records_of(campaign);
+  const std::vector<datasets::FittedValue>* values = earlier ? &earlier->values : nullptr;
+  const bool has_design = !request.design.empty();
+  PlannedFiles planned{{"plan.json", "report.html"}, {}};
+  for (const char* file : {kDriveFile, kResponseFile, kDesignedCampaignFile})
+    planned.files.emplace_back(file);
+  terms.hold(std::move(planned));
+  Provenance provenance{terms.command, 1, terms.options,
+                        hash_inputs(campaign, records, request.fit.inputs())};
+  if (has_design) {
+    if (campaign.design) provenance.seed = campaign.design->seed;
+    provenance.options.emplace_back("design", fmt::format("{}", fmt::join(request.design, ",")));
+  }
   JobResult job;
-  job.json = json_of(result);
-  job.files = {{"plan.json", json_text(job.json)}};
+  PlanFiles plan;
+  Omittable<StoredDesign> designed;
+  if (has_design)
+    plan.response =
+        add_design(campaign, records, values, request.design, terms, designed, job.files);
+  plan.result = plan_of_records(campaign, records, values, has_design, provenance, terms.threads);
+  plan.result.design = std::move(designed);
+  if (!job.files.empty()) name_files(job.files, plan.result.provenance);
+  job.json = json_of(plan.result);
+  job.files.push_back({"plan.json", json_text(job.json)});
   job.first = {"plan.json"};
-  job.verdict = plan_headline(result);
-  job.sections = plan_sections(result);
+  if (has_design) job.first.insert(job.first.end(), {kDriveFile, kDesignedCampaignFile});
+  job.verdict = plan_headline(plan);
+  job.sections = plan_sections(plan);
   job.inputs = provenance.inputs;
+  if (plan.result.design && plan.result.design->stopped()) job.code = ExitCode::stopped;
   return job;
 }
 

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/page/page_design.hpp"
+
 namespace rigcal::report {
 namespace {
 
@@ -50,9 +52,7 @@ Trace bar(double at, double height, const std::string& style) {
   return trace;
 }
 
-}  // namespace
-
-std::vector<Figure> plan_figures(const StoredPlan& plan) {
+std::vector<Figure> share_figures(const StoredPlan& plan) {
   std::vector<Figure> figures;
   for (std::size_t j = 0; j < plan.parameters.size(); ++j) {
     const StoredPlannedParameter& parameter = plan.parameters[j];
@@ -78,7 +78,7 @@ std::vector<Figure> plan_figures(const StoredPlan& plan) {
   return figures;
 }
 
-doc::Verdict plan_headline(const StoredPlan& plan) {
+doc::Verdict records_headline(const StoredPlan& plan) {
   const auto recorded = std::count_if(plan.records.begin(), plan.records.end(),
                                       [](const auto& record) { return record.recorded; });
   const auto told =
@@ -99,7 +99,7 @@ doc::Verdict plan_headline(const StoredPlan& plan) {
   return verdict;
 }
 
-std::vector<doc::Section> plan_sections(const StoredPlan& plan) {
+doc::Section records_section(const StoredPlan& plan) {
   using doc::Line;
   doc::Table totals{"Parameters"};
   totals.caption = {"Parameters, from all records together"};
@@ -137,22 +137,43 @@ std::vector<doc::Section> plan_sections(const StoredPlan& plan) {
                                    of_all(plan, &StoredPlannedParameter::sd_recorded)));
   alone.rows.push_back(percent_row(plan, "All", of_all(plan, &StoredPlannedParameter::sd_all)));
   doc::Gallery gallery;
-  for (Figure& figure : plan_figures(plan))
+  for (Figure& figure : share_figures(plan))
     gallery.figures.push_back(figure_of(std::move(figure.plot)));
-  return {{"plan",
-           "What the records tell",
-           {doc::reading("Standard deviations at best: white noise, the model right, every "
-                         "parameter free (Cramér and Rao). A fit reaches rather more. A dash: "
-                         "nothing determines the parameter."),
-            list_of(plan.messages), list_of(problems, doc::State::bad), std::move(totals),
-            doc::Heading{{"Share of each record"}},
-            doc::about_picture(
-                "How much of the precision (one over the variance) of all records each has by "
-                "itself: blue recorded, orange planned. Numbers are those of the table."),
-            std::move(gallery), std::move(alone),
-            doc::Fold{fmt::format("From all records but one ({})", plan.records.size()),
-                      {std::move(without)}}},
-           "Plan"}};
+  return {"plan",
+          "What the records tell",
+          {doc::reading("Standard deviations at best: white noise, the model right, every "
+                        "parameter free (Cramér and Rao). A fit reaches rather more. A dash: "
+                        "nothing determines the parameter."),
+           list_of(plan.messages), list_of(problems, doc::State::bad), std::move(totals),
+           doc::Heading{{"Share of each record"}},
+           doc::about_picture(
+               "How much of the precision (one over the variance) of all records each has by "
+               "itself: blue recorded, orange planned. Numbers are those of the table."),
+           std::move(gallery), std::move(alone),
+           doc::Fold{fmt::format("From all records but one ({})", plan.records.size()),
+                     {std::move(without)}}},
+          "Plan"};
+}
+
+}  // namespace
+
+std::vector<Figure> plan_figures(const PlanFiles& files) {
+  std::vector<Figure> figures = share_figures(files.result);
+  for (Figure& figure : design_figures(files)) figures.push_back(std::move(figure));
+  return figures;
+}
+
+doc::Verdict plan_headline(const PlanFiles& files) {
+  if (files.result.design) return design_headline(*files.result.design);
+  return records_headline(files.result);
+}
+
+std::vector<doc::Section> plan_sections(const PlanFiles& files) {
+  std::vector<doc::Section> sections;
+  if (files.result.design) sections.push_back(design_section(files));
+  if (!files.result.records.empty() || !files.result.design)
+    sections.push_back(records_section(files.result));
+  return sections;
 }
 
 }  // namespace rigcal::report

@@ -7,10 +7,11 @@
 namespace rigcal::report {
 
 /// plan.json: information of each record, existing or planned, about each parameter.
-doc::Verdict plan_headline(const StoredPlan& plan);
-std::vector<doc::Section> plan_sections(const StoredPlan& plan);
+/// With `plan --design` also the test that was designed.
+doc::Verdict plan_headline(const PlanFiles& files);
+std::vector<doc::Section> plan_sections(const PlanFiles& files);
 /// For each parameter the fraction of the total information (1 / variance) that each record alone
-/// provides.
-std::vector<Figure> plan_figures(const StoredPlan& plan);
+/// provides; then those of the design.
+std::vector<Figure> plan_figures(const PlanFiles& files);
 
 }  // namespace rigcal::report

@@ -26,6 +26,14 @@ inline std::vector<datasets::Use> every() {
   return {Use::fit, Use::validate, Use::diagnose, Use::ignore};
 }
 template <>
+inline std::vector<datasets::DriveFamily> every() {
+  return {datasets::kDriveFamilies.begin(), datasets::kDriveFamilies.end()};
+}
+template <>
+inline std::vector<datasets::DesignCriterion> every() {
+  return {datasets::DesignCriterion::determinant, datasets::DesignCriterion::worst};
+}
+template <>
 inline std::vector<datasets::LeakClass> every() {
   return {datasets::kLeakClasses.begin(), datasets::kLeakClasses.end()};
 }

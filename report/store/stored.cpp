@@ -178,8 +178,9 @@ AverageFiles load_average(const ReadFile& read, const std::string& where) {
   return stored;
 }
 
-StoredPlan load_plan(const ReadFile& read, const std::string& where) {
-  auto plan = load<StoredPlan>(read, where, "plan.json");
+PlanFiles load_plan(const ReadFile& read, const std::string& where) {
+  PlanFiles stored{load<StoredPlan>(read, where, "plan.json"), {}};
+  StoredPlan& plan = stored.result;
   for (StoredPlannedRecord& record : plan.records) {
     for (auto* list : {&record.sd_alone, &record.sd_without}) {
       if (list->empty()) list->resize(plan.parameters.size());  // nothing is known about the record
@@ -187,7 +188,16 @@ StoredPlan load_plan(const ReadFile& read, const std::string& where) {
                      path_in(where, "plan.json"));
     }
   }
-  return plan;
+  if (!plan.design) return stored;
+  for (const StoredFamilyTrial& family : plan.design->families) {
+    if (family.found)
+      require_length(family.sd.size(), plan.design->parameters.size(), "sd of a family",
+                     path_in(where, "plan.json"));
+  }
+  const ReadFile own = files_of_run(read, plan.provenance, where, "plan.json");
+  if (const auto text = own(kResponseFile))
+    stored.response = parse_table(*text, path_in(where, kResponseFile));
+  return stored;
 }
 
 std::string plain_name(const std::string& text) {

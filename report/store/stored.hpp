@@ -78,7 +78,12 @@ struct AverageFiles {
 };
 AverageFiles load_average(const ReadFile& read, const std::string& where);
 
-StoredPlan load_plan(const ReadFile& read, const std::string& where);
+/// A plan, and the predicted response to the drive that was designed; empty without one.
+struct PlanFiles {
+  StoredPlan result;
+  Table response;
+};
+PlanFiles load_plan(const ReadFile& read, const std::string& where);
 
 /// A result in JSON, whose schema is that of the name of its file.
 Json load_json(const ReadFile& read, const std::string& where, const std::string& name);

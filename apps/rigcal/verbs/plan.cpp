@@ -1,5 +1,6 @@
 #include <memory>
 
+#include "apps/rigcal/interrupt.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/outcome.hpp"
 #include "apps/rigcal/verb.hpp"
@@ -7,9 +8,8 @@
 namespace rigcal::app {
 namespace {
 
-struct PlanOptions {
+struct PlanOptions : report::PlanRequest {
   CampaignOptions common;
-  report::FitSource fit;
 };
 
 }  // namespace
@@ -20,9 +20,15 @@ Run add_plan(CLI::App& verb) {
   verb.add_option("--fit", options->fit.file,
                   "fit.json whose values are taken (default: the campaign's own)")
       ->check(not_empty());
+  verb.add_option("--design", options->design,
+                  "Design a test for these parameters, within the limits of [design]")
+      ->delimiter(',')
+      ->check(not_empty());
   return [options](const Invocation& invocation) {
+    // A signal ends a plan at once; of a design it keeps the best drive until then.
+    const auto kept = options->design.empty() ? nullptr : std::make_unique<const Kept>();
     return run_job("plan", options->common, invocation, [&](const report::JobTerms& terms) {
-      return report::plan_job(load(options->common), options->fit, terms);
+      return report::plan_job(load(options->common), *options, terms);
     });
   };
 }

@@ -6,6 +6,7 @@
 
 #include "report/json/described.hpp"
 #include "report/store/described_campaign.hpp"
+#include "report/store/stored/stored_design.hpp"
 #include "report/store/stored/stored_provenance.hpp"
 
 // plan.json (docs/command-line.md).
@@ -42,8 +43,9 @@ struct StoredPlan {
   std::vector<StoredPlannedParameter> parameters;
   std::vector<StoredPlannedRecord> records;
   std::vector<std::string> messages;
+  Omittable<StoredDesign> design;  ///< of `plan --design`
   StoredProvenance provenance;
-  RIGCAL_DESCRIBE(schema, campaign, parameters, records, messages, provenance)
+  RIGCAL_DESCRIBE(schema, campaign, parameters, records, messages, design, provenance)
 };
 
 }  // namespace rigcal::report

@@ -104,7 +104,7 @@ TEST_CASE("page: what each record tells of each parameter", "[report]") {
   CHECK_THAT(html, Contains("1 of 2 records exist; all together determine 1 of 2 parameters."));
   CHECK_THAT(html, Contains("bulk_modulus_pa is not determined: add a pressure"));
   CHECK_THAT(html, Contains("2 fast (planned)") && Contains("From all records but one (2)"));
-  const auto figures = plan_figures(as<StoredPlan>(stored_plan(), "folder", "plan.json"));
+  const auto figures = plan_figures({as<StoredPlan>(stored_plan(), "folder", "plan.json"), {}});
   REQUIRE(figures.size() == 1);  // nothing is known about the other
   REQUIRE(figures[0].plot.traces.size() == 2);
   CHECK(figures[0].plot.traces[0].upper[0] == Approx(25.0));  // (0.4 / 0.8)^2
