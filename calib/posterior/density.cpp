@@ -155,7 +155,7 @@ VectorXd PosteriorDensity::from_unit(std::span<const double> z) const {
   return y;
 }
 
-LogDensity PosteriorDensity::at(const VectorXd& y) const {
+LogDensity PosteriorDensity::evaluate(const VectorXd& y, const Fidelity& fidelity) const {
   const std::vector<double> z = to_unit(y);
   const Index unknowns = y.size();
   VectorXd q = VectorXd::Zero(root_.cols());
@@ -164,10 +164,11 @@ LogDensity PosteriorDensity::at(const VectorXd& y) const {
   double square = 0.0;
   for (std::size_t i = 0; i < conditions_.size(); ++i) {
     const ProblemCondition& condition = problem_.conditions[i];
-    const model::Simulation run = simulate_condition(problem_, i, z, cancel_);
+    const model::Simulation run = simulate_condition(problem_, i, z, cancel_, fidelity);
     if (!run.ok()) return {};
     const std::vector<int>& acting = problem_.map.acting(i);
-    const VectorXd box_slopes = acting_slopes(problem_, i, z);
+    const VectorXd box_slopes = fidelity.derivatives ? acting_slopes(problem_, i, z) : VectorXd();
+    const Index free = box_slopes.size();
     const auto columns = static_cast<Index>(acting.size());
     const auto samples = condition.rows.size();
     VectorXd projected = VectorXd::Zero(columns);
@@ -182,11 +183,12 @@ LogDensity PosteriorDensity::at(const VectorXd& y) const {
                                                 problem_.campaign->fit, unused);
         const auto before = conditions_[i].jacobian.middleRows(
             static_cast<Index>(k * samples + begin), weighted.rows());
-        const auto residual = weighted.col(columns);
+        const auto residual = weighted.col(free);
         projected.noalias() += before.transpose() * residual;
+        square += residual.squaredNorm();
+        if (!fidelity.derivatives) continue;
         projected_slopes.noalias() += before.transpose() * weighted.leftCols(columns);
         own_gradient.noalias() += weighted.leftCols(columns).transpose() * residual;
-        square += residual.squaredNorm();
       }
     }
     q.noalias() += conditions_[i].root.transpose() * projected;

@@ -42,7 +42,9 @@ class PosteriorDensity {
                    const std::vector<FittedParameter>& parameters,
                    const std::atomic<bool>* cancel = nullptr);
 
-  LogDensity at(const Eigen::VectorXd& y) const;
+  LogDensity at(const Eigen::VectorXd& y) const { return evaluate(y, Fidelity::full); }
+  /// The logarithm alone, by simulations without sensitivities.
+  double value(const Eigen::VectorXd& y) const { return evaluate(y, {false, true}).value; }
 
   /// A point to begin at: the optimum, or one standard error inside where that is nearer to a
   /// bound.
@@ -56,6 +58,9 @@ class PosteriorDensity {
   double noise() const { return kappa_; }
 
  private:
+  /// @param fidelity  without derivatives there is no gradient
+  LogDensity evaluate(const Eigen::VectorXd& y, const Fidelity& fidelity) const;
+
   struct Directions {
     Eigen::MatrixXd jacobian;  ///< rows at the optimum, shape (residuals, acting unknowns)
     Eigen::MatrixXd root;      ///< R of the acting unknowns, shape (acting, directions)
