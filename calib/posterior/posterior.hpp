@@ -9,7 +9,7 @@ namespace rigcal::calib {
 
 inline constexpr int kPosteriorChains = 4;
 /// Draws of each chain before those that count.
-inline constexpr int kPosteriorWarmUp = 400;
+inline constexpr int kPosteriorWarmUp = 300;
 /// Draws of a chain that are kept together: a stopped run loses fewer than these.
 inline constexpr int kPosteriorStretch = 250;
 /// Draws that are simulated to judge the limits.

@@ -40,7 +40,18 @@ struct Scene {
       : twin(rig(tolerance)),
         records(twin.records(150, 300.0, 5)),
         problem(problem_of(twin, records)) {
-    look_at(problem.start());
+    // At the truth, where the residuals are noise.
+    std::vector<double> z;
+    for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
+      const Unknown& unknown = problem.map.unknowns()[j];
+      double value = unknown.start;
+      for (const auto& each : twin.truth.parameters) {
+        if (each.index == unknown.index) value = each.value;
+      }
+      if (!unknown.level.empty()) value = twin.level_leakage.at(unknown.level);
+      z.push_back(problem.map.to_unit(static_cast<int>(j), value));
+    }
+    look_at(z);
   }
 
   /// The point about which the density is made; standard errors as of white noise.

@@ -9,6 +9,7 @@
 #include "datasets/synthetic/noise.hpp"
 #include "metrics/distributions.hpp"
 #include "tests/calib/twin.hpp"
+#include "tests/support/sanitized.hpp"
 
 namespace rigcal::calib {
 namespace {
@@ -157,7 +158,7 @@ TEST_CASE("posterior: the same bits in any number of threads, in pieces, and els
   CHECK_THAT(stopped.message, Contains("sampling of the posterior was stopped on request"));
 
   cancel = false;
-  farm.stop_after = 9;  // one more of the first stretch is enough for it: 4 + 4 are made
+  farm.stop_after = farm.made + 3;  // two end the first stretch, one is of the next
   const Fit partly = fit(twin.campaign, records, options);
   CHECK(partly.status == FitStatus::stopped);
   REQUIRE(partly.posterior);
@@ -187,11 +188,15 @@ TEST_CASE("posterior: a limit of evaluations ends it between stretches", "[calib
 TEST_CASE("posterior: the ranks of truths among their draws are uniform", "[calib]") {
   // Simulation-based calibration (Talts et al., arXiv:1804.06788): truths from the prior, records
   // from the truths. bench/posterior_study.cpp does it 500 times.
-  constexpr int kCampaigns = 50;
+  constexpr int kCampaigns = test::kSanitized ? 10 : 40;
   constexpr int kBins = 5;
   std::map<int, std::vector<int>> counts;
   for (int campaign = 0; campaign < kCampaigns; ++campaign) {
-    Twin twin = small_rig();
+    Twin twin;
+    twin.free("mass", 60.0, 20.0, 180.0);
+    twin.free("valve_gain", 0.03e-3, 0.01e-3, 0.09e-3);
+    twin.add("sine", datasets::Waveform::sine, 5.0, 0.01);
+    twin.campaign.simulation.tolerance = 1e-4;  // the noise is a tenth of the motion
     auto stream = datasets::random_stream(17, {"truth", std::to_string(campaign)});
     std::map<int, double> truths;
     for (auto& setting : twin.campaign.parameters) {
@@ -202,11 +207,11 @@ TEST_CASE("posterior: the ranks of truths among their draws are uniform", "[cali
         if (each.index == setting.index) each.value = truth;
       }
     }
-    twin.noise_sd_m = 1e-3;  // a tenth of the motion
-    const auto records = twin.records(60, 120.0, 100U + static_cast<unsigned>(campaign));
+    twin.noise_sd_m = 1e-3;
+    const auto records = twin.records(30, 100.0, 100U + static_cast<unsigned>(campaign));
     FitOptions options = quick();
-    options.starts = 3;
     options.posterior = 100;
+    options.threads = 2;
     options.seed = static_cast<std::uint64_t>(campaign);
     const Fit found = fit(twin.campaign, records, options);
     REQUIRE(found.status == FitStatus::converged);
