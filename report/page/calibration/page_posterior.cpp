@@ -29,20 +29,20 @@ doc::Table draws_table(const StoredFit& fit, const StoredPosterior& found) {
                    {"Unit"},
                    {"Std. deviation", Kind::number},
                    {"95 % of the draws", Kind::number},
-                   {"95 % interval if the model is exact", Kind::number},
+                   {"95 % if exact", Kind::number},
                    {"95 % interval", Kind::number},
                    {"R-hat", Kind::number},
-                   {"Effective draws, middle", Kind::number},
-                   {"Effective draws, ends", Kind::number}};
+                   {"Effective draws", Kind::number}};
   for (const StoredParameter& p : fit.parameters) {
     if (!p.posterior) continue;
     const RowUnit unit = unit_of(p);
     const StoredPosteriorSpread& spread = *p.posterior;
-    table.rows.push_back({{parameter_label(p), doc::in_unit(spread.median, unit.si, 6), unit.name,
-                           doc::in_unit(spread.sd, unit.si, 3), range_line(spread.ci95, unit),
-                           range_line(p.ci95_if_exact, unit), range_line(p.ci95, unit),
-                           spread.r_hat ? fmt::format("{:.4f}", *spread.r_hat) : std::string("–"),
-                           count_text(spread.bulk_draws), count_text(spread.tail_draws)}});
+    table.rows.push_back(
+        {{parameter_label(p), doc::in_unit(spread.median, unit.si, 6), unit.name,
+          doc::in_unit(spread.sd, unit.si, 3), range_line(spread.ci95, unit),
+          range_line(p.ci95_if_exact, unit), range_line(p.ci95, unit),
+          spread.r_hat ? fmt::format("{:.4f}", *spread.r_hat) : std::string("–"),
+          fmt::format("{}, {}", count_text(spread.bulk_draws), count_text(spread.tail_draws))}});
   }
   return table;
 }
@@ -136,7 +136,9 @@ void add_posterior(const StoredFit& fit, doc::Blocks& blocks) {
       "Correlated residuals, differences between repeats and stated uncertainties of known values "
       "count as they do there. Prior: uniform between the bounds, in the logarithm where these "
       "span "
-      "more than a decade; a stated prior where the campaign has one."));
+      "more than a decade; a stated prior where the campaign has one. Effective draws are those "
+      "that "
+      "count for the middle of a distribution, and for its ends."));
   blocks.emplace_back(draws_table(fit, found));
   if (!found.limits.empty()) {
     blocks.emplace_back(limits_table(found));
