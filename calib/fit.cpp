@@ -54,11 +54,12 @@ Budget budget_of(const Campaign& campaign, const FitOptions& options, Clock::tim
 }
 
 bool asks_for_more(const FitOptions& options) {
-  return options.bootstrap > 0 || options.profiles || options.posterior > 0 || options.cross_validate;
+  return options.bootstrap > 0 || options.profiles || options.posterior > 0 ||
+         options.cross_validate;
 }
 
-/// Runs what was requested in addition to the fit: bootstrap, profiles, posterior, cross-validation. If the
-/// budget ends it, the finished parts are kept.
+/// Runs what was requested in addition to the fit: bootstrap, profiles, posterior,
+/// cross-validation. If the budget ends it, the finished parts are kept.
 void look_again(const Problem& problem, const Campaign& campaign,
                 const std::vector<Record>& records, const Solved& solved, const FitOptions& options,
                 Budget& budget, Fit& fit) {

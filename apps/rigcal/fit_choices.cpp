@@ -41,9 +41,10 @@ void add_fit_choices(CLI::App& verb, FitChoices& choices) {
                   "Intervals from so many fits to redrawn repeats or residuals")
       ->check(CLI::Range(0, kMostReplicates));
   verb.add_flag("--profiles", choices.profiles, "Profile likelihood of every parameter");
-  verb.add_option("--posterior", choices.posterior,
-                  "Draws of each of four chains of the posterior (default: the campaign's, or none; "
-                  "1000 where no number follows)")
+  verb.add_option(
+          "--posterior", choices.posterior,
+          "Draws of each of four chains of the posterior (default: the campaign's, or none; "
+          "1000 where no number follows)")
       ->expected(0, 1)
       ->default_str("1000")
       ->check(CLI::Range(datasets::kLeastPosteriorDraws, datasets::kMostPosteriorDraws));

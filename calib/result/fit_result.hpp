@@ -47,7 +47,7 @@ struct Fit {
   std::vector<Basin> basins;                    ///< sorted by cost
   int bootstrap_replicates = 0;                 ///< replicates that converged
   std::string bootstrap_message;                ///< how they were drawn, and what went wrong
-  std::optional<Posterior> posterior;  ///< absent: not asked for
+  std::optional<Posterior> posterior;           ///< absent: not asked for
   std::vector<HeldOut> cross_validation;
   std::string agreement;  ///< agreement of the starts, in words; empty for a single one
   std::vector<SimulationFailure> failures;

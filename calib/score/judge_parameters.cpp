@@ -235,8 +235,9 @@ void judge_posterior(const Fit& fit, std::vector<Reason>& reasons) {
         fmt::format("{} of {} draws of the posterior diverged: the sampler may have missed a part "
                     "of it",
                     found.diverged, found.chains * found.draws),
-        {}, {{"diverged", static_cast<double>(found.diverged)},
-             {"draws", static_cast<double>(found.chains * found.draws)}}));
+        {},
+        {{"diverged", static_cast<double>(found.diverged)},
+         {"draws", static_cast<double>(found.chains * found.draws)}}));
   }
 }
 

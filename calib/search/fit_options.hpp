@@ -38,8 +38,8 @@ struct FitOptions {
   /// Called after every iteration: start (from 1), iteration, cost, relative change of cost,
   /// seconds.
   std::function<void(int, int, double, double, double)> progress;
-  /// Called during bootstrap, profiles, posterior and cross-validation: their name ("replicates of the
-  /// bootstrap"), number done, total number. From any thread.
+  /// Called during bootstrap, profiles, posterior and cross-validation: their name ("replicates of
+  /// the bootstrap"), number done, total number. From any thread.
   std::function<void(const char*, int, int)> beside;
 
   void validate() const;

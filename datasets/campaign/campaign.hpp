@@ -165,7 +165,7 @@ struct FitSettings {
   double loss_scale = 3.0;  ///< in standard deviations of a residual
   int max_iterations = 200;
   int starts = 1;
-  int posterior = 0;  ///< draws of each chain of the posterior; 0: none
+  int posterior = 0;                  ///< draws of each chain of the posterior; 0: none
   std::optional<double> max_seconds;  ///< limit for the whole fit
   std::vector<Channel> outputs;       ///< compared with the model; empty: every output channel
   /// Length of the pieces of multiple shooting before a start; none: no multiple shooting.

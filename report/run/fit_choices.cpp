@@ -48,8 +48,7 @@ std::vector<std::pair<std::string, std::string>> recorded(const FitChoices& choi
   if (choices.bootstrap > 0)
     options.emplace_back("bootstrap", fmt::format("{}", choices.bootstrap));
   if (choices.profiles) options.emplace_back("profiles", "true");
-  if (choices.posterior)
-    options.emplace_back("posterior", fmt::format("{}", *choices.posterior));
+  if (choices.posterior) options.emplace_back("posterior", fmt::format("{}", *choices.posterior));
   if (choices.cross_validate) options.emplace_back("cross_validate", "true");
   return options;
 }

@@ -124,10 +124,12 @@ StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSp
     result.profile = StoredProfile{stored(p.profile->low), stored(p.profile->high),
                                    p.profile->values, p.profile->rises};
   if (p.posterior)
-    result.posterior =
-        StoredPosteriorSpread{p.posterior->median,           p.posterior->sd,
-                              range_of(p.posterior->ci95),   finite(p.posterior->r_hat),
-                              finite(p.posterior->bulk_draws), finite(p.posterior->tail_draws)};
+    result.posterior = StoredPosteriorSpread{p.posterior->median,
+                                             p.posterior->sd,
+                                             range_of(p.posterior->ci95),
+                                             finite(p.posterior->r_hat),
+                                             finite(p.posterior->bulk_draws),
+                                             finite(p.posterior->tail_draws)};
   result.at_bound = p.at_bound;
   result.reason = reason_of(p);
   return result;

@@ -33,8 +33,8 @@ inline std::vector<datasets::DecisionRule> every() {
 template <>
 inline std::vector<calib::StoppedIn> every() {  // except `nothing`, which is null
   using calib::StoppedIn;
-  return {StoppedIn::starts, StoppedIn::validation, StoppedIn::bootstrap, StoppedIn::profiles,
-          StoppedIn::posterior, StoppedIn::cross_validation};
+  return {StoppedIn::starts,   StoppedIn::validation, StoppedIn::bootstrap,
+          StoppedIn::profiles, StoppedIn::posterior,  StoppedIn::cross_validation};
 }
 template <>
 inline std::vector<calib::Verdict> every() {
@@ -177,7 +177,8 @@ struct StoredParameter {
   std::string reason;
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, value, start, lower, upper, fitted,
                   nuisance, standard_error, robust_standard_error, ci95, ci95_if_exact, ci95_from,
-                  degrees_of_freedom, budget, bootstrap, profile, posterior, at_bound, identifiability, reason)
+                  degrees_of_freedom, budget, bootstrap, profile, posterior, at_bound,
+                  identifiability, reason)
 };
 
 /// What the parameters of a result of an earlier schema say today.
@@ -457,9 +458,9 @@ struct StoredFit {
                   simulation_tolerance, parameters, correlation, rank, singular_values,
                   reduced_chi_square, independent_residuals, interval_advice, combinations,
                   lack_of_fit, between_repeats, considered, stability, basins, agreement, bootstrap,
-                  posterior, cross_validation, aic, bic, weights, validity, validated, decision, acceptance,
-                  not_judged, conditions, groups, starts, best_start, failure_count, failures,
-                  warnings, provenance)
+                  posterior, cross_validation, aic, bic, weights, validity, validated, decision,
+                  acceptance, not_judged, conditions, groups, starts, best_start, failure_count,
+                  failures, warnings, provenance)
 
   const StoredCondition* find(const std::string& condition) const;
 };
