@@ -9,6 +9,7 @@
 #include "calib/consider/stability.hpp"
 #include "calib/cross_validation.hpp"
 #include "calib/finish.hpp"
+#include "calib/posterior/posterior.hpp"
 #include "calib/problem/initial_state.hpp"
 #include "calib/problem/known_values.hpp"
 #include "calib/score/scorecard.hpp"
@@ -53,11 +54,12 @@ Budget budget_of(const Campaign& campaign, const FitOptions& options, Clock::tim
 }
 
 bool asks_for_more(const FitOptions& options) {
-  return options.bootstrap > 0 || options.profiles || options.cross_validate;
+  return options.bootstrap > 0 || options.profiles || options.posterior > 0 ||
+         options.cross_validate;
 }
 
-/// Runs what was requested in addition to the fit: bootstrap, profiles, cross-validation. If the
-/// budget ends it, the finished parts are kept.
+/// Runs what was requested in addition to the fit: bootstrap, profiles, posterior,
+/// cross-validation. If the budget ends it, the finished parts are kept.
 void look_again(const Problem& problem, const Campaign& campaign,
                 const std::vector<Record>& records, const Solved& solved, const FitOptions& options,
                 Budget& budget, Fit& fit) {
@@ -71,6 +73,10 @@ void look_again(const Problem& problem, const Campaign& campaign,
   if (options.profiles) {
     profiles(problem, records, solved.optimum, options, fit, budget);
     note(StoppedIn::profiles);
+  }
+  if (options.posterior > 0) {
+    sample_posterior(problem, solved.optimum, solved.spread, options, fit, budget);
+    note(StoppedIn::posterior);
   }
   for (const std::size_t j : solved.open) {  // the smoothing of roots would bound them, no record
     fit.parameters[j].bootstrap.reset();
@@ -156,6 +162,8 @@ std::string_view words(StoppedIn stage) {
       return "bootstrap";
     case StoppedIn::profiles:
       return "profiles' computation";
+    case StoppedIn::posterior:
+      return "sampling of the posterior";
     case StoppedIn::cross_validation:
       return "cross-validation";
   }
@@ -239,7 +247,7 @@ Fit fit(const Campaign& campaign, const std::vector<Record>& records, const FitO
       look_again(problem, campaign, records, solved, options, budget, result);
     } else if (asks_for_more(options)) {
       result.message +=
-          "; bootstrap, profiles and cross-validation are made of what converged only";
+          "; bootstrap, profiles, posterior and cross-validation are made of what converged only";
     }
     if (validation) add_validation(std::move(*validation), result);
     if (result.status == FitStatus::converged && result.stopped_in != StoppedIn::nothing) {

@@ -82,7 +82,8 @@ class Call {
 };
 
 report::FitChoices choices_of(const std::optional<Integer>& starts, const Integer& seed,
-                              const Integer& bootstrap, bool profiles, bool cross_validate,
+                              const Integer& bootstrap, bool profiles,
+                              const std::optional<Integer>& posterior, bool cross_validate,
                               std::optional<double> max_time_s,
                               const std::optional<Integer>& max_evaluations) {
   report::FitChoices choices;
@@ -90,6 +91,10 @@ report::FitChoices choices_of(const std::optional<Integer>& starts, const Intege
   choices.seed = whole_number("seed", seed, 0, std::numeric_limits<std::uint64_t>::max());
   choices.bootstrap = count("bootstrap", bootstrap, 0, report::kMostReplicates);
   choices.profiles = profiles;
+  if (posterior) {
+    choices.posterior = count("posterior", *posterior, datasets::kLeastPosteriorDraws,
+                              datasets::kMostPosteriorDraws);
+  }
   choices.cross_validate = cross_validate;
   choices.max_time_s = positive("max_time", max_time_s);
   if (max_evaluations) {
@@ -106,19 +111,39 @@ std::string call_of(const Campaign& campaign, const report::FitChoices& choices)
   call.add("seed", choices.seed, none.seed);
   call.add("bootstrap", choices.bootstrap, none.bootstrap);
   call.add("profiles", choices.profiles, none.profiles);
+  call.add("posterior", choices.posterior, none.posterior);
   call.add("cross_validate", choices.cross_validate, none.cross_validate);
   call.add("max_time", choices.max_time_s, none.max_time_s);
   call.add("max_evaluations", choices.max_evaluations, none.max_evaluations);
   return call.text();
 }
 
+/// A copy that numpy owns.
+std::optional<py::array_t<double>> draws_of(const FitResult& self) {
+  if (!self.fit.posterior || self.fit.posterior->draws == 0) return std::nullopt;
+  const calib::Posterior& found = *self.fit.posterior;
+  py::array_t<double> draws({found.chains, found.draws, static_cast<int>(found.names.size())});
+  auto entries = draws.mutable_unchecked<3>();
+  for (py::ssize_t c = 0; c < entries.shape(0); ++c) {
+    for (py::ssize_t i = 0; i < entries.shape(1); ++i) {
+      for (py::ssize_t j = 0; j < entries.shape(2); ++j) {
+        entries(c, i, j) = found.values[static_cast<std::size_t>(j)]
+                                       [static_cast<std::size_t>(c * entries.shape(1) + i)];
+      }
+    }
+  }
+  draws.attr("flags").attr("writeable") = false;
+  return draws;
+}
+
 FitResultPtr fit(const CampaignPtr& self, const std::optional<Integer>& starts, const Integer& seed,
-                 const Integer& bootstrap, bool profiles, bool cross_validate,
-                 std::optional<double> max_time_s, const std::optional<Integer>& max_evaluations,
+                 const Integer& bootstrap, bool profiles, const std::optional<Integer>& posterior,
+                 bool cross_validate, std::optional<double> max_time_s,
+                 const std::optional<Integer>& max_evaluations,
                  const std::optional<Integer>& threads,
                  const std::optional<py::function>& progress) {
-  const report::FitChoices choices =
-      choices_of(starts, seed, bootstrap, profiles, cross_validate, max_time_s, max_evaluations);
+  const report::FitChoices choices = choices_of(starts, seed, bootstrap, profiles, posterior,
+                                                cross_validate, max_time_s, max_evaluations);
   const int thread_number = thread_count(threads);
   const std::string call = call_of(*self, choices);
   return made(progress, [&](Progress& told, std::atomic<bool>& cancel) {
@@ -345,6 +370,15 @@ Raises:
       .def_property_readonly("bootstrap_replicates",
                              field(&Self::fit, &calib::Fit::bootstrap_replicates),
                              "That converged.")
+      .def_property_readonly(
+          "draws", &draws_of,
+          "From the posterior, SI, shape (chains, draws, unknowns); None where there are none.")
+      .def_property_readonly(
+          "draw_names",
+          [](const Self& self) {
+            return self.fit.posterior ? self.fit.posterior->names : std::vector<std::string>();
+          },
+          "Of the unknowns in `draws`.")
       .def("json", &json_of_result,
            R"(Contents of the fit.json, or validation.json, that write() would write.
 
@@ -419,9 +453,9 @@ void bind_fits(py::module_& module, CampaignClass& campaign) {
   bind_result(module);
   campaign.def("fit", &fit, py::kw_only(), py::arg("starts") = py::none(), py::arg("seed") = 1,
                py::arg("bootstrap") = 0, py::arg("profiles") = false,
-               py::arg("cross_validate") = false, py::arg("max_time") = py::none(),
-               py::arg("max_evaluations") = py::none(), py::arg("threads") = py::none(),
-               py::arg("progress") = py::none(),
+               py::arg("posterior") = py::none(), py::arg("cross_validate") = false,
+               py::arg("max_time") = py::none(), py::arg("max_evaluations") = py::none(),
+               py::arg("threads") = py::none(), py::arg("progress") = py::none(),
                R"(Estimates the free parameters and scores the conditions, as `rigcal fit`.
 
 A fit that fails says so in its status; nothing is raised.
@@ -431,6 +465,7 @@ Args:
     seed: of the further starts, the bootstrap...
     bootstrap: number of replicates; 0: none
     profiles: whether to follow the profile likelihood of every parameter
+    posterior: draws of each of four chains; None: the campaign's number, or none
     cross_validate: whether to leave out one condition after the other and predict it
     max_time: stops the fit, bootstrap and all [s]; None: the campaign's limit, or none
     max_evaluations: stops it after so many evaluations of all conditions

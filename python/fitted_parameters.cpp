@@ -26,6 +26,21 @@ void bind_bootstrap(py::module_& module) {
       .def_readonly("ci95", &BootstrapSpread::ci95, "Percentiles, widened for the freedom.");
 }
 
+void bind_posterior(py::module_& module) {
+  using calib::PosteriorSpread;
+  py::class_<PosteriorSpread>(module, "PosteriorSpread",
+                              "A parameter over the draws of the posterior, in its unit.")
+      .def_readonly("median", &PosteriorSpread::median, "Of the draws.")
+      .def_readonly("sd", &PosteriorSpread::sd, "Standard deviation of the draws.")
+      .def_readonly("ci95", &PosteriorSpread::ci95, "Quantiles of 2.5 and 97.5 %.")
+      .def_readonly("r_hat", &PosteriorSpread::r_hat,
+                    "Rank-normalised split R-hat; above 1.01 the chains disagree.")
+      .def_readonly("bulk_draws", &PosteriorSpread::bulk_draws,
+                    "Effective sample size for the middle.")
+      .def_readonly("tail_draws", &PosteriorSpread::tail_draws,
+                    "Effective sample size for the ends of intervals.");
+}
+
 void bind_profile(py::module_& module) {
   using calib::Profile;
   using calib::ProfileEnd;
@@ -54,6 +69,7 @@ void bind_profile(py::module_& module) {
 void bind_fitted_parameters(py::module_& module) {
   using Self = FittedParameter;
   bind_bootstrap(module);
+  bind_posterior(module);
   bind_profile(module);
   py::class_<Self> parameter(module, "FittedParameter",
                              "One parameter of a result, fitted or known; SI.");
@@ -113,6 +129,8 @@ void bind_fitted_parameters(py::module_& module) {
           "With which the error that `ci95_if_exact` rests on is known; or None.")
       .def_property_readonly("bootstrap", field(&Self::value, &calib::FittedParameter::bootstrap),
                              "Its spread, where the fit was asked for one.")
+      .def_property_readonly("posterior", field(&Self::value, &calib::FittedParameter::posterior),
+                             "Its spread over the draws, where the fit was asked for some.")
       .def_property_readonly(
           "profile",
           [](const Self& self) -> std::shared_ptr<calib::Profile> {

@@ -41,6 +41,13 @@ void add_fit_choices(CLI::App& verb, FitChoices& choices) {
                   "Intervals from so many fits to redrawn repeats or residuals")
       ->check(CLI::Range(0, kMostReplicates));
   verb.add_flag("--profiles", choices.profiles, "Profile likelihood of every parameter");
+  verb.add_option(
+          "--posterior", choices.posterior,
+          "Draws of each of four chains of the posterior (default: the campaign's, or none; "
+          "1000 where no number follows)")
+      ->expected(0, 1)
+      ->default_str("1000")
+      ->check(CLI::Range(datasets::kLeastPosteriorDraws, datasets::kMostPosteriorDraws));
   verb.add_flag("--cross-validate", choices.cross_validate,
                 "Leave out one condition after the other and predict it");
   verb.add_option(
@@ -63,6 +70,7 @@ std::vector<std::string> arguments_of(const FitChoices& choices) {
   if (choices.seed != FitChoices{}.seed) add("--seed", fmt::format("{}", choices.seed));
   if (choices.bootstrap > 0) add("--bootstrap", fmt::format("{}", choices.bootstrap));
   if (choices.profiles) arguments.emplace_back("--profiles");
+  if (choices.posterior) add("--posterior", fmt::format("{}", *choices.posterior));
   if (choices.cross_validate) arguments.emplace_back("--cross-validate");
   if (choices.max_time_s) add("--max-time", fmt::format("{}", *choices.max_time_s));
   if (choices.max_evaluations)

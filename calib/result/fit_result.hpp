@@ -10,6 +10,7 @@
 #include "calib/result/considered.hpp"
 #include "calib/result/fitted_parameter.hpp"
 #include "calib/result/model_error.hpp"
+#include "calib/result/posterior.hpp"
 #include "calib/result/search_report.hpp"
 
 namespace rigcal::calib {
@@ -46,6 +47,7 @@ struct Fit {
   std::vector<Basin> basins;                    ///< sorted by cost
   int bootstrap_replicates = 0;                 ///< replicates that converged
   std::string bootstrap_message;                ///< how they were drawn, and what went wrong
+  std::optional<Posterior> posterior;           ///< absent: not asked for
   std::vector<HeldOut> cross_validation;
   std::string agreement;  ///< agreement of the starts, in words; empty for a single one
   std::vector<SimulationFailure> failures;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "calib/result/considered.hpp"
+#include "calib/result/posterior.hpp"
 #include "datasets/campaign/campaign.hpp"
 
 // A parameter after a fit.
@@ -84,6 +85,7 @@ struct FittedParameter {
   double moved_by_unexplained = 0.0;
   std::optional<BootstrapSpread> bootstrap;
   std::optional<Profile> profile;
+  std::optional<PosteriorSpread> posterior;
   bool at_bound = false;
   Identifiability identifiability = Identifiability::identified;
   std::string reason;  ///< in words: why no error, why weak, at which bound

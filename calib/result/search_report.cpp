@@ -26,6 +26,8 @@ std::string_view to_string(StoppedIn stage) {
       return "bootstrap";
     case StoppedIn::profiles:
       return "profiles";
+    case StoppedIn::posterior:
+      return "posterior";
     case StoppedIn::cross_validation:
       return "cross_validation";
   }

@@ -19,7 +19,15 @@ enum class FitStatus {
 std::string_view to_string(FitStatus status);
 
 /// Stage at which a job was stopped.
-enum class StoppedIn { nothing, starts, validation, bootstrap, profiles, cross_validation };
+enum class StoppedIn {
+  nothing,
+  starts,
+  validation,
+  bootstrap,
+  profiles,
+  posterior,
+  cross_validation
+};
 std::string_view to_string(StoppedIn stage);
 
 /// One start of a multi-start fit.

@@ -218,6 +218,29 @@ void judge_considered(const Campaign& campaign, const Fit& fit, std::vector<Reas
   }
 }
 
+/// Whether the draws of the posterior may be believed.
+void judge_posterior(const Fit& fit, std::vector<Reason>& reasons) {
+  if (!fit.posterior || fit.posterior->draws == 0) return;
+  const Posterior& found = *fit.posterior;
+  if (!found.mixed()) {
+    reasons.push_back(reason(
+        AspectState::reservation, "posterior_not_mixed",
+        fmt::format("the chains of the posterior disagree: R-hat {} of {}, at most {} would do",
+                    significant(found.r_hat, 4), found.worst, Posterior::kMostRHat),
+        found.worst, {{"r_hat", found.r_hat}, {"allowed", Posterior::kMostRHat}}));
+  }
+  if (found.diverged > 0) {
+    reasons.push_back(reason(
+        AspectState::reservation, "posterior_divergences",
+        fmt::format("{} of {} draws of the posterior diverged: the sampler may have missed a part "
+                    "of it",
+                    found.diverged, found.chains * found.draws),
+        {},
+        {{"diverged", static_cast<double>(found.diverged)},
+         {"draws", static_cast<double>(found.chains * found.draws)}}));
+  }
+}
+
 }  // namespace
 
 Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
@@ -265,6 +288,7 @@ Aspect judge_parameters(const Campaign& campaign, const Fit& fit) {
   note_further_starts(fit, reasons);
   judge_considered(campaign, fit, reasons);
   judge_stability(campaign, fit, reasons);
+  judge_posterior(fit, reasons);
   note_exact_values(campaign, fit, reasons);
   return aspect_of(std::move(reasons));
 }

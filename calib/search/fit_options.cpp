@@ -14,6 +14,7 @@ void FitOptions::validate() const {
   require(threads >= 1, "threads must be at least 1");
   require(max_iterations >= 0, "max_iterations must not be negative");
   require(bootstrap >= 0, "bootstrap must not be negative");
+  require(posterior >= 0, "posterior must not be negative");
   require(!max_evaluations || *max_evaluations > 0, "max_evaluations must be positive");
   require(!max_seconds || *max_seconds > 0.0, "max_seconds must be positive");
 }

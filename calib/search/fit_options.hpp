@@ -26,6 +26,7 @@ struct FitOptions {
   std::optional<double> max_seconds;    ///< of the whole job; then: status `stopped`
   bool consider = true;                 ///< the small effects that the model leaves out
   int bootstrap = 0;                    ///< replicates, each fitted from the optimum; 0: none
+  int posterior = 0;                    ///< draws of each chain of the posterior; 0: none
   bool profiles = false;                ///< profile likelihood of every unknown that is no nuisance
   bool cross_validate = false;          ///< leave one condition out after the other
   const Checkpoint* resume = nullptr;   ///< checkpoint to continue from
@@ -37,8 +38,8 @@ struct FitOptions {
   /// Called after every iteration: start (from 1), iteration, cost, relative change of cost,
   /// seconds.
   std::function<void(int, int, double, double, double)> progress;
-  /// Called during bootstrap, profiles and cross-validation: their name ("replicates of the
-  /// bootstrap"), number done, total number. From any thread.
+  /// Called during bootstrap, profiles, posterior and cross-validation: their name ("replicates of
+  /// the bootstrap"), number done, total number. From any thread.
   std::function<void(const char*, int, int)> beside;
 
   void validate() const;

@@ -158,12 +158,17 @@ enum class SpikeTreatment { report, exclude };
 
 enum class Loss { squared, huber, cauchy, soft_l1 };
 
+/// Draws of each chain of the posterior: fewer tell no quantiles.
+inline constexpr int kLeastPosteriorDraws = 100;
+inline constexpr int kMostPosteriorDraws = 100'000;
+
 /// [fit], all optional.
 struct FitSettings {
   Loss loss = Loss::squared;
   double loss_scale = 3.0;  ///< in standard deviations of a residual
   int max_iterations = 200;
   int starts = 1;
+  int posterior = 0;                  ///< draws of each chain of the posterior; 0: none
   std::optional<double> max_seconds;  ///< limit for the whole fit
   std::vector<Channel> outputs;       ///< compared with the model; empty: every output channel
   /// Length of the pieces of multiple shooting before a start; none: no multiple shooting.

@@ -205,7 +205,7 @@ void read_acceptance(const TomlNode& node, Campaign& campaign) {
 
 FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
   node.allow_only({"loss", "loss_scale", "max_iterations", "starts", "max_time", "outputs",
-                   "shooting_interval"});
+                   "posterior", "shooting_interval"});
   FitSettings fit;
   if (const auto loss = node.find("loss")) {
     fit.loss = loss->choice<Loss>({{"squared", Loss::squared},
@@ -220,6 +220,8 @@ FitSettings read_fit(const TomlNode& node, const Campaign& campaign) {
     fit.max_iterations = count->integer(1, 1'000'000);
   }
   if (const auto count = node.find("starts")) fit.starts = count->integer(1, 100'000);
+  if (const auto draws = node.find("posterior"))
+    fit.posterior = draws->integer(kLeastPosteriorDraws, kMostPosteriorDraws);
   if (const auto time = node.find("max_time")) fit.max_seconds = time->quantity("s", kDurations_s);
   if (const auto interval = node.find("shooting_interval")) {
     fit.shooting_interval_s = interval->quantity("s", kDurations_s);

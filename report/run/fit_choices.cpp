@@ -15,6 +15,7 @@ calib::FitOptions fit_options(const datasets::Campaign& campaign, int threads,
   calib::FitOptions fit;
   fit.starts = campaign.fit.starts;
   fit.max_iterations = campaign.fit.max_iterations;
+  fit.posterior = campaign.fit.posterior;
   fit.max_seconds = campaign.fit.max_seconds;
   fit.threads = threads;
   fit.cancel = &cancel;
@@ -27,6 +28,7 @@ void apply(const FitChoices& choices, calib::FitOptions& settings) {
   settings.seed = choices.seed;
   settings.bootstrap = choices.bootstrap;
   settings.profiles = choices.profiles;
+  settings.posterior = choices.posterior.value_or(settings.posterior);
   settings.cross_validate = choices.cross_validate;
   settings.max_evaluations = choices.max_evaluations;
   if (choices.max_time_s) settings.max_seconds = choices.max_time_s;
@@ -46,6 +48,7 @@ std::vector<std::pair<std::string, std::string>> recorded(const FitChoices& choi
   if (choices.bootstrap > 0)
     options.emplace_back("bootstrap", fmt::format("{}", choices.bootstrap));
   if (choices.profiles) options.emplace_back("profiles", "true");
+  if (choices.posterior) options.emplace_back("posterior", fmt::format("{}", *choices.posterior));
   if (choices.cross_validate) options.emplace_back("cross_validate", "true");
   return options;
 }

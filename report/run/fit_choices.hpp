@@ -23,6 +23,7 @@ struct FitChoices {
   std::uint64_t seed = 1;
   int bootstrap = 0;
   bool profiles = false;
+  std::optional<int> posterior;  ///< draws of each chain
   bool cross_validate = false;
   std::optional<double> max_time_s;
   std::optional<long> max_evaluations;

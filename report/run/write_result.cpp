@@ -10,6 +10,7 @@
 #include "report/page/page.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/csv.hpp"
+#include "report/store/draws_csv.hpp"
 #include "report/store/json.hpp"
 #include "report/store/parameters_csv.hpp"
 #include "report/store/result_files.hpp"
@@ -91,6 +92,8 @@ std::vector<ResultFile> files_of(const fs::path& out, const Result& result,
   files.push_back({"scorecard.csv", scorecard_csv(result)});
   files.push_back(
       {"parameters.csv", parameters_csv(stored.status, stored.message, stored.parameters)});
+  if (const auto& found = result.fit.posterior; found && found->draws > 0)
+    files.push_back({kDrawsFile, draws_csv(*found)});
   files.push_back({"residual_tests.json", json_line(json_of(stored_curves(result)))});
   if (result.kind == ResultKind::fit && stored.status != FitStatus::failed)
     files.push_back({"fitted.toml", fitted_toml(out, result)});
@@ -108,7 +111,10 @@ PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign)
       {"scorecard.csv", "parameters.csv", "residual_tests.json", "report.html", main_file(kind)},
       {"residuals"}};
   planned.files.emplace_back(kLiveFile);
-  if (kind == ResultKind::fit) planned.files.emplace_back("fitted.toml");
+  if (kind == ResultKind::fit) {
+    planned.files.emplace_back("fitted.toml");
+    planned.files.emplace_back(kDrawsFile);
+  }
   for (const datasets::Condition& condition : campaign.conditions) {
     if (condition.use == datasets::Use::fit || condition.use == datasets::Use::validate)
       planned.files.push_back(residual_file(condition.id));

@@ -44,6 +44,7 @@ struct Look {
 constexpr std::array kLooks{
     Look{"", "scorecard.csv", "condition,", ",rho2,"},
     Look{"", "parameters.csv", "name,key,symbol,unit,scope,level", ""},
+    Look{"", "posterior.csv", "chain,draw,", ""},
     Look{"", "residual_tests.json", R"("rigcal.residual_tests/1")", ""},
     Look{"", "truth.json", R"("rigcal.truth/1")", ""},
     Look{"", "repeatability.csv", "condition,channel,unit,repeats,pooled_sd", ""},

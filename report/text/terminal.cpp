@@ -506,6 +506,7 @@ std::string reasons_text(const Result& result, const Style& style, std::size_t m
     text += aspect_text(name, *aspect, fit, most, style);
   if (!fit.agreement.empty()) say("starts: " + fit.agreement, 2);
   if (!fit.bootstrap_message.empty()) say("bootstrap: " + fit.bootstrap_message, 2);
+  if (fit.posterior) say("posterior: " + fit.posterior->message, 2);
   if (!fit.interval_advice.empty()) say("intervals: " + fit.interval_advice, 2);
   std::size_t warnings = 0;
   for (const std::string& warning : fit.warnings) {

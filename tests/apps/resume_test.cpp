@@ -123,6 +123,28 @@ TEST_CASE("resume: a fit that was killed in what it makes beside the search lose
   CHECK_FALSE(folder.has("parts/checkpoint.tasks"));
 }
 
+TEST_CASE("resume: chains of a posterior that were killed go on to the same draws", "[apps]") {
+  const CommandFolder folder;
+  REQUIRE(write_quick_twin(folder).exit_code == 0);
+  const CommandFolder::Arguments whole{
+      "fit", "twin/campaign.toml", "--posterior", "600", "--out", "whole", "--quiet", "--threads",
+      "1"};
+  REQUIRE(folder.run(whole).exit_code == 0);
+  CommandFolder::Arguments parts = whole;
+  parts[5] = "parts";
+  parts.back() = "2";
+  int killed = 0;
+  for (int i = 0; i < 2; ++i) {
+    killed += folder.run_and_kill(parts, "parts/checkpoint.tasks", "0").exit_code == -SIGKILL;
+    if (parts.back() != "--resume") parts.push_back("--resume");
+  }
+  CHECK(killed >= 1);
+  REQUIRE(folder.run(parts).exit_code == 0);
+  CHECK(comparable(folder, "parts/fit.json") == comparable(folder, "whole/fit.json"));
+  CHECK(folder.read("parts/posterior.csv") == folder.read("whole/posterior.csv"));
+  CHECK_FALSE(folder.has("parts/checkpoint.tasks"));
+}
+
 TEST_CASE("resume: a fit with nothing to go on from says so", "[apps]") {
   const CommandFolder folder;
   REQUIRE(write_quick_twin(folder).exit_code == 0);

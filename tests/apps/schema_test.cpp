@@ -1,5 +1,6 @@
 #include "tests/apps/schema.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -39,7 +40,7 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
   const CommandFolder folder;
   REQUIRE(write_twin(folder).exit_code == 0);
   folder.run({"fit", "twin/campaign.toml", "--out", "fit", "--profiles", "--bootstrap", "20",
-              "--cross-validate", "--starts", "2", "--quiet"});
+              "--posterior", "100", "--cross-validate", "--starts", "2", "--quiet"});
   const json fit = json::parse(folder.read("fit/fit.json"));
   CHECK(violations(fit, "result") == "");
   folder.run(
@@ -59,8 +60,18 @@ TEST_CASE("schema: results of fits and validations, good and failed", "[apps]") 
   REQUIRE(fit.contains("cross_validation"));
   // What such a fit knows more is on its page.
   const std::string page = folder.read("fit/report.html");
-  for (const char* title : {"<h3>Profiles", "<h3>Bootstrap", "<h3>Lack of fit", "left out"})
+  for (const char* title :
+       {"<h3>Profiles", "<h3>Bootstrap", "<h3>Posterior", "<h3>Lack of fit", "left out"})
     CHECK_THAT(page, Catch::Contains(title));
+
+  // The draws, all of them, and what was made of them.
+  REQUIRE(fit["posterior"]["draws"] == 100);
+  CHECK(fit["posterior"]["effects"] == false);
+  CHECK(fit["parameters"][0].contains("posterior"));
+  const std::string draws = folder.read("fit/posterior.csv");
+  CHECK(draws.rfind("chain,draw,", 0) == 0);
+  CHECK(std::count(draws.begin(), draws.end(), '\n') == 401);
+  CHECK_THAT(page, Catch::Contains("Draws of ") && Catch::Contains("hold if the model is exact"));
 
   json broken = fit;
   broken["parameters"][0]["value"] = "60 kg";

@@ -250,6 +250,57 @@ def score_scatter(generator):
     yield "sandwich.freedom", 1 / (max(1.0, square * width) / terms + 2 / effective)
 
 
+def split(draws):
+    half = draws.shape[1] // 2
+    return numpy.concatenate([draws[:, :half], draws[:, -half:]])
+
+
+def normal_scores(draws):
+    ranks = stats.rankdata(draws.ravel()).reshape(draws.shape)
+    return stats.norm.ppf((ranks - 3 / 8) / (draws.size + 1 / 4))
+
+
+def r_hat(draws):
+    m, n = draws.shape
+    within = draws.var(axis=1, ddof=1).mean()
+    return numpy.sqrt(((n - 1) / n * within + draws.mean(axis=1).var(ddof=1)) / within)
+
+
+def effective_draws(draws):
+    """Vehtari et al. 2021, (10) to (13): autocovariances by statsmodels, Geyer's pairs as an array."""
+    m, n = draws.shape
+    covariance = numpy.mean([acovf(chain, fft=False) for chain in draws], axis=0) * n / (n - 1)
+    within = draws.var(axis=1, ddof=1).mean()
+    pooled = (n - 1) / n * within + draws.mean(axis=1).var(ddof=1)
+    rho = 1 - (within - covariance) / pooled
+    rho[0] = 1
+    pairs = rho[: n // 2 * 2].reshape(-1, 2).sum(axis=1)
+    negative = numpy.flatnonzero(pairs <= 0)
+    pairs = numpy.minimum.accumulate(pairs[: negative[0] if negative.size else None])
+    return m * n / max(2 * pairs.sum() - 1, 1 / numpy.log10(m * n))
+
+
+def chains(name, draws):
+    split_draws = split(draws)
+    folded = split(abs(draws - numpy.median(draws)))
+    tails = [effective_draws(split((draws <= numpy.quantile(draws, q)).astype(float))) for q in (0.05, 0.95)]
+    energies = draws[0]
+    yield f"chains.{name}", draws.ravel()
+    yield f"chains.{name}.shape", draws.shape
+    yield f"chains.{name}.r_hat", max(r_hat(normal_scores(split_draws)), r_hat(normal_scores(folded)))
+    yield f"chains.{name}.bulk", effective_draws(normal_scores(split_draws))
+    yield f"chains.{name}.tail", min(tails)
+    yield f"chains.{name}.mean", effective_draws(split_draws)
+    yield f"chains.{name}.energy", (numpy.diff(energies) ** 2).sum() / ((energies - energies.mean()) ** 2).sum()
+
+
+def several_chains(generator):
+    yield from chains("slow", rounded(lfilter([1], [1, -0.7], generator.standard_normal((4, 60)))))
+    yield from chains("apart", rounded(generator.standard_normal((3, 41)) + numpy.array([[0.0], [0.0], [1.0]])))
+    yield from chains("spread", rounded(generator.standard_normal((4, 50)) * numpy.array([[1.0], [1.0], [1.0], [4.0]])))
+    yield from chains("alternating", rounded(lfilter([1], [1, 0.6], generator.standard_normal((4, 50)))))
+
+
 def cases():
     generator = numpy.random.default_rng(20260301)
     yield from distributions()
@@ -268,6 +319,7 @@ def cases():
     yield from leak_share(generator)
     yield from residual_features(generator)
     yield from score_scatter(generator)
+    yield from several_chains(numpy.random.default_rng(20270101))
 
 
 def main():

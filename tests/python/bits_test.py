@@ -17,10 +17,10 @@ from conftest import SOURCE, command
 import rigcal
 
 # All that a fit can be asked for: of the command, of load(), of fit().
-OPTIONS = ["--starts", 3, "--seed", 7, "--bootstrap", 20, "--profiles", "--cross-validate", "--set", "mass=90 kg",
+OPTIONS = ["--starts", 3, "--seed", 7, "--bootstrap", 20, "--profiles", "--posterior", 100, "--cross-validate", "--set", "mass=90 kg",
            "--free", "mass,bulk_modulus,damping"]
 CHANGED = {"set": {"mass": "90 kg"}, "free": ["mass", "bulk_modulus", "damping"]}
-ASKED = {"starts": 3, "seed": 7, "bootstrap": 20, "profiles": True, "cross_validate": True}
+ASKED = {"starts": 3, "seed": 7, "bootstrap": 20, "profiles": True, "posterior": 100, "cross_validate": True}
 
 
 class Pair:
@@ -91,7 +91,7 @@ def test_files_of_a_fit_with_all_that_can_be_asked_for(pair: Pair) -> None:
     pair.assert_same_files("out")
     assert fit.json()["provenance"]["command"] == (
         "rigcal.load('../data/campaign.toml', set={'mass': '90 kg'}, free=['mass', 'bulk_modulus', 'damping'])"
-        ".fit(starts=3, seed=7, bootstrap=20, profiles=True, cross_validate=True)")
+        ".fit(starts=3, seed=7, bootstrap=20, profiles=True, posterior=100, cross_validate=True)")
 
 
 def test_files_of_a_validation(pair: Pair) -> None:

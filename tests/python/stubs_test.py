@@ -169,7 +169,7 @@ def seen_by(walk: collections.abc.Callable[[], None], monkeypatch: pytest.Monkey
 
 def test_values_have_the_types_of_the_stub(campaign: rigcal.Campaign, monkeypatch: pytest.MonkeyPatch) -> None:
     events: list[object] = []
-    fit = campaign.fit(starts=2, bootstrap=20, profiles=True, progress=events.append)
+    fit = campaign.fit(starts=2, bootstrap=20, profiles=True, posterior=100, progress=events.append)
 
     def walk() -> None:
         for what in (campaign, campaign.check(), fit, campaign.validate(fit), *events):

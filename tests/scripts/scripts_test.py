@@ -46,7 +46,7 @@ class Scripts(unittest.TestCase):
         for name in ("datasets", "tests"):
             (self.tree / name).symlink_to(ROOT / name)
         release = self.tree / "build" / "release"
-        for name in ("speed", "coverage_study", "diagnosis_study"):
+        for name in ("speed", "coverage_study", "diagnosis_study", "posterior_study"):
             make_program(release / "bench" / f"rigcal_{name}")
         (release / "rigcal").symlink_to(RIGCAL)
         self.programs = self.tree / "programs"  # before all others
@@ -75,6 +75,9 @@ class Scripts(unittest.TestCase):
         self.assertIn("rigcal_diagnosis_study coverage 50\n", printed)
         self.assertIn("rigcal_diagnosis_study classes 3 4\n", printed)
         self.assertIn("rigcal_diagnosis_study smallest 3 3 disturbed\n", printed)
+
+    def test_posterior_study(self):
+        self.assertEqual(self.run_script("posterior-study", "7", "2"), "rigcal_posterior_study 7 2\n")
 
     def test_fuzz(self):
         for name in ("mat", "csv"):

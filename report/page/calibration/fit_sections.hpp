@@ -28,6 +28,8 @@ doc::Section conditions_section(const Calibration& stored, int threads);
 doc::Section identifiability_section(const StoredFit& fit);
 /// Adds the singular values of the Jacobian with an explanation.
 void add_singular_values(const StoredFit& fit, doc::Blocks& blocks);
+/// Draws of the posterior: quantiles, diagnostics, limits, pairs; nothing where there are none.
+void add_posterior(const StoredFit& fit, doc::Blocks& blocks);
 /// Small effects that the model leaves out, and which of them the residuals ask for.
 void add_considered(const StoredFit& fit, doc::Blocks& blocks);
 /// Estimates from the validation records alone, beside those of the fit.

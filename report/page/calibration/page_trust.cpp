@@ -189,6 +189,7 @@ doc::Section identifiability_section(const StoredFit& fit) {
   blocks.emplace_back(list_of(fit.combinations));
   add_profiles(fit, blocks);
   add_bootstrap(fit, blocks);
+  add_posterior(fit, blocks);
   add_lack_of_fit(fit, blocks);
   add_considered(fit, blocks);
   add_stability(fit, blocks);

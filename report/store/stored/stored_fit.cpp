@@ -125,8 +125,57 @@ StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSp
   if (p.profile)
     result.profile = StoredProfile{stored(p.profile->low), stored(p.profile->high),
                                    p.profile->values, p.profile->rises};
+  if (p.posterior)
+    result.posterior = StoredPosteriorSpread{p.posterior->median,
+                                             p.posterior->sd,
+                                             range_of(p.posterior->ci95),
+                                             finite(p.posterior->r_hat),
+                                             finite(p.posterior->bulk_draws),
+                                             finite(p.posterior->tail_draws)};
   result.at_bound = p.at_bound;
   result.reason = reason_of(p);
+  return result;
+}
+
+/// Draws of the estimates that are shown in pairs: at most kMostPairDraws of kMostPaired of them.
+StoredPairs pairs_of(const calib::Posterior& found, const calib::Fit& fit) {
+  constexpr std::size_t kMostPaired = 6;
+  constexpr std::size_t kMostPairDraws = 400;
+  StoredPairs pairs;
+  if (found.values.empty()) return pairs;
+  const std::size_t count = found.values.front().size();
+  const std::size_t every = (count + kMostPairDraws - 1) / kMostPairDraws;
+  pairs.every = static_cast<int>(every);
+  for (std::size_t j = 0; j < found.values.size() && pairs.names.size() < kMostPaired; ++j) {
+    if (fit.parameters[j].nuisance) continue;
+    pairs.names.push_back(found.names[j]);
+    std::vector<double>& values = pairs.values.emplace_back();
+    for (std::size_t k = 0; k < count; k += every) values.push_back(found.values[j][k]);
+  }
+  return pairs;
+}
+
+StoredPosterior stored(const calib::Posterior& found, const calib::Fit& fit) {
+  StoredPosterior result;
+  result.chains = found.chains;
+  result.warm_up = found.warm_up;
+  result.draws = found.draws;
+  result.asked = found.asked;
+  result.evaluations = found.evaluations;
+  result.diverged = found.diverged;
+  result.longest = found.longest;
+  result.noise_variance = found.noise_variance;
+  result.message = found.message;
+  if (found.draws == 0) return result;
+  result.energy_fraction = finite(found.energy_fraction);
+  result.r_hat = finite(found.r_hat);
+  result.least_draws = finite(found.least_draws);
+  result.worst = found.worst;
+  result.simulated = found.simulated;
+  for (const calib::KeptLimit& each : found.limits)
+    result.limits.push_back({each.condition, key_of(each.channel), each.metric, each.limit,
+                             each.probability, finite(each.median)});
+  result.pairs = pairs_of(found, fit);
   return result;
 }
 
@@ -363,6 +412,7 @@ void add_trust(const calib::Fit& fit, StoredFit& result) {
   result.agreement = fit.agreement;
   if (!fit.bootstrap_message.empty())
     result.bootstrap = StoredBootstrapRun{fit.bootstrap_replicates, fit.bootstrap_message};
+  if (fit.posterior) result.posterior = stored(*fit.posterior, fit);
   if (!fit.cross_validation.empty()) result.cross_validation = stored(fit.cross_validation);
 }
 

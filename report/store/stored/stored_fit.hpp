@@ -33,8 +33,8 @@ inline std::vector<datasets::DecisionRule> every() {
 template <>
 inline std::vector<calib::StoppedIn> every() {  // except `nothing`, which is null
   using calib::StoppedIn;
-  return {StoppedIn::starts, StoppedIn::validation, StoppedIn::bootstrap, StoppedIn::profiles,
-          StoppedIn::cross_validation};
+  return {StoppedIn::starts,   StoppedIn::validation, StoppedIn::bootstrap,
+          StoppedIn::profiles, StoppedIn::posterior,  StoppedIn::cross_validation};
 }
 template <>
 inline std::vector<calib::Verdict> every() {
@@ -81,6 +81,14 @@ struct StoredBootstrap {
   double standard_error = 0.0, bias = 0.0, freedom = 0.0;
   std::optional<Range> ci95;
   RIGCAL_DESCRIBE(standard_error, bias, freedom, ci95)
+};
+
+/// One parameter over the draws of the posterior, SI.
+struct StoredPosteriorSpread {
+  double median = 0.0, sd = 0.0;
+  std::optional<Range> ci95;
+  std::optional<double> r_hat, bulk_draws, tail_draws;
+  RIGCAL_DESCRIBE(median, sd, ci95, r_hat, bulk_draws, tail_draws)
 };
 
 struct StoredProfileEnd {
@@ -164,13 +172,14 @@ struct StoredParameter {
   Omittable<double> between_days_error;  ///< standard error by what differs between days
   Omittable<StoredBootstrap> bootstrap;
   Omittable<StoredProfile> profile;
+  Omittable<StoredPosteriorSpread> posterior;
   bool at_bound = false;
   std::optional<calib::Identifiability> identifiability;
   std::string reason;
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, value, start, lower, upper, fitted,
                   nuisance, standard_error, robust_standard_error, ci95, ci95_if_exact, ci95_from,
-                  degrees_of_freedom, budget, between_days_error, bootstrap, profile, at_bound,
-                  identifiability, reason)
+                  degrees_of_freedom, budget, between_days_error, bootstrap, profile, posterior,
+                  at_bound, identifiability, reason)
 };
 
 /// What the parameters of a result of an earlier schema say today.
@@ -230,6 +239,39 @@ struct StoredBootstrapRun {
   int replicates = 0;
   std::string message;
   RIGCAL_DESCRIBE(replicates, message)
+};
+
+struct StoredKeptLimit {
+  std::string condition, channel, metric;
+  double limit = 0.0, probability = 0.0;
+  std::optional<double> median;
+  RIGCAL_DESCRIBE(condition, channel, metric, limit, probability, median)
+};
+
+/// Draws for pictures of pairs of parameters: every so-many-th of all, SI.
+struct StoredPairs {
+  std::vector<std::string> names;
+  int every = 1;
+  std::vector<std::vector<double>> values;  ///< shape (names, draws that are kept)
+  RIGCAL_DESCRIBE(names, every, values)
+};
+
+/// The sampling of the posterior; all draws are in posterior.csv.
+struct StoredPosterior {
+  int chains = 0, warm_up = 0, draws = 0, asked = 0;
+  long evaluations = 0;
+  int diverged = 0, longest = 0;
+  std::optional<double> energy_fraction, r_hat, least_draws;
+  std::optional<std::string> worst;
+  double noise_variance = 1.0;
+  bool effects = false;  ///< whether small effects that the model leaves out were sampled
+  int simulated = 0;
+  std::vector<StoredKeptLimit> limits;
+  StoredPairs pairs;
+  std::string message;
+  RIGCAL_DESCRIBE(chains, warm_up, draws, asked, evaluations, diverged, longest, energy_fraction,
+                  r_hat, least_draws, worst, noise_variance, effects, simulated, limits, pairs,
+                  message)
 };
 
 struct StoredHeldOut {
@@ -397,6 +439,7 @@ struct StoredFit {
   Later<std::vector<StoredBasin>> basins;
   Later<std::string> agreement;  ///< agreement of the starts, in words
   Omittable<StoredBootstrapRun> bootstrap;
+  Omittable<StoredPosterior> posterior;
   Omittable<std::vector<StoredHeldOut>> cross_validation;
   Later<std::optional<double>> aic, bic;
   Omittable<std::vector<StoredWeight>> weights;
@@ -418,9 +461,9 @@ struct StoredFit {
                   simulation_tolerance, parameters, correlation, rank, singular_values,
                   reduced_chi_square, independent_residuals, interval_advice, combinations,
                   lack_of_fit, between_repeats, considered, stability, basins, agreement, bootstrap,
-                  cross_validation, aic, bic, weights, validity, validated, decision, acceptance,
-                  not_judged, conditions, groups, starts, best_start, failure_count, failures,
-                  warnings, provenance)
+                  posterior, cross_validation, aic, bic, weights, validity, validated, decision,
+                  acceptance, not_judged, conditions, groups, starts, best_start, failure_count,
+                  failures, warnings, provenance)
 
   const StoredCondition* find(const std::string& condition) const;
 };

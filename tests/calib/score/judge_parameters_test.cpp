@@ -107,4 +107,31 @@ TEST_CASE("parameters: each is identified, or negligible", "[calib]") {
   }
 }
 
+TEST_CASE("parameters: draws of a posterior that cannot be believed are a reservation", "[calib]") {
+  AssessmentScene scene;
+  Posterior& found = scene.fit.posterior.emplace();
+  found.chains = 4;
+  found.draws = 1000;
+  found.r_hat = 1.01;
+  found.worst = "mass_kg";
+  CHECK(scene.assessed().parameters.state == AspectState::pass);
+  SECTION("chains that disagree") {
+    found.r_hat = 1.011;
+    const Aspect parameters = scene.assessed().parameters;
+    REQUIRE(find(parameters, "posterior_not_mixed") != nullptr);
+    CHECK(find(parameters, "posterior_not_mixed")->subject == "mass_kg");
+    CHECK(parameters.state == AspectState::reservation);
+  }
+  SECTION("divergences") {
+    found.diverged = 1;
+    CHECK(find(scene.assessed().parameters, "posterior_divergences") != nullptr);
+    CHECK(scene.verdict() == Verdict::warn);
+  }
+  SECTION("no draws, nothing to believe") {
+    found.draws = 0;
+    found.r_hat = 2.0;
+    CHECK(scene.assessed().parameters.state == AspectState::pass);
+  }
+}
+
 }  // namespace rigcal::calib

@@ -404,6 +404,8 @@ TEST_CASE("load_campaign: recording, acceptance and settings", "[datasets]") {
        {"no output channel"}},
       {"[averaging]", "[fit]\nstarts = 0\n[averaging]", "starts", {"fit.starts", "whole number"}},
       {"[averaging]", "[fit]\nmax_time = 60\n[averaging]", "max_time", {"\"60 s\""}},
+      {"[averaging]", "[fit]\nposterior = 99\n[averaging]", "posterior", {"100"}},
+      {"[averaging]", "[fit]\nposterior = true\n[averaging]", "posterior", {"whole number"}},
       {"[averaging]", "[fit]\noutputs = [\"force\"]\n[averaging]", "outputs", {"fit.outputs[1]"}},
       {"[averaging]",
        "[simulation]\ntolerance = 2\n[averaging]",

@@ -217,6 +217,7 @@ TEST_CASE("load_campaign: settings of fit, simulation and synthesis", "[datasets
 loss = "huber"
 loss_scale = 2
 max_iterations = 50
+posterior = 300
 starts = 8
 max_time = "1 min"
 outputs = ["position", "pressure_a"]
@@ -247,6 +248,7 @@ parameters = { leakage_coefficient = 0.4 }
   CHECK(campaign.fit.loss == Loss::huber);
   CHECK(campaign.fit.loss_scale == 2.0);
   CHECK(campaign.fit.max_iterations == 50);
+  CHECK(campaign.fit.posterior == 300);
   CHECK(campaign.fit.starts == 8);
   CHECK(campaign.fit.max_seconds == 60.0);
   CHECK(campaign.fit.outputs == std::vector<Channel>{Channel::position, Channel::pressure_a});

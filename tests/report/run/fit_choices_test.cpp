@@ -13,6 +13,7 @@ TEST_CASE("fit choices: what nobody asked for is the campaign's", "[report][run]
   campaign.fit.starts = 4;
   campaign.fit.max_seconds = 7.0;
   campaign.fit.max_iterations = 11;
+  campaign.fit.posterior = 700;
   const std::atomic<bool> cancel{false};
   calib::FitOptions settings = fit_options(campaign, 3, cancel);
   apply({}, settings);
@@ -20,6 +21,7 @@ TEST_CASE("fit choices: what nobody asked for is the campaign's", "[report][run]
   CHECK(settings.further_starts == 3);  // where that ends at no minimum
   CHECK(settings.max_seconds == 7.0);
   CHECK(settings.max_iterations == 11);
+  CHECK(settings.posterior == 700);
   CHECK(settings.threads == 3);
   CHECK(settings.cancel == &cancel);
   CHECK(recorded(FitChoices{}).empty());
@@ -29,6 +31,7 @@ TEST_CASE("fit choices: what nobody asked for is the campaign's", "[report][run]
   choices.seed = 9;
   choices.bootstrap = 5;
   choices.profiles = true;
+  choices.posterior = 300;
   choices.cross_validate = true;
   choices.max_time_s = 1.5;
   choices.max_evaluations = 100;
@@ -39,12 +42,15 @@ TEST_CASE("fit choices: what nobody asked for is the campaign's", "[report][run]
   CHECK(settings.seed == 9);
   CHECK(settings.bootstrap == 5);
   CHECK(settings.profiles);
+  CHECK(settings.posterior == 300);
   CHECK(settings.cross_validate);
   CHECK(settings.max_seconds == 1.5);
   CHECK(settings.max_evaluations == 100);
   CHECK(recorded(choices) ==
-        std::vector<std::pair<std::string, std::string>>{
-            {"bootstrap", "5"}, {"profiles", "true"}, {"cross_validate", "true"}});
+        std::vector<std::pair<std::string, std::string>>{{"bootstrap", "5"},
+                                                         {"profiles", "true"},
+                                                         {"posterior", "300"},
+                                                         {"cross_validate", "true"}});
 }
 
 TEST_CASE("fit choices: a provenance names inputs and what the starts rest on", "[report][run]") {

@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+"""Effective draws per CPU second of emcee's affine-invariant ensemble sampler on the posterior of the six signals.
+
+Debian: python3-emcee. The density is that of `fit --posterior`, by the same code, without gradients
+(build/release/bench/rigcal_posterior_study --replay); its CPU time counts, that of Python does not. So the ratio to
+`scripts/posterior-study --speed` says what the sampler is worth, not what the language costs.
+
+    bench/ensemble.py [STEPS]
+"""
+
+import pathlib
+import subprocess
+import sys
+
+import emcee
+import numpy
+
+STUDY = pathlib.Path(__file__).resolve().parent.parent / "build/release/bench/rigcal_posterior_study"
+WALKERS = 32
+
+
+def main():
+    steps = int(sys.argv[1]) if len(sys.argv) > 1 else 1500
+    with subprocess.Popen([STUDY, "--replay"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as study:
+
+        def ask(line):
+            study.stdin.write(line + "\n")
+            study.stdin.flush()
+            return numpy.array(study.stdout.readline().split(), dtype=float)
+
+        centre = ask("centre")
+        covariance = ask("covariance").reshape(len(centre), -1)
+        generator = numpy.random.default_rng(1)
+        numpy.random.seed(1)
+        begin = generator.multivariate_normal(centre, covariance, WALKERS)
+        sampler = emcee.EnsembleSampler(WALKERS, len(centre), lambda y: ask(" ".join(map(repr, map(float, y))))[0])
+        state = sampler.run_mcmc(begin, steps // 3)  # begun in the posterior: a third is plenty of warm-up
+        sampler.reset()
+        before = ask("cpu")[0]
+        sampler.run_mcmc(state, steps)
+        seconds = ask("cpu")[0] - before
+        study.stdin.close()
+    time = sampler.get_autocorr_time(quiet=True)
+    draws = WALKERS * steps / time.max()
+    print(
+        f"emcee {emcee.__version__}: {WALKERS} walkers, {steps} steps, longest autocorrelation time {time.max():.0f}: "
+        f"{draws:.0f} effective draws in {seconds:.1f} s of CPU, {draws / seconds:.1f} per second"
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,234 @@
+#include "calib/posterior/density.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace rigcal::calib {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// The sampler begins no nearer to a bound, and within this share of the box of one: at it, its own
+/// coordinates would be infinite.
+constexpr double kLeastDistance = 1e-6;
+constexpr double kMostDistance = 0.25;
+/// Least eigenvalue of the covariance of the score, over its mean.
+constexpr double kLeastShare = 1e-6;
+
+double logistic(double y) {
+  // The smaller of z and 1 - z is exact, however far out.
+  return y >= 0.0 ? 1.0 / (1.0 + std::exp(-y)) : std::exp(y) / (1.0 + std::exp(y));
+}
+
+double log_logistic(double y) {
+  return y >= 0.0 ? -std::log1p(std::exp(-y)) : y - std::log1p(std::exp(y));
+}
+
+/// R of all unknowns over all directions.
+MatrixXd dense_root(const ArrowRoot& root, std::size_t conditions) {
+  MatrixXd all = MatrixXd::Zero(root.unknowns(), root.directions());
+  for (Index j = 0; j < root.unknowns(); ++j) {
+    const int whose = root.condition_of(j);
+    if (whose < 0) {
+      all.row(j).tail(root.shared().cols()) = root.shared().row(root.row_of(j));
+    } else if (static_cast<std::size_t>(whose) < conditions) {
+      const auto i = static_cast<std::size_t>(whose);
+      all(j, root.directions(i)) = root.row(j, i).transpose();
+    }
+  }
+  return all;
+}
+
+/// S in directions of the root: the covariance of the score by the residuals, or white noise, so
+/// stretched that each unknown has the error that the fit states.
+MatrixXd score_covariance(const Problem& problem, const Evaluation& optimum,
+                          const Uncertainty& found, const std::vector<FittedParameter>& parameters,
+                          const MatrixXd& root, const VectorXd& prior_row) {
+  const Index directions = root.cols();
+  const bool robust =
+      !found.scatter.empty() &&
+      std::any_of(parameters.begin(), parameters.end(), [](const FittedParameter& each) {
+        return each.interval == IntervalSource::robust_standard_error;
+      });
+  MatrixXd covariance = MatrixXd::Zero(directions, directions);
+  if (robust) {
+    for (std::size_t i = 0; i < found.scatter.size(); ++i) {
+      const std::vector<Index> own = found.root.directions(i);
+      covariance(own, own) += found.scatter[i].covariance;
+    }
+    const MatrixXd priors = root.transpose() * prior_row.asDiagonal();
+    covariance += priors * priors.transpose();
+  } else {
+    covariance.diagonal().setConstant(std::max(1.0, found.reduced_chi_square));
+  }
+  // The error that the fit states for each unknown may be that of the repeats, or contain those of
+  // known values.
+  VectorXd stretch = VectorXd::Ones(root.rows());
+  for (Index j = 0; j < root.rows(); ++j) {
+    const auto u = static_cast<std::size_t>(j);
+    const bool by_residuals = parameters[u].interval == IntervalSource::robust_standard_error;
+    const auto& error = by_residuals ? found.robust_standard_error[u] : found.standard_error[u];
+    const double variance = root.row(j) * covariance * root.row(j).transpose();
+    const double slope = std::abs(problem.map.slope(static_cast<int>(j), optimum.z[u]));
+    if (error && variance > 0.0 && slope > 0.0 && *error > 0.0)
+      stretch(j) = *error / slope / std::sqrt(variance);
+  }
+  if (((stretch.array() - 1.0).abs() > 1e-9).any()) {
+    const Eigen::CompleteOrthogonalDecomposition<MatrixXd> inverse(root);
+    const MatrixXd stretched = inverse.solve(MatrixXd(stretch.asDiagonal() * root));
+    covariance = MatrixXd(stretched * covariance * stretched.transpose());
+  }
+  const MatrixXd symmetric = 0.5 * (covariance + covariance.transpose());
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(symmetric);
+  const double least = kLeastShare * std::max(solver.eigenvalues().mean(), 1e-300);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(least).asDiagonal() *
+         solver.eigenvectors().transpose();
+}
+
+}  // namespace
+
+PosteriorDensity::PosteriorDensity(const Problem& problem, const Evaluation& optimum,
+                                   const Uncertainty& found,
+                                   const std::vector<FittedParameter>& parameters,
+                                   const std::atomic<bool>* cancel)
+    : problem_(problem), cancel_(cancel) {
+  const auto unknowns = static_cast<Index>(optimum.z.size());
+  root_ = dense_root(found.root, problem.conditions.size());
+  for (std::size_t i = 0; i < problem.conditions.size(); ++i) {
+    const std::vector<int>& acting = problem.map.acting(i);
+    conditions_.push_back({(*optimum.rows)[i].jacobian, root_(acting, Eigen::all)});
+  }
+  prior_row_.resize(unknowns);
+  for (Index j = 0; j < unknowns; ++j)
+    prior_row_(j) =
+        problem.map.prior_slope(static_cast<int>(j), optimum.z[static_cast<std::size_t>(j)]);
+
+  const MatrixXd scores = score_covariance(problem, optimum, found, parameters, root_, prior_row_);
+  const Index directions = root_.cols();
+  kappa_ = std::max({1.0, found.reduced_chi_square,
+                     directions > 0 ? scores.trace() / static_cast<double>(directions) : 1.0});
+  const MatrixXd none = MatrixXd::Identity(directions, directions);
+  const MatrixXd information = Eigen::LDLT<MatrixXd>(scores).solve(none);
+  weight_ = information - none / kappa_;
+
+  // In the unit box the precision is R^-T S^-1 R^-1 on what the records determine; the transform
+  // adds what keeps the coordinates of the others from going to infinity.
+  const MatrixXd inverse = Eigen::CompleteOrthogonalDecomposition<MatrixXd>(root_).pseudoInverse();
+  const MatrixXd precision = inverse.transpose() * information * inverse;
+  VectorXd slope(unknowns);
+  std::vector<double> begin;
+  for (Index j = 0; j < unknowns; ++j) {
+    const double variance = root_.row(j) * scores * root_.row(j).transpose();
+    const double error = std::sqrt(std::max(0.0, variance));
+    const double inside = std::clamp(error, kLeastDistance, kMostDistance);
+    const double z = std::clamp(optimum.z[static_cast<std::size_t>(j)], inside, 1.0 - inside);
+    slope(j) = z * (1.0 - z);
+    begin.push_back(z);
+  }
+  centre_ = from_unit(begin);
+  MatrixXd curvature = slope.asDiagonal() * precision * slope.asDiagonal();
+  // The logistic distribution, to which an unknown comes that the records do not determine, has
+  // the variance pi^2 / 3.
+  curvature.diagonal().array() += 3.0 / (M_PI * M_PI);
+  covariance_ = Eigen::LLT<MatrixXd>(curvature).solve(MatrixXd::Identity(unknowns, unknowns));
+  covariance_ = MatrixXd(0.5 * (covariance_ + covariance_.transpose()));
+}
+
+std::vector<double> PosteriorDensity::to_unit(const VectorXd& y) const {
+  std::vector<double> z;
+  for (const double each : y) z.push_back(logistic(each));
+  return z;
+}
+
+VectorXd PosteriorDensity::from_unit(std::span<const double> z) const {
+  VectorXd y(static_cast<Index>(z.size()));
+  for (Index j = 0; j < y.size(); ++j) {
+    const double inside =
+        std::clamp(z[static_cast<std::size_t>(j)], kLeastDistance, 1.0 - kLeastDistance);
+    y(j) = std::log(inside / (1.0 - inside));
+  }
+  return y;
+}
+
+LogDensity PosteriorDensity::evaluate(const VectorXd& y, const Fidelity& fidelity) const {
+  const std::vector<double> z = to_unit(y);
+  const Index unknowns = y.size();
+  VectorXd q = VectorXd::Zero(root_.cols());
+  MatrixXd slopes = MatrixXd::Zero(root_.cols(), unknowns);  // d q / d z
+  VectorXd gradient = VectorXd::Zero(unknowns);              // J^T r
+  double square = 0.0;
+  for (std::size_t i = 0; i < conditions_.size(); ++i) {
+    const ProblemCondition& condition = problem_.conditions[i];
+    const model::Simulation run = simulate_condition(problem_, i, z, cancel_, fidelity);
+    if (!run.ok()) return {};
+    const std::vector<int>& acting = problem_.map.acting(i);
+    const VectorXd box_slopes = fidelity.derivatives ? acting_slopes(problem_, i, z) : VectorXd();
+    const Index free = box_slopes.size();
+    const auto columns = static_cast<Index>(acting.size());
+    const auto samples = condition.rows.size();
+    VectorXd projected = VectorXd::Zero(columns);
+    MatrixXd projected_slopes = MatrixXd::Zero(columns, columns);
+    VectorXd own_gradient = VectorXd::Zero(columns);
+    for (std::size_t k = 0; k < condition.channels.size(); ++k) {
+      double unused = 0.0;
+      constexpr std::size_t kBlock = 512;  // stays in the cache
+      for (std::size_t begin = 0; begin < samples; begin += kBlock) {
+        const std::size_t end = std::min(begin + kBlock, samples);
+        const MatrixXd weighted = weighted_rows(condition, k, {begin, end, 0}, run, box_slopes,
+                                                problem_.campaign->fit, unused);
+        const auto before = conditions_[i].jacobian.middleRows(
+            static_cast<Index>(k * samples + begin), weighted.rows());
+        const auto residual = weighted.col(free);
+        projected.noalias() += before.transpose() * residual;
+        square += residual.squaredNorm();
+        if (!fidelity.derivatives) continue;
+        projected_slopes.noalias() += before.transpose() * weighted.leftCols(columns);
+        own_gradient.noalias() += weighted.leftCols(columns).transpose() * residual;
+      }
+    }
+    q.noalias() += conditions_[i].root.transpose() * projected;
+    const MatrixXd turned = conditions_[i].root.transpose() * projected_slopes;
+    for (Index a = 0; a < columns; ++a) {
+      slopes.col(acting[static_cast<std::size_t>(a)]) += turned.col(a);
+      gradient(acting[static_cast<std::size_t>(a)]) += own_gradient(a);
+    }
+  }
+  double log_prior = 0.0;
+  VectorXd prior_gradient = VectorXd::Zero(unknowns);
+  for (Index j = 0; j < unknowns; ++j) {
+    const auto u = static_cast<std::size_t>(j);
+    const int unknown = static_cast<int>(j);
+    if (!problem_.map.unknowns()[u].prior) continue;
+    const double residual = problem_.map.prior_residual(unknown, z[u]);
+    const double slope = problem_.map.prior_slope(unknown, z[u]);
+    q.noalias() += root_.row(j).transpose() * (prior_row_(j) * residual);
+    slopes.col(j).noalias() += root_.row(j).transpose() * (prior_row_(j) * slope);
+    gradient(j) += slope * residual;
+    square += residual * residual;
+    // It is normal in the value: d value / d z is constant, or the value itself where z is
+    // logarithmic.
+    const double box_slope = problem_.map.slope(unknown, z[u]);
+    log_prior += std::log(box_slope);
+    prior_gradient(j) =
+        std::log(problem_.map.slope(unknown, 1.0) / problem_.map.slope(unknown, 0.0));
+  }
+  LogDensity result;
+  const VectorXd weighted = weight_ * q;
+  result.value = -0.5 * (q.dot(weighted) + square / kappa_) + log_prior;
+  result.gradient = -(slopes.transpose() * weighted + gradient / kappa_) + prior_gradient;
+  for (Index j = 0; j < unknowns; ++j) {
+    const double inside = z[static_cast<std::size_t>(j)];
+    const double above = logistic(-y(j));
+    result.gradient(j) = result.gradient(j) * inside * above + above - inside;
+    result.value += log_logistic(y(j)) + log_logistic(-y(j));
+  }
+  if (!result.gradient.allFinite()) return {};
+  return result;
+}
+
+}  // namespace rigcal::calib

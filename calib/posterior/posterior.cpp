@@ -1,0 +1,309 @@
+#include "calib/posterior/posterior.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <utility>
+
+#include "calib/posterior/chains.hpp"
+#include "calib/posterior/kept_limits.hpp"
+#include "common/bytes.hpp"
+#include "common/significant.hpp"
+#include "common/task_farm.hpp"
+#include "datasets/synthetic/noise.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// Standard deviations of the normal approximation about the optimum from which a chain begins:
+/// wider than the posterior, so that R-hat sees whether chains forget where they began.
+constexpr double kScattered = 2.0;
+/// How often such a point is drawn again, each time half as far out, where none can be simulated.
+constexpr int kMostTries = 8;
+/// Fraction of missing information by energy below which tails may not be reached.
+constexpr double kLeastEnergyFraction = 0.3;
+/// Effective draws of all chains below which quantiles are not settled.
+constexpr double kLeastEffective = 100.0 * kPosteriorChains;
+
+std::vector<double> listed(const MatrixXd& matrix) {
+  return {matrix.data(), matrix.data() + matrix.size()};
+}
+
+/// A chain after a task, with the draws of that task. Plain numbers, so that it can be kept.
+struct ChainTask {
+  std::vector<double> position, whitened, covariance;
+  double step = 0.0;
+  long iteration = 0;
+  long evaluations = 0;
+  std::vector<std::vector<double>> positions;  ///< of each draw
+  std::vector<double> energies;
+  int diverged = 0;
+  int longest = 0;
+
+  template <typename Archive>
+  void serialize(Archive& archive) {
+    archive(position, whitened, covariance, step, iteration, evaluations, positions, energies,
+            diverged, longest);
+  }
+
+  ChainState state() const {
+    const auto n = static_cast<Index>(position.size());
+    ChainState result;
+    result.position = Eigen::Map<const VectorXd>(position.data(), n);
+    result.covariance = Eigen::Map<const MatrixXd>(covariance.data(), n, n);
+    result.whitened =
+        Eigen::Map<const VectorXd>(whitened.data(), static_cast<Index>(whitened.size()));
+    result.step = step;
+    result.iteration = iteration;
+    return result;
+  }
+  void take(const ChainState& state) {
+    position = listed(state.position);
+    whitened = listed(state.whitened);
+    covariance = listed(state.covariance);
+    step = state.step;
+    iteration = state.iteration;
+  }
+};
+
+/// Where a chain begins.
+///
+/// @return  false: nothing can be simulated there, not even the optimum
+bool begin_chain(const LogDensityOf& density, const PosteriorDensity& posterior, std::uint64_t seed,
+                 std::size_t chain, ChainState& state) {
+  const MatrixXd lower = posterior.covariance().llt().matrixL();
+  auto stream =
+      datasets::random_stream(seed, {"posterior", fmt::format("chain {}", chain), "begin"});
+  state.covariance = posterior.covariance();
+  double far = kScattered;
+  for (int i = 0; i < kMostTries; ++i, far *= 0.5) {
+    VectorXd step(lower.rows());
+    for (double& each : step) each = far * datasets::normal(stream, 1.0);
+    state.position = posterior.centre() + lower * step;
+    if (std::isfinite(density(state.position).value)) return true;
+  }
+  state.position = posterior.centre();
+  return std::isfinite(density(state.position).value);
+}
+
+/// Draws of an unknown, SI, of each chain.
+Chains chains_of(const Problem& problem, const PosteriorDensity& density,
+                 const std::vector<std::vector<std::vector<double>>>& positions, std::size_t j) {
+  Chains chains;
+  for (const auto& chain : positions) {
+    std::vector<double>& values = chains.emplace_back();
+    for (const auto& position : chain) {
+      const VectorXd y =
+          Eigen::Map<const VectorXd>(position.data(), static_cast<Index>(position.size()));
+      values.push_back(problem.map.to_physical(static_cast<int>(j), density.to_unit(y)[j]));
+    }
+  }
+  return chains;
+}
+
+PosteriorSpread spread_of(const Chains& chains) {
+  std::vector<double> all;
+  for (const auto& chain : chains) all.insert(all.end(), chain.begin(), chain.end());
+  double mean = 0.0;
+  for (const double value : all) mean += value / static_cast<double>(all.size());
+  double squares = 0.0;
+  for (const double value : all) squares += (value - mean) * (value - mean);
+  PosteriorSpread spread;
+  spread.median = quantile_of(all, 0.5);
+  spread.sd = std::sqrt(squares / static_cast<double>(all.size() - 1));
+  spread.ci95 = {quantile_of(all, 0.025), quantile_of(all, 0.975)};
+  spread.r_hat = split_r_hat(chains);
+  spread.bulk_draws = bulk_effective_draws(chains);
+  spread.tail_draws = tail_effective_draws(chains);
+  return spread;
+}
+
+/// What is wrong with the chains, in words; empty: nothing.
+std::string complaints(const Posterior& found) {
+  std::vector<std::string> words;
+  if (!found.mixed()) {
+    words.push_back(fmt::format(
+        "the chains disagree (R-hat {} of {}, at most 1.01 would do): more draws are needed",
+        significant(found.r_hat, 4), found.worst));
+  }
+  if (found.diverged > 0) {
+    words.push_back(fmt::format(
+        "{} trajector{} diverged: the density is too sharply curved there for the sampler, which "
+        "may have missed a part of it",
+        found.diverged, found.diverged == 1 ? "y" : "ies"));
+  }
+  if (found.longest > 0)
+    words.push_back(
+        fmt::format("{} trajectories were cut off at {} doublings, which costs time, "
+                    "not correctness",
+                    found.longest, NutsOptions{}.most_doublings));
+  if (found.energy_fraction < kLeastEnergyFraction)
+    words.push_back(fmt::format("the energy moves slowly (fraction {}): the tails may be too short",
+                                significant(found.energy_fraction, 2)));
+  if (found.least_draws < kLeastEffective)
+    words.push_back(
+        fmt::format("the draws are worth only {:.0f} independent ones, and ends of "
+                    "intervals are rough",
+                    found.least_draws));
+  std::string text;
+  for (const std::string& each : words) text += "; " + each;
+  return text;
+}
+
+std::string how_drawn(const Posterior& found, const std::string& stopped) {
+  std::string text = fmt::format(
+      "{} chains of {} draws by the no-U-turn sampler, after {} each that "
+      "do not count",
+      found.chains, found.draws, found.warm_up);
+  if (found.draws < found.asked)
+    text += fmt::format(" ({} were asked for: {})", found.asked, stopped);
+  text += fmt::format("; largest R-hat {}, at least {:.0f} effective draws, {}, energy fraction {}",
+                      significant(found.r_hat, 4), found.least_draws,
+                      found.diverged == 0 ? std::string("no divergence")
+                                          : fmt::format("{} divergences", found.diverged),
+                      significant(found.energy_fraction, 2));
+  return text + complaints(found);
+}
+
+}  // namespace
+
+void sample_posterior(const Problem& problem, const Evaluation& optimum, const Uncertainty& found,
+                      const FitOptions& options, Fit& fit, Budget& left) {
+  Posterior& result = fit.posterior.emplace();
+  result.asked = options.posterior;
+  result.warm_up = kPosteriorWarmUp;
+  result.chains = kPosteriorChains;
+  for (std::size_t j = 0; j < optimum.z.size(); ++j) result.names.push_back(problem.name(j));
+  const Evaluation with_rows =
+      evaluate_at(problem, optimum.z, options.threads, {Fidelity::full, left.cancel(), true});
+  if (!with_rows.ok) {
+    result.message = fmt::format(
+        "no draws: {}", left.spent() ? left.reason() : "the optimum could not be simulated again");
+    return;
+  }
+  const PosteriorDensity posterior(problem, with_rows, found, fit.parameters, left.cancel());
+  result.noise_variance = posterior.noise();
+
+  const auto stop = [&left] { return left.cancelled() || left.out_of_time(); };
+  ThreadFarm threads;
+  TaskFarm& farm = options.farm != nullptr ? *options.farm : threads;
+  std::atomic<int> done = 0;
+  const int of_all = kPosteriorChains * (kPosteriorWarmUp + options.posterior);
+  std::vector<ChainTask> chains(kPosteriorChains);
+  // The warm-up, then stretch after stretch; each begins where all chains have ended the last.
+  const auto run = [&](const std::string& name, int count) {
+    const bool warming = result.draws == 0 && chains.front().position.empty();
+    const auto make = [&](std::size_t c) -> TaskResult {
+      if (left.spent()) return {{}, false};
+      ChainTask next;
+      const LogDensityOf density = [&](const VectorXd& y) {
+        ++next.evaluations;
+        return posterior.at(y);
+      };
+      NutsOptions sampler;
+      sampler.seed = options.seed;
+      sampler.chain = static_cast<int>(c);
+      sampler.stop = stop;
+      ChainState state;
+      if (warming) {
+        if (!begin_chain(density, posterior, options.seed, c, state)) return {{}, !stop()};
+        if (!warm_up(density, count, sampler, state)) return {{}, false};
+      } else {
+        state = chains[c].state();
+        const std::vector<Draw> draws = sample(density, count, sampler, state);
+        if (static_cast<int>(draws.size()) < count) return {{}, false};
+        for (const Draw& draw : draws) {
+          next.positions.push_back(listed(draw.position));
+          next.energies.push_back(draw.energy);
+          next.diverged += draw.diverged ? 1 : 0;
+          next.longest += draw.doublings >= sampler.most_doublings ? 1 : 0;
+        }
+      }
+      next.take(state);
+      return {to_bytes(next), true};
+    };
+    const auto tell = [&](std::size_t /*chain*/, const TaskResult& made) {
+      if (options.beside && made.whole)
+        options.beside("draws of the posterior", done += count, of_all);
+    };
+    std::string before;
+    for (const ChainTask& each : chains) before += to_bytes(each.position, each.iteration);
+    const auto results =
+        farm.run({name, to_bytes(optimum.z, optimum.cost, options.seed, count, before),
+                  chains.size(), options.threads},
+                 make, tell);
+    std::vector<ChainTask> next(chains.size());
+    for (std::size_t c = 0; c < chains.size(); ++c) {
+      if (!results[c].whole || results[c].bytes.empty()) return false;
+      from_bytes(results[c].bytes, next[c]);
+    }
+    for (const ChainTask& each : next) {
+      result.evaluations += each.evaluations;
+      result.diverged += each.diverged;
+      result.longest += each.longest;
+      left.count(each.evaluations);
+    }
+    chains = std::move(next);
+    return true;
+  };
+
+  std::vector<std::vector<std::vector<double>>> positions(chains.size());
+  std::vector<std::vector<double>> energies(chains.size());
+  bool whole = run("posterior warm-up", kPosteriorWarmUp);
+  while (whole && result.draws < options.posterior) {
+    const int count = std::min(kPosteriorStretch, options.posterior - result.draws);
+    whole = run(fmt::format("posterior draws {} to {}", result.draws, result.draws + count), count);
+    if (!whole) break;
+    result.draws += count;
+    for (std::size_t c = 0; c < chains.size(); ++c) {
+      positions[c].insert(positions[c].end(), chains[c].positions.begin(),
+                          chains[c].positions.end());
+      energies[c].insert(energies[c].end(), chains[c].energies.begin(), chains[c].energies.end());
+    }
+  }
+  const std::string stopped = left.spent() ? left.reason() : "nothing could be simulated";
+  if (result.draws == 0) {
+    result.message = fmt::format("no draws: {}", stopped);
+    return;
+  }
+
+  result.energy_fraction = HUGE_VAL;
+  for (const auto& chain : energies)
+    result.energy_fraction = std::min(result.energy_fraction, energy_fraction(chain));
+  result.least_draws = HUGE_VAL;
+  for (std::size_t j = 0; j < result.names.size(); ++j) {
+    const Chains of_unknown = chains_of(problem, posterior, positions, j);
+    const PosteriorSpread spread = spread_of(of_unknown);
+    fit.parameters[j].posterior = spread;
+    result.least_draws = std::min({result.least_draws, spread.bulk_draws, spread.tail_draws});
+    if (!(spread.r_hat <= result.r_hat)) {
+      result.r_hat = spread.r_hat;
+      result.worst = result.names[j];
+    }
+    std::vector<double>& values = result.values.emplace_back();
+    for (const auto& chain : of_unknown) values.insert(values.end(), chain.begin(), chain.end());
+  }
+  std::vector<std::vector<double>> points;
+  const auto count =
+      static_cast<std::size_t>(result.chains) * static_cast<std::size_t>(result.draws);
+  const std::size_t simulated = std::min<std::size_t>(kPosteriorSimulated, count);
+  for (std::size_t k = 0; k < simulated; ++k) {
+    const std::size_t at = k * count / simulated;
+    const auto& position = positions[at / static_cast<std::size_t>(result.draws)]
+                                    [at % static_cast<std::size_t>(result.draws)];
+    points.push_back(posterior.to_unit(
+        Eigen::Map<const VectorXd>(position.data(), static_cast<Index>(position.size()))));
+  }
+  if (!stop()) result.limits = kept_limits(problem, points, options.threads, left.cancel());
+  if (!result.limits.empty()) result.simulated = static_cast<int>(points.size());
+  result.message = how_drawn(result, stopped);
+}
+
+}  // namespace rigcal::calib

@@ -1,0 +1,152 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "report/document/quantity.hpp"
+#include "report/page/calibration/fit_sections.hpp"
+#include "report/page/page_parts.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using doc::Line;
+using Kind = doc::Column::Kind;
+
+Line range_line(const std::optional<Range>& range, const RowUnit& unit) {
+  return Line{doc::in_unit(range ? std::optional(range->low) : std::nullopt, unit.si, 5), " … ",
+              doc::in_unit(range ? std::optional(range->high) : std::nullopt, unit.si, 5)};
+}
+
+std::string count_text(const std::optional<double>& count) {
+  return count ? fmt::format("{:.0f}", *count) : std::string("–");
+}
+
+doc::Table draws_table(const StoredFit& fit, const StoredPosterior& found) {
+  doc::Table table{"Posterior"};
+  table.caption = {capitalised(found.message) + "."};
+  table.columns = {{"Parameter"},
+                   {"Median", Kind::number},
+                   {"Unit"},
+                   {"Std. deviation", Kind::number},
+                   {"95 % of the draws", Kind::number},
+                   {"95 % if exact", Kind::number},
+                   {"95 % interval", Kind::number},
+                   {"R-hat", Kind::number},
+                   {"Effective draws", Kind::number}};
+  for (const StoredParameter& p : fit.parameters) {
+    if (!p.posterior) continue;
+    const RowUnit unit = unit_of(p);
+    const StoredPosteriorSpread& spread = *p.posterior;
+    table.rows.push_back(
+        {{parameter_label(p), doc::in_unit(spread.median, unit.si, 6), unit.name,
+          doc::in_unit(spread.sd, unit.si, 3), range_line(spread.ci95, unit),
+          range_line(p.ci95_if_exact, unit), range_line(p.ci95, unit),
+          spread.r_hat ? fmt::format("{:.4f}", *spread.r_hat) : std::string("–"),
+          fmt::format("{}, {}", count_text(spread.bulk_draws), count_text(spread.tail_draws))}});
+  }
+  return table;
+}
+
+doc::Table limits_table(const StoredPosterior& found) {
+  doc::Table table{"How probable it is that limits are kept"};
+  table.columns = {{"Condition"},
+                   {"Channel"},
+                   {"Score"},
+                   {"Limit", Kind::number},
+                   {"Median", Kind::number},
+                   {"Probability", Kind::number}};
+  for (const StoredKeptLimit& each : found.limits) {
+    table.rows.push_back(
+        {{each.condition, each.channel, each.metric, doc::in_unit(each.limit, 1.0, 6),
+          doc::in_unit(each.median, 1.0, 6), fmt::format("{:.3g}", each.probability)}});
+  }
+  return table;
+}
+
+/// A parameter with whose it is, as columns of posterior.csv are called.
+std::string named_as(const StoredParameter& p) { return parameter_label(p.name, p.scope, p.level); }
+
+/// The stored parameter of that name; null where there is none.
+const StoredParameter* named(const StoredFit& fit, const std::string& name) {
+  const auto found = std::find_if(fit.parameters.begin(), fit.parameters.end(),
+                                  [&](const auto& p) { return p.fitted && named_as(p) == name; });
+  return found == fit.parameters.end() ? nullptr : &*found;
+}
+
+std::string axis_label(const std::string& name, const RowUnit& unit) {
+  return unit.name.empty() ? name : fmt::format("{} [{}]", name, unit.name);
+}
+
+Plot pair_plot(const StoredFit& fit, const StoredPairs& pairs, std::size_t a, std::size_t b) {
+  const StoredParameter* const first = named(fit, pairs.names[a]);
+  const StoredParameter* const second = named(fit, pairs.names[b]);
+  const RowUnit x = first != nullptr ? unit_of(*first) : RowUnit{};
+  const RowUnit y = second != nullptr ? unit_of(*second) : RowUnit{};
+  Plot plot;
+  plot.title = fmt::format("Draws of {} and {}", pairs.names[a], pairs.names[b]);
+  plot.x_label = axis_label(first != nullptr ? parameter_label(*first) : pairs.names[a], x);
+  plot.y_label = axis_label(second != nullptr ? parameter_label(*second) : pairs.names[b], y);
+  plot.width = 300.0;
+  plot.height = 230.0;
+  Trace draws;
+  draws.kind = Trace::Kind::points;
+  draws.style = "residual";
+  for (const double value : pairs.values[a]) draws.x.push_back(value / x.si);
+  for (const double value : pairs.values[b]) draws.y.push_back(value / y.si);
+  Trace estimate;
+  estimate.kind = Trace::Kind::points;
+  estimate.style = "model";
+  if (first != nullptr && second != nullptr && first->value && second->value) {
+    estimate.x = {*first->value / x.si};
+    estimate.y = {*second->value / y.si};
+  }
+  plot.traces = {std::move(draws), std::move(estimate)};
+  return plot;
+}
+
+void add_pairs(const StoredFit& fit, const StoredPairs& pairs, doc::Blocks& blocks) {
+  doc::Gallery gallery;
+  const std::size_t count = std::min(pairs.names.size(), pairs.values.size());
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t b = a + 1; b < count; ++b)
+      gallery.figures.push_back(
+          doc::Figure{[fit, pairs, a, b] { return pair_plot(fit, pairs, a, b); }});
+  }
+  if (gallery.figures.empty()) return;
+  blocks.emplace_back(doc::reading(fmt::format(
+      "{} draws: {} as points of at most six parameters, and the estimate. posterior.csv has all.",
+      fit.posterior->chains * fit.posterior->draws,
+      pairs.every == 1 ? std::string("all") : fmt::format("one in {}", pairs.every))));
+  blocks.emplace_back(std::move(gallery));
+}
+
+}  // namespace
+
+void add_posterior(const StoredFit& fit, doc::Blocks& blocks) {
+  if (!fit.posterior) return;
+  const StoredPosterior& found = *fit.posterior;
+  blocks.emplace_back(doc::Heading{{"Posterior"}});
+  if (found.draws == 0) {
+    blocks.emplace_back(doc::reading(capitalised(found.message) + "."));
+    return;
+  }
+  blocks.emplace_back(doc::reading(
+      "The draws hold if the model is exact: the small effects that it leaves out are not among "
+      "them, so compare them with the interval of the exact model, not with the wider one. "
+      "Correlated residuals, differences between repeats and stated uncertainties of known values "
+      "count as they do there. Prior: uniform between the bounds, in the logarithm where these "
+      "span "
+      "more than a decade; a stated prior where the campaign has one. Effective draws are those "
+      "that "
+      "count for the middle of a distribution, and for its ends."));
+  blocks.emplace_back(draws_table(fit, found));
+  if (!found.limits.empty()) {
+    blocks.emplace_back(limits_table(found));
+    blocks.emplace_back(doc::reading(
+        fmt::format("Each limit was judged by simulations of {} draws, spread over all chains.",
+                    found.simulated)));
+  }
+  add_pairs(fit, found.pairs, blocks);
+}
+
+}  // namespace rigcal::report

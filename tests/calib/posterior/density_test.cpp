@@ -1,0 +1,191 @@
+#include "calib/posterior/density.hpp"
+
+#include <Eigen/Cholesky>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "tests/calib/twin.hpp"
+
+namespace rigcal::calib {
+namespace {
+
+using Catch::WithinAbs;
+using Catch::WithinRel;
+using Eigen::VectorXd;
+
+/// A rig with unknowns of all kinds: in the logarithm with a stated prior (mass), in the value with
+/// one (damping), without a prior, and one per leak level.
+struct Scene {
+  Twin twin;
+  std::vector<datasets::Record> records;
+  Problem problem;
+  Evaluation optimum;
+  Uncertainty found;
+  std::vector<FittedParameter> parameters;
+
+  static Twin rig(double tolerance) {
+    Twin twin;
+    twin.campaign.simulation.tolerance = tolerance;
+    twin.free("mass", 58.0, 20.0, 400.0).prior = datasets::Prior{55.0, 10.0};
+    twin.free("damping", 1000.0, 200.0, 1900.0).prior = datasets::Prior{950.0, 200.0};
+    twin.free("valve_gain", 0.04e-3, 0.01e-3, 0.2e-3);
+    twin.free("leakage_coefficient", 0.3, 0.0, 3.0, datasets::Scope::leak_level);
+    twin.level_leakage = {{"open", 0.35}, {"shut", 0.1}};
+    twin.add("square", datasets::Waveform::square, 2.0, 0.01, "open");
+    twin.add("sine", datasets::Waveform::sine, 3.0, 0.02, "shut");
+    return twin;
+  }
+
+  explicit Scene(double tolerance = 1e-10)
+      : twin(rig(tolerance)),
+        records(twin.records(150, 300.0, 5)),
+        problem(problem_of(twin, records)) {
+    // At the truth, where the residuals are noise.
+    std::vector<double> z;
+    for (std::size_t j = 0; j < problem.map.unknowns().size(); ++j) {
+      const Unknown& unknown = problem.map.unknowns()[j];
+      double value = unknown.start;
+      for (const auto& each : twin.truth.parameters) {
+        if (each.index == unknown.index) value = each.value;
+      }
+      if (!unknown.level.empty()) value = twin.level_leakage.at(unknown.level);
+      z.push_back(problem.map.to_unit(static_cast<int>(j), value));
+    }
+    look_at(z);
+  }
+
+  /// The point about which the density is made; standard errors as of white noise.
+  void look_at(const std::vector<double>& z) {
+    optimum = evaluate_at(problem, z, 1, {Fidelity::full, nullptr, true});
+    REQUIRE(optimum.ok);
+    found = uncertainty(problem, optimum, *optimum.rows, 1);
+    found.reduced_chi_square = 1.0;
+    parameters.assign(z.size(), FittedParameter());
+    for (std::size_t j = 0; j < z.size(); ++j) {
+      parameters[j].interval = IntervalSource::standard_error;
+      found.standard_error[j] = white_error(j);
+    }
+  }
+  double white_error(std::size_t j) const {
+    const auto row = static_cast<Eigen::Index>(j);
+    return std::sqrt(found.root.product(row, row)) *
+           problem.map.slope(static_cast<int>(j), optimum.z[j]);
+  }
+  PosteriorDensity density() const { return {problem, optimum, found, parameters}; }
+};
+
+double log_jacobian(const std::vector<double>& z) {
+  double sum = 0.0;
+  for (const double each : z) sum += std::log(each) + std::log1p(-each);
+  return sum;
+}
+
+}  // namespace
+
+TEST_CASE("posterior density: white noise of known size gives the cost of the fit", "[calib]") {
+  const Scene scene;
+  const PosteriorDensity density = scene.density();
+  CHECK(density.noise() == 1.0);
+  const VectorXd y = density.from_unit(scene.optimum.z);
+  CHECK_THAT(density.to_unit(y)[2], WithinRel(scene.optimum.z[2], 1e-12));
+  const double here = density.at(y).value;
+  VectorXd there = y;
+  there += 0.05 * VectorXd::LinSpaced(y.size(), -1.0, 1.0);
+  const std::vector<double> z = density.to_unit(there);
+  const Evaluation other = evaluate_at(scene.problem, z, 1);
+  // The prior of the mass is normal in the mass, whose logarithm is the coordinate: its density
+  // there is that of the mass times the mass.
+  const double scales = std::log(scene.problem.map.to_physical(0, z[0]) /
+                                 scene.problem.map.to_physical(0, scene.optimum.z[0]));
+  CHECK_THAT(density.at(there).value - here,
+             WithinAbs(scene.optimum.cost - other.cost + scales + log_jacobian(z) -
+                           log_jacobian(scene.optimum.z),
+                       1e-6));
+}
+
+TEST_CASE("posterior density: its gradient is that of its value", "[calib]") {
+  // Simulations as exact as they can be, so that differences tell slopes.
+  Scene scene(1e-12);
+  // Correlated residuals: unknowns know less than white noise would tell, each in its own measure.
+  const double stretched[] = {1.5, 1.2, 3.0, 2.0, 1.1};
+  for (std::size_t j = 0; j < scene.parameters.size(); ++j)
+    scene.found.standard_error[j] = stretched[j] * scene.white_error(j);
+  const PosteriorDensity density = scene.density();
+  const VectorXd centre = density.from_unit(scene.optimum.z);
+  for (const double off : {0.0, 0.1, -0.4}) {
+    VectorXd y = centre;
+    y += off * VectorXd::LinSpaced(y.size(), 1.0, -0.5);
+    const LogDensity at = density.at(y);
+    for (Eigen::Index j = 0; j < y.size(); ++j) {
+      CAPTURE(off, j);
+      const double step = 1e-4;
+      VectorXd above = y;
+      VectorXd below = y;
+      above(j) += step;
+      below(j) -= step;
+      const double slope = (density.at(above).value - density.at(below).value) / (2.0 * step);
+      CHECK_THAT(at.gradient(j), WithinRel(slope, 2e-4) || WithinAbs(slope, 2e-3));
+    }
+  }
+}
+
+TEST_CASE("posterior density: its curvature is that of the errors that the fit states", "[calib]") {
+  Scene scene;
+  const std::size_t j = 2;  // valve gain
+  // All unknowns but one are held by the search direction: the curvature along an unknown is the
+  // inverse of the covariance, whose shape a common stretch keeps.
+  const auto curvature = [&](const PosteriorDensity& density) {
+    const VectorXd centre = density.from_unit(scene.optimum.z);
+    const double step = 2e-3;
+    VectorXd above = centre;
+    VectorXd below = centre;
+    above(2) += step;
+    below(2) -= step;
+    return -(density.at(above).value + density.at(below).value - 2.0 * density.at(centre).value) /
+           (step * step);
+  };
+  const double plain = curvature(scene.density());
+  for (std::size_t k = 0; k < scene.parameters.size(); ++k)
+    scene.found.standard_error[k] = 3.0 * scene.white_error(k);
+  const PosteriorDensity wide = scene.density();
+  CHECK_THAT(wide.noise(), WithinRel(9.0, 1e-6));
+  // The transform's own curvature, 2 z (1 - z), is not stretched.
+  const double z = scene.optimum.z[j];
+  const double own = 2.0 * z * (1.0 - z);
+  CHECK_THAT((plain - own) / (curvature(wide) - own), WithinRel(9.0, 0.02));
+  // The robust error counts where the interval rests on it.
+  for (FittedParameter& each : scene.parameters)
+    each.interval = IntervalSource::robust_standard_error;
+  for (std::size_t k = 0; k < scene.parameters.size(); ++k)
+    scene.found.robust_standard_error[k] = 2.0 * scene.white_error(k);
+  CHECK_THAT((plain - own) / (curvature(scene.density()) - own), WithinRel(4.0, 0.25));
+}
+
+TEST_CASE("posterior density: the normal approximation is that of the density", "[calib]") {
+  const Scene scene;
+  const PosteriorDensity density = scene.density();
+  const VectorXd centre = density.centre();
+  // Gradient along a small step, against what the covariance predicts: all but linear.
+  const Eigen::LLT<Eigen::MatrixXd> factor(density.covariance());
+  const Eigen::MatrixXd lower = factor.matrixL();
+  const VectorXd base = density.at(centre).gradient;
+  for (Eigen::Index k = 0; k < centre.size(); ++k) {
+    CAPTURE(k);
+    const VectorXd step = 0.1 * lower.col(k);
+    const VectorXd change = lower.transpose() * (density.at(centre + step).gradient - base);
+    CHECK_THAT(change(k), WithinRel(-0.1, 0.3));
+  }
+}
+
+TEST_CASE("posterior density: there is none where the model cannot be simulated", "[calib]") {
+  Scene scene;
+  const PosteriorDensity density = scene.density();
+  const std::atomic<bool> cancelled = true;
+  const PosteriorDensity stopped(scene.problem, scene.optimum, scene.found, scene.parameters,
+                                 &cancelled);
+  const VectorXd centre = density.centre();
+  CHECK(std::isfinite(density.at(centre).value));
+  CHECK(stopped.at(centre).value == -HUGE_VAL);
+}
+
+}  // namespace rigcal::calib
