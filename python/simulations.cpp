@@ -31,6 +31,7 @@ struct Simulated {
   std::vector<double> time_s;
   std::vector<double> reference;
   bool of_position = true;  ///< whether the loop controls the position
+  model::ParameterValues values;
   model::Simulation simulation;
 };
 using SimulatedPtr = std::shared_ptr<Simulated>;
@@ -45,7 +46,10 @@ py::array_t<double> signal(const SimulatedPtr& self, std::size_t output) {
 py::dict signals_of(const SimulatedPtr& self) {
   py::dict signals;
   for (std::size_t i = 0; i < model::kAllOutputs.size(); ++i) {
-    const std::string_view name = output_name(model::kAllOutputs[i]);
+    const model::Output output = model::kAllOutputs[i];
+    if (output != model::Output::payload_acceleration && !has_output(self->values, output))
+      continue;
+    const std::string_view name = output_name(output);
     signals[py::str(name.data(), name.size())] = signal(self, i);
   }
   return signals;
@@ -94,7 +98,8 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const std::optional<st
     }
     results.push_back(std::make_shared<Simulated>(
         Simulated{tasks[i].condition->id, tasks[i].time_s, report::reference_of(tasks[i]),
-                  tasks[i].rig.feedback == model::Feedback::position, std::move(simulations[i])}));
+                  tasks[i].rig.feedback == model::Feedback::position, tasks[i].values,
+                  std::move(simulations[i])}));
   }
   if (out && !cancel)
     report::write_results(*held, files, report::hash_inputs(self.campaign, records));
@@ -166,7 +171,10 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
                                "Internal leakage across the piston [m3/s].",
                                "Flow that moves the piston [m3/s].",
                                "Of the piston and what is fixed to it [m/s2].",
-                               "Of the second mass [m/s2]; zero where there is none."};
+                               "Of the second mass [m/s2]; zero where there is none.",
+                               "Reading of a joint's angle sensor [rad]; zero where there is none.",
+                               "Of the joint [rad/s]; zero where there is none.",
+                               "Pilot pressure of the spool [Pa]; zero where there is none."};
   static_assert(std::size(about) == model::kAllOutputs.size());
   for (std::size_t i = 0; i < model::kAllOutputs.size(); ++i) {
     const std::string name(output_name(model::kAllOutputs[i]));

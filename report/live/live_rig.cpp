@@ -177,9 +177,7 @@ Json given_values(const model::ParameterValues& values) {
 
 /// Times and inputs of a recording, as 32-bit floats (relative error up to 6e-8).
 Json recorded_inputs(const Campaign& campaign, const SimulationTask& task) {
-  const datasets::Channel channel = campaign.rig.controller == model::ControllerKind::pid
-                                        ? datasets::Channel::reference
-                                        : datasets::Channel::command;
+  const datasets::Channel channel = datasets::drive_channel(campaign);
   const auto at_samples = [&task](const model::Signal& signal) {
     std::vector<double> values;
     values.reserve(task.time_s.size());
@@ -316,6 +314,7 @@ Json live_rig(const Campaign& campaign, const std::vector<LiveCase>& cases) {
            {"classes", classes_of(campaign.diagnosis)},
            // Values that --set starts from: the rig without the changes of any level or condition.
            {"campaign", given_values(values_in(campaign, Condition()))}};
+  rig["turns"] = campaign.rig.plant == model::PlantKind::linkage;
   rig["has_load_pressure"] = campaign.rig.plant == model::PlantKind::load_pressure;
   for (const model::Output output : model::kAllOutputs)
     rig["outputs"].push_back(model::output_name(output));
