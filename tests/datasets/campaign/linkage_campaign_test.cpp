@@ -132,7 +132,9 @@ TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]")
 }
 
 TEST_CASE("load_campaign: a load that slides has no angle", "[datasets]") {
-  CHECK_THROWS_WITH(load_text(replaced(test::kExample, "pressure_a = { unit = \"bar\" }",
-                                       "angle = { column = \"a_deg\", unit = \"deg\" }")),
-                    Catch::Contains("moves a load along a line, and has no joint"));
+  CHECK_THROWS_WITH(
+      load_text(replaced(
+          test::kExample, "pressure_a = { unit = \"bar\" }",
+          "pressure_a = { unit = \"bar\" }\nangle = { column = \"a_deg\", unit = \"deg\" }")),
+      Catch::Contains("moves a load along a line, and has no joint"));
 }
