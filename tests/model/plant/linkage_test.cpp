@@ -273,7 +273,7 @@ TEST_CASE("linkage: sensitivities are exact against differences, every parameter
     check_sensitivities(e, seen,
                         {{Output::load_pressure, 2e7},
                          {Output::force, 8e4},
-                         {Output::servo_flow, 3e-3},
+                         {Output::servo_flow, 1e-2},
                          {Output::leakage_flow, 3e-4},
                          {Output::acceleration, 20.0}});
   };
