@@ -26,7 +26,7 @@ ${rows}  };
 ")
   return()
 endif()
-file(WRITE "${OUT}" "#include \"report/page/assets.hpp\"
+file(WRITE "${OUT}" "#include \"report/document/assets.hpp\"
 
 #include <map>
 

@@ -14,6 +14,9 @@ set(rigcal_optimised $<$<BOOL:${RIGCAL_SANITIZE}>:-O1>)
 set(rigcal_less_optimised $<$<CONFIG:Release>:-O1>)
 set(rigcal_light diagnosis report)
 
+# The layers that read files report to libFuzzer which code an input reaches.
+set(rigcal_fuzzed common datasets report)
+
 # Objects of these targets may become part of the command and of a shared module (CMakeLists.txt).
 function(rigcal_position_independent)
   set_target_properties(${ARGN} PROPERTIES POSITION_INDEPENDENT_CODE ${rigcal_shared})
@@ -43,6 +46,9 @@ function(rigcal_library name)
     else()
       target_compile_options(${part} PRIVATE ${rigcal_optimised})
       set_property(GLOBAL APPEND PROPERTY RIGCAL_OPTIMISED_${name} $<TARGET_OBJECTS:${part}>)
+    endif()
+    if(RIGCAL_FUZZ AND name IN_LIST rigcal_fuzzed)
+      target_compile_options(${part} PRIVATE -fsanitize=fuzzer-no-link)
     endif()
     target_link_libraries(${part} PUBLIC ${ARG_LINKS}
       PRIVATE ${ARG_PRIVATE_LINKS} $<BUILD_INTERFACE:rigcal_warnings>)

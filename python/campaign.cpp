@@ -8,6 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "datasets/prepare/load_record.hpp"
+
 namespace rigcal::python {
 namespace {
 
@@ -115,6 +117,13 @@ void bind_condition(py::module_& module) {
 
 }  // namespace
 
+datasets::Record Campaign::record(const datasets::Condition& condition) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = records_.find(condition.id);
+  if (found != records_.end()) return found->second;
+  return records_.emplace(condition.id, datasets::load_record(campaign, condition)).first->second;
+}
+
 CampaignClass bind_campaign(py::module_& module) {
   bind_parameter(module);
   bind_condition(module);
@@ -138,6 +147,23 @@ CampaignClass bind_campaign(py::module_& module) {
       .def_property_readonly("parameters", &campaign_parameters,
                              "Those that the file gives, in its order, with the changes of `set` "
                              "and `free`.")
+      .def("__reduce__",
+           [](const Campaign& self) {
+             const report::CampaignChoice& choice = self.choice;
+             const auto path = [](const std::filesystem::path& of) -> py::object {
+               return of.empty() ? py::object(py::none()) : py::object(decoded(of.string()));
+             };
+             py::dict set;
+             for (const std::string& assignment : choice.set) {
+               const std::size_t at = assignment.find('=');
+               set[py::str(assignment.substr(0, at))] = assignment.substr(at + 1);
+             }
+             return py::make_tuple(py::module_::import("rigcal.notebook").attr("loaded"),
+                                   py::make_tuple(path(choice.campaign), path(choice.data), set,
+                                                  choice.free.empty() ? py::object(py::none())
+                                                                      : py::cast(choice.free),
+                                                  path(choice.root)));
+           })
       .def("__repr__",
            [](const Campaign& self) { return "<rigcal.Campaign \"" + self.campaign.name + "\">"; });
   module.def("load", &load_campaign, py::arg("campaign"), py::arg("data") = py::none(),

@@ -3,11 +3,14 @@
 #include <pybind11/pybind11.h>
 
 #include <cmath>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 
 #include "datasets/campaign/campaign.hpp"
+#include "datasets/record.hpp"
 #include "python/arguments.hpp"
 #include "report/run/campaign_choice.hpp"
 
@@ -18,6 +21,13 @@ struct Campaign {
   report::CampaignChoice choice;
   datasets::Campaign campaign;
   std::string call;  ///< call that made it: rigcal.load('campaign.toml')
+
+  /// The record of a condition, read at the first call. May be called from any thread.
+  datasets::Record record(const datasets::Condition& condition) const;
+
+ private:
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, datasets::Record> records_;
 };
 using CampaignPtr = std::shared_ptr<Campaign>;
 using CampaignClass = pybind11::class_<Campaign, CampaignPtr>;
@@ -50,6 +60,8 @@ void bind_assessment(pybind11::module_& module);
 void bind_fitted_parameters(pybind11::module_& module);
 void bind_progress(pybind11::module_& module);
 void bind_fits(pybind11::module_& module, CampaignClass& campaign);
+void bind_results(pybind11::module_& module);
+void bind_verbs(pybind11::module_& module, CampaignClass& campaign);
 void bind_synthesize(CampaignClass& campaign);
 
 }  // namespace rigcal::python

@@ -1,11 +1,16 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
+#include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "calib/fit.hpp"
 #include "datasets/record.hpp"
 #include "python/campaign.hpp"
+#include "report/job/job.hpp"
 #include "report/store/provenance.hpp"
 #include "report/store/result.hpp"
 
@@ -23,6 +28,15 @@ struct FitResult {
   report::Result result() const { return {kind, campaign->campaign, records, fit, provenance}; }
 };
 using FitResultPtr = std::shared_ptr<FitResult>;
+
+/// A fit that a call rests on: one in memory, or the path of a fit.json.
+using FitArgument = std::variant<FitResultPtr, std::filesystem::path>;
+
+/// @throws pybind11::value_error  the path is empty
+report::FitSource fit_source(const std::optional<FitArgument>& fit, model::PlantKind plant);
+
+/// The argument as text, for the call recorded in a result.
+std::string written_fit(const FitArgument& fit);
 
 /// A parameter of a result, with its entry in the plant's table.
 struct FittedParameter {

@@ -18,6 +18,7 @@
 #include "python/holding.hpp"
 #include "python/interruptible.hpp"
 #include "python/progress.hpp"
+#include "python/result.hpp"
 #include "report/run/fit_choices.hpp"
 #include "report/run/validation.hpp"
 #include "report/run/write_result.hpp"
@@ -138,43 +139,39 @@ FitResultPtr fit(const CampaignPtr& self, const std::optional<Integer>& starts, 
   });
 }
 
-using EarlierArgument = std::variant<FitResultPtr, fs::path>;
-
-report::EarlierFit earlier_of(const EarlierArgument& fit, model::PlantKind plant) {
-  if (const auto* file = std::get_if<fs::path>(&fit)) return report::read_fit(*file, plant);
-  const FitResult& result = *std::get<FitResultPtr>(fit);
-  return report::earlier_fit(report::json_of(report::stored(result.result())), "fit", plant);
-}
-
-FitResultPtr validate(const CampaignPtr& self, const std::optional<EarlierArgument>& fit,
+FitResultPtr validate(const CampaignPtr& self, const std::optional<FitArgument>& fit,
                       const std::optional<Integer>& threads,
                       const std::optional<py::function>& progress) {
   const int thread_number = thread_count(threads);
-  const fs::path* const file = fit ? std::get_if<fs::path>(&*fit) : nullptr;
-  if (file != nullptr) require_path("fit", *file);
-  std::string call = self->call + ".validate(";
-  if (file != nullptr) call += written("fit", decoded(file->string()));
-  if (fit && file == nullptr) call += std::get<FitResultPtr>(*fit)->provenance.command;
-  call += ")";
+  const report::FitSource source = fit_source(fit, self->campaign.rig.plant);
+  const std::string call = self->call + ".validate(" + (fit ? written_fit(*fit) : "") + ")";
   return made(progress, [&](Progress& told, std::atomic<bool>& cancel) {
     auto result = std::make_shared<FitResult>();
     result->campaign = self;
     result->kind = report::ResultKind::validation;
     const datasets::Campaign& campaign = self->campaign;
     std::optional<report::EarlierFit> earlier;
-    if (fit) earlier = earlier_of(*fit, campaign.rig.plant);
+    if (source.given()) earlier = source.read(campaign.rig.plant);
     result->records =
         datasets::load_records(campaign, {Use::fit, Use::validate}, thread_number, true);
     calib::FitOptions settings = report::fit_options(campaign, thread_number, cancel);
-    std::vector<fs::path> more_inputs;
-    if (file != nullptr) more_inputs.push_back(*file);
     result->provenance = {call, settings.seed, report::recorded(self->choice),
-                          report::hash_inputs(campaign, result->records, more_inputs)};
+                          report::hash_inputs(campaign, result->records, source.inputs())};
     told.attach(settings);
     result->fit = report::validate(campaign, result->records, earlier ? &*earlier : nullptr,
                                    result->provenance, settings);
     return result;
   });
+}
+
+ResultPtr result_of(const FitResult& self, int threads) {
+  auto result = std::make_shared<Result>();
+  result->kind = self.kind == report::ResultKind::fit ? "fit" : "validation";
+  result->name = self.campaign->campaign.name;
+  result->files = report::result_files(self.result(), threads);
+  result->text = report::result_text(self.result(), {}, report::Style{});
+  result->inputs = self.provenance.inputs;
+  return result;
 }
 
 // ---- members
@@ -243,6 +240,14 @@ std::optional<double> cost_of(const FitResult& self) {
   const bool has_cost =
       report::status_of(self.fit) != calib::FitStatus::failed && !self.fit.starts.empty();
   return has_cost ? std::optional(self.fit.cost) : std::nullopt;
+}
+
+Page explore(const FitResult& self) {
+  std::vector<datasets::FittedValue> values;
+  for (const calib::FittedParameter& p : self.fit.parameters)
+    if (p.fitted && !p.nuisance) values.push_back({p.index, p.scope, p.level, p.value});
+  const py::gil_scoped_release released;
+  return explore_page_of(self.campaign->campaign, values, self.provenance.command + ".explore()");
 }
 
 void bind_start(py::module_& module) {
@@ -362,6 +367,40 @@ Raises:
     WriteError: a file cannot be written
     UsageError: a file would replace one that the result was made from, or one that rigcal did not
         write; or another run writes there)")
+      .def("explore", &explore,
+           R"(The page of `rigcal explore` with these estimates: the rig runs in it.
+
+Shown in a notebook; `write(path)` saves it.
+
+Raises:
+    UsageError: this module was built without the WebAssembly tools)")
+      .def("to_frame", of_notebook("to_frame"),
+           "The parameters as a pandas DataFrame, a row each; ImportError without pandas.")
+      .def(
+          "plot",
+          [](const py::object& self, const py::object& condition, const py::object& channel) {
+            return notebook("plot")(self, condition, channel);
+          },
+          py::arg("condition") = py::none(), py::arg("channel") = py::none(),
+          R"(Measurement, model and residual of a condition, by matplotlib.
+
+Args:
+    condition: its id; None: the one with the largest error
+    channel: its key; None: the first that was compared
+
+Returns:
+    the Figure)")
+      .def("_repr_html_",
+           [](const Self& self) { return frame_of(report::brief_page(self.result())); })
+      .def("__reduce__",
+           [](const Self& self) {
+             ResultPtr result;
+             {
+               const py::gil_scoped_release released;
+               result = result_of(self, thread_count(std::nullopt));
+             }
+             return reduced(result);
+           })
       .def(
           "__str__",
           [](const Self& self) { return report::result_text(self.result(), {}, report::Style{}); },

@@ -19,6 +19,8 @@ PYBIND11_MODULE(_rigcal, module) {
   bind_fitted_parameters(module);
   bind_scores(module);
   bind_progress(module);
+  bind_results(module);
   bind_fits(module, campaign);
+  bind_verbs(module, campaign);
   bind_synthesize(campaign);
 }

@@ -30,6 +30,10 @@ void Progress::attach(calib::FitOptions& settings) {
   settings.beside = [this](const char* work, int done, int all) { tell(Pieces{work, done, all}); };
 }
 
+void Progress::pieces(const char* work, int done, int all) {
+  if (function_) tell(Pieces{work, done, all});
+}
+
 void Progress::rethrow() const {
   if (raised_) std::rethrow_exception(raised_);
 }

@@ -36,6 +36,9 @@ class Progress {
   /// Makes the fit report here, if there is a function.
   void attach(calib::FitOptions& settings);
 
+  /// Reports pieces of a job, if there is a function.
+  void pieces(const char* work, int done, int all);
+
   /// Throws the exception of the function, if there was one. Needs the GIL.
   void rethrow() const;
 

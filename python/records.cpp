@@ -13,6 +13,7 @@
 #include "python/arrays.hpp"
 #include "python/campaign.hpp"
 #include "python/holding.hpp"
+#include "python/result.hpp"
 #include "report/run/averaging.hpp"
 #include "report/run/check.hpp"
 #include "report/store/folder.hpp"
@@ -176,6 +177,13 @@ void bind_record(py::module_& module) {
             return files;
           },
           "Every file that was read for it.")
+      .def("to_frame", of_notebook("to_frame"),
+           "Time, and mean, sd and count of each channel, as a pandas DataFrame; ImportError "
+           "without\n"
+           "pandas.")
+      .def("plot", of_notebook("plot"),
+           "Mean of each channel over time, with its standard deviation as a band, by matplotlib.\n"
+           "Returns the Figure.")
       .def("__repr__", [](const Record& self) {
         return fmt::format("<rigcal.Record {}: {} samples, {} repeats>", self.condition,
                            self.time_s.size(), self.repeats);

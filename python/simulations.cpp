@@ -3,10 +3,14 @@
 #include <pybind11/stl/filesystem.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "common/error.hpp"
@@ -15,7 +19,8 @@
 #include "python/campaign.hpp"
 #include "python/holding.hpp"
 #include "python/interruptible.hpp"
-#include "report/run/simulation.hpp"
+#include "python/result.hpp"
+#include "report/run/simulation_file.hpp"
 #include "report/store/folder.hpp"
 #include "report/store/provenance.hpp"
 
@@ -30,7 +35,8 @@ struct Simulated {
   std::string condition;
   std::vector<double> time_s;
   std::vector<double> reference;
-  bool of_position = true;  ///< whether the loop controls the position
+  bool of_position = true;        ///< whether the loop controls the position
+  std::vector<std::string> free;  ///< parameters of its sensitivities
   model::ParameterValues values;
   model::Simulation simulation;
 };
@@ -43,16 +49,71 @@ py::array_t<double> signal(const SimulatedPtr& self, std::size_t output) {
               static_cast<std::size_t>(outputs.rows()));
 }
 
+/// Whether a signal is among those of a rig. The second mass is, as zero, in every rig.
+bool is_signal(const SimulatedPtr& self, model::Output output) {
+  return output == model::Output::payload_acceleration || has_output(self->values, output);
+}
+
 py::dict signals_of(const SimulatedPtr& self) {
   py::dict signals;
   for (std::size_t i = 0; i < model::kAllOutputs.size(); ++i) {
     const model::Output output = model::kAllOutputs[i];
-    if (output != model::Output::payload_acceleration && !has_output(self->values, output))
-      continue;
+    if (!is_signal(self, output)) continue;
     const std::string_view name = output_name(output);
     signals[py::str(name.data(), name.size())] = signal(self, i);
   }
   return signals;
+}
+
+/// Per parameter, the derivative of every signal by it.
+py::dict sensitivities_of(const SimulatedPtr& self) {
+  py::dict all;
+  for (std::size_t j = 0; j < self->free.size(); ++j) {
+    py::dict of_parameter;
+    for (std::size_t i = 0; i < self->simulation.sensitivities.size(); ++i) {
+      if (!is_signal(self, model::kAllOutputs[i])) continue;
+      const Eigen::MatrixXd& matrix = self->simulation.sensitivities[i];
+      const std::string_view name = output_name(model::kAllOutputs[i]);
+      of_parameter[py::str(name.data(), name.size())] =
+          view(self, matrix.col(static_cast<Eigen::Index>(j)).data(),
+               static_cast<std::size_t>(matrix.rows()));
+    }
+    all[py::str(self->free[j])] = of_parameter;
+  }
+  return all;
+}
+
+/// What a call asks for beside the campaign.
+struct Wanted {
+  std::optional<std::string> condition;
+  std::map<std::string, double> values;  ///< SI
+  std::vector<std::string> free;
+};
+
+/// Row of a parameter in the plant's table.
+///
+/// @throws UsageError  there is none of that name
+int row_of(const char* argument, const std::string& key, model::PlantKind plant) {
+  const int index = model::parameter_index(plant, key);
+  if (index >= 0) return index;
+  std::vector<std::string> known;
+  for (const model::ParameterSpec& spec : model::parameter_table(plant))
+    known.emplace_back(spec.key);
+  throw UsageError(std::string(argument) + ": " + unknown_name_message("parameter", key, known));
+}
+
+calib::SimulationTask task_of(const Campaign& self, const datasets::Condition& condition,
+                              const Wanted& wanted) {
+  model::ParameterValues values = datasets::values_in(self.campaign, condition);
+  for (const auto& [key, value] : wanted.values)
+    values.set(row_of("values", key, values.plant), value);
+  std::optional<datasets::Record> record;
+  if (calib::needs_record(condition)) record = self.record(condition);
+  calib::SimulationTask task =
+      calib::simulation_task(self.campaign, condition, std::move(values), std::move(record));
+  for (const std::string& key : wanted.free)
+    task.free.push_back(row_of("sensitivities", key, task.values.plant));
+  return task;
 }
 
 /// @throws UsageError  there is no such condition
@@ -70,13 +131,21 @@ std::vector<const datasets::Condition*> wanted(const datasets::Campaign& campaig
   return conditions;
 }
 
-std::vector<SimulatedPtr> simulated(const Campaign& self, const std::optional<std::string>& id,
-                                    int threads, const std::optional<fs::path>& out, bool force,
+/// A condition, or its id.
+using ConditionArgument = std::optional<std::variant<std::string, datasets::Condition>>;
+std::optional<std::string> id_of(const ConditionArgument& condition) {
+  if (!condition) return std::nullopt;
+  if (const auto* id = std::get_if<std::string>(&*condition)) return *id;
+  return std::get<datasets::Condition>(*condition).id;
+}
+
+std::vector<SimulatedPtr> simulated(const Campaign& self, const Wanted& asked, int threads,
+                                    const std::optional<fs::path>& out, bool force,
                                     const std::atomic<bool>& cancel) {
-  std::vector<report::SimulationTask> tasks;
+  std::vector<calib::SimulationTask> tasks;
   std::vector<datasets::Record> records;
-  for (const datasets::Condition* condition : wanted(self.campaign, id)) {
-    tasks.push_back(report::simulation_task(self.campaign, *condition));
+  for (const datasets::Condition* condition : wanted(self.campaign, asked.condition)) {
+    tasks.push_back(task_of(self, *condition, asked));
     if (tasks.back().record) records.push_back(*tasks.back().record);
   }
   std::optional<report::HeldFolder> held;
@@ -86,9 +155,9 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const std::optional<st
     for (const auto& task : tasks) planned.files.emplace_back(task.condition->id + ".csv");
     held->plan(std::move(planned));
   }
-  model::SimulationOptions options = report::simulation_options(self.campaign);
+  model::SimulationOptions options = calib::simulation_options(self.campaign);
   options.cancel = &cancel;
-  auto simulations = report::simulate(tasks, options, threads);
+  auto simulations = calib::simulate(tasks, options, threads);
   std::vector<SimulatedPtr> results;
   std::vector<report::ResultFile> files;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
@@ -97,8 +166,8 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const std::optional<st
           {tasks[i].condition->id + ".csv", report::simulation_file(tasks[i], simulations[i])});
     }
     results.push_back(std::make_shared<Simulated>(
-        Simulated{tasks[i].condition->id, tasks[i].time_s, report::reference_of(tasks[i]),
-                  tasks[i].rig.feedback == model::Feedback::position, tasks[i].values,
+        Simulated{tasks[i].condition->id, tasks[i].time_s, calib::reference_of(tasks[i]),
+                  tasks[i].rig.feedback == model::Feedback::position, asked.free, tasks[i].values,
                   std::move(simulations[i])}));
   }
   if (out && !cancel)
@@ -106,15 +175,23 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const std::optional<st
   return results;
 }
 
-py::object simulate(const Campaign& self, const std::optional<std::string>& condition,
+py::object simulate(const Campaign& self, const ConditionArgument& condition,
+                    const std::optional<std::map<std::string, double>>& values,
+                    const std::optional<std::vector<std::string>>& sensitivities,
                     const std::optional<Integer>& threads, const std::optional<fs::path>& out,
                     bool force) {
   require_path("out", out);
   const int count = thread_count(threads);
+  Wanted wanted{id_of(condition), values.value_or(std::map<std::string, double>{}),
+                sensitivities.value_or(std::vector<std::string>{})};
+  for (const auto& [key, value] : wanted.values) {
+    if (!std::isfinite(value))
+      throw py::value_error(fmt::format("values: found {} for {}, expected a number", value, key));
+  }
   std::vector<SimulatedPtr> results;
   std::atomic<bool> cancel{false};
   const auto raised = run_interruptibly(
-      cancel, [&] { results = simulated(self, condition, count, out, force, cancel); });
+      cancel, [&] { results = simulated(self, wanted, count, out, force, cancel); });
   if (raised) std::rethrow_exception(raised);
   if (condition) return py::cast(results.front());
   py::dict by_condition;
@@ -155,6 +232,24 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
       .def_property_readonly("signals", &signals_of,
                              "All signals and flows by their names with units,\n"
                              "\"position_m\", \"servo_flow_m3_per_s\"..., each of shape (samples).")
+      .def_property_readonly(
+          "sensitivities", &sensitivities_of,
+          "Derivatives of every signal by each parameter that simulate() was asked\n"
+          "for, by its key and then as in `signals`: SI over SI, shape (samples).")
+      .def("to_frame", of_notebook("to_frame"),
+           "Time and signals as a pandas DataFrame; ImportError without pandas.")
+      .def(
+          "plot",
+          [](const py::object& self, const py::object& signals) {
+            return notebook("plot")(self, signals);
+          },
+          py::arg("signals") = py::none(), R"(Signals over time, by matplotlib.
+
+Args:
+    signals: names such as "position_m"; None: position and reference
+
+Returns:
+    the Figure)")
       .def("__repr__", [](const Simulated& self) {
         return fmt::format("<rigcal.Simulation {}: {}, {} samples>", self.condition,
                            to_string(self.simulation.status), self.time_s.size());
@@ -183,6 +278,7 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
         (std::string(about[i]) + " Shape (samples).").c_str());
   }
   campaign.def("simulate", &simulate, py::arg("condition") = py::none(), py::kw_only(),
+               py::arg("values") = py::none(), py::arg("sensitivities") = py::none(),
                py::arg("threads") = py::none(), py::arg("out") = py::none(),
                py::arg("force") = false,
                R"(Simulates with the campaign's values, as `rigcal simulate`.
@@ -190,7 +286,9 @@ void bind_simulations(py::module_& module, CampaignClass& campaign) {
 A condition that cannot be simulated says so in its status; nothing is raised.
 
 Args:
-    condition: id of the only one to simulate; None: all that are not ignored
+    condition: the only one to simulate, or its id; None: all that are not ignored
+    values: SI values in place of the campaign's, {"mass": 61.0}
+    sensitivities: keys of parameters by which the signals are differentiated
     threads: None: as many as the machine has; results do not depend on it
     out: folder for <condition>.csv; None writes nothing
     force: replace files that rigcal did not write, or that were changed since
@@ -200,7 +298,11 @@ Returns:
 
 Raises:
     InputError: a recording that drives the model is wrong
-    UsageError: there is no such condition, or a file that rigcal did not write would be replaced)");
+    UsageError: there is no such condition or parameter, or a file that rigcal did not write would
+        be replaced
+    ValueError: a value is not finite
+
+Records that drive the model are read once.)");
 }
 
 }  // namespace rigcal::python

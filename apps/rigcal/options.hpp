@@ -20,13 +20,16 @@ struct PrintOptions {
   bool verbose = false;  ///< print every row, however many lines it takes
 };
 
-/// Options of every verb that reads a campaign.
-struct CampaignOptions : report::CampaignChoice {
+/// Options of a verb that leaves a result.
+struct JobOptions {
   std::filesystem::path out = "rigcal-out";
   bool force = false;
   int threads = 1;
   PrintOptions print;
 };
+
+/// Options of every verb that reads a campaign.
+struct CampaignOptions : report::CampaignChoice, JobOptions {};
 
 /// Refuses the empty path, which a script passes where a variable is not set.
 CLI::Validator not_empty();

@@ -1,6 +1,12 @@
 #include "apps/rigcal/outcome.hpp"
 
+#include <functional>
+#include <utility>
+
+#include "apps/rigcal/progress.hpp"
 #include "report/document/render_terminal.hpp"
+#include "report/live/live_fit.hpp"
+#include "report/run/result_page.hpp"
 #include "report/run/write_result.hpp"
 #include "report/store/json.hpp"
 #include "report/store/stored/stored_fit.hpp"
@@ -15,7 +21,8 @@ std::string text_of(const CampaignOptions& options, const report::Result& result
                     const std::vector<std::filesystem::path>& files) {
   std::vector<std::string> paths;
   for (auto file = files.rbegin(); file != files.rend(); ++file)  // the page and the result first
-    if (!file->has_parent_path()) paths.push_back((options.out / *file).string());
+    if (!file->has_parent_path() && *file != report::kLiveFile)
+      paths.push_back((options.out / *file).string());
   paths.push_back((options.out / "residuals" / "").string());
   return report::result_text(result, paths, terminal_style(options.print));
 }
@@ -46,6 +53,42 @@ ExitCode write_and_print(report::HeldFolder& held, const CampaignOptions& option
   const auto files = report::write_result(held, options.threads, result, stored);
   print(options.print, text_of(options, result, files), report::json_of(stored));
   return exit_code_of(stored.status, stored.verdict, strict);
+}
+
+namespace {
+
+ExitCode run_with(report::JobTerms terms, const char* verb, const JobOptions& options,
+                  const std::function<report::JobResult(const report::JobTerms&)>& job) {
+  std::optional<report::HeldFolder> held;
+  terms.hold = [&](report::PlannedFiles planned) {
+    held.emplace(options.out, holding(verb, options.force, options.print));
+    held->plan(std::move(planned));
+  };
+  report::JobResult result;
+  {
+    BesideProgress progress(options.print.quiet);
+    terms.progress = std::ref(progress);
+    result = job(terms);
+  }
+  add_page(options.out, options.threads, result.files);
+  report::write_results(held.value(), result.files, result.inputs);
+  result.first.emplace_back("report.html");
+  print(options.print, {result.verdict, result.sections, result.synthetic}, options.out,
+        result.first, result.json);
+  return result.code;
+}
+
+}  // namespace
+
+ExitCode run_job(const char* verb, const CampaignOptions& options, const Invocation& invocation,
+                 const std::function<report::JobResult(const report::JobTerms&)>& job) {
+  return run_with({invocation.command, recorded(options), options.threads, invocation.cancel}, verb,
+                  options, job);
+}
+
+ExitCode run_job(const char* verb, const JobOptions& options, const Invocation& invocation,
+                 const std::function<report::JobResult(const report::JobTerms&)>& job) {
+  return run_with({invocation.command, {}, options.threads, invocation.cancel}, verb, options, job);
 }
 
 std::string text_of(const PrintedDocument& document, const PrintOptions& options) {

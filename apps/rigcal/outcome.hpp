@@ -1,13 +1,16 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/rigcal/options.hpp"
+#include "apps/rigcal/verb.hpp"
 #include "common/error.hpp"
 #include "report/document/document.hpp"
+#include "report/job/job.hpp"
 #include "report/store/result.hpp"
 
 namespace rigcal::app {
@@ -26,6 +29,15 @@ ExitCode write_and_print(report::HeldFolder& held, const CampaignOptions& option
 
 /// --strict
 void add_strict_option(CLI::App& verb, bool& strict);
+
+/// Runs a job in the folder of --out, writes its files with the page, and prints its document.
+///
+/// @param verb  for messages
+/// @throws WriteError, UsageError, InputError
+ExitCode run_job(const char* verb, const CampaignOptions& options, const Invocation& invocation,
+                 const std::function<report::JobResult(const report::JobTerms&)>& job);
+ExitCode run_job(const char* verb, const JobOptions& options, const Invocation& invocation,
+                 const std::function<report::JobResult(const report::JobTerms&)>& job);
 
 /// A result as its document shows it, on page and terminal alike.
 struct PrintedDocument {

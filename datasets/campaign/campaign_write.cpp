@@ -129,9 +129,10 @@ void write_changed_values(toml::table& root, const Campaign& campaign) {
   }
 }
 
-/// A record path relative to `out`, from one relative to `data`.
+/// A record path relative to `out`, or absolute if that is empty, from one relative to `data`.
 std::string rebased(const std::string& file, const fs::path& data, const fs::path& out) {
   if (fs::path(file).is_absolute()) return file;
+  if (out.empty()) return (data / file).lexically_normal().generic_string();
   const fs::path relative = (data / file).lexically_relative(out);
   return (relative.empty() ? data / file : relative).generic_string();
 }
@@ -177,7 +178,8 @@ std::string fitted_campaign_text(const Campaign& campaign, const std::vector<Fit
       }
     }
   }
-  rebase_records(root, resolved(campaign.data_dir), resolved(out_dir));
+  rebase_records(root, resolved(campaign.data_dir),
+                 out_dir.empty() ? fs::path() : resolved(out_dir));
   return fmt::format(
       "# Written by rigcal fit from {}: the fitted values stand in place of the starts.\n"
       "# Nuisance parameters stay free. Record paths start at the folder of this file.\n\n{}",
@@ -200,7 +202,8 @@ std::string fitted_leak_table_text(const Campaign& campaign, const LeakTableSett
     put(entry, spec, "lower", assumption.lower);
     put(entry, spec, "upper", assumption.upper);
   }
-  rebase_records(root, resolved(campaign.data_dir), resolved(out_dir));
+  rebase_records(root, resolved(campaign.data_dir),
+                 out_dir.empty() ? fs::path() : resolved(out_dir));
   return fmt::format(
       "# Written by rigcal fit-tables from {}: the estimated values stand in\n"
       "# [leak_table.assumptions]. Record paths start at the folder of this file.\n\n{}",

@@ -90,7 +90,8 @@ RIGCAL_EXPORT(output_count) int output_count() { return static_cast<int>(kAllOut
 /// Simulates without sensitivities.
 ///
 /// @param rig      enumerators of plant, controller, initial state and method; tolerance; time
-///                 limit [s]
+///                 limit [s]; enumerators of the controlled quantity and of what was before; time
+///                 of the drive's first sample [s]
 /// @param values   shape (2, parameters): SI values, and 1 for each that is given
 /// @param drive    an input as described at kInputNumbers; `force`, `supply` and `tank` likewise,
 ///                 or null
@@ -101,7 +102,8 @@ int simulate_rig(const double* rig, const double* values, const double* drive, c
                  const double* supply, const double* tank, const double* times_s, int samples,
                  double* outputs) {
   const Rig kind{static_cast<PlantKind>(rig[0]), static_cast<ControllerKind>(rig[1]),
-                 static_cast<InitialState>(rig[2])};
+                 static_cast<InitialState>(rig[2]), static_cast<Feedback>(rig[6]),
+                 static_cast<Before>(rig[7])};
   SimulationOptions options;
   options.method = static_cast<Method>(rig[3]);
   options.tolerance = rig[4];
@@ -112,7 +114,7 @@ int simulate_rig(const double* rig, const double* values, const double* drive, c
     if (values[count + i] != 0.0) parameters.set(static_cast<int>(i), values[i]);
   }
   const SimulationInputs inputs{signal_of(drive), optional_signal_of(force),
-                                optional_signal_of(supply), optional_signal_of(tank)};
+                                optional_signal_of(supply), optional_signal_of(tank), rig[8]};
   last_run =
       rigcal::model::simulate(kind, parameters, {}, inputs,
                               {times_s, static_cast<std::size_t>(samples)}, kAllOutputs, options);

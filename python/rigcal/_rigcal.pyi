@@ -27,6 +27,9 @@ def load(
     root: Path_ | None = None,
 ) -> Campaign: ...
 
+def compare(folders: Sequence[Path_]) -> Result: ...
+def init(files: Sequence[Path_], out: Path_, *, force: bool = False) -> tuple[Path, list[str]]: ...
+
 class Parameter:
     @property
     def key(self) -> str: ...
@@ -91,6 +94,8 @@ class Campaign:
         self,
         condition: None = None,
         *,
+        values: dict[str, float] | None = None,
+        sensitivities: Sequence[str] | None = None,
         threads: SupportsIndex | None = None,
         out: Path_ | None = None,
         force: bool = False,
@@ -98,8 +103,10 @@ class Campaign:
     @overload
     def simulate(
         self,
-        condition: str,
+        condition: str | Condition,
         *,
+        values: dict[str, float] | None = None,
+        sensitivities: Sequence[str] | None = None,
         threads: SupportsIndex | None = None,
         out: Path_ | None = None,
         force: bool = False,
@@ -124,6 +131,44 @@ class Campaign:
         threads: SupportsIndex | None = None,
         progress: Callable[[Iteration | Pieces], object] | None = None,
     ) -> Fit: ...
+    def diagnose(
+        self,
+        fit: Fit | Path_ | None = None,
+        *,
+        table: Path_ | None = None,
+        healthy: Sequence[str] | None = None,
+        threads: SupportsIndex | None = None,
+        progress: Callable[[Pieces], object] | None = None,
+    ) -> Result: ...
+    def parity(
+        self,
+        fit: Fit | Path_,
+        *,
+        false_alarms: float = 0.01,
+        healthy: Sequence[str] | None = None,
+        threads: SupportsIndex | None = None,
+        progress: Callable[[Pieces], object] | None = None,
+    ) -> Result: ...
+    def leak_table(
+        self,
+        fit: Fit | Path_ | None = None,
+        *,
+        targets: Sequence[float] | None = None,
+        signals: Sequence[str] | None = None,
+        threads: SupportsIndex | None = None,
+    ) -> Result: ...
+    def plan(self, fit: Fit | Path_ | None = None, *, threads: SupportsIndex | None = None) -> Result: ...
+    def explore(self) -> Page: ...
+    def export_fmu(
+        self,
+        out: Path_,
+        *,
+        fit: Fit | Path_ | None = None,
+        condition: str | None = None,
+        level: str | None = None,
+        without_delay: bool = False,
+        force: bool = False,
+    ) -> tuple[Path, list[str]]: ...
     def synthesize(
         self, out: Path_, *, seed: SupportsIndex, threads: SupportsIndex | None = None, force: bool = False
     ) -> Path: ...
@@ -177,6 +222,8 @@ class Record:
     def warnings(self) -> list[str]: ...
     @property
     def files(self) -> list[Path]: ...
+    def to_frame(self) -> Any: ...
+    def plot(self) -> Any: ...
 
 class Check:
     @property
@@ -237,6 +284,10 @@ class Simulation:
     def angular_velocity_rad_per_s(self) -> NDArray[np.float64]: ...
     @property
     def pilot_pressure_pa(self) -> NDArray[np.float64]: ...
+    @property
+    def sensitivities(self) -> dict[str, dict[str, NDArray[np.float64]]]: ...
+    def to_frame(self) -> Any: ...
+    def plot(self, signals: Sequence[str] | None = None) -> Any: ...
 
 class Reason:
     @property
@@ -506,3 +557,23 @@ class Fit:
     def parameter(self, key: str, level: str | None = None) -> FittedParameter: ...
     def json(self) -> dict[str, Any]: ...
     def write(self, out: Path_, *, threads: SupportsIndex | None = None, force: bool = False) -> list[Path]: ...
+    def explore(self) -> Page: ...
+    def to_frame(self) -> Any: ...
+    def plot(self, condition: str | None = None, channel: str | None = None) -> Any: ...
+
+class Result:
+    @property
+    def kind(self) -> str: ...
+    @property
+    def files(self) -> dict[str, str]: ...
+    @property
+    def page(self) -> str: ...
+    def json(self) -> dict[str, Any]: ...
+    def to_frame(self, table: str | None = None) -> Any: ...
+    def plot(self) -> Any: ...
+    def write(self, out: Path_, *, threads: SupportsIndex | None = None, force: bool = False) -> list[Path]: ...
+
+class Page:
+    @property
+    def html(self) -> str: ...
+    def write(self, path: Path_) -> Path: ...

@@ -11,29 +11,17 @@
 #include <vector>
 
 #include "common/error.hpp"
+#include "report/document/assets.hpp"
 #include "report/figure/decimate.hpp"
 #include "report/figure/svg.hpp"
 #include "report/live/live_module.hpp"
-#include "report/page/assets.hpp"
+#include "report/live/live_page.hpp"
 #include "report/text/escape.hpp"
 
 namespace rigcal::report {
 namespace {
 
 constexpr std::size_t kStillPoints = 1500;
-
-/// JSON that no HTML parser can mistake for markup.
-std::string for_script(const Json& json) {
-  std::string text;
-  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace))
-    text += c == '<' ? std::string("\\u003c") : std::string(1, c);
-  return text;
-}
-
-std::string module_base64() {
-  const std::string_view module = live_module();
-  return base64(std::vector<std::uint8_t>(module.begin(), module.end()));
-}
 
 struct StillLine {
   const char* name;
@@ -82,26 +70,12 @@ std::string still_pictures(const LiveCase& shown, const model::Simulation& run) 
   constexpr double kDegree = 0.017453292519943295;
   Plot position = turns ? still_plot(shown, run, "Angle", "deg", kDegree, kAngle)
                         : still_plot(shown, run, "Position", "mm", 1e-3, kPosition);
-  if (auto reference_m = reference_of(shown.task); !reference_m.empty())
+  if (auto reference_m = calib::reference_of(shown.task); !reference_m.empty())
     add_line(position, "reference", "reference", shown.task.time_s, std::move(reference_m), 1e-3);
   constexpr double kLitrePerMinute = 1e-3 / 60.0;
   return still_figure(shown, turns ? "Angle" : "Position", position) +
          still_figure(shown, "Flows",
                       still_plot(shown, run, "Flow", "L/min", kLitrePerMinute, kFlows));
-}
-
-/// Replaces each {{name}} of a template by the HTML of that name.
-std::string filled(std::string_view text, const std::map<std::string_view, std::string>& html) {
-  std::string result;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t open = std::min(text.find("{{", at), text.size());
-    result += text.substr(at, open - at);
-    if (open == text.size()) break;
-    const std::size_t close = text.find("}}", open);
-    result += html.at(text.substr(open + 2, close - open - 2));
-    at = close + 2;
-  }
-  return result;
 }
 
 }  // namespace
@@ -113,9 +87,10 @@ std::string explore_page(const datasets::Campaign& campaign, const std::vector<L
         "this rigcal was built without the model for pages: expected one that was built where "
         "clang, lld, wasi-libc and libc++ for WebAssembly are installed (scripts/setup)");
   const LiveCase& shown = cases.front();
-  const SimulationTask& task = shown.task;
-  const model::Simulation run = model::simulate(task.rig, task.values, {}, task.inputs, task.time_s,
-                                                model::kAllOutputs, simulation_options(campaign));
+  const calib::SimulationTask& task = shown.task;
+  const model::Simulation run =
+      model::simulate(task.rig, task.values, {}, task.inputs, task.time_s, model::kAllOutputs,
+                      calib::simulation_options(campaign));
   if (!run.ok())
     throw InputError(shown.condition.where,
                      fmt::format("{}: cannot be simulated: {} at {:.6g} s: {}", shown.name,
@@ -123,8 +98,9 @@ std::string explore_page(const datasets::Campaign& campaign, const std::vector<L
   std::string inputs_html;
   for (const InputFile& input : inputs)
     inputs_html += fmt::format(" {}: SHA-256 {}.", escaped(input.path), input.sha256);
-  const std::string live = filled(asset("live.html"), {{"still_case", escaped(shown.name)},
-                                                       {"still", still_pictures(shown, run)}});
+  const std::string live =
+      live_html("Without scripts the page shows a still picture: " + escaped(shown.name) + ".",
+                still_pictures(shown, run));
   return filled(
       asset("explore.html"),
       {{"campaign", escaped(campaign.name)},
@@ -137,10 +113,7 @@ std::string explore_page(const datasets::Campaign& campaign, const std::vector<L
        // The licence of the plot library requires its notice in every copy, and each page is one.
        {"plot_library",
         fmt::format("/*! uPlot\n\n{}*/\n{}", asset("uPlot.LICENSE"), asset("uPlot.js"))},
-       {"worker", std::string(asset("live_worker.js"))},
-       {"rig", for_script(live_rig(campaign, cases))},
-       {"module", module_base64()},
-       {"script", std::string(asset("live.js"))}});
+       {"live_scripts", live_scripts(live_rig(campaign, cases))}});
 }
 
 }  // namespace rigcal::report

@@ -14,7 +14,13 @@
     return node;
   };
   const bytes = (base64) => Uint8Array.from(atob(base64), (c) => c.charCodeAt(0));
-  const digits = (value, count = 4) => value == null || !Number.isFinite(value) ? "–" : String(+value.toPrecision(count));
+  const digits = (value, count = 4) => {
+    if (value == null || !Number.isFinite(value)) return "–";
+    const rounded = +value.toPrecision(count);
+    return rounded !== 0 && Math.abs(rounded) < 1e-3 ? rounded.toExponential() : String(rounded);
+  };
+  /** A score that is not 1 is not shown as 1. */
+  const score = (value) => value > 0.99995 && value < 1 ? "> 0.9999" : digits(+value?.toFixed(4));
   const problem = (text) => {
     $("problem").textContent = text;
     $("problem").hidden = !text;
@@ -23,7 +29,7 @@
   // State of the page: case, drive and parameter values, all in SI.
   const rows = new Map(rig.parameters.map((row) => [row.index, row]));
   const byKey = new Map(rig.parameters.map((row) => [row.key, row]));
-  const driven = rig.controller === 1 ? {name: "reference", unit: "mm", si: 1e-3, si_unit: "m"} : {name: "command", unit: "V", si: 1, si_unit: "V"};
+  const driven = rig.driven;
   const fieldsOfDrive = [
     {key: "frequency", label: "Frequency", unit: "Hz", si: 1, lower: 0.01, upper: 100, highest: 1000, scale: "log", made: true},
     {key: "end_frequency", label: "End frequency", unit: "Hz", si: 1, lower: 0.01, upper: 100, highest: 1000, scale: "log", chirp: true, made: true},
@@ -42,7 +48,8 @@
     };
   };
 
-  // State in the address: only the differences from the case.
+  // State in the address: only the differences from the case. A page with other sections marks it.
+  const marked = rig.embedded ? "live&" : "";
   const driveKeys = ["waveform", "frequency", "amplitude", "duration", "end_frequency"];
   const address = () => {
     const chosen = caseOf(state.case);
@@ -56,10 +63,19 @@
     for (const [index, value] of state.values)
       if (value !== begun.values.get(index)) query.set(rows.get(index).key, value);
     if (tolerance !== rig.tolerance) query.set("tolerance", tolerance);
-    return query.toString();
+    const text = query.toString();
+    return text ? marked + text : "";
+  };
+  const isOurs = () => !rig.embedded || location.hash.startsWith("#" + marked);
+  /** Whether the drive is that of the case, so that its record can be compared. */
+  const asRecorded = () => {
+    const chosen = caseOf(state.case);
+    return Boolean(chosen.times) && state.waveform === chosen.waveform &&
+      (state.waveform === "recorded" || (state.frequency === chosen.frequency && state.amplitude === chosen.amplitude && state.duration === chosen.duration &&
+        (state.waveform !== "chirp" || state.end_frequency === chosen.end_frequency)));
   };
   const readAddress = () => {
-    const query = new URLSearchParams(location.hash.slice(1));
+    const query = new URLSearchParams(isOurs() ? location.hash.slice(1 + marked.length) : "");
     begin(caseOf(query.get("case")));
     for (const [key, text] of query) {
       const value = Number(text);
@@ -78,6 +94,7 @@
     clearTimeout(writing);
     writing = setTimeout(() => {
       const text = address();
+      if (!text && !isOurs()) return;
       try { history.replaceState(null, "", text ? "#" + text : location.pathname + location.search); } catch { /* an embedded page may have no address */ }
     }, 250);
   };
@@ -140,8 +157,14 @@
   };
   const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
   const begunValue = (index) => new Map(caseOf(state.case).values).get(index);
+  /** The 95 % interval of an estimate in this case. */
+  const intervalOf = (row) => {
+    const chosen = caseOf(state.case);
+    const found = rig.intervals?.find((each) => each.index === row.index && (each.scope === "rig" || each.level === (each.scope === "condition" ? chosen.id : chosen.level)));
+    return found ? [found.low, found.high] : row.interval;
+  };
   const ofParameter = (row) => control({
-    key: row.key, label: capital(row.key.replaceAll("_", " ")), symbol: row.symbol, unit: row.unit, si: row.si, slider: row.slider, interval: row.interval,
+    key: row.key, label: capital(row.key.replaceAll("_", " ")), symbol: row.symbol, unit: row.unit, si: row.si, slider: row.slider, interval: intervalOf(row),
     lowest: row.lowest, highest: row.highest, get: () => state.values.get(row.index) ?? 0,
     set: (value) => state.values.set(row.index, value), begun: () => begunValue(row.index) ?? 0,
   });
@@ -222,11 +245,26 @@
     }
     return chosen.inputs = inputs;
   };
+  const timesOf = (chosen) => {
+    if (typeof chosen.times === "string") chosen.times = numbersOf(chosen.times, Float64Array);
+    else if (chosen.times.count) {
+      const {start, step, count} = chosen.times;
+      chosen.times = Float64Array.from({length: count}, (_, i) => start + i * step);
+    }
+    return chosen.times;
+  };
   const requestOf = () => {
     const chosen = caseOf(state.case);
     const request = {plant: rig.plant, controller: rig.controller, initial: chosen.initial, method: rig.method, tolerance, seconds: 30,
-                     values: [...state.values]};
+                     feedback: rig.feedback, before: chosen.before, drive_begins: chosen.drive_begins, values: [...state.values],
+                     of: chosen.name, recorded: asRecorded()};
     if (state.waveform === "recorded") return {...request, ...recordedOf(chosen)};
+    if (request.recorded) {
+      request.times = timesOf(chosen);
+      request.drive = {kind: chosen.waveform, amplitude: chosen.amplitude, frequency: chosen.frequency, end: chosen.end_frequency,
+                       sweep: chosen.sweep ?? chosen.duration, logarithmic: chosen.logarithmic ?? false};
+      return request;
+    }
     const rate = sampleRate();
     const count = Math.floor(state.duration * rate * (1 + 1e-9)) + 1;
     request.times = Float64Array.from({length: count}, (_, i) => i / rate);
@@ -244,7 +282,22 @@
     running = message;
     worker.postMessage({...message.data, id: message.id, leak: rig.leak, order: rig.outputs, motion: rig.turns ? "angle_rad" : "position_m"});
   };
+  /** Does something with the state as the case begins. */
+  const asBegun = (work) => {
+    const was = state;
+    begin(caseOf(state.case));
+    try { return work(); } finally { state = was; }
+  };
   const simulate = () => {
+    const chosen = caseOf(state.case);
+    if (chosen.measured && !chosen.calibrated) {
+      const calibrated = asBegun(requestOf);
+      send({id: next++, data: {request: calibrated}, done: (answer) => {
+        chosen.calibrated = answer.status === "ok" ? answer.outputs : rig.outputs.map(() => null);
+        simulate();
+      }});
+      return;
+    }
     const request = requestOf();
     const asked = {id: next++, data: {request}, done: (answer) => show(request, answer)};
     send(asked);
@@ -263,19 +316,22 @@
   const pressures = rig.has_load_pressure
     ? [{name: "load pressure", output: "load_pressure_pa", style: "model"}]
     : [{name: "chamber A", output: "pressure_a_pa", style: "model"}, {name: "chamber B", output: "pressure_b_pa", style: "residual"}];
+  const measures = (name) => rig.cases.some((each) => each.measured?.some((channel) => channel.output === name));
+  const recorded = (name, label = "") => measures(name) ? [{name: "measured" + label, style: "ink", measured: name, width: 1}, {name: "calibrated" + label, style: "soft", calibrated: name}] : [];
   // A joint turns; every other rig moves along a line.
   const motion = rig.turns ? {name: "angle", output: "angle_rad", unit: "deg", si: Math.PI / 180}
     : {name: "position", output: "position_m", unit: "mm", si: 1e-3};
   const plots = [
     {title: rig.turns ? "Angle" : "Position", unit: motion.unit, si: motion.si, height: 220, lines: [
-      ...(rig.controller === 1 ? [{name: "reference", style: "reference", reference: true}] : []),
+      ...(driven.si_unit === "m" ? [{name: "reference", style: "reference", reference: true}] : []),
+      ...recorded(motion.output),
       {name: "without a leak", style: "soft", healthy: true},
       {name: "live", style: "model", output: motion.output, width: 1.8}]},
     {title: "Flows", unit: "L/min", si: 1e-3 / 60, height: 180, lines: [
       {name: "servo", style: "servo", output: "servo_flow_m3_per_s"},
       {name: "work", style: "model", output: "work_flow_m3_per_s"},
       {name: "leak", style: "leak", output: "leakage_flow_m3_per_s", width: 1.8}]},
-    {title: rig.has_load_pressure ? "Load pressure" : "Pressures", unit: "MPa", si: 1e6, height: 160, lines: pressures},
+    {title: rig.has_load_pressure ? "Load pressure" : "Pressures", unit: "MPa", si: 1e6, height: 160, lines: pressures.flatMap((line) => [...recorded(line.output, pressures.length > 1 ? ` ${line.name.at(-1)}` : ""), line])},
     {title: `Parity residual: ${motion.name} without a leak minus live`, unit: motion.unit, si: motion.si, height: 140, lines: [
       {name: "residual", style: "residual", residual: true}]},
   ];
@@ -295,7 +351,25 @@
     return Float64Array.from(times, at);
   };
   const scaled = (values, si) => values ? Float64Array.from(values, (v) => v / si) : null;
+  /** Measured samples of an output in this case, at the times of the request; null where there are none. */
+  const measuredOf = (name) => {
+    const chosen = caseOf(state.case);
+    const channel = chosen.measured?.find((each) => each.output === name);
+    if (!channel) return null;
+    channel.samples ??= numbersOf(channel.values, Float32Array);
+    return channel;
+  };
   const dataOf = (plot, request, answer) => [request.times, ...plot.lines.map((line) => {
+    if (line.measured) {
+      const channel = request.recorded && measuredOf(line.measured);
+      const values = new Array(request.times.length).fill(null);
+      if (channel) channel.samples.forEach((v, i) => { values[i * caseOf(state.case).every] = v / plot.si; });
+      return values;
+    }
+    if (line.calibrated) {
+      const outputs = request.recorded && caseOf(state.case).calibrated?.[output(line.calibrated)];
+      return outputs ? scaled(outputs, plot.si) : new Array(request.times.length).fill(null);
+    }
     if (line.reference) return scaled(driveValues(request), plot.si);
     if (line.healthy) return scaled(answer.healthy, plot.si) ?? request.times.map(() => NaN);
     if (line.residual) {
@@ -316,7 +390,7 @@
         const chart = new uPlot({
           width: figure.clientWidth || 600, height: plot.height,
           series: [{label: "time", value: (_, v) => v == null ? "–" : digits(v) + " s"},
-                   ...plot.lines.map((line) => ({label: line.name, stroke: css("--" + line.style), width: line.width ?? 1.2, dash: line.reference ? [5, 3] : line.healthy ? [2, 2] : undefined,
+                   ...plot.lines.map((line) => ({label: line.name, stroke: css("--" + line.style), width: line.width ?? 1.2, spanGaps: Boolean(line.measured), dash: line.calibrated ? [6, 3] : line.reference ? [5, 3] : line.healthy ? [2, 2] : undefined,
                                                  points: {show: false}, value: (_, v) => v == null ? "–" : `${digits(v)} ${plot.unit}`}))],
           scales: {x: {time: false}},
           axes: [{...axis, size: 28, values: (_, ticks) => ticks.map((t) => digits(t) + " s")}, {...axis, size: 56, values: (_, ticks) => ticks.map((t) => digits(t))}],
@@ -335,6 +409,47 @@
     }
   };
 
+  /** The metrics of metrics/metric_table.hpp. */
+  const scoresOf = (measured, simulated, every, windows) => {
+    const pairs = [];
+    for (const [first, last] of windows)
+      for (let i = Math.ceil(first / every); i * every <= last && i < measured.length; ++i) pairs.push([measured[i], simulated[i * every]]);
+    const n = pairs.length;
+    const mean = (f) => pairs.reduce((sum, pair) => sum + f(pair), 0) / n;
+    const my = mean(([y]) => y), ms = mean(([, s]) => s), me = my - ms;
+    const vy = mean(([y]) => (y - my) ** 2), vs = mean(([, s]) => (s - ms) ** 2);
+    const ve = mean(([y, s]) => (y - s - me) ** 2), cov = mean(([y, s]) => (y - my) * (s - ms));
+    const square = mean(([y, s]) => (y - s) ** 2);
+    const [low, high] = pairs.reduce(([least, most], [y]) => [Math.min(least, y), Math.max(most, y)], [Infinity, -Infinity]);
+    return {rho2: 1 - ve / vy, r: cov / Math.sqrt(vy * vs), ccc: 2 * cov / (vy + vs + me ** 2),
+            absolute_error_percent: 100 * mean(([y, s]) => Math.abs(y - s)) / (high - low), rmse: Math.sqrt(square),
+            nrmse_fit_percent: 100 * (1 - Math.sqrt(square / vy)), maximum_error: pairs.reduce((most, [y, s]) => Math.max(most, Math.abs(y - s)), 0)};
+  };
+  const short = {rho2: "rho2", r: "R", ccc: "CCC", absolute_error_percent: "error"};
+  /** Scores of the live curves against the record, and which limits they keep. */
+  const showScores = (request, answer) => {
+    const chosen = caseOf(state.case);
+    const place = $("scores");
+    const scores = {};
+    if (!chosen.measured || !request.recorded) {
+      place.replaceChildren(...(chosen.measured ? [make("p", {class: "reading", text: "No record of this drive: reset it to compare."})] : []));
+      return scores;
+    }
+    const rows = chosen.measured.map(({output: name, channel, limits}) => {
+      const found = scores[channel] = scoresOf(measuredOf(name).samples, answer.outputs[output(name)], chosen.every, chosen.windows);
+      const broken = limits.filter(({metric, limit, higher_is_better: higher}) => !(higher ? found[metric] >= limit : found[metric] <= limit));
+      const words = !limits.length ? "no limit" : broken.length ? broken.map(({metric, limit}) => `${short[metric] ?? metric} beyond ${digits(limit)}`).join(", ") : "limits kept";
+      return make("tr", {}, make("th", {scope: "row", text: channel.replaceAll("_", " ")}),
+                  ...["rho2", "r", "ccc"].map((metric) => make("td", {class: "n", text: score(found[metric])})),
+                  make("td", {class: "n", text: `${digits(found.absolute_error_percent, 3)} %`}),
+                  make("td", {}, make("span", {class: "tag " + (!limits.length ? "" : broken.length ? "bad" : "good"), text: words})));
+    });
+    const about = [chosen.held_back ? "held back from the fit" : "", chosen.every > 1 ? `approximate: one of ${chosen.every} samples` : ""].filter(Boolean).join("; ");
+    place.replaceChildren(make("table", {}, make("caption", {text: `Live curves against the record of ${chosen.id}${about ? ` (${about})` : ""}`}),
+      make("thead", {}, make("tr", {}, ...["Channel", "rho2", "R", "CCC", "Error", "Limits"].map((text) => make("th", {scope: "col", text})))), make("tbody", {}, ...rows)));
+    return scores;
+  };
+
   const classOf = (fraction) => rig.classes.find(({below}) => below == null || fraction < below)?.name ?? "";
   let saying = 0;
   const showNumbers = (request, answer) => {
@@ -350,7 +465,7 @@
       ["Of the servo flow leak", fraction == null ? "–" : `${digits(fraction, 3)} %`, leakClass],
       [`Peak ${motion.name}`, `${digits(peak(position) / motion.si, 4)} ${motion.unit}`, ""],
     ];
-    if (rig.controller === 1) {
+    if (driven.si_unit === "m") {
       const reference = driveValues(request);
       items.push(["Error of position", `${digits(rms(position.map((x, i) => reference[i] - x)) * 1e3, 3)} mm`, "rms against the reference"]);
     }
@@ -365,6 +480,7 @@
     saying = setTimeout(() => { $("said").textContent = items.map(([name, text, of]) => `${name} ${text} ${of}`).join("; "); }, 700);
   };
   const show = (request, answer) => {
+    if (request.of !== state.case) return;  // another case was chosen meanwhile: its answer follows
     const curves = document.querySelector(".live-curves");
     curves.classList.toggle("stale", answer.status !== "ok");
     if (answer.status !== "ok") {
@@ -375,16 +491,17 @@
     document.body.classList.add("running");
     drawPlots(request, answer);
     showNumbers(request, answer);
-    window.rigcalLive = {request, answer, rig, drawn: (window.rigcalLive?.drawn ?? 0) + 1};
+    const scores = showScores(request, answer);
+    window.rigcalLive = {request, answer, scores, rig, of: request.of, drawn: (window.rigcalLive?.drawn ?? 0) + 1};
   };
 
   // Command of `rigcal simulate` with the same result.
   const quoted = (text) => /^[A-Za-z0-9_./-]+$/.test(text) ? text : `'${text.replaceAll("'", `'\\''`)}'`;
   const commands = () => {
     const was = new Map(rig.campaign);
-    const made = state.waveform !== "recorded";
+    const made = state.waveform !== "recorded" && !asRecorded();
     const chosen = caseOf(state.case);
-    const from = made ? was : new Map(chosen.values);
+    const from = made ? was : new Map(chosen.campaign ?? chosen.values);
     const sets = [...state.values].filter(([index, value]) => value !== from.get(index)).map(([index, value]) => {
       const {key, si_unit: unit} = rows.get(index);
       return `--set ${key}=${quoted(unit ? `${value} ${unit}` : String(value))}`;
@@ -451,11 +568,30 @@
     for (const node of document.querySelectorAll("#live .screen")) node.hidden = false;
     changed();
   };
-  start().catch((error) => {
-    problem(`The live model does not run in this browser, so a still picture is shown: ${error.message}`);
+  const begun = () => start().catch((error) => {
+    problem(`The live model does not run in this browser: ${error.message}`);
   });
+  // A page with other sections starts the model when it is looked at.
+  if (rig.embedded) {
+    const seen = new IntersectionObserver((entries) => {
+      if (!entries.some((entry) => entry.isIntersecting)) return;
+      seen.disconnect();
+      begun();
+    }, {rootMargin: "200px"});
+    seen.observe(document.getElementById("live"));
+    for (const each of rig.cases) {
+      document.getElementById("condition-" + each.id)?.querySelector("h3")?.after(make("p", {class: "screen"},
+        make("a", {href: `#${marked}case=${encodeURIComponent(each.name)}`, text: "Try it: this condition with other values"})));
+    }
+  } else {
+    begun();
+  }
 
-  addEventListener("hashchange", () => { if (location.hash.slice(1) !== address()) { readAddress(); drawControls(); changed(); } });
+  addEventListener("hashchange", () => {
+    if (!isOurs()) return;
+    if (rig.embedded) document.getElementById("try").scrollIntoView();
+    if (worker && location.hash.slice(1) !== address()) { readAddress(); drawControls(); changed(); }
+  });
   let resizing = 0;
   addEventListener("resize", () => {
     clearTimeout(resizing);

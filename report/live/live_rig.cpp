@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "calib/problem/known_values.hpp"
 #include "common/error.hpp"
 #include "datasets/campaign/leak_table_settings.hpp"
 #include "report/figure/decimate.hpp"
@@ -16,6 +17,7 @@
 namespace rigcal::report {
 namespace {
 
+using calib::SimulationTask;
 using datasets::Campaign;
 using datasets::Condition;
 using datasets::Waveform;
@@ -48,14 +50,6 @@ void complete(Condition& condition) {
   }
 }
 
-LiveCase made_case(const Campaign& campaign, std::string name, Condition condition,
-                   model::ParameterValues values) {
-  complete(condition);
-  SimulationTask task = simulation_task(campaign, condition, std::move(values));
-  task.condition = nullptr;  // the condition is moved below, so its address changes
-  return {std::move(name), std::move(condition), std::move(task)};
-}
-
 /// Adds the signals of the leak table; the signal of its features comes first.
 void add_leak_table(const Campaign& campaign, const datasets::LeakTableSettings& settings,
                     std::vector<LiveCase>& cases) {
@@ -81,7 +75,7 @@ void add_leak_table(const Campaign& campaign, const datasets::LeakTableSettings&
     condition.frequency_hz = signal.frequency_hz;
     condition.amplitude = signal.amplitude;
     condition.where = {campaign.file.string()};
-    cases.push_back(made_case(campaign, fmt::format("leak table: {}", signal.name()),
+    cases.push_back(live_case(campaign, fmt::format("leak table: {}", signal.name()),
                               std::move(condition), values));
   }
 }
@@ -138,6 +132,16 @@ const char* group_of(const datasets::ParameterSetting* setting, model::Parameter
   return "";
 }
 
+/// The quantity of the drive, in the unit of its field.
+Json driven(const Campaign& campaign) {
+  const datasets::ChannelInfo& channel = info(datasets::drive_channel(campaign));
+  const bool metres = channel.unit == "m";
+  return {{"name", channel.key},
+          {"unit", metres ? "mm" : channel.unit},
+          {"si", metres ? 1e-3 : 1.0},
+          {"si_unit", channel.unit}};
+}
+
 /// Null for numbers that JSON cannot represent.
 Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -163,16 +167,6 @@ Json live_parameter(const Campaign& campaign, int index, double value) {
     row["slider"] = {{"lower", range->lower}, {"upper", range->upper}, {"scale", range->scale}};
   }
   return row;
-}
-
-/// List of [index, SI value] of the given parameters.
-Json given_values(const model::ParameterValues& values) {
-  Json list = Json::array();
-  for (std::size_t i = 0; i < values.value.size(); ++i) {
-    if (values.given[i] && std::isfinite(values.value[i]))
-      list.push_back({static_cast<int>(i), values.value[i]});
-  }
-  return list;
 }
 
 /// Times and inputs of a recording, as 32-bit floats (relative error up to 6e-8).
@@ -205,6 +199,8 @@ Json case_row(const Campaign& campaign, const LiveCase& each) {
            {"id", condition.id},
            {"waveform", to_string(condition.waveform)},
            {"initial", static_cast<int>(each.task.rig.initial)},
+           {"before", static_cast<int>(each.task.rig.before)},
+           {"drive_begins", each.task.inputs.drive_begins_s},
            {"values", given_values(each.task.values)}};
   row["frequency"] = condition.frequency_hz.value_or(1.0);
   row["amplitude"] = condition.amplitude.value_or(0.0);
@@ -265,13 +261,44 @@ Json waveforms_made() { return {"sine", "square", "chirp"}; }
 
 }  // namespace
 
-std::vector<LiveCase> live_cases(const Campaign& campaign) {
+Json given_values(const model::ParameterValues& values) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < values.value.size(); ++i) {
+    if (values.given[i] && std::isfinite(values.value[i]))
+      list.push_back({static_cast<int>(i), values.value[i]});
+  }
+  return list;
+}
+
+LiveCase live_case(const Campaign& campaign, std::string name, Condition condition,
+                   model::ParameterValues values, std::optional<datasets::Record> record) {
+  if (!record) complete(condition);
+  calib::SimulationTask task =
+      calib::simulation_task(campaign, condition, std::move(values), std::move(record));
+  if (!condition.duration_s) condition.duration_s = task.time_s.back() - task.time_s.front();
+  if (!condition.sample_rate_hz)
+    condition.sample_rate_hz =
+        static_cast<double>(task.time_s.size() - 1) / (task.time_s.back() - task.time_s.front());
+  task.condition = nullptr;  // the condition is moved below, so its address changes
+  return {std::move(name), std::move(condition), std::move(task)};
+}
+
+std::vector<LiveCase> live_cases(const Campaign& campaign,
+                                 const std::vector<datasets::FittedValue>& fitted) {
   std::vector<LiveCase> cases;
-  if (const auto settings = leak_table_of(campaign)) add_leak_table(campaign, *settings, cases);
+  if (const auto settings = fitted.empty() ? leak_table_of(campaign) : std::nullopt)
+    add_leak_table(campaign, *settings, cases);
   std::optional<InputError> problem;
   for (const Condition& condition : campaign.conditions) {
     if (condition.use == datasets::Use::ignore) continue;
-    model::ParameterValues values = values_in(campaign, condition);
+    model::ParameterValues values;
+    try {
+      values = fitted.empty() ? values_in(campaign, condition)
+                              : calib::values_with(campaign, condition, fitted);
+    } catch (const InputError& error) {  // the fit has no value for its leak level
+      if (!problem) problem.emplace(error);
+      continue;
+    }
     if (const auto missing = values.missing(); !missing.empty()) {
       if (!problem)
         problem.emplace(condition.where,
@@ -288,7 +315,7 @@ std::vector<LiveCase> live_cases(const Campaign& campaign) {
                                     condition.id));
       continue;
     }
-    cases.push_back(made_case(campaign, condition.id, condition, std::move(values)));
+    cases.push_back(live_case(campaign, condition.id, condition, std::move(values)));
   }
   if (!cases.empty()) return cases;
   if (problem) throw InputError(*problem);
@@ -297,12 +324,14 @@ std::vector<LiveCase> live_cases(const Campaign& campaign) {
 }
 
 Json live_rig(const Campaign& campaign, const std::vector<LiveCase>& cases) {
-  const model::SimulationOptions options = simulation_options(campaign);
+  const model::SimulationOptions options = calib::simulation_options(campaign);
   const auto leak_table = leak_table_of(campaign);
   Json rig{{"name", campaign.name},
            {"file", campaign.file.filename().string()},
            {"plant", static_cast<int>(campaign.rig.plant)},
            {"controller", static_cast<int>(campaign.rig.controller)},
+           {"feedback", static_cast<int>(campaign.rig.feedback)},
+           {"driven", driven(campaign)},
            {"method", static_cast<int>(options.method)},
            {"tolerance", options.tolerance},
            {"leak", model::parameter_index(campaign.rig.plant, kLeak)},

@@ -69,7 +69,8 @@ class Model {
       }
       const samples = request.times.length;
       const count = exports.output_count();
-      const rig = put([request.plant, request.controller, request.initial, request.method, request.tolerance, request.seconds ?? 10]);
+      const rig = put([request.plant, request.controller, request.initial, request.method, request.tolerance, request.seconds ?? 10,
+                       request.feedback ?? 0, request.before ?? 0, request.drive_begins ?? 0]);
       const outputs = put(new Float64Array(samples * count));
       const status = exports.simulate(rig, put(values), input(request.drive), input(request.force), input(request.supply),
                                       input(request.tank), put(request.times), samples, outputs);

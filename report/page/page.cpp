@@ -8,9 +8,9 @@
 
 #include "common/error.hpp"
 #include "common/file.hpp"
+#include "report/document/assets.hpp"
 #include "report/document/render_html.hpp"
 #include "report/figure/pdf.hpp"
-#include "report/page/assets.hpp"
 #include "report/page/section.hpp"
 #include "report/text/escape.hpp"
 
@@ -160,7 +160,36 @@ void add_first_page(const Parts& parts, bool synthetic, const std::string& sha25
   page += "</section>\n\n";
 }
 
-std::string page_of(const Parts& parts, const std::string& sha256) {
+/// Drops what makes a page long, and pictures of a section after the first few.
+void shorten(doc::Blocks& blocks) {
+  constexpr std::size_t kMostPictures = 4;
+  std::size_t pictures = 0;
+  std::erase_if(blocks, [&](const doc::Block& block) {
+    if (const auto* gallery = std::get_if<doc::Gallery>(&block)) {
+      pictures += gallery->figures.size();
+      return pictures > kMostPictures;
+    }
+    if (std::holds_alternative<doc::Figure>(block)) return ++pictures > kMostPictures;
+    return std::holds_alternative<doc::Fold>(block) ||
+           std::holds_alternative<doc::Article>(block) || std::holds_alternative<doc::Raw>(block) ||
+           std::holds_alternative<doc::LivePlot>(block) ||
+           std::holds_alternative<doc::LiveSeries>(block) ||
+           std::holds_alternative<doc::Tiles>(block);
+  });
+}
+
+void shorten(Parts& parts) {
+  for (Part& part : parts.drawn) {
+    shorten(part.front);
+    for (doc::Section& section : part.sections) shorten(section.blocks);
+    std::erase_if(part.sections,
+                  [](const doc::Section& section) { return section.blocks.empty(); });
+  }
+}
+
+enum class Extent { whole, brief };
+
+std::string page_of(const Parts& parts, const std::string& sha256, Extent extent) {
   const Part& first = parts.drawn.front();
   // One unusable result marks the whole page.
   const bool bad = std::any_of(parts.drawn.begin(), parts.drawn.end(), [](const Part& part) {
@@ -173,11 +202,19 @@ std::string page_of(const Parts& parts, const std::string& sha256) {
       "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta "
       "name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta "
       "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
-      "'unsafe-inline'; script-src 'unsafe-inline'; img-src data: blob:\">\n<meta "
+      "'unsafe-inline'; script-src 'unsafe-inline'{}; img-src data: blob:\">\n<meta "
       "name=\"color-scheme\" content=\"light dark\">\n<title>{} – {} – {}</title>\n",
+      first.live && extent == Extent::whole ? " 'wasm-unsafe-eval'; worker-src blob:" : "",
       escaped(badge.words), escaped(first.campaign), escaped(first.name));
   page += fmt::format("<style>{}{}{}</style>\n</head>\n", asset("report.css"), asset("uPlot.css"),
                       foot_style(first, bad, sha256));
+  if (extent == Extent::brief) {
+    page += fmt::format("<body class=\"{}\">\n<main>\n", bad ? "bad" : doc::css(badge.state));
+    add_first_page(parts, synthetic, sha256, page);
+    for (const Part& part : parts.drawn)
+      for (const doc::Section& section : part.sections) doc::render_html(section, page);
+    return page + "</main>\n</body>\n</html>\n";
+  }
   page += fmt::format(
       "<body class=\"{}\">\n<a class=\"skip\" href=\"#verdict\">Skip to the verdict</a>\n<header "
       "class=\"bar\">\n<span class=\"badge {}\"><span aria-hidden=\"true\">{}</span> "
@@ -193,6 +230,7 @@ std::string page_of(const Parts& parts, const std::string& sha256) {
   add_link("formulas", "Formulas");
   page += "\n</nav>\n</header>\n<main>\n";
   add_first_page(parts, synthetic, sha256, page);
+  if (first.live) page += first.live->html;
   doc::Section provenance{
       "provenance",
       "Provenance",
@@ -208,6 +246,7 @@ std::string page_of(const Parts& parts, const std::string& sha256) {
   // The licence of the plot library requires its notice in every copy, and each page is one.
   page += fmt::format("</main>\n<script>/*! uPlot\n\n{}*/\n{}</script>\n<script>{}</script>\n",
                       asset("uPlot.LICENSE"), asset("uPlot.js"), asset("report.js"));
+  if (first.live) page += first.live->scripts;
   return page + "</body>\n</html>\n";
 }
 
@@ -216,7 +255,13 @@ std::string page_of(const Parts& parts, const std::string& sha256) {
 std::string result_page(const ReadFile& read, const std::string& where, int threads,
                         const ReadTable& made) {
   const Parts parts = parts_of({read, where, threads, made});
-  return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")));
+  return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")), Extent::whole);
+}
+
+std::string brief_page(const ReadFile& read, const std::string& where, const ReadTable& made) {
+  Parts parts = parts_of({read, where, 1, made});
+  shorten(parts);
+  return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")), Extent::brief);
 }
 
 std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& read,

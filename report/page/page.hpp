@@ -19,6 +19,10 @@ namespace rigcal::report {
 std::string result_page(const ReadFile& read, const std::string& where, int threads,
                         const ReadTable& made = {});
 
+/// The same without scripts, and without what makes it long: folds, the articles of single
+/// conditions, provenance and formulas. For a notebook.
+std::string brief_page(const ReadFile& read, const std::string& where, const ReadTable& made = {});
+
 /// Every picture as a separate file in figures/, as SVG and as PDF: <condition>_<plot>, leak_table,
 /// leak_levels, diagnosis, comparison_<parameter>, trend_<along>_<level>.
 ///

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "report/live/live_fit.hpp"
 #include "report/page/page_parts.hpp"
 
 // Kinds of results on the page, with their files and their sections.
@@ -30,6 +32,7 @@ struct Part {
   doc::Verdict verdict;
   doc::Blocks front;  ///< for page one, below the verdict
   std::vector<doc::Section> sections;
+  std::optional<LiveSection> live;  ///< the rig in the page, after its first page
   doc::Blocks provenance;
   std::vector<InputFile> inputs;                         ///< that it was made from
   std::string program;                                   ///< program that made the result

@@ -8,6 +8,9 @@
 
 namespace rigcal::report {
 
+/// Reads from files in memory, which must outlive it.
+ReadFile files_in(const std::vector<ResultFile>& files);
+
 /// Adds report.html before the last of `files`, the JSON that marks the result as complete. The
 /// page shows these files and other results that are already in `out`, as `report` would.
 ///

@@ -1,10 +1,13 @@
 #include "report/run/write_result.hpp"
 
+#include <functional>
 #include <memory>
 #include <mutex>
 
 #include "common/file.hpp"
 #include "common/parallel.hpp"
+#include "report/live/live_fit.hpp"
+#include "report/page/page.hpp"
 #include "report/run/result_page.hpp"
 #include "report/store/csv.hpp"
 #include "report/store/json.hpp"
@@ -48,30 +51,41 @@ fs::path main_file(ResultKind kind) {
   return kind == ResultKind::fit ? "fit.json" : "validation.json";
 }
 
-/// Residual files, each written as soon as its text is there: those of all conditions at once would
-/// be the most memory that a result takes.
+/// Residual files, each handed on as soon as its text is there: those of all conditions at once
+/// would be the most memory that a written result takes.
 ///
 /// @return  their names and hashes, in the order of the scores
-std::vector<InputFile> add_residuals(const Result& result,
-                                     const std::vector<calib::ConditionScore>& scores, int threads,
-                                     ResultsInWriting& writing) {
+std::vector<InputFile> add_residuals(const Result& result, int threads,
+                                     const std::function<void(ResultFile)>& add) {
+  const std::vector<calib::ConditionScore> early = unscored(result);
+  const auto& scores = result.fit.conditions.empty() ? early : result.fit.conditions;
   std::vector<InputFile> files(scores.size());
   std::mutex one_at_a_time;
   parallel_for(scores.size(), threads, [&](std::size_t i) {
     const fs::path file = residual_file(scores[i].id);
-    const std::string text = residuals_csv(result, scores[i]);
+    std::string text = residuals_csv(result, scores[i]);
     files[i] = {file.generic_string(), sha256_of_text(text)};
     const std::lock_guard lock(one_at_a_time);
-    writing.add({file, text, files[i].sha256});
+    add({file, std::move(text), files[i].sha256});
   });
   return files;
 }
 
-/// Every file but the residuals.
+/// Tables of the residual files, which need not be read back.
+ReadTable tables_of(const Result& result) {
+  return [&result](const fs::path& path) {
+    for (const calib::ConditionScore& score : result.fit.conditions)
+      if (residual_file(score.id) == path)
+        return std::make_shared<const Table>(residual_table(result, score));
+    return std::shared_ptr<const Table>();
+  };
+}
+
+/// Every file but the residuals and the page.
 ///
 /// @param residuals  their names, which the result gives with those of the other files
 /// @param stored     the result, to which they are added
-std::vector<ResultFile> files_of(const fs::path& out, int threads, const Result& result,
+std::vector<ResultFile> files_of(const fs::path& out, const Result& result,
                                  const std::vector<InputFile>& residuals, StoredFit& stored) {
   std::vector<ResultFile> files;
   files.push_back({"scorecard.csv", scorecard_csv(result)});
@@ -80,15 +94,11 @@ std::vector<ResultFile> files_of(const fs::path& out, int threads, const Result&
   files.push_back({"residual_tests.json", json_line(json_of(stored_curves(result)))});
   if (result.kind == ResultKind::fit && stored.status != FitStatus::failed)
     files.push_back({"fitted.toml", fitted_toml(out, result)});
+  if (const auto live = live_fit(result))
+    files.push_back({kLiveFile, json_line(*live)});
   name_files(residuals, files, stored.provenance);
   // Last, so that its presence means that the others are there.
   files.push_back({main_file(result.kind), json_text(json_of(stored))});
-  add_page(out, threads, files, [&result](const fs::path& path) {
-    for (const calib::ConditionScore& score : result.fit.conditions)
-      if (residual_file(score.id) == path)
-        return std::make_shared<const Table>(residual_table(result, score));
-    return std::shared_ptr<const Table>();
-  });
   return files;
 }
 
@@ -98,6 +108,7 @@ PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign)
   PlannedFiles planned{
       {"scorecard.csv", "parameters.csv", "residual_tests.json", "report.html", main_file(kind)},
       {"residuals"}};
+  planned.files.emplace_back(kLiveFile);
   if (kind == ResultKind::fit) planned.files.emplace_back("fitted.toml");
   for (const datasets::Condition& condition : campaign.conditions) {
     if (condition.use == datasets::Use::fit || condition.use == datasets::Use::validate)
@@ -108,22 +119,38 @@ PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign)
 
 std::vector<fs::path> write_result(HeldFolder& held, int threads, const Result& result,
                                    StoredFit& stored) {
-  const std::vector<calib::ConditionScore> early = unscored(result);
   const fs::path& out = held.path();
   const PlannedFiles planned = planned_result(result.kind, result.campaign);
   require_inputs_kept(out, planned.files, result.provenance.inputs);
   held.plan(planned);
   ResultsInWriting writing(held, result.provenance.inputs);
-  const std::vector<InputFile> residuals = add_residuals(
-      result, result.fit.conditions.empty() ? early : result.fit.conditions, threads, writing);
+  const std::vector<InputFile> residuals =
+      add_residuals(result, threads, [&](ResultFile file) { writing.add(std::move(file)); });
   std::vector<fs::path> paths;
   for (const InputFile& file : residuals) paths.emplace_back(file.path);
-  for (const ResultFile& file : files_of(out, threads, result, residuals, stored)) {
+  std::vector<ResultFile> files = files_of(out, result, residuals, stored);
+  add_page(out, threads, files, tables_of(result));
+  for (const ResultFile& file : files) {
     writing.add(file);
     paths.push_back(file.path);
   }
   writing.move_into_place();
   return paths;
+}
+
+std::vector<ResultFile> result_files(const Result& result, int threads) {
+  StoredFit fit = stored(result);
+  std::vector<ResultFile> files;
+  const std::vector<InputFile> residuals =
+      add_residuals(result, threads, [&](ResultFile file) { files.push_back(std::move(file)); });
+  for (ResultFile& file : files_of({}, result, residuals, fit)) files.push_back(std::move(file));
+  return files;
+}
+
+std::string brief_page(const Result& result) {
+  StoredFit fit = stored(result);
+  const std::vector<ResultFile> files = files_of({}, result, {}, fit);
+  return brief_page(files_in(files), result.campaign.name, tables_of(result));
 }
 
 }  // namespace rigcal::report

@@ -21,4 +21,10 @@ PlannedFiles planned_result(ResultKind kind, const datasets::Campaign& campaign)
 std::vector<std::filesystem::path> write_result(HeldFolder& held, int threads, const Result& result,
                                                 StoredFit& stored);
 
+/// The same files in memory, without the page; the result comes last.
+std::vector<ResultFile> result_files(const Result& result, int threads);
+
+/// The brief page of a fit or validation (report/page/page.hpp).
+std::string brief_page(const Result& result);
+
 }  // namespace rigcal::report

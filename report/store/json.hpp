@@ -29,6 +29,7 @@ Json parameters_json(model::PlantKind plant);
 /// Data of an earlier fit for `validate`.
 struct EarlierFit {
   calib::FitStatus status = calib::FitStatus::failed;
+  std::optional<calib::Verdict> verdict;
   std::string message;
   std::vector<datasets::FittedValue> values;  ///< fitted parameters, without nuisance
   std::vector<datasets::FittedValue> known;   ///< the others, scope rig

@@ -240,6 +240,7 @@ EarlierFit earlier_fit(const Json& json, const std::string& name, model::PlantKi
   }
   EarlierFit result;
   result.status = stored.status;
+  result.verdict = stored.verdict;
   result.message = stored.message;
   read_values(stored, root, plant, result);
   result.validity = validity_of(stored.validity);

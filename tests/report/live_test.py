@@ -5,6 +5,7 @@ browser, or a program without the model for pages."""
 import base64
 import csv
 import gzip
+import hashlib
 import json
 import pathlib
 import re
@@ -196,6 +197,87 @@ def a_rig_with_everything(rigcal, folder):
         check(not browser.problems, browser.problems)
 
 
+def the_fitted_rig(rigcal, campaign, folder, what, *options):
+    """The page of a fit: at the estimates its curves have the scores of fit.json, and they follow a slider."""
+    fit_folder = folder / "fit"
+    done = subprocess.run([rigcal, "fit", campaign, "--out", fit_folder, "--quiet", "--force", *options], capture_output=True, text=True, check=False)
+    check(done.returncode in (0, 1), f"{what}: {done.stderr}")
+    fit = json.loads((fit_folder / "fit.json").read_text())
+    scored = {each["id"]: each["metrics"] for each in fit["conditions"] if each["metrics"]}
+    with Browser(1440, 1000) as browser:
+        browser.open(fit_folder / "report.html")
+        check(browser.run("window.rigcalLive === undefined"), f"{what}: the model runs before it is looked at")
+        browser.run("document.getElementById('try').scrollIntoView()")
+        simulated(browser)
+        worst, compared, names = 0.0, 0, browser.run("window.rigcalLive.rig.cases.map((each) => each.name)")
+        check(set(names) == set(scored), f"{what}: cases {names}, scored {list(scored)}")
+        for name in names:
+            if len(names) > 1:
+                browser.run(f"location.hash = '#live&case=' + encodeURIComponent({json.dumps(name)})")
+            browser.wait_for(f"window.rigcalLive.of === {json.dumps(name)}", f"{what}: no curves of {name}")
+            every = browser.run(f"window.rigcalLive.rig.cases.find((each) => each.name === {json.dumps(name)}).every")
+            scores = browser.run("window.rigcalLive.scores")
+            check(scores, f"{what}: no scores of {name}")
+            for channel, metrics in scores.items():
+                if every > 1:
+                    check("approximate" in browser.run("document.getElementById('live-scores').textContent"), f"{what}: {name} is thinned in silence")
+                    continue
+                for metric, unit in (("rho2", 1), ("r", 1), ("ccc", 1), ("absolute_error_percent", 100)):
+                    error = abs(metrics[metric] - scored[name][channel][metric]) / unit
+                    worst = max(worst, error)
+                    compared += 1
+                    check(error < 1e-6, f"{what}: {metric} of {channel} of {name} differs by {error:.1e}")
+        check(compared > 0, f"{what}: nothing was compared")
+        first = next(p for p in fit["parameters"] if p["fitted"] and not p["nuisance"] and p["ci95"] and p["scope"] == "rig")
+        check(browser.run("document.querySelectorAll('#live .interval').length") > 0, f"{what}: no interval of an estimate")
+        moved(browser, f"""(() => {{ const field = document.getElementById('live-of-{first["key"]}'); field.value = 0.5 * (+field.value + +field.min);
+            field.dispatchEvent(new Event('input')); }})()""")
+        changed = browser.run("window.rigcalLive.scores")
+        check(changed != scores, f"{what}: the scores do not follow {first['key']}")
+        moved(browser, "document.getElementById('live-reset').click()")
+        check(browser.run("window.rigcalLive.scores") == scores, f"{what}: a reset does not lead back")
+        milliseconds = browser.run("window.rigcalLive.answer.milliseconds")
+        browser.size(400)
+        browser.wait_for("innerWidth === 400 && document.documentElement.scrollWidth <= 400", f"{what}: as narrow as a telephone")
+        check(not browser.problems, browser.problems)
+        asked = [url for url in browser.requests if not url.startswith(("file:", "blob:", "data:"))]
+        check(not asked, f"asks for {asked}")
+    print(f"{what}: {compared} scores within {worst:.1e}, {milliseconds:.0f} ms")
+
+
+def fitted_rigs(rigcal, sources, folder):
+    data = folder / "known"
+    run(rigcal, "synthesize", sources / "docs/tutorial/known_rig.toml", "--seed", "1", "--out", data, "--quiet", cwd=folder)
+    the_fitted_rig(rigcal, data / "campaign.toml", folder / "known", "the tutorial's rig")
+    fit = folder / "known" / "fit"
+    text, result = (fit / "report.html").read_text(), json.loads((fit / "fit.json").read_text())
+
+    def replace_live(content):
+        """Puts other content into live.json, with its hash."""
+        (fit / "live.json").write_text(content)
+        named = next(each for each in result["provenance"]["files"] if each["path"] == "live.json")
+        named["sha256"] = hashlib.sha256(content.encode()).hexdigest()
+        (fit / "fit.json").write_text(json.dumps(result))
+
+    hostile = json.loads((fit / "live.json").read_text())
+    hostile["name"] = "</script><script>window.injected = true</script>"
+    replace_live(json.dumps(hostile))
+    run(rigcal, "report", fit, "--force", "--quiet", cwd=folder)
+    check(text.count("<script") == (fit / "report.html").read_text().count("<script"), "a name in live.json is markup")
+    replace_live("{")
+    done = run(rigcal, "report", fit, "--force", cwd=folder, code=2)
+    check("live.json" in done.stderr, done.stderr)
+    (fit / "live.json").write_text("{}")  # of another run
+    done = run(rigcal, "report", fit, "--force", cwd=folder, code=2)
+    check("live.json" in done.stderr, done.stderr)
+    recordings = sources.parent / "shared" / "data"
+    for rig, records in (("utfsm_mts", "utfsm_mts_servohydraulic_chirp"), ("festo_tp511", "festo_tp511_servo_cylinder")):
+        if not (recordings / records).is_dir():
+            print(f"skipped: no recordings in {recordings / records}")
+            continue
+        the_fitted_rig(rigcal, sources / "datasets" / "rigs" / rig / "campaign.toml", folder / rig, rig, "--data", recordings / records)
+
+
 def wrong_input(rigcal, folder):
     broken = folder / "broken.toml"
     broken.write_text(TWO_CHAMBER.replace('mass = { start = "60 kg", lower = "10 kg", upper = "500 kg", fit = true }\n', ""))
@@ -221,6 +303,7 @@ def main():
             return 77
         the_papers_rig(rigcal, sources, folder)
         a_rig_with_everything(rigcal, folder)
+        fitted_rigs(rigcal, sources, folder)
     return 0
 
 

@@ -78,26 +78,26 @@ class Scripts(unittest.TestCase):
 
     def test_fuzz(self):
         for name in ("mat", "csv"):
-            make_program(self.tree / "build" / "fuzz" / "tests" / "fuzz" / f"{name}_fuzz",
+            make_program(self.tree / "build" / "ci" / "tests" / "fuzz" / f"{name}_fuzz",
                          '#!/bin/sh\necho "$*"\necho "stat::number_of_executed_units: 7"\n')
         self.assertIn("mat: 7 executions, nothing found\n", self.run_script("fuzz", "2", "mat"))
-        log = (self.tree / "build" / "fuzz" / "found" / "mat.log").read_text()
+        log = (self.tree / "build" / "ci" / "fuzz" / "found" / "mat.log").read_text()
         self.assertIn("-max_total_time=120 ", log)
-        self.assertIn(" build/fuzz/corpus/mat tests/fuzz/corpus/mat\n", log)
-        self.assertIn("build fuzz --target mat_fuzz csv_fuzz\n", self.run_script("fuzz", "--seconds", "5", "mat", "csv"))
+        self.assertIn(" build/ci/fuzz/corpus/mat tests/fuzz/corpus/mat\n", log)
+        self.assertIn("build ci --target mat_fuzz csv_fuzz\n", self.run_script("fuzz", "--seconds", "5", "mat", "csv"))
 
     def test_fuzz_that_finds_something(self):
-        make_program(self.tree / "build" / "fuzz" / "tests" / "fuzz" / "mat_fuzz", "#!/bin/sh\nexit 77\n")
+        make_program(self.tree / "build" / "ci" / "tests" / "fuzz" / "mat_fuzz", "#!/bin/sh\nexit 77\n")
         done = subprocess.run([self.tree / "scripts" / "fuzz", "1", "mat"], cwd=self.tree, capture_output=True, text=True,
                               check=False)
         self.assertNotEqual(done.returncode, 0)
-        self.assertIn("mat: found something, see build/fuzz/found/mat.log", done.stderr)
+        self.assertIn("mat: found something, see build/ci/fuzz/found/mat.log", done.stderr)
 
     def test_fuzz_for_seconds(self):
-        program = self.tree / "build" / "fuzz" / "tests" / "fuzz" / "csv_fuzz"
+        program = self.tree / "build" / "ci" / "tests" / "fuzz" / "csv_fuzz"
         make_program(program, "#!/bin/sh\necho stat::number_of_executed_units: 12\n")
         printed = self.run_script("fuzz", "--seconds", "1", "csv")
-        self.assertEqual(printed, "build fuzz --target csv_fuzz\ncsv: 12 executions, nothing found\n")
+        self.assertEqual(printed, "build ci --target csv_fuzz\ncsv: 12 executions, nothing found\n")
         make_program(program, "#!/bin/sh\necho ERROR: found\nexit 77\n")
         self.assertIn("csv: found something", self.run_script("fuzz", "--seconds", "1", "csv", fails=True))
 
@@ -150,6 +150,7 @@ class Scripts(unittest.TestCase):
             self.skipTest(f"no recordings in {records}")
         self.assertIn("1 of 1 starts end within", self.run_script("start-study", records, "1"))
 
+    @unittest.skipUnless(shutil.which("git"), "git is not installed")
     def test_tag_version(self):
         def git(*arguments):
             return subprocess.run(["git", *arguments], cwd=self.tree, capture_output=True, text=True, check=True).stdout

@@ -43,7 +43,7 @@ make_bare_system() (
 )
 
 # inside ROOT COMMAND...: runs a command there. Its mounts and all processes that it started end with it. The folder
-# $read_only_folder, if set, is mounted at /srv with the same name.
+# $read_only_folder, if set, is mounted at the same path.
 inside() {
   read_only_folder=${read_only_folder:-} unshare --mount --pid --fork --kill-child bash -c '
     set -e
@@ -51,8 +51,8 @@ inside() {
     mount -t proc proc "$0/proc"
     mount --rbind /sys "$0/sys"
     if [ -n "$read_only_folder" ]; then
-      mkdir -p "$0/srv/${read_only_folder##*/}"
-      mount --bind -o ro "$read_only_folder" "$0/srv/${read_only_folder##*/}"
+      mkdir -p "$0$read_only_folder"
+      mount --bind -o ro "$read_only_folder" "$0$read_only_folder"
     fi
     exec chroot "$0" "$@"' "$1" /usr/bin/env -i HOME=/root LANG=C.UTF-8 DEBIAN_FRONTEND=noninteractive CI="${CI:-}" \
     NODE_EXTRA_CA_CERTS=/etc/ssl/certs/ca-certificates.crt PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \

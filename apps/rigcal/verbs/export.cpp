@@ -2,19 +2,26 @@
 
 #include <memory>
 
-#include "apps/rigcal/export_choices.hpp"
+#include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/suggest.hpp"
 #include "report/fmu/zip.hpp"
+#include "report/job/export_choices.hpp"
 #include "report/store/folder.hpp"
 
 namespace rigcal::app {
 namespace {
 
-ExitCode run_export(const ExportRequest& options) {
+struct ExportOptions : report::ExportRequest {
+  CampaignOptions common;
+  std::string format;
+};
+
+ExitCode run_export(const ExportOptions& options) {
   if (options.format != "fmu")
     throw UsageError("export: " + unknown_name_message("format", options.format, {"fmu"}));
-  const ExportChoice choice = choose_export(options);
+  const report::ExportChoice choice =
+      report::choose_export(load(options.common), options.common, options);
   const std::filesystem::path& out = options.common.out;
   report::HeldFolder held(out, holding("export", options.common.force, options.common.print));
   const std::string name = choice.fmu.identifier + ".fmu";
@@ -37,11 +44,11 @@ ExitCode run_export(const ExportRequest& options) {
 }  // namespace
 
 Run add_export(CLI::App& verb) {
-  const auto options = std::make_shared<ExportRequest>();
+  const auto options = std::make_shared<ExportOptions>();
   verb.add_option("FORMAT", options->format, "fmu: FMI 2.0 model exchange and co-simulation")
       ->required();
   add_campaign_options(verb, options->common);
-  verb.add_option("--fit", options->fit,
+  verb.add_option("--fit", options->fit.file,
                   "fit.json of a fit of the rig (default: the campaign's own values)")
       ->check(not_empty());
   verb.add_option("--condition", options->condition,

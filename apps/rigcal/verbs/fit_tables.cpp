@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "apps/rigcal/interrupt.hpp"
-#include "apps/rigcal/leak_table_files.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/outcome.hpp"
 #include "apps/rigcal/verb.hpp"
+#include "report/job/leak_table_files.hpp"
 #include "report/leak/fit_tables.hpp"
 #include "report/page/page_parts.hpp"
 #include "report/run/result_page.hpp"
@@ -23,16 +23,17 @@ namespace {
 using calib::FitStatus;
 
 ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invocation) {
-  const LeakTableInput input = load_leak_table(options);
+  const report::LeakTableInput input = report::load_leak_table(options);
   const Kept kept;
   report::HeldFolder held(options.out, holding("fit-tables", options.force, options.print));
   // If the fit does not converge, the tables of an earlier run are removed: they would contradict
   // this one.
-  report::PlannedFiles planned = planned_leak_table(input.settings);
+  report::PlannedFiles planned = report::planned_leak_table(input.settings);
   for (const char* file : {"fit.json", "parameters.csv", "fitted.toml"})
     planned.files.emplace_back(file);
   held.plan(std::move(planned));
-  const calib::LeakTableOptions settings = leak_table_options(options, input.campaign, invocation);
+  const calib::LeakTableOptions settings =
+      report::leak_table_options(input.campaign, options.threads, invocation.cancel);
   const calib::TablesFit fit = calib::fit_tables(input.campaign, input.settings, settings);
 
   report::Provenance provenance;
@@ -45,7 +46,7 @@ ExitCode run_fit_tables(const CampaignOptions& options, const Invocation& invoca
   if (fit.status == FitStatus::converged) {
     const calib::LeakTable table = calib::leak_table(input.campaign, fit.settings, settings);
     const report::LeakTableResult tables{input.campaign, fit.settings, table, provenance};
-    files = leak_table_files(tables);
+    files = report::leak_table_files(tables);
     const report::LeakTableFiles stored{report::stored(tables), {}};
     text = text_of({report::leak_table_headline(stored), report::leak_table_sections(stored)},
                    options.print) +

@@ -4,20 +4,20 @@
 #include <memory>
 #include <utility>
 
-#include "apps/rigcal/chosen_condition.hpp"
 #include "apps/rigcal/options.hpp"
 #include "apps/rigcal/verb.hpp"
 #include "common/suggest.hpp"
-#include "report/run/simulation.hpp"
+#include "report/run/chosen_condition.hpp"
+#include "report/run/simulation_file.hpp"
 #include "report/store/folder.hpp"
 
 namespace rigcal::app {
 namespace {
 
+using calib::SimulationTask;
 using datasets::Campaign;
 using datasets::Condition;
 using datasets::Record;
-using report::SimulationTask;
 
 struct SimulateRequest {
   CampaignOptions common;
@@ -34,7 +34,7 @@ std::vector<const Condition*> wanted(const Campaign& campaign,
     return result;
   }
   for (const std::string& id : ids) {
-    const Condition* condition = &chosen_condition(campaign, id);
+    const Condition* condition = &report::chosen_condition(campaign, id);
     if (std::find(result.begin(), result.end(), condition) == result.end()) {
       result.push_back(condition);
     }
@@ -68,7 +68,7 @@ ExitCode run_simulate(const SimulateRequest& options) {
   std::vector<SimulationTask> tasks;
   std::vector<Record> records;
   for (const Condition* condition : wanted(campaign, options.conditions)) {
-    tasks.push_back(report::simulation_task(campaign, *condition));
+    tasks.push_back(calib::simulation_task(campaign, *condition));
     if (tasks.back().record) records.push_back(*tasks.back().record);
   }
   report::HeldFolder held(options.common.out,
@@ -78,7 +78,7 @@ ExitCode run_simulate(const SimulateRequest& options) {
   held.plan(std::move(planned));
 
   const auto simulations =
-      report::simulate(tasks, report::simulation_options(campaign), options.common.threads);
+      calib::simulate(tasks, calib::simulation_options(campaign), options.common.threads);
 
   std::vector<report::ResultFile> files;
   std::string text;

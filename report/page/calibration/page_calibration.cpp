@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "report/page/calibration/assessed.hpp"
 #include "report/page/calibration/certificate.hpp"
 #include "report/page/calibration/fit_sections.hpp"
+#include "report/store/result_files.hpp"
 #include "report/text/stopped_sentence.hpp"
 
 namespace rigcal::report {
@@ -66,12 +69,27 @@ Part fit_part(const Calibration& stored, int threads) {
   return part;
 }
 
+/// live.json of this result's own run, if it has one.
+std::optional<std::string> live_text(const Calibration& stored, const ResultFolder& folder) {
+  const StoredProvenance& provenance = stored.result.provenance;
+  if (!provenance.files) return std::nullopt;
+  const bool named = std::any_of(provenance.files->begin(), provenance.files->end(),
+                                 [](const InputFile& file) { return file.path == kLiveFile; });
+  if (!named) return std::nullopt;
+  return files_of_run(folder.read, provenance, folder.where, stored.file)(kLiveFile);
+}
+
 }  // namespace
 
 Part calibration_part(const ResultFolder& folder) {
   const auto stored = load_calibration(folder.read, folder.where, folder.threads, folder.made);
   if (const auto* tables = std::get_if<StoredTablesFit>(&stored)) return tables_fit_part(*tables);
-  return fit_part(std::get<Calibration>(stored), folder.threads);
+  const auto& calibration = std::get<Calibration>(stored);
+  Part part = fit_part(calibration, folder.threads);
+  if (const auto live = live_text(calibration, folder))
+    part.live = live_section(*live, folder.where + "/" + kLiveFile);
+  if (part.live) part.nav.insert(part.nav.begin(), {"try", "Try it"});
+  return part;
 }
 
 std::vector<Figure> calibration_figures(const ResultFolder& folder) {

@@ -4,7 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "report/page/assets.hpp"
+#include "report/document/assets.hpp"
 
 using Catch::Contains;
 using rigcal::report::Plot;

@@ -1,4 +1,4 @@
-#include "report/run/simulation.hpp"
+#include "report/run/simulation_file.hpp"
 
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -11,10 +11,10 @@ namespace {
 TEST_CASE("simulation: each condition, with its reference, all outputs", "[report][run]") {
   test::MadeRig rig;
   const datasets::Campaign campaign = load(rig.choice);
-  std::vector<SimulationTask> tasks;
+  std::vector<calib::SimulationTask> tasks;
   for (const datasets::Condition& condition : campaign.conditions)
-    tasks.push_back(simulation_task(campaign, condition));
-  const auto simulations = simulate(tasks, simulation_options(campaign), 2);
+    tasks.push_back(calib::simulation_task(campaign, condition));
+  const auto simulations = calib::simulate(tasks, calib::simulation_options(campaign), 2);
   REQUIRE(simulations.size() == 3);
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     REQUIRE(simulations[i].ok());
@@ -31,9 +31,9 @@ TEST_CASE("simulation: each condition, with its reference, all outputs", "[repor
 
 TEST_CASE("simulation: what the campaign says of it counts", "[report][run]") {
   datasets::Campaign campaign;
-  CHECK(simulation_options(campaign).tolerance == model::SimulationOptions().tolerance);
+  CHECK(calib::simulation_options(campaign).tolerance == model::SimulationOptions().tolerance);
   campaign.simulation = {model::Method::dopri5, 1e-4, 3.0};
-  const model::SimulationOptions options = simulation_options(campaign);
+  const model::SimulationOptions options = calib::simulation_options(campaign);
   CHECK(options.method == model::Method::dopri5);
   CHECK(options.tolerance == 1e-4);
   CHECK(options.max_seconds == 3.0);

@@ -15,10 +15,10 @@ TEST_CASE("written result: the JSON comes last, and names the others", "[report]
   StoredFit fit = stored(fitted.result());
   HeldFolder held(fitted.folder / "out", {"fit"});
   const auto files = write_result(held, 1, fitted.result(), fit);
-  REQUIRE(files.size() == 9);
+  REQUIRE(files.size() == 10);
   CHECK(files.back() == "fit.json");
-  CHECK(files[7] == "report.html");
-  REQUIRE(fit.provenance.files->size() == 7);
+  CHECK(files[8] == "report.html");
+  REQUIRE(fit.provenance.files->size() == 8);
   for (const InputFile& file : *fit.provenance.files)
     CHECK(sha256_of_file(fitted.folder / "out" / file.path) == file.sha256);
 }

@@ -4,10 +4,10 @@
 
 #include "datasets/campaign/campaign.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 
 /// @throws UsageError  of --condition: no condition has this id
 const datasets::Condition& chosen_condition(const datasets::Campaign& campaign,
                                             const std::string& id);
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

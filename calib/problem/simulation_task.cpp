@@ -1,4 +1,4 @@
-#include "report/run/simulation.hpp"
+#include "calib/problem/simulation_task.hpp"
 
 #include <fmt/format.h>
 
@@ -9,27 +9,29 @@
 #include "common/parallel.hpp"
 #include "datasets/prepare/load_record.hpp"
 #include "datasets/prepare/time_holes.hpp"
-#include "report/store/csv.hpp"
 
-namespace rigcal::report {
+namespace rigcal::calib {
 
 using datasets::Campaign;
 using datasets::Condition;
 using datasets::Record;
 
+bool needs_record(const Condition& condition) {
+  const bool generated = condition.waveform != datasets::Waveform::recorded &&
+                         condition.duration_s && condition.sample_rate_hz;
+  return !generated && condition.has_record();
+}
+
 SimulationTask simulation_task(const Campaign& campaign, const Condition& condition,
-                               model::ParameterValues values) {
+                               model::ParameterValues values, std::optional<Record> known) {
   SimulationTask task;
   task.condition = &condition;
   task.rig = campaign.rig;
   task.values = std::move(values);
-  const bool generated = condition.waveform != datasets::Waveform::recorded &&
-                         condition.duration_s && condition.sample_rate_hz;
-  if (!generated && condition.has_record()) {
-    task.record = datasets::load_record(campaign, condition);
+  if (known || needs_record(condition)) {
+    task.record = known ? std::move(known) : datasets::load_record(campaign, condition);
     datasets::require_no_holes(campaign, *task.record);
-    const calib::InitialPlan plan =
-        calib::plan_initial_state(campaign, condition, *task.record, task.values);
+    const InitialPlan plan = plan_initial_state(campaign, condition, *task.record, task.values);
     task.rig.initial = plan.state;
     for (const auto& [index, value] : plan.known) task.values.set(index, value);
   } else if (condition.waveform == datasets::Waveform::recorded) {
@@ -61,7 +63,7 @@ std::vector<model::Simulation> simulate(const std::vector<SimulationTask>& tasks
   std::vector<model::Simulation> simulations(tasks.size());
   parallel_for(tasks.size(), threads, [&](std::size_t i) {
     const SimulationTask& task = tasks[i];
-    simulations[i] = model::simulate(task.rig, task.values, {}, task.inputs, task.time_s,
+    simulations[i] = model::simulate(task.rig, task.values, task.free, task.inputs, task.time_s,
                                      model::kAllOutputs, options);
   });
   return simulations;
@@ -75,12 +77,4 @@ std::vector<double> reference_of(const SimulationTask& task) {
   return reference;
 }
 
-std::string simulation_file(const SimulationTask& task, const model::Simulation& simulation) {
-  std::vector<model::Output> outputs;
-  for (const model::Output output : model::kAllOutputs)
-    if (has_output(task.values, output)) outputs.push_back(output);
-  return simulation_csv(task.time_s, info(datasets::drive_channel(task.rig)).name,
-                        reference_of(task), outputs, simulation);
-}
-
-}  // namespace rigcal::report
+}  // namespace rigcal::calib

@@ -7,7 +7,7 @@
 #include "datasets/checks/record_warnings.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 
 /// Records in which leaks are searched.
 struct LeakRecords {
@@ -28,4 +28,4 @@ std::vector<datasets::RecordWarning> gathered_doubts(const std::vector<datasets:
 /// @throws UsageError  no condition has such a level, or `level_class` says otherwise
 void take_healthy(const std::vector<std::string>& levels, datasets::Campaign& campaign);
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

@@ -1,19 +1,16 @@
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "apps/rigcal/options.hpp"
 #include "report/fmu/fmu.hpp"
+#include "report/job/job.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 
 struct ExportRequest {
-  CampaignOptions common;
-  std::string format;
-  std::filesystem::path fit;
+  FitSource fit;
   std::optional<std::string> condition;
   std::optional<std::string> level;
   bool without_delay = false;
@@ -21,8 +18,8 @@ struct ExportRequest {
 
 /// A rig that is ready to be written, and the files that it was made from.
 struct ExportChoice {
-  report::FmuRequest fmu;
-  std::vector<report::InputFile> inputs;
+  FmuRequest fmu;
+  std::vector<InputFile> inputs;
   std::vector<std::string> warnings;
 };
 
@@ -31,6 +28,7 @@ struct ExportChoice {
 ///
 /// @throws UsageError, InputError  the leak level is not determined; a value is missing; the rig
 ///                     has a term that an FMU cannot have
-ExportChoice choose_export(const ExportRequest& options);
+ExportChoice choose_export(const datasets::Campaign& campaign, const CampaignChoice& choice,
+                           const ExportRequest& request);
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

@@ -1,4 +1,4 @@
-#include "apps/rigcal/leak_records.hpp"
+#include "report/job/leak_records.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "datasets/checks/short_records.hpp"
 #include "diagnosis/diagnose.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 
 std::vector<datasets::Record> LeakRecords::averages() const {
   std::vector<datasets::Record> result;
@@ -57,4 +57,4 @@ void take_healthy(const std::vector<std::string>& levels, datasets::Campaign& ca
   }
 }
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

@@ -1,9 +1,9 @@
-#include "apps/rigcal/chosen_condition.hpp"
+#include "report/run/chosen_condition.hpp"
 
 #include "common/error.hpp"
 #include "common/suggest.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 
 const datasets::Condition& chosen_condition(const datasets::Campaign& campaign,
                                             const std::string& id) {
@@ -13,4 +13,4 @@ const datasets::Condition& chosen_condition(const datasets::Campaign& campaign,
   throw UsageError("--condition: " + unknown_name_message("condition", id, known));
 }
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

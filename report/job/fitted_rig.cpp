@@ -1,11 +1,11 @@
-#include "apps/rigcal/fitted_rig.hpp"
+#include "report/job/fitted_rig.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 
-namespace rigcal::app {
+namespace rigcal::report {
 namespace {
 
 using datasets::Assumption;
@@ -16,8 +16,7 @@ const model::ParameterSpec& spec_in(const LeakTableInput& input, int index) {
 }
 
 /// The rows of the covariance whose values the table has from the fit.
-calib::RigUncertainty uncertainty_of(const LeakTableInput& input,
-                                     const report::EarlierFit& earlier) {
+calib::RigUncertainty uncertainty_of(const LeakTableInput& input, const EarlierFit& earlier) {
   calib::RigUncertainty result;
   std::vector<Eigen::Index> rows;
   for (std::size_t i = 0; i < earlier.indices.size(); ++i) {
@@ -31,7 +30,7 @@ calib::RigUncertainty uncertainty_of(const LeakTableInput& input,
 }
 
 /// Known values that are not those which the fit was made with.
-void warn_of_changed(const LeakTableInput& input, const report::EarlierFit& earlier,
+void warn_of_changed(const LeakTableInput& input, const EarlierFit& earlier,
                      std::vector<std::string>& warnings) {
   const auto values = datasets::leak_table_values(input.campaign, input.settings);
   for (const FittedValue& known : earlier.known) {
@@ -48,7 +47,7 @@ void warn_of_changed(const LeakTableInput& input, const report::EarlierFit& earl
   }
 }
 
-void warn_of_fit(const LeakTableInput& input, const report::EarlierFit& earlier,
+void warn_of_fit(const LeakTableInput& input, const EarlierFit& earlier,
                  const calib::RigUncertainty& uncertainty, std::vector<std::string>& warnings) {
   if (earlier.status == calib::FitStatus::stopped)
     warnings.push_back("the fit was stopped before it converged: " + earlier.message);
@@ -69,7 +68,7 @@ void warn_of_fit(const LeakTableInput& input, const report::EarlierFit& earlier,
 
 }  // namespace
 
-FittedRig take_fit(LeakTableInput& input, const report::EarlierFit& earlier,
+FittedRig take_fit(LeakTableInput& input, const EarlierFit& earlier,
                    const std::vector<std::string>& set) {
   datasets::take_fitted(input.settings, input.campaign, earlier.values);
   for (const std::string& assignment : set)
@@ -117,4 +116,4 @@ std::vector<std::string> replaced_by_assumptions(const LeakTableInput& input) {
                   fmt::join(replaced, ", "))};
 }
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

@@ -1,4 +1,4 @@
-#include "apps/rigcal/export_choices.hpp"
+#include "report/job/export_choices.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,16 +8,14 @@
 #include <cmath>
 #include <optional>
 
-#include "apps/rigcal/chosen_condition.hpp"
 #include "calib/problem/known_values.hpp"
 #include "calib/problem/parameter_map.hpp"
+#include "calib/problem/simulation_task.hpp"
 #include "common/suggest.hpp"
-#include "report/json/json_node.hpp"
-#include "report/json/read_json.hpp"
-#include "report/run/simulation.hpp"
+#include "report/run/chosen_condition.hpp"
 #include "report/run/validation.hpp"
 
-namespace rigcal::app {
+namespace rigcal::report {
 namespace {
 
 using datasets::Campaign;
@@ -27,7 +25,7 @@ using model::ParameterValues;
 
 /// Leak levels that the campaign or the fit knows.
 std::vector<std::string> leak_levels(const Campaign& campaign,
-                                     const std::optional<report::EarlierFit>& earlier) {
+                                     const std::optional<EarlierFit>& earlier) {
   std::vector<std::string> levels;
   const auto add = [&levels](const std::string& level) {
     if (std::find(levels.begin(), levels.end(), level) == levels.end()) levels.push_back(level);
@@ -45,12 +43,12 @@ std::vector<std::string> leak_levels(const Campaign& campaign,
 }
 
 /// The leak level of --level, or the only one; none if the rig has none.
-std::optional<std::string> chosen_level(const ExportRequest& options,
+std::optional<std::string> chosen_level(const ExportRequest& request,
                                         const std::vector<std::string>& levels) {
-  if (options.level) {
-    if (std::find(levels.begin(), levels.end(), *options.level) == levels.end())
-      throw UsageError("--level: " + unknown_name_message("leak level", *options.level, levels));
-    return options.level;
+  if (request.level) {
+    if (std::find(levels.begin(), levels.end(), *request.level) == levels.end())
+      throw UsageError("--level: " + unknown_name_message("leak level", *request.level, levels));
+    return request.level;
   }
   if (levels.size() > 1)
     throw UsageError(
@@ -61,15 +59,15 @@ std::optional<std::string> chosen_level(const ExportRequest& options,
 }
 
 /// Refuses values that the fit lacks for a leak level, and names the options that help.
-void require_values_of_level(const ExportRequest& options, const Campaign& campaign,
-                             const Condition& condition, const report::EarlierFit& earlier) {
+void require_values_of_level(const ExportRequest& request, const Campaign& campaign,
+                             const Condition& condition, const EarlierFit& earlier) {
   const auto table = model::parameter_table(campaign.rig.plant);
   for (const datasets::FittedValue& value : earlier.values) {
     if (value.scope == Scope::rig || calib::known_in(campaign, condition, value.index)) continue;
     const std::string_view key = table[static_cast<std::size_t>(value.index)].key;
     if (value.scope == Scope::condition)
       throw UsageError(fmt::format("{}: the fit has a {} for each condition: expected --condition",
-                                   options.fit.string(), key));
+                                   request.fit.name(), key));
     std::vector<std::string> levels;
     for (const datasets::FittedValue& other : earlier.values) {
       if (other.index == value.index) levels.push_back(other.level);
@@ -79,14 +77,14 @@ void require_values_of_level(const ExportRequest& options, const Campaign& campa
       throw UsageError(fmt::format(
           "--level {}: {} has no {} for it, only for {}: expected one of these, or a known value "
           "in [leak_level.\"...\"]",
-          level, options.fit.string(), key, fmt::join(levels, ", ")));
+          level, request.fit.name(), key, fmt::join(levels, ", ")));
   }
 }
 
 /// Values that --set gives go over those of a fit.
-void set_over_fit(const ExportRequest& options, const Campaign& campaign,
+void set_over_fit(const std::vector<std::string>& set, const Campaign& campaign,
                   const Condition& condition, ParameterValues& values) {
-  for (const std::string& assignment : options.common.set) {
+  for (const std::string& assignment : set) {
     const std::string key = assignment.substr(0, assignment.find('='));
     const int index = model::parameter_index(campaign.rig.plant, key);
     if (!calib::known_in(campaign, condition, index))
@@ -94,12 +92,11 @@ void set_over_fit(const ExportRequest& options, const Campaign& campaign,
   }
 }
 
-ParameterValues values_of(const ExportRequest& options, const Campaign& campaign,
-                          const Condition& condition,
-                          const std::optional<report::EarlierFit>& earlier) {
+ParameterValues values_of(const std::vector<std::string>& set, const Campaign& campaign,
+                          const Condition& condition, const std::optional<EarlierFit>& earlier) {
   ParameterValues values = earlier ? calib::values_with(campaign, condition, earlier->values)
                                    : datasets::values_in(campaign, condition);
-  set_over_fit(options, campaign, condition, values);
+  set_over_fit(set, campaign, condition, values);
   if (const auto missing = values.missing(); !missing.empty())
     throw InputError({campaign.file.string()},
                      fmt::format("no value of {} holds for the whole rig: expected --condition "
@@ -110,7 +107,7 @@ ParameterValues values_of(const ExportRequest& options, const Campaign& campaign
 
 /// Warns of exported values that were not estimated.
 void warn_of_start_values(const Campaign& campaign, const Condition& condition,
-                          const std::optional<report::EarlierFit>& earlier,
+                          const std::optional<EarlierFit>& earlier,
                           std::vector<std::string>& warnings) {
   const auto table = model::parameter_table(campaign.rig.plant);
   std::vector<std::string_view> starts;
@@ -169,12 +166,12 @@ void take_sensors_off(ParameterValues& values) {
 }
 
 /// Leaves the delay out if requested, and refuses it otherwise.
-void take_delay_off(const ExportRequest& options, const Campaign& campaign, ParameterValues& values,
+void take_delay_off(const ExportRequest& request, const Campaign& campaign, ParameterValues& values,
                     std::vector<std::string>& warnings) {
   const double delay_s = values["transport_delay"];
   const char* drive =
       campaign.rig.controller == model::ControllerKind::pid ? "reference" : "command";
-  if (delay_s != 0.0 && !options.without_delay)
+  if (delay_s != 0.0 && !request.without_delay)
     throw InputError(
         {campaign.file.string()},
         fmt::format("transport_delay is {:g} s, but the inputs of an FMU act at once: expected "
@@ -200,7 +197,7 @@ void require_simulable(const Campaign& campaign, const model::ExportedRig& rig) 
 }
 
 /// Recorded inputs start from their first sample; the importer sets what follows.
-void start_from_record(const report::SimulationTask& task, ParameterValues& values,
+void start_from_record(const calib::SimulationTask& task, ParameterValues& values,
                        std::vector<std::string>& warnings) {
   std::vector<std::string_view> recorded;
   const auto take = [&](const std::optional<model::Signal>& signal, std::string_view key,
@@ -222,22 +219,16 @@ void start_from_record(const report::SimulationTask& task, ParameterValues& valu
 
 /// A name without the folders that differ from machine to machine, and the first digits of its
 /// hash.
-std::string name_and_hash(const report::InputFile& file) {
+std::string name_and_hash(const InputFile& file) {
   return fmt::format("{}, SHA-256 {}", std::filesystem::path(file.path).filename().string(),
                      file.sha256);
 }
 
-std::string verdict_of(const std::filesystem::path& fit) {
-  const report::Json json = report::read_json(fit, "the fit.json of an earlier fit");
-  const report::JsonNode verdict = report::JsonNode(json, fit.string(), "", "fit.json")["verdict"];
-  return verdict.is_null() ? "none, nothing was judged" : verdict.string();
-}
-
-void tell_validity(const report::Validity& validity,
+void tell_validity(const Validity& validity,
                    std::vector<std::pair<std::string, std::string>>& origin) {
-  const auto add = [&origin](const char* label, const std::optional<report::Range>& range,
+  const auto add = [&origin](const char* label, const std::optional<Range>& range,
                              std::string_view unit) {
-    if (range) origin.emplace_back(label, report::in_words(*range, unit));
+    if (range) origin.emplace_back(label, in_words(*range, unit));
   };
   add("fitted at frequencies of", validity.frequency_hz, "Hz");
   add("fitted at amplitudes of", validity.amplitude, validity.amplitude_unit);
@@ -250,71 +241,69 @@ void tell_validity(const report::Validity& validity,
 
 }  // namespace
 
-ExportChoice choose_export(const ExportRequest& options) {
-  if (options.condition && options.level)
+ExportChoice choose_export(const Campaign& campaign, const CampaignChoice& choice,
+                           const ExportRequest& request) {
+  if (request.condition && request.level)
     throw UsageError("found --condition and --level, expected one of them");
-  const Campaign campaign = load(options.common);
-  std::optional<report::EarlierFit> earlier;
-  std::vector<std::filesystem::path> more_inputs;
-  ExportChoice choice;
-  if (!options.fit.empty()) {
-    earlier = report::read_fit(options.fit, campaign.rig.plant);
-    more_inputs.push_back(options.fit);
-    choice.warnings = report::doubts_about(*earlier, campaign);
+  std::optional<EarlierFit> earlier;
+  ExportChoice made;
+  if (request.fit.given()) {
+    earlier = request.fit.read(campaign.rig.plant);
+    made.warnings = doubts_about(*earlier, campaign);
   }
   Condition of_level;
   const Condition* condition = &of_level;
-  if (options.condition) {
-    condition = &chosen_condition(campaign, *options.condition);
+  if (request.condition) {
+    condition = &chosen_condition(campaign, *request.condition);
   } else {
     of_level.where = {campaign.file.string()};
-    of_level.leak_level = chosen_level(options, leak_levels(campaign, earlier));
-    if (earlier) require_values_of_level(options, campaign, of_level, *earlier);
+    of_level.leak_level = chosen_level(request, leak_levels(campaign, earlier));
+    if (earlier) require_values_of_level(request, campaign, of_level, *earlier);
   }
-  ParameterValues values = values_of(options, campaign, *condition, earlier);
-  warn_of_start_values(campaign, *condition, earlier, choice.warnings);
+  ParameterValues values = values_of(choice.set, campaign, *condition, earlier);
+  warn_of_start_values(campaign, *condition, earlier, made.warnings);
 
-  report::FmuRequest& fmu = choice.fmu;
+  FmuRequest& fmu = made.fmu;
   fmu.rig.rig = campaign.rig;
   fmu.rig.tolerance = campaign.simulation.tolerance.value_or(fmu.rig.tolerance);
   std::vector<datasets::Record> records;
-  if (options.condition) {
-    report::SimulationTask task = report::simulation_task(campaign, *condition, values);
+  if (request.condition) {
+    calib::SimulationTask task = calib::simulation_task(campaign, *condition, values);
     fmu.rig.rig = task.rig;
     values = task.values;
-    start_from_record(task, values, choice.warnings);
+    start_from_record(task, values, made.warnings);
     fmu.start_s = task.time_s.front();
     fmu.stop_s = task.time_s.back();
     if (task.time_s.size() > 1)
       fmu.step_s = (fmu.stop_s - fmu.start_s) / static_cast<double>(task.time_s.size() - 1);
     if (task.record) records.push_back(std::move(*task.record));
   }
-  take_delay_off(options, campaign, values, choice.warnings);
+  take_delay_off(request, campaign, values, made.warnings);
   take_sensors_off(values);
   fmu.rig.values = values;
   require_simulable(campaign, fmu.rig);
 
-  choice.inputs = report::hash_inputs(campaign, records, more_inputs);
+  made.inputs = hash_inputs(campaign, records, request.fit.inputs());
   fmu.name = campaign.name;
   fmu.identifier =
-      report::fmu_identifier(options.level ? campaign.name + "_" + *options.level : campaign.name);
+      fmu_identifier(request.level ? campaign.name + "_" + *request.level : campaign.name);
   auto& origin = fmu.origin;
   origin.emplace_back("rig", campaign.name);
-  if (options.condition) origin.emplace_back("condition", condition->id);
+  if (request.condition) origin.emplace_back("condition", condition->id);
   if (condition->leak_level) origin.emplace_back("leak level", *condition->leak_level);
-  origin.emplace_back("values from", options.fit.empty() ? "the campaign file" : "a fit");
+  origin.emplace_back("values from", request.fit.given() ? "a fit" : "the campaign file");
   if (earlier) {
-    const std::string verdict = verdict_of(options.fit);
+    const std::string verdict(earlier->verdict ? to_string(*earlier->verdict)
+                                               : "none, nothing was judged");
     origin.emplace_back("verdict of the fit", verdict);
-    if (verdict == "FAIL") choice.warnings.emplace_back("the verdict of the fit is FAIL");
+    if (verdict == "FAIL") made.warnings.emplace_back("the verdict of the fit is FAIL");
     tell_validity(earlier->validity, origin);
   }
-  for (const std::string& assignment : options.common.set)
+  for (const std::string& assignment : choice.set)
     origin.emplace_back("set for the export", assignment);
-  for (const report::InputFile& file : choice.inputs)
-    origin.emplace_back("made from", name_and_hash(file));
-  for (const std::string& warning : choice.warnings) origin.emplace_back("warning", warning);
-  return choice;
+  for (const InputFile& file : made.inputs) origin.emplace_back("made from", name_and_hash(file));
+  for (const std::string& warning : made.warnings) origin.emplace_back("warning", warning);
+  return made;
 }
 
-}  // namespace rigcal::app
+}  // namespace rigcal::report

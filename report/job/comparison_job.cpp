@@ -1,0 +1,44 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "common/file.hpp"
+#include "report/comparison/comparison.hpp"
+#include "report/comparison/comparison_curves.hpp"
+#include "report/job/job.hpp"
+#include "report/page/page_parts.hpp"
+#include "report/store/result_files.hpp"
+
+namespace rigcal::report {
+
+JobResult comparison_job(const std::vector<std::filesystem::path>& folders, const JobTerms& terms) {
+  if (folders.size() < 2)
+    throw UsageError("compare: expected two result folders or more, the one to compare with first");
+  for (auto folder = folders.begin(); folder != folders.end(); ++folder) {
+    const auto same = [&](const auto& other) {
+      return std::filesystem::equivalent(*folder, other);
+    };
+    if (std::any_of(folders.begin(), folder, same))
+      throw UsageError(fmt::format("compare: {} is given twice", folder->string()));
+  }
+  const std::vector<Compared> results = load_compared(folders);
+  terms.hold({{"comparison.json", "report.html"}, {"overlay"}});
+  Provenance provenance;
+  provenance.command = terms.command;
+  for (const Compared& each : results)
+    provenance.inputs.push_back({each.file.string(), sha256_of_file(each.file)});
+  StoredComparison comparison = compared(results, provenance);
+  JobResult job;
+  job.files = comparison_curves(results);
+  name_files(job.files, comparison.provenance);
+  job.json = json_of(comparison);
+  job.files.push_back({"comparison.json", json_text(job.json)});
+  job.first = {"comparison.json"};
+  job.verdict = comparison_headline(comparison);
+  job.sections = comparison_sections(comparison);
+  job.inputs = provenance.inputs;
+  job.code = comparison.status == "done" ? ExitCode::done : ExitCode::no_result;
+  return job;
+}
+
+}  // namespace rigcal::report

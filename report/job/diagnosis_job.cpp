@@ -1,0 +1,168 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "datasets/campaign/reading_root.hpp"
+#include "datasets/checks/record_warnings.hpp"
+#include "datasets/prepare/single_repeats.hpp"
+#include "diagnosis/diagnose.hpp"
+#include "diagnosis/obstacles.hpp"
+#include "report/job/job.hpp"
+#include "report/job/leak_records.hpp"
+#include "report/leak/diagnosis.hpp"
+#include "report/page/page_parts.hpp"
+#include "report/store/validity.hpp"
+
+namespace rigcal::report {
+namespace {
+
+using datasets::Campaign;
+using datasets::Condition;
+
+/// Warns of records outside the range of the fit, which is checked with the leak that was found.
+void warn_of_validity(const Campaign& campaign, const Validity& covered,
+                      diagnosis::Diagnosis& found) {
+  const int leak = model::parameter_index(campaign.rig.plant, "leakage_coefficient");
+  for (diagnosis::RecordDiagnosis& record : found.records) {
+    if (!record.fit.ok()) continue;
+    Campaign alone = campaign;
+    std::erase_if(alone.conditions, [&](const Condition& c) { return c.id != record.condition; });
+    calib::Fit values;
+    calib::FittedParameter& own = values.parameters.emplace_back();
+    own.index = leak;
+    own.scope = datasets::Scope::condition;
+    own.level = record.condition;
+    own.value = std::max(0.0, record.estimate.coefficient);
+    own.fitted = true;
+    Validity asked = coverage(alone, {}, values, {alone.conditions.front().use});
+    // The leak is the unknown here, and a fit to healthy records covers none.
+    asked.leakage_coefficient.reset();
+    for (const std::string& text : outside(asked, covered)) record.warnings.push_back(text);
+  }
+}
+
+/// Warns of doubtful recordings: beside the average of a single one, or once for many.
+void warn_of_recordings(const std::vector<datasets::Record>& averages,
+                        diagnosis::Diagnosis& found) {
+  for (const auto& warning : gathered_doubts(averages)) {
+    if (warning.conditions.size() > 1) {
+      found.warnings.push_back(warning.with_conditions());
+      continue;
+    }
+    for (diagnosis::RecordDiagnosis& record : found.records)
+      if (!record.repeat && record.condition == warning.conditions.front())
+        record.warnings.push_back("recording: " + warning.text);
+  }
+}
+
+/// The classes end where the rows of a leak table do, which must be that of the rig diagnosed here.
+std::vector<TableLimit> take_table(const std::filesystem::path& file, const EarlierFit& earlier,
+                                   Campaign& campaign) {
+  const EarlierLeakTable table = read_leak_table(file, campaign.rig.plant);
+  const auto differences = rig_differences(table, campaign, earlier.values);
+  if (!differences.empty()) {
+    throw InputError({file.string()},
+                     fmt::format("the table is of another rig: {}; expected that of leak-table "
+                                 "--fit with the same campaign and fit.json",
+                                 fmt::join(differences, "; ")));
+  }
+  take_limits(campaign.diagnosis, table.targets_percent, file.string());
+  return table.limits;
+}
+
+/// Signals that were diagnosed and are no column of the table.
+void warn_of_absent(const std::vector<TableLimit>& limits, const Campaign& campaign,
+                    diagnosis::Diagnosis& found) {
+  std::vector<std::string> absent;
+  for (const diagnosis::RecordDiagnosis& record : found.records) {
+    const Condition& condition = *campaign.find(record.condition);
+    const bool is_there = std::any_of(limits.begin(), limits.end(), [&](const auto& limit) {
+      return limit.waveform == condition.waveform && limit.frequency_hz == condition.frequency_hz &&
+             limit.amplitude == condition.amplitude;
+    });
+    if (!is_there && std::find(absent.begin(), absent.end(), record.signal) == absent.end())
+      absent.push_back(record.signal);
+  }
+  if (!absent.empty())
+    found.warnings.push_back(
+        fmt::format("the leak table has no column for {}: its classes are by the share alone",
+                    fmt::join(absent, "; ")));
+}
+
+/// Doubts of the fit about itself apply to every leak that is based on it.
+void warn_of_fit(const EarlierFit& fit, diagnosis::Diagnosis& found) {
+  if (fit.status == calib::FitStatus::stopped)
+    found.warnings.push_back("the fit was stopped before it converged: " + fit.message);
+  for (const calib::Aspect* aspect : {&fit.adequacy, &fit.parameters}) {
+    if (aspect->state == calib::AspectState::pass) continue;
+    for (const calib::Reason& reason : aspect->reasons)
+      if (calib::is_against(reason.state))
+        found.warnings.push_back("the fit that this rests on: " + reason.words);
+  }
+}
+
+std::optional<std::vector<datasets::FittedValue>> truth_beside(const Campaign& campaign) {
+  const auto file = campaign.file.parent_path() / "truth.json";
+  std::error_code error;
+  if (!campaign.synthetic || !std::filesystem::exists(file, error)) return std::nullopt;
+  datasets::require_within(campaign.root, file);
+  return read_truth(file, campaign.rig.plant);
+}
+
+JobResult finished(const DiagnosisResult& result) {
+  const StoredDiagnosis diagnosis = stored(result);
+  JobResult job;
+  job.json = json_of(diagnosis);
+  job.files = {{"diagnosis.csv", diagnosis_csv(result)}, {"diagnosis.json", json_text(job.json)}};
+  job.first = {"diagnosis.json", "diagnosis.csv"};
+  job.verdict = diagnosis_headline(diagnosis);
+  job.sections = diagnosis_sections(diagnosis);
+  job.synthetic = diagnosis.synthetic;
+  job.inputs = result.provenance.inputs;
+  job.code = status_of(result) == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
+  return job;
+}
+
+}  // namespace
+
+JobResult diagnosis_job(Campaign campaign, const DiagnosisRequest& request, const JobTerms& terms) {
+  take_healthy(request.healthy, campaign);
+  const std::vector<std::string> reasons = diagnosis::obstacles(campaign, request.fit.given());
+  std::vector<std::filesystem::path> more_inputs = request.fit.inputs();
+  if (!request.table.empty()) more_inputs.push_back(request.table);
+  Provenance provenance{terms.command, 0, terms.options, {}};
+  for (const std::string& level : request.healthy)
+    provenance.options.emplace_back("healthy", level);
+  if (!request.fit.given() && diagnosis::obstacles(campaign, true).empty()) {
+    throw UsageError(
+        "diagnose: --fit is missing: expected the fit.json of a fit to healthy records");
+  }
+  terms.hold({{"diagnosis.json", "diagnosis.csv", "report.html"}, {}});
+  diagnosis::Diagnosis found;
+  if (!reasons.empty()) {
+    provenance.inputs = hash_inputs(campaign, {}, more_inputs);
+    return finished({campaign, found, reasons, provenance});
+  }
+  const EarlierFit earlier = request.fit.read(campaign.rig.plant);
+  std::vector<TableLimit> limits;
+  if (!request.table.empty()) limits = take_table(request.table, earlier, campaign);
+  diagnosis::DiagnosisOptions settings;
+  settings.threads = terms.threads;
+  settings.cancel = &terms.cancel;
+  settings.truth = truth_beside(campaign);
+  settings.progress = [&](int done, int all) { terms.progress("records", done, all); };
+  const LeakRecords records = load_leak_records(campaign, settings.threads);
+  provenance.inputs = hash_inputs(campaign, records.averages(), more_inputs);
+  found = diagnosis::diagnose(campaign, records.conditions,
+                              {earlier.values, earlier.indices, earlier.covariance}, settings);
+  found.warnings.insert(found.warnings.end(), records.left_out.begin(), records.left_out.end());
+  warn_of_validity(campaign, earlier.validity, found);
+  warn_of_recordings(records.averages(), found);
+  if (!limits.empty()) warn_of_absent(limits, campaign, found);
+  warn_of_fit(earlier, found);
+  return finished({campaign, found, reasons, provenance, limits});
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,74 @@
+#include "report/job/leak_table_files.hpp"
+
+#include <algorithm>
+
+#include "report/store/json.hpp"
+#include "report/store/result_files.hpp"
+#include "report/store/stored.hpp"
+
+namespace rigcal::report {
+namespace {
+
+constexpr std::string_view kResidualScale = "residual_scale=";
+
+const std::filesystem::path kLevels = "levels";
+const std::filesystem::path kHealthySeries = kLevels / "healthy.csv";
+
+}  // namespace
+
+LeakTableInput load_leak_table(const CampaignChoice& choice) {
+  CampaignChoice of_campaign = choice;
+  // The residual's scale is no parameter of the rig: only the leak table knows it.
+  std::erase_if(of_campaign.set,
+                [](const std::string& text) { return text.starts_with(kResidualScale); });
+  of_campaign.free.clear();  // the tables have their own, not the records'
+  LeakTableInput input{load(of_campaign), {}};
+  input.settings = leak_table_settings(input.campaign);
+  for (const std::string& assignment : choice.set) {
+    override_assumption(input.settings, input.campaign, assignment);
+  }
+  if (!choice.free.empty()) free_assumptions(input.settings, input.campaign, choice.free);
+  return input;
+}
+
+calib::LeakTableOptions leak_table_options(const datasets::Campaign& campaign, int threads,
+                                           const std::atomic<bool>& cancel) {
+  calib::LeakTableOptions result;
+  model::SimulationOptions& simulation = result.periodic.simulation;
+  simulation.method = campaign.simulation.method;
+  simulation.tolerance = campaign.simulation.tolerance.value_or(simulation.tolerance);
+  simulation.max_seconds = campaign.simulation.max_seconds;
+  simulation.cancel = &cancel;
+  result.threads = threads;
+  return result;
+}
+
+PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings) {
+  PlannedFiles planned{
+      {"leak_table.json", "leak_table.csv", "features.csv", "report.html", kHealthySeries},
+      {kLevels}};
+  for (const datasets::PrintedFeatures& features : settings.features)
+    planned.files.push_back(kLevels / level_file(features.level));
+  return planned;
+}
+
+std::vector<ResultFile> leak_table_files(const LeakTableResult& result) {
+  const calib::LeakTable& table = result.table;
+  std::vector<ResultFile> files;
+  files.push_back({"leak_table.csv", leak_table_csv(result)});
+  if (table.healthy) {
+    const datasets::LeakSignal& signal = *result.settings.feature_signal;
+    files.push_back({"features.csv", features_csv(result)});
+    files.push_back({kHealthySeries, level_csv(signal, *table.healthy, nullptr)});
+    for (const calib::FeatureRow& row : table.features) {
+      files.push_back({kLevels / level_file(row.printed.level),
+                       level_csv(signal, row.series, &*table.healthy)});
+    }
+  }
+  StoredLeakTable stored = report::stored(result);
+  name_files(files, stored.provenance);
+  files.push_back({"leak_table.json", json_text(json_of(stored))});
+  return files;
+}
+
+}  // namespace rigcal::report

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <atomic>
+#include <vector>
+
+#include "calib/published/leak_table.hpp"
+#include "datasets/campaign/leak_table_settings.hpp"
+#include "report/leak/leak_table.hpp"
+#include "report/run/campaign_choice.hpp"
+#include "report/store/folder.hpp"
+
+namespace rigcal::report {
+
+/// A campaign and its [leak_table], both with the values of --set.
+struct LeakTableInput {
+  datasets::Campaign campaign;
+  datasets::LeakTableSettings settings;
+};
+
+/// @throws InputError, UsageError
+LeakTableInput load_leak_table(const CampaignChoice& choice);
+
+/// @param cancel  ends it; borrowed
+calib::LeakTableOptions leak_table_options(const datasets::Campaign& campaign, int threads,
+                                           const std::atomic<bool>& cancel);
+
+/// Files that leak_table_files() and the page may write.
+PlannedFiles planned_leak_table(const datasets::LeakTableSettings& settings);
+
+/// leak_table.csv and the other files of a table; leak_table.json comes last.
+std::vector<ResultFile> leak_table_files(const LeakTableResult& result);
+
+}  // namespace rigcal::report

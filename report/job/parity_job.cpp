@@ -1,0 +1,74 @@
+#include <fmt/format.h>
+
+#include "diagnosis/obstacles.hpp"
+#include "diagnosis/parity.hpp"
+#include "report/job/job.hpp"
+#include "report/job/leak_records.hpp"
+#include "report/leak/parity.hpp"
+#include "report/page/page_parts.hpp"
+#include "report/store/result_files.hpp"
+
+namespace rigcal::report {
+namespace {
+
+JobResult finished(const ParityResult& result) {
+  StoredParity parity = stored(result);
+  JobResult job;
+  job.files = parity_series(result);
+  job.files.push_back({"parity.csv", parity_csv(result)});
+  name_files(job.files, parity.provenance);
+  job.json = json_of(parity);
+  job.files.push_back({"parity.json", json_text(job.json)});
+  job.first = {"parity.json", "parity.csv", "parity/"};
+  const ParityFiles files{std::move(parity), {}};
+  job.verdict = parity_headline(files);
+  job.sections = parity_sections(files);
+  job.synthetic = files.result.synthetic;
+  job.inputs = result.provenance.inputs;
+  job.code = status_of(result) == LeakStatus::done ? ExitCode::done : ExitCode::no_result;
+  return job;
+}
+
+}  // namespace
+
+JobResult parity_job(datasets::Campaign campaign, const ParityRequest& request,
+                     const JobTerms& terms) {
+  take_healthy(request.healthy, campaign);
+  if (!request.fit.given())
+    throw UsageError("parity: --fit is missing: expected the fit.json of a fit to healthy records");
+  const double false_alarm = request.false_alarm_percent / 100.0;
+  if (!(false_alarm > 0.0 && false_alarm < 0.5)) {
+    throw UsageError(fmt::format("--false-alarms {:g}: expected a percentage above 0 and below 50",
+                                 request.false_alarm_percent));
+  }
+  const std::vector<std::string> reasons = diagnosis::obstacles(campaign, true);
+  Provenance provenance{terms.command, 0, terms.options, {}};
+  provenance.options.emplace_back("false_alarms_percent",
+                                  fmt::format("{:g}", request.false_alarm_percent));
+  for (const std::string& level : request.healthy)
+    provenance.options.emplace_back("healthy", level);
+  terms.hold(planned_parity(campaign));
+  diagnosis::Parity found;
+  if (!reasons.empty()) {
+    provenance.inputs = hash_inputs(campaign, {}, request.fit.inputs());
+    return finished({campaign, found, reasons, false_alarm, provenance});
+  }
+  const EarlierFit earlier = request.fit.read(campaign.rig.plant);
+  const LeakRecords records = load_leak_records(campaign, terms.threads);
+  provenance.inputs = hash_inputs(campaign, records.averages(), request.fit.inputs());
+  diagnosis::ParityOptions settings;
+  settings.false_alarm = false_alarm;
+  settings.threads = terms.threads;
+  settings.cancel = &terms.cancel;
+  settings.progress = [&](int done, int all) { terms.progress("conditions", done, all); };
+  found = diagnosis::parity(campaign, records.conditions,
+                            {earlier.values, earlier.indices, earlier.covariance}, settings);
+  found.warnings = records.left_out;
+  for (const auto& warning : gathered_doubts(records.averages()))
+    found.warnings.push_back(warning.with_conditions());
+  if (earlier.status == calib::FitStatus::stopped)
+    found.warnings.push_back("the fit was stopped before it converged: " + earlier.message);
+  return finished({campaign, found, reasons, false_alarm, provenance});
+}
+
+}  // namespace rigcal::report

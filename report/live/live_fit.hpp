@@ -1,0 +1,32 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "report/store/result.hpp"
+#include "report/store/stored.hpp"
+
+// The calibrated rig of a fit or validation, for the live section of its page.
+
+namespace rigcal::report {
+
+inline constexpr const char* kLiveFile = "live.json";
+
+/// Contents of live.json: the rig with the estimates, and conditions with their measured means, the
+/// held back and worst first. Nothing if no condition was scored, or if the search did not
+/// converge.
+std::optional<Json> live_fit(const Result& result);
+
+/// The section of a page with the rig in it, and the scripts that run it.
+struct LiveSection {
+  std::string html;
+  std::string scripts;
+};
+
+/// Nothing if this program was built without the model for pages.
+///
+/// @param text  live.json
+/// @throws InputError  it is no JSON
+std::optional<LiveSection> live_section(const std::string& text, const std::string& where);
+
+}  // namespace rigcal::report
