@@ -24,6 +24,8 @@ const std::vector<ChannelInfo>& channel_table() {
        "Pa", false},
       {Channel::acceleration_reference, "acceleration_reference", "acceleration_reference_m_per_s2",
        "m/s2", false},
+      {Channel::angle, "angle", "angle_rad", "rad", true},
+      {Channel::pilot_pressure, "pilot_pressure", "pilot_pressure_pa", "Pa", false},
   };
   return table;
 }
@@ -39,6 +41,7 @@ bool is_drive(Channel channel) {
     case Channel::force_reference:
     case Channel::load_pressure_reference:
     case Channel::acceleration_reference:
+    case Channel::pilot_pressure:
       return true;
     default:
       return false;

@@ -30,6 +30,8 @@ enum class Channel {
   force_reference,          ///< reference of a force loop [N]
   load_pressure_reference,  ///< reference of a load pressure loop [Pa]
   acceleration_reference,   ///< reference of an acceleration loop [m/s2]
+  angle,                    ///< angle of a joint [rad]
+  pilot_pressure,           ///< pilot pressure of the spool [Pa]
 };
 
 struct ChannelInfo {

@@ -38,6 +38,9 @@ constexpr std::array kOutputNames{
     OutputName{Output::work_flow, "work_flow_m3_per_s"},
     OutputName{Output::acceleration, "acceleration_m_per_s2"},
     OutputName{Output::payload_acceleration, "payload_acceleration_m_per_s2"},
+    OutputName{Output::angle, "angle_rad"},
+    OutputName{Output::angular_velocity, "angular_velocity_rad_per_s"},
+    OutputName{Output::pilot_pressure, "pilot_pressure_pa"},
 };
 
 /// The first parameter in use that is not finite or outside its limits, in words; empty if none.
@@ -144,6 +147,25 @@ std::string_view output_name(Output output) {
     if (row.output == output) return row.name;
   }
   return "";
+}
+
+bool has_output(const ParameterValues& values, Output output) {
+  const auto given = [&values](std::string_view key) {
+    return parameter_index(values.plant, key) >= 0 && values.is_given(key);
+  };
+  switch (output) {
+    case Output::payload_acceleration:
+      return given("payload_mass");
+    case Output::angle:
+    case Output::angular_velocity:
+      return values.plant == PlantKind::linkage;
+    case Output::pilot_pressure:
+      return given("pilot_gain");
+    case Output::command:
+      return !given("pilot_gain");
+    default:
+      return true;
+  }
 }
 
 std::string_view to_string(SimulationStatus status) {

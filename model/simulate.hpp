@@ -31,6 +31,9 @@ enum class Output {
   work_flow,             ///< A x', flow that moves the piston [m3/s]
   acceleration,          ///< acceleration of the piston and the mass fixed to it [m/s2]
   payload_acceleration,  ///< acceleration of the second mass [m/s2]; zero without one
+  angle,                 ///< reading of the angle sensor of a joint [rad]; zero without one
+  angular_velocity,      ///< [rad/s]; likewise
+  pilot_pressure,        ///< pilot pressure that drives the spool [Pa]; zero without a pilot
 };
 
 /// "position_m", "servo_flow_m3_per_s": name with its SI unit.
@@ -47,7 +50,13 @@ inline constexpr std::array kAllOutputs{Output::position,
                                         Output::leakage_flow,
                                         Output::work_flow,
                                         Output::acceleration,
-                                        Output::payload_acceleration};
+                                        Output::payload_acceleration,
+                                        Output::angle,
+                                        Output::angular_velocity,
+                                        Output::pilot_pressure};
+
+/// Whether a rig computes an output; those that it does not are zero.
+bool has_output(const ParameterValues& values, Output output);
 
 enum class ControllerKind {
   none,  ///< the drive is the valve command [V]
@@ -153,6 +162,7 @@ struct Rig {
   InitialState initial = InitialState::rest;
   Feedback feedback = Feedback::position;  ///< controlled quantity, if there is a controller
   Before before = Before::hold;
+  bool pilot = false;  ///< the drive is a pilot pressure [Pa], not a command [V]
 };
 
 /// Solves the model from the first of `times_s` to the last.

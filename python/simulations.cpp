@@ -37,6 +37,7 @@ struct Simulated {
   std::vector<double> reference;
   bool of_position = true;        ///< whether the loop controls the position
   std::vector<std::string> free;  ///< parameters of its sensitivities
+  model::ParameterValues values;
   model::Simulation simulation;
 };
 using SimulatedPtr = std::shared_ptr<Simulated>;
@@ -48,10 +49,17 @@ py::array_t<double> signal(const SimulatedPtr& self, std::size_t output) {
               static_cast<std::size_t>(outputs.rows()));
 }
 
+/// Whether a signal is among those of a rig. The second mass is, as zero, in every rig.
+bool is_signal(const SimulatedPtr& self, model::Output output) {
+  return output == model::Output::payload_acceleration || has_output(self->values, output);
+}
+
 py::dict signals_of(const SimulatedPtr& self) {
   py::dict signals;
   for (std::size_t i = 0; i < model::kAllOutputs.size(); ++i) {
-    const std::string_view name = output_name(model::kAllOutputs[i]);
+    const model::Output output = model::kAllOutputs[i];
+    if (!is_signal(self, output)) continue;
+    const std::string_view name = output_name(output);
     signals[py::str(name.data(), name.size())] = signal(self, i);
   }
   return signals;
@@ -63,6 +71,7 @@ py::dict sensitivities_of(const SimulatedPtr& self) {
   for (std::size_t j = 0; j < self->free.size(); ++j) {
     py::dict of_parameter;
     for (std::size_t i = 0; i < self->simulation.sensitivities.size(); ++i) {
+      if (!is_signal(self, model::kAllOutputs[i])) continue;
       const Eigen::MatrixXd& matrix = self->simulation.sensitivities[i];
       const std::string_view name = output_name(model::kAllOutputs[i]);
       of_parameter[py::str(name.data(), name.size())] =
@@ -158,7 +167,7 @@ std::vector<SimulatedPtr> simulated(const Campaign& self, const Wanted& asked, i
     }
     results.push_back(std::make_shared<Simulated>(
         Simulated{tasks[i].condition->id, tasks[i].time_s, calib::reference_of(tasks[i]),
-                  tasks[i].rig.feedback == model::Feedback::position, asked.free,
+                  tasks[i].rig.feedback == model::Feedback::position, asked.free, tasks[i].values,
                   std::move(simulations[i])}));
   }
   if (out && !cancel)
@@ -257,7 +266,10 @@ Returns:
                                "Internal leakage across the piston [m3/s].",
                                "Flow that moves the piston [m3/s].",
                                "Of the piston and what is fixed to it [m/s2].",
-                               "Of the second mass [m/s2]; zero where there is none."};
+                               "Of the second mass [m/s2]; zero where there is none.",
+                               "Reading of a joint's angle sensor [rad]; zero where there is none.",
+                               "Of the joint [rad/s]; zero where there is none.",
+                               "Pilot pressure of the spool [Pa]; zero where there is none."};
   static_assert(std::size(about) == model::kAllOutputs.size());
   for (std::size_t i = 0; i < model::kAllOutputs.size(); ++i) {
     const std::string name(output_name(model::kAllOutputs[i]));

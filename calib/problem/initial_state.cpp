@@ -17,7 +17,7 @@ using datasets::Condition;
 using datasets::InitialMode;
 using datasets::Record;
 
-/// Smallest half width of bounds for a record that does not move [m, m/s, Pa].
+/// Smallest half width of bounds for a record that does not move [m, m/s, Pa], or [rad, rad/s].
 constexpr double kLeastTravel_m = 1e-6;
 constexpr double kLeastSpeed_m_per_s = 1e-6;
 constexpr double kLeastPressure_pa = 1e3;
@@ -93,6 +93,18 @@ double fastest_change(const Record& record, const std::vector<double>& signal) {
   return fastest;
 }
 
+/// Parameters of the motion at the first sample, and of its sensor.
+struct InitialKeys {
+  std::string_view value;
+  std::string_view rate;
+  std::string_view gain;
+};
+InitialKeys initial_keys(const Campaign& campaign) {
+  if (motion_channel(campaign) == Channel::angle)
+    return {"initial_angle", "initial_angular_velocity", "angle_gain"};
+  return {"initial_position", "initial_velocity", "position_gain"};
+}
+
 /// One initial_* parameter: its value from the record, and its allowed deviation.
 struct Guess {
   std::string_view key;
@@ -108,21 +120,24 @@ InitialPlan plan_initial_state(const Campaign& campaign, const Condition& condit
   InitialPlan plan;
   if (campaign.initial == InitialMode::rest) return plan;
   plan.state = model::InitialState::given;
-  const auto position = record.channels.find(Channel::position);
+  const Channel motion = motion_channel(campaign);
+  const auto position = record.channels.find(motion);
   if (position == record.channels.end() || position->second.mean.empty()) {
     throw InputError(
         condition.where,
-        fmt::format("condition \"{}\": `initial` is \"{}\", but no position is "
-                    "recorded: expected a position channel, or initial = \"rest\"",
-                    condition.id, campaign.initial == InitialMode::fit ? "fit" : "record"));
+        fmt::format("condition \"{}\": `initial` is \"{}\", but no {} is "
+                    "recorded: expected a channel {}, or initial = \"rest\"",
+                    condition.id, campaign.initial == InitialMode::fit ? "fit" : "record",
+                    info(motion).key, info(motion).key));
   }
+  const InitialKeys keys = initial_keys(campaign);
   const auto& x = position->second.mean;
   const double window_s = campaign.initial_window_s;
   const double supply_pa = values["supply_pressure"];
   std::vector<Guess> guesses{
-      {"initial_position", initial_mean(record, x, window_s),
-       std::max(peak_to_peak(x), kLeastTravel_m), true},
-      {"initial_velocity", 0.0, std::max(fastest_change(record, x), kLeastSpeed_m_per_s), true},
+      {keys.value, initial_mean(record, x, window_s), std::max(peak_to_peak(x), kLeastTravel_m),
+       true},
+      {keys.rate, 0.0, std::max(fastest_change(record, x), kLeastSpeed_m_per_s), true},
   };
   const auto add_pressure = [&](std::string_view key, const std::vector<double>& signal,
                                 double unrecorded_pa) {
@@ -165,7 +180,7 @@ std::string moving_start(const Campaign& campaign, const std::vector<const Condi
     });
     if (record == records.end()) continue;
     const auto moved = datasets::motion_at_start(
-        record->time_s, recorded(*record, Channel::position), campaign.initial_window_s);
+        record->time_s, recorded(*record, motion_channel(campaign)), campaign.initial_window_s);
     if (!moved) continue;
     moving.push_back(condition->id);
     farthest = std::max(farthest, *moved);
@@ -175,11 +190,12 @@ std::string moving_start(const Campaign& campaign, const std::vector<const Condi
   const std::string more = moving.size() > shown ? fmt::format(", ... ({})", moving.size()) : "";
   moving.resize(shown);
   return fmt::format(
-      "the position moves by up to {:.3g} m within the initial_window of {:g} s ({}{}), and its "
+      "the {} moves by up to {:.3g} {} within the initial_window of {:g} s ({}{}), and its "
       "mean "
       "there is not where the run starts: expected rest within the window, a shorter one, or "
       "initial = \"fit\"",
-      farthest, campaign.initial_window_s, fmt::join(moving, ", "), more);
+      info(motion_channel(campaign)).key, farthest, info(motion_channel(campaign)).unit,
+      campaign.initial_window_s, fmt::join(moving, ", "), more);
 }
 
 datasets::Overrides recorded_state(const Campaign& campaign, const Record& record,
@@ -193,9 +209,10 @@ datasets::Overrides recorded_state(const Campaign& campaign, const Record& recor
   const auto line = [&](const std::vector<double>& signal) {
     return line_at(record, signal, time_s, half_width_s);
   };
-  if (const auto position = line(recorded(record, Channel::position))) {
-    add("initial_position", position->first);
-    add("initial_velocity", position->second / values["position_gain"]);
+  const InitialKeys keys = initial_keys(campaign);
+  if (const auto position = line(recorded(record, motion_channel(campaign)))) {
+    add(keys.value, position->first);
+    add(keys.rate, position->second / values[keys.gain]);
   }
   if (const auto p = line(load_pressure(record, values))) add("initial_load_pressure", p->first);
   if (const auto p = line(recorded(record, Channel::pressure_a)))

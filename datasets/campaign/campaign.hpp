@@ -244,9 +244,13 @@ struct Campaign {
   bool may_lack_limits(const Condition& condition, Channel channel) const;
 };
 
-/// Channel of the drive: the command, or the reference of the loop.
+/// Channel of the drive: the command, the pilot pressure, or the reference of the loop.
 Channel drive_channel(const model::Rig& rig);
 inline Channel drive_channel(const Campaign& campaign) { return drive_channel(campaign.rig); }
+
+/// Channel of the motion: the position, or the angle of a joint.
+Channel motion_channel(const model::Rig& rig);
+inline Channel motion_channel(const Campaign& campaign) { return motion_channel(campaign.rig); }
 
 /// Reads and checks a campaign file.
 ///

@@ -61,13 +61,34 @@ void check_controller(const Campaign& campaign) {
 void check_tank(const Campaign& campaign) {
   const auto tank = campaign.channels.find(Channel::tank_pressure);
   if (tank == campaign.channels.end() || tank->second.role != ChannelRole::input ||
-      campaign.rig.plant == model::PlantKind::two_chamber) {
+      campaign.rig.plant != model::PlantKind::load_pressure) {
     return;
   }
   throw InputError({campaign.file.string()},
                    "key 'recording.channels.tank_pressure': the plant load_pressure counts its "
                    "pressures from the tank's: expected role = \"ignore\", or "
                    "model = \"two_chamber\"");
+}
+
+/// The quantities of a linkage are angle and moment, those of the other plants position and force.
+void check_motion(const Campaign& campaign) {
+  const bool turns = campaign.rig.plant == model::PlantKind::linkage;
+  for (const auto& [channel, setting] : campaign.channels) {
+    if (setting.role == ChannelRole::ignore) continue;
+    const bool slides = channel == Channel::force || channel == Channel::payload_acceleration ||
+                        channel == Channel::position || channel == Channel::acceleration;
+    if (turns ? slides : channel == Channel::angle) {
+      throw InputError(
+          {campaign.file.string()},
+          fmt::format("key 'recording.channels.{}': the plant {} {}: expected {}, or role = "
+                      "\"ignore\"",
+                      info(channel).key, to_string(campaign.rig.plant),
+                      turns ? "turns an arm, and its motion is the angle of the joint"
+                            : "moves a load along a line, and has no joint",
+                      turns ? "the channel angle (unit \"deg\" or \"rad\")"
+                            : "the channel position, model = \"linkage\""));
+    }
+  }
 }
 
 void check_values(const Campaign& campaign, const Condition& condition) {
@@ -143,7 +164,7 @@ void check_record(const Campaign& campaign, const Condition& condition) {
     if (is_compared(condition) && !any) {
       fail(condition,
            "its records carry nothing to compare the model with: expected an output "
-           "channel such as position in [recording.channels]");
+           "channel such as position or angle in [recording.channels]");
     }
     return;
   }
@@ -233,6 +254,7 @@ void check_campaign(const Campaign& campaign, const Location& start) {
   check_initial(campaign);
   check_controller(campaign);
   check_tank(campaign);
+  check_motion(campaign);
   if (const auto twice = gain_known_twice(campaign)) throw InputError(twice->where, twice->message);
   for (const Condition& condition : campaign.conditions) {
     if (condition.use == Use::ignore) continue;

@@ -59,6 +59,8 @@ void read_rig(const TomlNode& node, Campaign& campaign) {
   if (const auto parameters = node.find("parameters")) {
     campaign.parameters = read_settings(*parameters, campaign.rig.plant, ParameterGroup::rig);
   }
+  const int pilot_gain = model::parameter_index(campaign.rig.plant, "pilot_gain");
+  campaign.rig.pilot = pilot_gain >= 0 && campaign.setting(pilot_gain) != nullptr;
   if (const auto controller = node.find("controller")) read_controller(*controller, campaign);
 }
 

@@ -210,7 +210,7 @@ Overrides read_overrides(const TomlNode& table, model::PlantKind plant, Paramete
 namespace {
 
 std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValues& values) {
-  if (values.plant != model::PlantKind::two_chamber) return std::nullopt;
+  if (model::parameter_index(values.plant, "supply_resistance") < 0) return std::nullopt;
   const bool resistance = values.is_given("supply_resistance");
   if (resistance == values.is_given("supply_capacity")) return std::nullopt;
   return ParameterConflict{
@@ -218,6 +218,101 @@ std::optional<ParameterConflict> find_supply_conflict(const model::ParameterValu
       fmt::format("a supply that gives way needs both supply_resistance and supply_capacity: "
                   "expected {} as well",
                   resistance ? "supply_capacity" : "supply_resistance")};
+}
+
+/// A spool follows a voltage or a pilot pressure; each has keys of its own.
+std::optional<ParameterConflict> find_pilot_conflict(const model::Rig& rig,
+                                                     const model::ParameterValues& values) {
+  const bool pilot = values.is_given("pilot_gain");
+  if (pilot == values.is_given("valve_gain"))
+    return ParameterConflict{
+        pilot ? "pilot_gain" : "",
+        fmt::format("{}: expected valve_gain (an electric valve, driven by the channel command) or "
+                    "pilot_gain (a pilot-operated one, driven by pilot_pressure)",
+                    pilot ? "pilot_gain stands together with valve_gain"
+                          : "nothing tells the gain of the valve")};
+  if (pilot != rig.pilot)
+    return ParameterConflict{"pilot_gain",
+                             "pilot_gain decides what drives the rig, and some conditions alone "
+                             "have it: expected it in [rig.parameters]"};
+  constexpr std::array kOfPilot{"pilot_dead_band", "pilot_range", "pilot_exponent",
+                                "return_dead_band", "return_exponent"};
+  constexpr std::array kOfVolts{"valve_dead_band", "valve_offset", "valve_rate_limit"};
+  for (const char* key : kOfPilot) {
+    if (pilot || !values.is_given(key)) continue;
+    return ParameterConflict{key, fmt::format("{} is of a pilot-operated valve, and this one is "
+                                              "driven by a voltage: expected pilot_gain",
+                                              key)};
+  }
+  for (const char* key : kOfVolts) {
+    if (!pilot || !values.is_given(key)) continue;
+    return ParameterConflict{
+        key, fmt::format("{} is in volts, and pilot_gain makes the pilot pressure the drive: "
+                         "expected {} out, or pilot_dead_band for an overlap",
+                         key, key)};
+  }
+  return std::nullopt;
+}
+
+std::optional<ParameterConflict> find_pump_conflict(const model::ParameterValues& values) {
+  if (values.is_given("pump_flow") && !values.is_given("supply_resistance"))
+    return ParameterConflict{"pump_flow",
+                             "a pump of limited flow needs supply_resistance (how far its pressure "
+                             "falls before it gives all of it) and supply_capacity: expected both"};
+  constexpr std::array kSecond{"pump_second_flow", "pump_delay"};
+  for (const char* key : {"pump_second_flow", "pump_delay", "pump_rise", "pump_first_rate"}) {
+    if (!values.is_given(key)) continue;
+    if (!values.is_given("pump_flow"))
+      return ParameterConflict{key,
+                               fmt::format("{} without a first flow: expected pump_flow", key)};
+    for (const char* needed : kSecond) {
+      if (values.is_given(needed)) continue;
+      return ParameterConflict{key, fmt::format("a pump that rises to a second flow needs "
+                                                "pump_second_flow and pump_delay: expected {} as "
+                                                "well",
+                                                needed)};
+    }
+  }
+  return std::nullopt;
+}
+
+/// The lever must not change its sign between the stops.
+std::optional<ParameterConflict> find_joint_conflict(const model::ParameterValues& values) {
+  const double lower = values["lower_stop"];
+  const double upper = values["upper_stop"];
+  if (!(upper > lower))
+    return ParameterConflict{
+        "upper_stop",
+        fmt::format("upper_stop = {:g} rad is not above lower_stop = {:g} rad", upper, lower)};
+  const double d1 = values["lever_gradient"];
+  const double d2 = values["lever_curvature"];
+  std::vector<double> angles{lower, upper};
+  const double turn = d2 == 0.0 ? lower : values["reference_angle"] - 0.5 * d1 / d2;
+  if (turn > lower && turn < upper) angles.push_back(turn);
+  for (const double angle : angles) {
+    const double from = angle - values["reference_angle"];
+    const double lever = values["lever"] + (d1 + d2 * from) * from;
+    if (lever > 0.0) continue;
+    return ParameterConflict{
+        "lever", fmt::format("the lever is {:g} m/rad at {:g} rad, between the stops: expected one "
+                             "above 0 in all of the range (chamber A is the one that raises the "
+                             "angle)",
+                             lever, angle)};
+  }
+  return std::nullopt;
+}
+
+std::optional<ParameterConflict> find_linkage_conflict(const model::Rig& rig,
+                                                       const model::ParameterValues& values) {
+  if (values.plant != model::PlantKind::linkage) return std::nullopt;
+  if (rig.controller != model::ControllerKind::none)
+    return ParameterConflict{
+        "",
+        "the plant linkage has no controller yet: expected type = \"none\" in "
+        "[rig.controller], and the recorded command or pilot_pressure as the drive"};
+  if (const auto conflict = find_pilot_conflict(rig, values)) return conflict;
+  if (const auto conflict = find_pump_conflict(values)) return conflict;
+  return find_joint_conflict(values);
 }
 
 /// A second mass needs all of its parameters.
@@ -316,6 +411,7 @@ std::optional<ParameterConflict> find_conflict(const model::Rig& rig,
   }
   if (const auto conflict = find_supply_conflict(values)) return conflict;
   if (const auto conflict = find_payload_conflict(values)) return conflict;
+  if (const auto conflict = find_linkage_conflict(rig, values)) return conflict;
   if (rig.controller == model::ControllerKind::none) return std::nullopt;
   return find_loop_conflict(rig, values);
 }

@@ -74,10 +74,12 @@ void check_role(const TomlNode& node, Channel channel, ChannelRole role, Channel
   const bool drives = channel == drive;
   const bool can_be_input = drives || channel == Channel::supply_pressure ||
                             channel == Channel::tank_pressure || channel == Channel::force;
-  const bool can_be_output = info(channel).is_output || (channel == Channel::command && !drives);
+  const bool open_loop = drive == Channel::command || drive == Channel::pilot_pressure;
+  const bool can_be_output = info(channel).is_output || (channel == Channel::command && !open_loop);
   if (role == ChannelRole::input && !can_be_input) {
-    const std::string loop = drive == Channel::command
-                                 ? "without a controller"
+    const std::string loop = drive == Channel::command ? "without a controller"
+                             : drive == Channel::pilot_pressure
+                                 ? "where pilot_gain makes the pilot pressure the drive"
                                  : fmt::format("of a rig that follows {}", info(drive).key);
     node.fail(fmt::format("{} cannot be an input {}: expected \"output\" or \"ignore\"",
                           info(channel).key, loop));
@@ -126,7 +128,8 @@ ChannelSetting read_channel(const TomlNode& node, Channel channel, Channel drive
   }
   if (const auto recognise = node.find("recognise")) {
     setting.recognise = recognise->boolean();
-    if (channel != Channel::reference && channel != Channel::command)
+    if (channel != Channel::reference && channel != Channel::command &&
+        channel != Channel::pilot_pressure)
       recognise->fail("has a meaning only for a drive: expected it of reference or command");
   }
   return setting;
@@ -226,7 +229,8 @@ std::vector<Channel> output_channels(const Campaign& campaign) {
 }
 
 Channel drive_channel(const model::Rig& rig) {
-  if (rig.controller == model::ControllerKind::none) return Channel::command;
+  if (rig.controller == model::ControllerKind::none)
+    return rig.pilot ? Channel::pilot_pressure : Channel::command;
   switch (rig.feedback) {
     case model::Feedback::position:
       return Channel::reference;
@@ -238,6 +242,10 @@ Channel drive_channel(const model::Rig& rig) {
       return Channel::acceleration_reference;
   }
   return Channel::reference;
+}
+
+Channel motion_channel(const model::Rig& rig) {
+  return rig.plant == model::PlantKind::linkage ? Channel::angle : Channel::position;
 }
 
 }  // namespace rigcal::datasets

@@ -116,9 +116,9 @@ Limits limits_but(const TomlNode& node, const Campaign& campaign,
                   const std::vector<std::string_view>& others) {
   std::vector<Channel> outputs = output_channels(campaign);
   const bool has_position = outputs.empty() || std::find(outputs.begin(), outputs.end(),
-                                                         Channel::position) != outputs.end();
+                                                         motion_channel(campaign)) != outputs.end();
   const std::vector<Channel> general =
-      has_position ? std::vector<Channel>{Channel::position} : outputs;
+      has_position ? std::vector<Channel>{motion_channel(campaign)} : outputs;
   std::vector<std::string> names = known_limits();
   const auto is_limit = [&](const std::string& key) {
     return std::find(names.begin(), names.end(), key) != names.end();

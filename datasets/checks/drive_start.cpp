@@ -24,7 +24,7 @@ std::string drive_start_proposal(const Campaign& campaign, const Condition& cond
   if (campaign.before_stated || condition.waveform != Waveform::recorded) return {};
   const Channel channel = drive_channel(campaign);
   const auto drive = record.channels.find(channel);
-  const auto position = record.channels.find(Channel::position);
+  const auto position = record.channels.find(motion_channel(campaign));
   if (drive == record.channels.end() || position == record.channels.end()) return {};
   const std::vector<double>& u = drive->second.mean;
   const std::vector<double>& x = position->second.mean;
@@ -47,7 +47,7 @@ std::string drive_start_proposal(const Campaign& campaign, const Condition& cond
       "of the valve have something to act on",
       info(channel).key, u.front(), info(channel).unit,
       is_loop ? fmt::format(", the position {:.3g} m", neutral) : std::string(),
-      is_loop ? "where the piston was" : "0 V");
+      is_loop ? "where the piston was" : fmt::format("0 {}", info(channel).unit));
 }
 
 }  // namespace rigcal::datasets

@@ -381,7 +381,8 @@ Record average(const std::string& condition, const std::vector<Repeat>& repeats,
       auto deviations = deviations_from(stack, series, span);
       warn_of_noise(deviations, series, channel, options, repeats, record.warnings);
       if (options.keep_deviations &&
-          (!is_drive(channel) || channel == Channel::command || any_differs(deviations)))
+          (!is_drive(channel) || channel == Channel::command ||
+           channel == Channel::pilot_pressure || any_differs(deviations)))
         series.deviations = std::move(deviations);
     }
     if (repeats.size() == 1) series.repeats = options.repeats_averaged;

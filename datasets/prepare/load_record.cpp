@@ -110,11 +110,13 @@ bool delays_its_drive(const Campaign& campaign) {
 
 /// Enters the windows of `windows = "moving"`.
 void find_moving_windows(const Campaign& campaign, const Condition& condition, Record& record) {
-  const auto position = record.channels.find(Channel::position);
+  const Channel moving = motion_channel(campaign);
+  const auto position = record.channels.find(moving);
   if (position == record.channels.end())
     refuse(condition,
-           "windows = \"moving\" are found from the position, which its records do not carry: "
-           "expected a position channel, or window = [\"0.5 s\", \"12 s\"]");
+           fmt::format("windows = \"moving\" are found from the {0}, which its records do not "
+                       "carry: expected a channel {0}, or window = [\"0.5 s\", \"12 s\"]",
+                       info(moving).key));
   const Series& x = position->second;
   const auto motions =
       find_motions(record.time_s, drive_at_samples(campaign, condition, record), x.mean, x.sd);
@@ -124,13 +126,18 @@ void find_moving_windows(const Campaign& campaign, const Condition& condition, R
                        "expected a command that steps and is held, or window = [\"0.5 s\", \"12 "
                        "s\"]",
                        info(drive_channel(campaign)).key));
+  const bool turns = moving == Channel::angle;
+  const double per_unit = turns ? 180.0 / std::numbers::pi : 1e3;
+  const char* unit = turns ? "deg" : "mm";
   for (const Motion& motion : motions) {
     record.windows.push_back(motion.window);
     record.notes.push_back(fmt::format(
-        "moving window {}: {:.6g} s to {:.6g} s, {:.5g} mm to {:.5g} mm, {}", record.windows.size(),
-        motion.window.start_s, motion.window.end_s, 1e3 * motion.from_m, 1e3 * motion.to_m,
-        motion.arrived ? fmt::format("ends {:.3g} mm before the stop", 1e3 * motion.margin_m)
-                       : "still moving at its end"));
+        "moving window {}: {:.6g} s to {:.6g} s, {:.5g} {} to {:.5g} {}, {}", record.windows.size(),
+        motion.window.start_s, motion.window.end_s, per_unit * motion.from_m, unit,
+        per_unit * motion.to_m, unit,
+        motion.arrived
+            ? fmt::format("ends {:.3g} {} before the stop", per_unit * motion.margin_m, unit)
+            : "still moving at its end"));
   }
 }
 

@@ -36,8 +36,8 @@ std::vector<TimeHole> time_holes(const std::vector<double>& time_s) {
 std::vector<std::string> holes_in_what_counts(const Campaign& campaign, const Condition& condition,
                                               const std::vector<Repeat>& repeats,
                                               const std::vector<TimeWindow>& windows) {
-  const bool is_felt_later =
-      condition.waveform == Waveform::recorded && drive_channel(campaign) == Channel::command;
+  const bool is_felt_later = condition.waveform == Waveform::recorded &&
+                             campaign.rig.controller == model::ControllerKind::none;
   std::vector<std::string> texts;
   for (const Repeat& repeat : repeats) {
     std::vector<TimeHole> holes = repeat.holes;

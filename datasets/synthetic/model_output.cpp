@@ -20,6 +20,10 @@ std::optional<model::Output> model_output(Channel channel) {
       return model::Output::acceleration;
     case Channel::payload_acceleration:
       return model::Output::payload_acceleration;
+    case Channel::angle:
+      return model::Output::angle;
+    case Channel::pilot_pressure:
+      return model::Output::pilot_pressure;
     case Channel::reference:
     case Channel::force_reference:
     case Channel::load_pressure_reference:

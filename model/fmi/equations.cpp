@@ -46,7 +46,8 @@ class SizedEquations final : public Equations {
   std::vector<double> initial() const override {
     // A state in equilibrium depends on the load, which is a parameter.
     ParameterValues values = values_;
-    values.set("external_force", inputs_.external_force_n.value);
+    if (parameter_index(values.plant, "external_force") >= 0)
+      values.set("external_force", inputs_.external_force_n.value);
     Sys system(layout_, values, {}, track(inputs_.drive, 1.0), std::nullopt,
                track(inputs_.supply_pressure_pa, 1.0), track(inputs_.tank_pressure_pa, 1.0));
     Values<N> state = system.initial(initial_, before_, 0.0);
@@ -70,7 +71,8 @@ class SizedEquations final : public Equations {
   std::vector<double> indicators(std::span<const double> x) const override {
     const Values<N> state = padded(x);
     const auto& p = system_.parameters();
-    const double command_v = output(Output::command, x);
+    const double command_v =
+        output(layout_.terms.pilot ? Output::pilot_pressure : Output::command, x);
     const double spool_v =
         layout_.valve_order > 0 ? state[static_cast<std::size_t>(layout_.valve)] : command_v;
     std::vector<double> indicators;
@@ -138,7 +140,8 @@ class SizedEquations final : public Equations {
   }
 
   Sys system(ParameterValues values, const RigInputs& inputs, double length_s) const {
-    values.set("external_force", 0.0);  // all of it is the input
+    if (parameter_index(values.plant, "external_force") >= 0)
+      values.set("external_force", 0.0);  // all of it is the input
     return {layout_,
             values,
             {},
@@ -201,6 +204,8 @@ std::unique_ptr<Equations> make_equations(const ExportedRig& rig) {
       return sized<LoadPressurePlant, 5, 10>(rig);
     case PlantKind::two_chamber:
       return sized<TwoChamberPlant, 5, 12>(rig);
+    case PlantKind::linkage:
+      return sized<LinkagePlant, 8>(rig);
   }
   throw std::logic_error("no such plant");
 }

@@ -54,7 +54,8 @@ InstanceState start_of(const ExportedRig& rig) {
   InstanceState state;
   state.values = rig.values;
   state.tolerance = rig.tolerance;
-  state.inputs.external_force_n.value = rig.values["external_force"];
+  if (parameter_index(rig.rig.plant, "external_force") >= 0)
+    state.inputs.external_force_n.value = rig.values["external_force"];
   state.inputs.supply_pressure_pa.value = rig.values["supply_pressure"];
   if (parameter_index(rig.rig.plant, "tank_pressure") >= 0)
     state.inputs.tank_pressure_pa.value = rig.values["tank_pressure"];
@@ -307,7 +308,9 @@ Ramp& FmuInstance::input(unsigned reference) {
     case 0:
       return state_.inputs.drive;
     case 1:
-      return state_.inputs.external_force_n;
+      if (parameter_index(rig_.rig.plant, "external_force") >= 0)
+        return state_.inputs.external_force_n;
+      break;
     case 2:
       return state_.inputs.supply_pressure_pa;
     case 3:

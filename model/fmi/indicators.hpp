@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/plant/controller.hpp"
+#include "model/plant/linkage.hpp"
 #include "model/plant/load_pressure.hpp"
 #include "model/plant/two_chamber.hpp"
 
@@ -44,6 +45,31 @@ void plant_indicators(const TwoChamberPlant::Coefficients<double>& p, const Pres
   if (terms.hoses < 0) return;  // else each hose yields in the direction of its pressure change
   indicators.push_back(dx[Plant::pressure_a]);
   indicators.push_back(dx[Plant::pressure_b]);
+}
+
+template <std::size_t N>
+void plant_indicators(const LinkagePlant::Coefficients<double>& p, const PresentTerms& terms,
+                      const std::array<double, N>& x, const std::array<double, N>& /*dx*/,
+                      double spool, std::vector<double>& indicators) {
+  using Plant = LinkagePlant;
+  const double out = spool + p.valve_offset_v;
+  indicators.push_back(out - p.dead_band);
+  indicators.push_back(-out - p.dead_band);
+  if (terms.return_band) {
+    indicators.push_back(out - p.return_dead_band_pa);
+    indicators.push_back(-out - p.return_dead_band_pa);
+  }
+  indicators.push_back(x[Plant::angle] - p.lower_stop_rad);
+  indicators.push_back(p.upper_stop_rad - x[Plant::angle]);
+  if (terms.make_up) {  // pressures count from the tank's, whose changes are small
+    indicators.push_back(x[Plant::pressure_a] - p.tank_pressure_pa);
+    indicators.push_back(x[Plant::pressure_b] - p.tank_pressure_pa);
+  }
+  if (terms.pump_flow && terms.supply >= 0) {
+    const double asked = (p.supply_pressure_pa - x[static_cast<std::size_t>(terms.supply)]) /
+                         p.supply_resistance_pa_s_per_m3;
+    indicators.push_back(Plant::largest_flow(x, p, terms) - asked);
+  }
 }
 
 /// Limits of the controller's output and of the spool's rate.

@@ -20,6 +20,9 @@ std::vector<StateDescription> describe_states(const ExportedRig& rig, const Layo
     case PlantKind::two_chamber:
       add_plant.operator()<TwoChamberPlant>();
       break;
+    case PlantKind::linkage:
+      add_plant.operator()<LinkagePlant>();
+      break;
   }
   for (int i = layout.plant_states; i < layout.states; ++i)
     add(*layout.added.at(static_cast<std::size_t>(i - layout.plant_states)));

@@ -29,6 +29,15 @@ struct PresentTerms {
   bool external_leak = false;   ///< for either chamber: not zero, or free
   int hoses = -1;               ///< index of the first state of yielding hoses; -1: rigid hoses
   int payload = -1;             ///< index of the first state of the second mass; -1: none
+  bool pilot = false;           ///< the drive of the spool is a pilot pressure
+  bool power_opening = false;   ///< the spool opens by a power law
+  bool return_band = false;     ///< the edges to the tank have their own dead band
+  bool return_power = false;    ///< likewise, their own power law
+  bool return_line = false;     ///< the line to the tank throttles, too
+  bool pump_flow = false;       ///< the flow of the pump is limited
+  bool make_up = false;         ///< the tank fills a chamber that is pulled empty
+  int pump = -1;                ///< index of the time of demand; -1: its limit is constant
+  int supply = -1;              ///< index of the supply pressure at the valve; -1: the source's
   bool valve_rate_limit = false;
   bool retracted_position = false;     ///< else half a stroke below zero
   bool initial_load_pressure = false;  ///< else the load pressure starts in equilibrium
@@ -52,6 +61,8 @@ struct StateRow {
 // States of every plant.
 inline constexpr StateRow kPistonPosition{"position", "m", "position of the piston", 1e-6, 0.01};
 inline constexpr StateRow kPistonVelocity{"velocity", "m/s", "velocity of the piston", 1e-5, 0.1};
+inline constexpr StateRow kPressureA{"pressure_a", "Pa", "pressure of chamber A", 100.0, 0.1};
+inline constexpr StateRow kPressureB{"pressure_b", "Pa", "pressure of chamber B", 100.0, 0.1};
 
 // States that a rig may have in addition to those of its plant.
 inline constexpr StateRow kHoseMemoryA{"hose_memory_a", "1",
@@ -67,6 +78,11 @@ inline constexpr StateRow kValveSupply{"valve_supply_pressure", "Pa",
 inline constexpr StateRow kValveSignal{"valve_signal", "V", "signal that the spool stands at", 1e-3,
                                        1.0};
 inline constexpr StateRow kValveSignalRate{"valve_signal_rate", "V/s", "its rate", 1.0, 100.0};
+inline constexpr StateRow kPilotSignal{"valve_signal", "Pa",
+                                       "pilot pressure that the spool stands at", 100.0, 0.01};
+inline constexpr StateRow kPilotSignalRate{"valve_signal_rate", "Pa/s", "its rate", 1e5, 1e7};
+inline constexpr StateRow kPumpDemand{"pump_demand", "s",
+                                      "time for which the pump has been asked for flow", 1e-3, 1.0};
 inline constexpr StateRow kIntegral{"controller_integral", "V", "integral action", 1e-3, 1.0};
 inline constexpr StateRow kHeldOutput{"controller_held_output", "V",
                                       "output of the sampled controller", 1e-3, 1.0};
@@ -83,6 +99,7 @@ struct Layout {
   int plant_states = 0;
   int hoses = -1;       ///< strain memory of both hoses [1]
   int supply = -1;      ///< supply pressure at the valve [Pa]
+  int pump = -1;        ///< time for which the pump has been asked for flow [s]
   int payload = -1;     ///< position [m] and velocity [m/s] of the second mass
   int valve_order = 0;  ///< 0: spool follows the command; 1, 2: lag
   int valve = -1;       ///< first valve state: spool signal [V], then its rate [V/s]
@@ -141,17 +158,20 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
     layout.add(kHoseMemoryB);
   }
   if (given("supply_capacity")) layout.supply = layout.add(kValveSupply);
+  if (given("pump_second_flow")) layout.pump = layout.add(kPumpDemand);
   if (given("payload_mass")) {
     layout.payload = layout.add(kPayloadPosition);
     layout.add(kPayloadVelocity);
   }
+  layout.terms.pilot = given("pilot_gain");
+  const StateRow& signal = layout.terms.pilot ? kPilotSignal : kValveSignal;
   if (given("valve_frequency")) {
     layout.valve_order = 2;
-    layout.valve = layout.add(kValveSignal);
-    layout.add(kValveSignalRate);
+    layout.valve = layout.add(signal);
+    layout.add(layout.terms.pilot ? kPilotSignalRate : kValveSignalRate);
   } else if (given("valve_time_constant")) {
     layout.valve_order = 1;
-    layout.valve = layout.add(kValveSignal);
+    layout.valve = layout.add(signal);
   }
   layout.pid = rig.controller == ControllerKind::pid;
   if (layout.pid) {
@@ -163,7 +183,8 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
     if (given("sample_time")) layout.held = layout.add(kHeldOutput);
   }
   layout.terms.stribeck = given("stribeck_friction");
-  layout.terms.friction = layout.terms.stribeck || given("coulomb_friction");
+  layout.terms.friction =
+      layout.terms.stribeck || given("coulomb_friction") || given("joint_friction");
   layout.terms.orifice_leak = acts("leakage_coefficient");
   layout.terms.laminar_leak = acts("laminar_leakage");
   layout.terms.null_leak = acts("valve_null_leakage");
@@ -176,6 +197,14 @@ inline Layout layout_of(const Rig& rig, const ParameterValues& values, std::span
   layout.terms.null_opening = given("valve_null_opening");
   layout.terms.line_loss = given("valve_line_opening");
   layout.terms.air = given("air_fraction");
+  layout.terms.power_opening = given("pilot_exponent");
+  layout.terms.return_band = given("return_dead_band");
+  layout.terms.return_power = given("return_exponent");
+  layout.terms.return_line = given("return_line_opening");
+  layout.terms.pump_flow = given("pump_flow");
+  layout.terms.make_up = acts("make_up_conductance");
+  layout.terms.pump = layout.pump;
+  layout.terms.supply = layout.supply;
   layout.terms.hoses = layout.hoses;
   layout.terms.payload = layout.payload;
   layout.terms.valve_rate_limit = given("valve_rate_limit");

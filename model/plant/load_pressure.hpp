@@ -147,6 +147,9 @@ struct LoadPressurePlant {
       case Output::velocity:
       case Output::acceleration:
       case Output::payload_acceleration:
+      case Output::angle:
+      case Output::angular_velocity:
+      case Output::pilot_pressure:
       case Output::command:
         break;
     }

@@ -35,7 +35,7 @@ struct ParameterSpec {
 };
 
 /// Index in the list of plants (plants.hpp), for code that refers to a plant by name.
-enum class PlantKind { load_pressure, two_chamber };
+enum class PlantKind { load_pressure, two_chamber, linkage };
 
 /// "load_pressure" -> PlantKind; empty if unknown.
 std::optional<PlantKind> plant_from_name(std::string_view name);

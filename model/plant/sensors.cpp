@@ -29,6 +29,8 @@ std::string_view sensor_name(Output output) {
       return "acceleration";
     case Output::payload_acceleration:
       return "payload_acceleration";
+    case Output::angle:
+      return "angle";
     default:
       return {};
   }
@@ -68,6 +70,7 @@ Sensor sensor_of(Output output, const ParameterValues& values) {
   if (name.empty()) return {};
   const auto index = [&](const char* what) { return parameter_index(values.plant, name + what); };
   Sensor sensor{index("_gain"), index("_offset"), index("_lag"), index("_maximum"), 0.0};
+  if (sensor.gain < 0) return {};  // a plant without that sensor
   const auto lag = static_cast<std::size_t>(sensor.lag);
   if (values.given[lag]) sensor.lag_s = values.value[lag];
   return sensor;

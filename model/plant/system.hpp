@@ -141,6 +141,14 @@ class System {
       in = plant_input(ByParameters{}, x, command, t);
     }
     for (std::size_t k = 0; k < outputs.size(); ++k) {
+      if constexpr (requires { Plant::angle; }) {
+        const Output drive = layout_.terms.pilot ? Output::pilot_pressure : Output::command;
+        result[k] =
+            outputs[k] == drive
+                ? command
+                : Plant::output(outputs[k], x, in, parameters_of(ByParameters{}), layout_.terms);
+        continue;
+      }
       switch (outputs[k]) {
         case Output::position:
           result[k] = x[Plant::position];
@@ -215,7 +223,7 @@ class System {
   /// Sets the memory of the hoses to its value after an instantaneous rise to their pressure.
   void forget_hoses([[maybe_unused]] X& states, [[maybe_unused]] double t) const {
     [[maybe_unused]] const Coefficients<C>& p = parameters_of(ByParameters{});
-    if constexpr (requires { p.hose_yield_pa; }) {
+    if constexpr (requires { Plant::kHoses; }) {
       if (layout_.hoses < 0) return;
       const PlantInput<C> in = plant_input(ByParameters{}, states, C(0.0), t);
       const auto first = static_cast<std::size_t>(layout_.hoses);
@@ -558,7 +566,7 @@ class System {
         dx[payload + 1] = payload_acceleration(by, x);
       }
     }
-    if constexpr (requires { p.hose_yield_pa; }) {
+    if constexpr (requires { Plant::kHoses; }) {
       if (layout_.hoses >= 0) {
         const auto rates = Plant::hose_rates(x, plant_dx, p, layout_.terms);
         dx[static_cast<std::size_t>(layout_.hoses)] = rates[0];
@@ -567,11 +575,17 @@ class System {
     }
     if constexpr (requires { p.supply_capacity_m3_per_pa; }) {
       if (layout_.supply >= 0) {
-        const Number<K> inflow =
+        Number<K> inflow =
             (source_pressure(by, t) - in.supply_pressure_pa) / p.supply_resistance_pa_s_per_m3;
+        if constexpr (requires { p.pump_flow_m3_per_s; })
+          inflow = Plant::pump_flow(inflow, x, p, layout_.terms);
         dx[static_cast<std::size_t>(layout_.supply)] =
             (inflow - Plant::supply_flow(x, in, p, layout_.terms)) / p.supply_capacity_m3_per_pa;
       }
+    }
+    if constexpr (requires { p.pump_flow_m3_per_s; }) {
+      if (layout_.pump >= 0)
+        dx[static_cast<std::size_t>(layout_.pump)] = Plant::demand_rate(x, in, p, layout_.terms);
     }
     return dx;
   }

@@ -98,6 +98,29 @@ X series_opening(const X& y, const C& l) {
   return y / sqrt(share * share + 1.0);
 }
 
+/// Opening by a power law, y_r (y / y_r)^n, as of an edge with notches.
+///
+/// @param y        signal beyond the dead band, > 0
+/// @param range    y_r, signal at which it is that of n = 1, in the unit of y
+/// @param exponent n >= 1
+template <typename X, typename C>
+X power_opening(const X& y, const C& range, const C& exponent) {
+  using std::exp;
+  using std::log;
+  return exp(X(log(X(y / range)) * exponent)) * range;
+}
+
+/// Largest flow of a pump that rises from one value to a second [m3/s]:
+/// Q_1 + (Q_2 - Q_1) (1 + tanh((t - T_2) / tau_2)) / 2.
+///
+/// @param demand_s  t, time for which it has been asked for flow
+template <typename X, typename C>
+X two_stages(const X& demand_s, const X& first, const C& second, const C& delay_s,
+             const C& rise_s) {
+  using std::tanh;
+  return (tanh(X((demand_s - delay_s) / rise_s)) + 1.0) * (0.5 * (second - first)) + first;
+}
+
 /// Force of an end stop on the piston [N], away from the stop: k d (1 + lambda d'), never a pull.
 ///
 /// @param depth_m     d, how far the piston is beyond the stop; no force where negative

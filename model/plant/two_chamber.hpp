@@ -23,6 +23,7 @@ namespace rigcal::model {
 struct TwoChamberPlant {
   static constexpr std::string_view kName = "two_chamber";  ///< in campaign files
   static constexpr int kStates = 4;
+  static constexpr bool kHoses = true;  ///< its hoses may yield: hose_rates(), hose_memory()
   enum State { position, velocity, pressure_a, pressure_b };
   template <typename T>
   using Parameters = TwoChamberParameters<T>;
@@ -47,10 +48,8 @@ struct TwoChamberPlant {
   static constexpr const auto& fields() {
     return kTwoChamberFields<T>;
   }
-  static constexpr std::array<StateRow, kStates> kStateRows{
-      kPistonPosition, kPistonVelocity,
-      StateRow{"pressure_a", "Pa", "pressure of chamber A", 100.0, 0.1},
-      StateRow{"pressure_b", "Pa", "pressure of chamber B", 100.0, 0.1}};
+  static constexpr std::array<StateRow, kStates> kStateRows{kPistonPosition, kPistonVelocity,
+                                                            kPressureA, kPressureB};
 
   /// The state that an output reads, but for its sensor; none: it takes more.
   static constexpr std::optional<int> state_of(Output output) {
@@ -258,6 +257,9 @@ struct TwoChamberPlant {
       case Output::velocity:
       case Output::acceleration:
       case Output::payload_acceleration:
+      case Output::angle:
+      case Output::angular_velocity:
+      case Output::pilot_pressure:
       case Output::command:
         break;
     }

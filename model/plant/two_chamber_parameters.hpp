@@ -41,13 +41,13 @@ struct TwoChamberParameters : CommonParameters<T> {
   T initial_pressure_b_pa{};
 };
 
-/// The two-chamber plant, in the order of `rigcal params`.
-template <typename T>
-constexpr auto two_chamber_fields() {
-  using P = TwoChamberParameters<T>;
+/// Areas, travel and oil of both chambers.
+template <template <typename> class Parameters, typename T>
+constexpr auto chamber_rows() {
+  using P = Parameters<T>;
   using K = ParameterKind;
   using F = ParameterField<P, T>;
-  const auto cylinder = std::array{
+  return std::array{
       // clang-format off
       F{&P::area_a_m2, {"area_a", "area_a_m2", "A_A", "m2", "piston area of chamber A, which moves the piston out", "docs/model.md", K::plant, 1e-8, 10}},
       F{&P::area_b_m2, {"area_b", "area_b_m2", "A_B", "m2", "piston area of chamber B: the annulus of a single-rod cylinder", "docs/model.md", K::plant, 1e-8, 10}},
@@ -57,7 +57,15 @@ constexpr auto two_chamber_fields() {
       F{&P::tank_pressure_pa, {"tank_pressure", "tank_pressure_pa", "P_t", "Pa", "pressure at the valve's tank port", "docs/model.md", K::plant, -1e5, 1e8}},
       // clang-format on
   };
-  const auto terms = std::array{
+}
+
+/// Optional terms of stops, edges, chambers, hoses and supply.
+template <template <typename> class Parameters, typename T>
+constexpr auto chamber_term_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
       // clang-format off
       F{&P::retracted_position_m, {"retracted_position", "retracted_position_m", "x_R", "m", "position of the piston at its retracted stop; half a stroke below 0 unless given", "docs/model.md", K::term, -100, 100, 0.0}},
       F{&P::stop_stiffness_n_per_m, {"stop_stiffness", "stop_stiffness_n_per_m", "k_s", "N/m", "stiffness of the end stops", "docs/model.md", K::term, 1e3, 1e12, 1e8}},
@@ -85,15 +93,29 @@ constexpr auto two_chamber_fields() {
       F{&P::supply_capacity_m3_per_pa, {"supply_capacity", "supply_capacity_m3_per_pa", "C_s", "m3/Pa", "oil that hose and accumulator at the valve take up per pressure", "docs/model.md", K::term, 1e-18, 1e-3, 0.0}},
       // clang-format on
   };
-  const auto initial = std::array{
+}
+
+/// Pressures of both chambers at the first sample.
+template <template <typename> class Parameters, typename T>
+constexpr auto chamber_initial_rows() {
+  using P = Parameters<T>;
+  using K = ParameterKind;
+  using F = ParameterField<P, T>;
+  return std::array{
       // clang-format off
       F{&P::initial_pressure_a_pa, {"initial_pressure_a", "initial_pressure_a_pa", "p_A(0)", "Pa", "recorded pressure A at the first sample", "docs/model.md", K::initial, -1e9, 1e9, 0.0}},
       F{&P::initial_pressure_b_pa, {"initial_pressure_b", "initial_pressure_b_pa", "p_B(0)", "Pa", "recorded pressure B at the first sample", "docs/model.md", K::initial, -1e9, 1e9, 0.0}},
       // clang-format on
   };
-  return joined(motion_rows<TwoChamberParameters, T>(), cylinder,
-                shared_rows<TwoChamberParameters, T>(), terms, initial,
-                controller_rows<TwoChamberParameters, T>());
+}
+
+/// The two-chamber plant, in the order of `rigcal params`.
+template <typename T>
+constexpr auto two_chamber_fields() {
+  return joined(
+      motion_rows<TwoChamberParameters, T>(), chamber_rows<TwoChamberParameters, T>(),
+      shared_rows<TwoChamberParameters, T>(), chamber_term_rows<TwoChamberParameters, T>(),
+      chamber_initial_rows<TwoChamberParameters, T>(), controller_rows<TwoChamberParameters, T>());
 }
 
 template <typename T>

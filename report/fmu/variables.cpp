@@ -35,6 +35,10 @@ constexpr std::array kOutputs{
     OutputRow{Output::acceleration, "acceleration", "m/s2", "acceleration of the piston"},
     OutputRow{Output::payload_acceleration, "payload_acceleration", "m/s2",
               "acceleration of the second mass"},
+    OutputRow{Output::angle, "angle", "rad", "angle of the joint"},
+    OutputRow{Output::angular_velocity, "angular_velocity", "rad/s",
+              "angular velocity of the joint"},
+    OutputRow{Output::pilot_pressure, "pilot_pressure", "Pa", "pilot pressure of the spool"},
 };
 static_assert(kOutputs.size() == model::kAllOutputs.size(), "every output has a row");
 
@@ -54,11 +58,14 @@ void add_inputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
   if (rig.rig.controller == model::ControllerKind::pid) {
     const model::FeedbackRow& loop = model::gain_keys(rig.rig.feedback);
     variables.push_back(input(0, "reference", loop.unit.data(), loop.meaning.data(), 0.0));
+  } else if (has_output(rig.values, Output::pilot_pressure)) {
+    variables.push_back(input(0, "pilot_pressure", "Pa", "pilot pressure of the spool", 0.0));
   } else {
     variables.push_back(input(0, "command", "V", "what the valve is told", 0.0));
   }
-  variables.push_back(input(1, "external_force", "N", "load against positive travel",
-                            rig.values["external_force"]));
+  if (model::parameter_index(rig.rig.plant, "external_force") >= 0)
+    variables.push_back(input(1, "external_force", "N", "load against positive travel",
+                              rig.values["external_force"]));
   variables.push_back(
       input(2, "supply_pressure", "Pa", "supply above tank", rig.values["supply_pressure"]));
   if (model::parameter_index(rig.rig.plant, "tank_pressure") >= 0)
@@ -89,12 +96,11 @@ void add_states(const ExportedRig& rig, const Layout& layout, std::vector<FmuVar
   }
 }
 
-void add_outputs(const ExportedRig& rig, const Layout& layout,
-                 std::vector<FmuVariable>& variables) {
+void add_outputs(const ExportedRig& rig, std::vector<FmuVariable>& variables) {
   for (const OutputRow& row : kOutputs) {
-    if (row.output == Output::command && rig.rig.controller == model::ControllerKind::none)
-      continue;  // it is the input
-    if (row.output == Output::payload_acceleration && layout.payload < 0) continue;
+    const bool drives = row.output == Output::command || row.output == Output::pilot_pressure;
+    if (drives && rig.rig.controller == model::ControllerKind::none) continue;  // it is the input
+    if (!has_output(rig.values, row.output)) continue;
     const bool is_state = std::any_of(variables.begin(), variables.end(),
                                       [&](const auto& each) { return each.name == row.name; });
     if (is_state) continue;
@@ -109,7 +115,10 @@ void add_outputs(const ExportedRig& rig, const Layout& layout,
 }
 
 std::string rate_unit(const std::string& unit) {
+  if (unit == "s") return "1";
   if (unit == "m/s") return "m/s2";
+  if (unit == "rad/s") return "rad/s2";
+  if (unit == "Pa/s") return "Pa/s2";
   if (unit == "V/s") return "V/s2";
   return unit + "/s";
 }
@@ -153,7 +162,7 @@ std::vector<FmuVariable> fmu_variables(const ExportedRig& rig, const Layout& lay
   std::vector<FmuVariable> variables;
   add_inputs(rig, variables);
   add_states(rig, layout, variables);
-  add_outputs(rig, layout, variables);
+  add_outputs(rig, variables);
   add_derivatives(variables);
   add_parameters(rig, variables);
   return variables;

@@ -141,14 +141,16 @@ void take_sensors_off(ParameterValues& values) {
     const char* offset;
   };
   constexpr std::array kReadings{
+      Reading{"initial_angle", "angle_gain", "angle_offset"},
       Reading{"initial_position", "position_gain", "position_offset"},
       Reading{"initial_load_pressure", "load_pressure_gain", "load_pressure_offset"},
       Reading{"initial_pressure_a", "pressure_a_gain", "pressure_a_offset"},
       Reading{"initial_pressure_b", "pressure_b_gain", "pressure_b_offset"}};
   for (const Reading& reading : kReadings) {
     if (model::parameter_index(values.plant, reading.initial) < 0) continue;
-    const bool position = std::string_view(reading.initial) == "initial_position";
-    if (!position && !values.is_given(reading.initial)) continue;
+    const std::string_view initial = reading.initial;
+    const bool motion = initial == "initial_position" || initial == "initial_angle";
+    if (!motion && !values.is_given(reading.initial)) continue;
     values.set(reading.initial,
                (values[reading.initial] - values[reading.offset]) / values[reading.gain]);
   }
@@ -204,7 +206,8 @@ void start_from_record(const calib::SimulationTask& task, ParameterValues& value
     values.set(key, beside + signal->value(task.time_s.front()));
     recorded.push_back(key);
   };
-  take(task.inputs.external_force_n, "external_force", values["external_force"]);
+  if (model::parameter_index(values.plant, "external_force") >= 0)
+    take(task.inputs.external_force_n, "external_force", values["external_force"]);
   take(task.inputs.supply_pressure_pa, "supply_pressure", 0.0);
   if (model::parameter_index(values.plant, "tank_pressure") >= 0)
     take(task.inputs.tank_pressure_pa, "tank_pressure", 0.0);

@@ -65,11 +65,15 @@ std::string still_pictures(const LiveCase& shown, const model::Simulation& run) 
   constexpr std::array kFlows{StillLine{"servo", "servo", model::Output::servo_flow},
                               StillLine{"work", "model", model::Output::work_flow},
                               StillLine{"leak", "leak", model::Output::leakage_flow}};
-  Plot position = still_plot(shown, run, "Position", "mm", 1e-3, kPosition);
+  constexpr std::array kAngle{StillLine{"angle", "model", model::Output::angle}};
+  const bool turns = shown.task.rig.plant == model::PlantKind::linkage;
+  constexpr double kDegree = 0.017453292519943295;
+  Plot position = turns ? still_plot(shown, run, "Angle", "deg", kDegree, kAngle)
+                        : still_plot(shown, run, "Position", "mm", 1e-3, kPosition);
   if (auto reference_m = calib::reference_of(shown.task); !reference_m.empty())
     add_line(position, "reference", "reference", shown.task.time_s, std::move(reference_m), 1e-3);
   constexpr double kLitrePerMinute = 1e-3 / 60.0;
-  return still_figure(shown, "Position", position) +
+  return still_figure(shown, turns ? "Angle" : "Position", position) +
          still_figure(shown, "Flows",
                       still_plot(shown, run, "Flow", "L/min", kLitrePerMinute, kFlows));
 }

@@ -280,7 +280,7 @@
   const send = (message) => {
     if (running) { waiting = message; return; }
     running = message;
-    worker.postMessage({...message.data, id: message.id, leak: rig.leak, order: rig.outputs});
+    worker.postMessage({...message.data, id: message.id, leak: rig.leak, order: rig.outputs, motion: rig.turns ? "angle_rad" : "position_m"});
   };
   /** Does something with the state as the case begins. */
   const asBegun = (work) => {
@@ -318,18 +318,21 @@
     : [{name: "chamber A", output: "pressure_a_pa", style: "model"}, {name: "chamber B", output: "pressure_b_pa", style: "residual"}];
   const measures = (name) => rig.cases.some((each) => each.measured?.some((channel) => channel.output === name));
   const recorded = (name, label = "") => measures(name) ? [{name: "measured" + label, style: "ink", measured: name, width: 1}, {name: "calibrated" + label, style: "soft", calibrated: name}] : [];
+  // A joint turns; every other rig moves along a line.
+  const motion = rig.turns ? {name: "angle", output: "angle_rad", unit: "deg", si: Math.PI / 180}
+    : {name: "position", output: "position_m", unit: "mm", si: 1e-3};
   const plots = [
-    {title: "Position", unit: "mm", si: 1e-3, height: 220, lines: [
+    {title: rig.turns ? "Angle" : "Position", unit: motion.unit, si: motion.si, height: 220, lines: [
       ...(driven.si_unit === "m" ? [{name: "reference", style: "reference", reference: true}] : []),
-      ...recorded("position_m"),
+      ...recorded(motion.output),
       {name: "without a leak", style: "soft", healthy: true},
-      {name: "live", style: "model", output: "position_m", width: 1.8}]},
+      {name: "live", style: "model", output: motion.output, width: 1.8}]},
     {title: "Flows", unit: "L/min", si: 1e-3 / 60, height: 180, lines: [
       {name: "servo", style: "servo", output: "servo_flow_m3_per_s"},
       {name: "work", style: "model", output: "work_flow_m3_per_s"},
       {name: "leak", style: "leak", output: "leakage_flow_m3_per_s", width: 1.8}]},
     {title: rig.has_load_pressure ? "Load pressure" : "Pressures", unit: "MPa", si: 1e6, height: 160, lines: pressures.flatMap((line) => [...recorded(line.output, pressures.length > 1 ? ` ${line.name.at(-1)}` : ""), line])},
-    {title: "Parity residual: position without a leak minus live", unit: "mm", si: 1e-3, height: 140, lines: [
+    {title: `Parity residual: ${motion.name} without a leak minus live`, unit: motion.unit, si: motion.si, height: 140, lines: [
       {name: "residual", style: "residual", residual: true}]},
   ];
   const driveValues = (request) => {
@@ -370,7 +373,7 @@
     if (line.reference) return scaled(driveValues(request), plot.si);
     if (line.healthy) return scaled(answer.healthy, plot.si) ?? request.times.map(() => NaN);
     if (line.residual) {
-      const live = answer.outputs[output("position_m")];
+      const live = answer.outputs[output(motion.output)];
       return Float64Array.from(live, (x, i) => ((answer.healthy?.[i] ?? NaN) - x) / plot.si);
     }
     return scaled(answer.outputs[output(line.output)], plot.si);
@@ -451,7 +454,7 @@
   let saying = 0;
   const showNumbers = (request, answer) => {
     const {flows} = answer;
-    const position = answer.outputs[output("position_m")];
+    const position = answer.outputs[output(motion.output)];
     const peak = (values) => values.reduce((most, v) => Math.max(most, Math.abs(v)), 0);
     const rms = (values) => Math.sqrt(values.reduce((sum, v) => sum + v * v, 0) / values.length);
     const perMinute = (flow) => `${digits(flow * 60e3, 3)} L/min`;
@@ -460,13 +463,13 @@
     const items = [
       ["Servo flow", perMinute(flows.servo), "mean of its size"], ["Leak", perMinute(flows.leak), "mean of its size"],
       ["Of the servo flow leak", fraction == null ? "–" : `${digits(fraction, 3)} %`, leakClass],
-      ["Peak position", `${digits(peak(position) * 1e3, 4)} mm`, ""],
+      [`Peak ${motion.name}`, `${digits(peak(position) / motion.si, 4)} ${motion.unit}`, ""],
     ];
     if (driven.si_unit === "m") {
       const reference = driveValues(request);
       items.push(["Error of position", `${digits(rms(position.map((x, i) => reference[i] - x)) * 1e3, 3)} mm`, "rms against the reference"]);
     }
-    if (answer.healthy) items.push(["Parity residual", `${digits(rms(position.map((x, i) => answer.healthy[i] - x)) * 1e3, 3)} mm`, "rms"]);
+    if (answer.healthy) items.push(["Parity residual", `${digits(rms(position.map((x, i) => answer.healthy[i] - x)) / motion.si, 3)} ${motion.unit}`, "rms"]);
     $("numbers").replaceChildren(...items.map(([name, text, of]) => make("div", {}, make("dt", {text: name}), make("dd", {text: text + " "}, make("small", {text: of})))));
     if (document.activeElement !== $("fraction")) $("fraction").value = fraction == null ? "" : digits(fraction, 4);
     $("class").textContent = leakClass;

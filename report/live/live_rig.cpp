@@ -343,6 +343,7 @@ Json live_rig(const Campaign& campaign, const std::vector<LiveCase>& cases) {
            {"classes", classes_of(campaign.diagnosis)},
            // Values that --set starts from: the rig without the changes of any level or condition.
            {"campaign", given_values(values_in(campaign, Condition()))}};
+  rig["turns"] = campaign.rig.plant == model::PlantKind::linkage;
   rig["has_load_pressure"] = campaign.rig.plant == model::PlantKind::load_pressure;
   for (const model::Output output : model::kAllOutputs)
     rig["outputs"].push_back(model::output_name(output));

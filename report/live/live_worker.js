@@ -156,7 +156,7 @@ const answer = (model, message) => {
   const run = model.simulate(request);
   if (run.status !== "ok") return run;
   const healthy = model.simulate(withValue(request, leak, 0));
-  return {...run, healthy: healthy.status === "ok" ? healthy.outputs[order.indexOf("position_m")] : null,
+  return {...run, healthy: healthy.status === "ok" ? healthy.outputs[order.indexOf(message.motion)] : null,
           flows: flowsOf(request, run.outputs, order), milliseconds: performance.now() - begun};
 };
 

@@ -213,9 +213,9 @@ std::string simulation_csv(std::span<const double> time_s, std::string_view refe
   for (std::size_t i = 0; i < time_s.size(); ++i) {
     std::vector<std::string> fields{csv_number(time_s[i])};
     if (!reference.empty()) fields.push_back(csv_number(reference[i]));
-    for (std::size_t k = 0; k < outputs.size(); ++k) {
+    for (const model::Output output : outputs) {
       fields.push_back(csv_number(
-          simulation.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k))));
+          simulation.outputs(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(output))));
     }
     text += csv_row(fields);
   }

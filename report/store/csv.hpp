@@ -38,7 +38,7 @@ std::string repeatability_csv(const std::vector<datasets::Record>& records);
 /// simulation failed there are no rows, and the first line gives the reason.
 ///
 /// @param reference  shape (samples), or empty in open loop
-/// @param outputs    names for the first columns of simulation.outputs
+/// @param outputs    those to write; simulation.outputs has a column for each of kAllOutputs
 std::string simulation_csv(std::span<const double> time_s, std::string_view reference_name,
                            std::span<const double> reference,
                            std::span<const model::Output> outputs,

@@ -27,7 +27,7 @@ constexpr std::array kRelatives{
     Relative{"m/V", {"m/V", 1.0}},   Relative{"m/V", {"mm/V", 1e-3}},
     Relative{"m/V", {"um/V", 1e-6}}, Relative{"N", {"kN", 1e3}},
     Relative{"N", {"N", 1.0}},       Relative{"m/s", {"m/s", 1.0}},
-    Relative{"m/s", {"mm/s", 1e-3}},
+    Relative{"m/s", {"mm/s", 1e-3}}, Relative{"rad", {"deg", 3.141592653589793 / 180.0}},
 };
 
 }  // namespace

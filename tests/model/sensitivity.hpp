@@ -34,7 +34,7 @@ inline Experiment experiment(const Scenario& s, const Experiment& rig = {}) {
   e.rig.initial = s.initial;
   e.rig.feedback = s.feedback;
   e.inputs.drive = s.drive;
-  e.set("kp", 900.0);
+  if (parameter_index(e.rig.plant, "kp") >= 0) e.set("kp", 900.0);
   for (const auto& [key, value] : s.values) e.set(key, value);
   if (s.recorded_loads) {
     e.inputs.external_force_n = Signal::linear({0.0, 0.05, 0.1}, {0.0, 500.0, -200.0});

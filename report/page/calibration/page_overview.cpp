@@ -28,7 +28,7 @@ std::string shown_channel(const std::vector<StoredCondition>& conditions) {
   std::string first;
   for (const StoredCondition& condition : conditions) {
     for (const auto& [channel, scores] : condition.metrics) {
-      if (channel == "position") return channel;
+      if (channel == "position" || channel == "angle") return channel;
       if (first.empty()) first = channel;
     }
   }

@@ -3,7 +3,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
-#include "tests/model/rig.hpp"
+#include "tests/model/linkage_rig.hpp"
 
 using namespace rigcal::model;
 
@@ -87,6 +87,44 @@ TEST_CASE("equations: a ramp of the input is followed, not held", "[model]") {
     return x[0];
   };
   CHECK(travel({0.0, 0.01}) == Approx(0.5 * travel({0.01, 0.0})).epsilon(0.02));
+}
+
+TEST_CASE("equations: an arm moves as it is simulated, and its kinks have indicators", "[model]") {
+  Experiment e = arm_rig();
+  e.set("valve_time_constant", 0.03).set("supply_resistance", 1e9).set("supply_capacity", 1e-11);
+  e.set("pump_flow", 6e-4).set("pump_second_flow", 9e-4).set("pump_delay", 0.3);
+  e.set("make_up_conductance", 1e-8);
+  e.inputs.drive = Signal::constant(3e6);
+  e.times_s = {0.0, 0.5};
+  e.options.tolerance = 1e-9;
+  const Simulation run = e();
+  INFO(run.reason);
+  REQUIRE(run.ok());
+  ExportedRig rig;
+  rig.rig = e.rig;
+  rig.values = e.values;
+  CHECK(names(rig) == std::vector<std::string>{"angle", "angular_velocity", "pressure_a",
+                                               "pressure_b", "valve_supply_pressure", "pump_demand",
+                                               "valve_signal"});
+  const auto equations = make_equations(rig);
+  CHECK(describe_states(rig, equations->layout()).back().unit == "Pa");
+  RigInputs inputs;
+  inputs.drive.value = 3e6;
+  inputs.supply_pressure_pa.value = 2e7;
+  inputs.tank_pressure_pa.value = 2e5;
+  equations->set(rig.values, inputs, 1.0);
+  std::vector<double> x = equations->initial();
+  StepMemory memory;
+  equations->advance(x, memory, 0.0, 0.5, 1e-9);
+  REQUIRE(std::abs(run.outputs(1, 0)) > 0.05);
+  CHECK(x[0] == Approx(run.outputs(1, 0)).epsilon(1e-6));
+  CHECK(x[1] == Approx(run.outputs(1, 1)).epsilon(1e-5));
+  CHECK(equations->output(Output::pilot_pressure, x) == 3e6);
+  // Both directions of the spool, both stops, both make-up valves, and the limit of the pump.
+  const std::vector<double> indicators = equations->indicators(x);
+  REQUIRE(indicators.size() == 7);
+  CHECK(indicators[0] == Approx(x[6] - 1e6));
+  CHECK(indicators[3] == Approx(1.0 - x[0]));
 }
 
 TEST_CASE("equations: states that leave the numbers are an error", "[model]") {

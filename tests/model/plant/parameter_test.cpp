@@ -39,7 +39,7 @@ std::string unit_suffix(std::string_view unit) {
   return suffix;
 }
 
-constexpr std::array kPlants{PlantKind::load_pressure, PlantKind::two_chamber};
+constexpr std::array kPlants{PlantKind::load_pressure, PlantKind::two_chamber, PlantKind::linkage};
 
 }  // namespace
 

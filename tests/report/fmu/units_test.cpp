@@ -9,7 +9,8 @@
 using namespace rigcal;
 
 TEST_CASE("units: each unit of a parameter is the product of its base units", "[report]") {
-  for (const auto plant : {model::PlantKind::load_pressure, model::PlantKind::two_chamber}) {
+  for (const auto plant : {model::PlantKind::load_pressure, model::PlantKind::two_chamber,
+                           model::PlantKind::linkage}) {
     for (const model::ParameterSpec& spec : model::parameter_table(plant)) {
       const report::BaseUnits& base = report::base_units(spec.unit);
       std::string product = "1";

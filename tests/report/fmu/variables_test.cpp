@@ -15,8 +15,9 @@
 #include "report/fmu/documentation.hpp"
 #include "report/fmu/fmu.hpp"
 #include "report/fmu/model_description.hpp"
+#include "report/fmu/units.hpp"
 #include "report/fmu/zip.hpp"
-#include "tests/model/rig.hpp"
+#include "tests/model/linkage_rig.hpp"
 
 // The description of a rig that an importer reads.
 
@@ -104,6 +105,32 @@ TEST_CASE("fmu variables: inputs by the loop and the plant, each with its start"
   CHECK(named(two, "tank_pressure").reference == 3);
   CHECK(named(two, "tank_pressure").start == 2e5);
   CHECK(named(two, "supply_pressure").start == 7e6);
+}
+
+TEST_CASE("fmu variables: an arm is told in radians, and its pilot pressure drives it",
+          "[report]") {
+  model::Experiment arm = model::arm_rig();
+  arm.set("supply_resistance", 1e9).set("supply_capacity", 1e-11).set("pump_flow", 6e-4);
+  arm.set("pump_second_flow", 9e-4).set("pump_delay", 0.3).set("pump_first_rate", 1e-4);
+  arm.set("valve_frequency", 60.0).set("valve_damping_ratio", 0.8).set("lever_curvature", -0.1);
+  model::ExportedRig rig;
+  rig.rig = arm.rig;
+  rig.values = arm.values;
+  const auto variables = variables_of(rig);
+  CHECK(variables.front().name == "pilot_pressure");
+  CHECK(variables.front().unit == "Pa");
+  CHECK(named(variables, "angle").unit == "rad");
+  CHECK(named(variables, "angle").is_state);
+  CHECK(named(variables, "position").causality == Causality::output);  // of the piston
+  CHECK(named(variables, "der(pump_demand)").unit == "1");
+  CHECK(named(variables, "lever_curvature").unit == "m/rad3");
+  for (const char* absent : {"external_force", "command", "payload_acceleration", "stroke"})
+    CHECK_FALSE(has(variables, absent));
+  for (const FmuVariable& each : variables) {
+    CAPTURE(each.name, each.unit);
+    CHECK_NOTHROW(report::base_units(each.unit));
+  }
+  CHECK_FALSE(has(variables_of(two_chamber_rig()), "angle"));
 }
 
 TEST_CASE("fmu variables: states, outputs and rates by their references", "[report]") {

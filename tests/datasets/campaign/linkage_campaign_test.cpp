@@ -1,0 +1,140 @@
+// A rig in radians: its keys and units, what drives it, and what does not go together.
+
+#include <catch2/catch.hpp>
+
+#include "datasets/campaign/campaign_parameters.hpp"
+#include "tests/datasets/campaign_fixture.hpp"
+
+using namespace rigcal;
+using namespace rigcal::datasets;
+using rigcal::test::load_text;
+using rigcal::test::replaced;
+
+namespace {
+
+const std::string kArm = R"(schema = "rigcal.campaign/1"
+[rig]
+model = "linkage"
+[rig.parameters]
+inertia = "8000 kg m2"
+joint_damping = { start = "5 kN m s/rad", fit = true }
+reference_angle = "-90 deg"
+lever = "12 mm/deg"
+lower_stop = "-150 deg"
+upper_stop = "-30 deg"
+area_a = "75 cm2"
+area_b = "150 cm2"
+dead_volume_a = "3 L"
+dead_volume_b = "3 L"
+tank_pressure = "2 bar"
+supply_pressure = "340 bar"
+density = "870 kg/m3"
+bulk_modulus = "800 MPa"
+discharge_coefficient = 0.65
+area_gradient = "20 mm"
+pilot_gain = "0.3 mm/bar"
+pilot_dead_band = "12 bar"
+leakage_coefficient = 0
+leakage_area = "1 mm2"
+[rig.controller]
+type = "none"
+[recording]
+initial = "record"
+[recording.channels]
+time = { column = "t_s", unit = "s" }
+pilot_pressure = { column = "out_bar", minus = "in_bar", unit = "bar" }
+angle = { column = "angle_deg", unit = "deg", sd = "0.1 deg" }
+pressure_a = { column = "rod_bar", unit = "bar" }
+[acceptance]
+rho2 = 0.99
+[[condition]]
+id = "out"
+waveform = "recorded"
+use = "fit"
+repeats = ["out.csv"]
+)";
+
+double value(const Campaign& campaign, const char* key) {
+  return values_in(campaign, campaign.conditions.front())[key];
+}
+
+}  // namespace
+
+TEST_CASE("load_campaign: a linkage is in radians, and a pilot pressure drives it", "[datasets]") {
+  const Campaign campaign = load_text(kArm);
+  CHECK(campaign.rig.plant == model::PlantKind::linkage);
+  CHECK(campaign.rig.pilot);
+  CHECK(drive_channel(campaign) == Channel::pilot_pressure);
+  CHECK(motion_channel(campaign) == Channel::angle);
+  CHECK(value(campaign, "lever") == Approx(0.012 * 180.0 / 3.14159265358979));
+  CHECK(value(campaign, "lower_stop") == Approx(-150.0 * 3.14159265358979 / 180.0));
+  CHECK(value(campaign, "pilot_gain") == Approx(3e-9));
+  const ChannelSetting& pilot = campaign.channels.at(Channel::pilot_pressure);
+  CHECK(pilot.role == ChannelRole::input);
+  CHECK(pilot.minus == "in_bar");  // one column per direction
+  CHECK(campaign.channels.at(Channel::angle).role == ChannelRole::output);
+  CHECK(*campaign.channels.at(Channel::angle).sd == Approx(0.1 * 3.14159265358979 / 180.0));
+  // A limit without a channel is that of the motion.
+  REQUIRE(campaign.acceptance.size() == 1);
+  CHECK(campaign.acceptance.front().channel == Channel::angle);
+  const int inertia = model::parameter_index(model::PlantKind::linkage, "inertia");
+  CHECK(model::parameter_table(model::PlantKind::linkage)[static_cast<std::size_t>(inertia)].name ==
+        "inertia_kg_m2");
+}
+
+TEST_CASE("load_campaign: a linkage with an electric valve is driven by the command",
+          "[datasets]") {
+  std::string text = replaced(kArm, "pilot_gain = \"0.3 mm/bar\"\npilot_dead_band = \"12 bar\"",
+                              "valve_gain = \"0.1 mm/V\"\nvalve_dead_band = \"1 V\"");
+  text =
+      replaced(text, "pilot_pressure = { column = \"out_bar\", minus = \"in_bar\", unit = \"bar\"",
+               "command = { column = \"u_V\", unit = \"V\"");
+  const Campaign campaign = load_text(text);
+  CHECK_FALSE(campaign.rig.pilot);
+  CHECK(drive_channel(campaign) == Channel::command);
+}
+
+TEST_CASE("load_campaign: what does not go together on a linkage", "[datasets]") {
+  struct Row {
+    const char* part;
+    const char* with;
+    const char* message;
+  };
+  const char* const gain = "pilot_gain = \"0.3 mm/bar\"";
+  for (
+      const Row& row : {
+          Row{gain, "pilot_gain = \"0.3 mm/bar\"\nvalve_gain = \"0.1 mm/V\"",
+              "pilot_gain stands together with valve_gain: expected valve_gain (an electric valve"},
+          Row{gain, "", "nothing tells the gain of the valve"},
+          Row{gain, "valve_gain = \"0.1 mm/V\"", "pilot_dead_band is of a pilot-operated valve"},
+          Row{gain, "pilot_gain = \"0.3 mm/bar\"\nvalve_offset = \"0.1 V\"",
+              "valve_offset is in volts"},
+          Row{gain, "pilot_gain = \"0.3 mm/bar\"\npump_flow = \"100 L/min\"",
+              "a pump of limited flow needs supply_resistance"},
+          Row{gain,
+              "pilot_gain = \"0.3 mm/bar\"\npump_flow = \"100 L/min\"\nsupply_resistance = \"1e9 "
+              "Pa s/m3\"\nsupply_capacity = \"1e-12 m3/Pa\"\npump_second_flow = \"150 L/min\"",
+              "expected pump_delay as well"},
+          Row{gain, "pilot_gain = \"0.3 mm/bar\"\npump_delay = \"1 s\"",
+              "pump_delay without a first flow: expected pump_flow"},
+          Row{gain, "pilot_gain = \"0.3 mm/bar\"\nmass = \"5 kg\"", "mass"},
+          Row{"upper_stop = \"-30 deg\"", "upper_stop = \"-160 deg\"", "is not above lower_stop"},
+          Row{"lever = \"12 mm/deg\"", "lever = \"12 mm/deg\"\nlever_gradient = \"-1 m/rad2\"",
+              "expected one above 0 in all of the range"},
+          Row{"type = \"none\"", "type = \"pid\"", "the plant linkage has no controller yet"},
+          Row{"angle = { column", "position = { column = \"x_m\", unit = \"m\" }\nangle = { column",
+              "the plant linkage turns an arm, and its motion is the angle of the joint"},
+          Row{"unit = \"deg\", sd", "unit = \"mm\", sd", "angle"},
+      }) {
+    CAPTURE(row.with);
+    CHECK_THROWS_WITH(load_text(replaced(kArm, row.part, row.with)), Catch::Contains(row.message));
+  }
+}
+
+TEST_CASE("load_campaign: a load that slides has no angle", "[datasets]") {
+  CHECK_THROWS_WITH(
+      load_text(replaced(
+          test::kExample, "pressure_a = { unit = \"bar\" }",
+          "pressure_a = { unit = \"bar\" }\nangle = { column = \"a_deg\", unit = \"deg\" }")),
+      Catch::Contains("moves a load along a line, and has no joint"));
+}
