@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/consider/day_effects.hpp"
+#include "calib/problem/day_effects.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "diagnosis/leak/leak_estimate.hpp"
 #include "metrics/significance.hpp"

@@ -45,6 +45,49 @@ double jackknife_variance(const std::vector<Agreement>& without, double Agreemen
   return squares * (repeats - 1.0) / repeats;
 }
 
+/// Largest noise of the mean, by the largest deviation of a repeat from it.
+double largest_noise(const MeasuredMean& measured) {
+  double largest = 0.0;
+  for (const auto& own : measured.deviations)
+    for (const double d : own)
+      if (!std::isnan(d)) largest = std::max(largest, std::abs(d));
+  return largest / std::sqrt(static_cast<double>(measured.deviations.size()) - 1.0);
+}
+
+/// Half width of the two-sided interval: that without bias, and what noise in the mean has made the
+/// score worse by.
+///
+/// @param noise   largest noise of the mean
+/// @param half    of the interval without bias
+/// @param factor  of the standard uncertainty in it
+double half_with_bias(const std::vector<Agreement>& without, const Agreement& found,
+                      double Agreement::*score, double noise, double half, double factor) {
+  const auto repeats = static_cast<double>(without.size());
+  double away = -(found.*score);
+  for (const Agreement& each : without) away += each.*score / repeats;
+  away = std::abs(away);
+  if (score == &Agreement::maximum_error) return std::hypot(half, noise);
+  const bool fit_percent = score == &Agreement::nrmse_fit_percent;
+  if (score == &Agreement::rmse || fit_percent) {
+    // Squares of rms errors have a bias in 1/R; a fit in percent is one less such an error.
+    const auto error_of = [&](const Agreement& each) {
+      return fit_percent ? 100.0 - each.*score : each.*score;
+    };
+    double mean = 0.0;
+    for (const Agreement& each : without) mean += std::pow(error_of(each), 2) / repeats;
+    double squares = 0.0;
+    for (const Agreement& each : without)
+      squares += std::pow(std::pow(error_of(each), 2) - mean, 2);
+    const double square = std::pow(error_of(found), 2);
+    const double error = factor * std::sqrt(squares * (repeats - 1.0) / repeats);
+    const double bias = std::max(0.0, (mean - square) * (repeats - 1.0));
+    return std::max(half, error_of(found) - std::sqrt(std::max(0.0, square - bias - error)));
+  }
+  if (score == &Agreement::absolute_error_percent)
+    return half + away / (std::sqrt(repeats / (repeats - 1.0)) - 1.0);
+  return half + away * (repeats - 1.0);
+}
+
 /// Scores after changes of the mean by the sensor's uncertainty; one list per cause.
 using Changed = std::vector<std::vector<Agreement>>;
 
@@ -72,8 +115,8 @@ Changed changed_by_sensor(const MeasuredMean& measured, std::span<const double> 
 
 }  // namespace
 
-std::optional<Agreement> agreement_uncertainty(const MeasuredMean& measured,
-                                               std::span<const double> simulated) {
+std::optional<ScoreUncertainty> agreement_uncertainty(const MeasuredMean& measured,
+                                                      std::span<const double> simulated) {
   const Agreement found = agreement(measured.mean, simulated);
   const auto& deviations = measured.deviations;
   if (deviations.size() < 2 || all_zero(deviations)) return std::nullopt;
@@ -87,7 +130,7 @@ std::optional<Agreement> agreement_uncertainty(const MeasuredMean& measured,
   }
   const Changed changed = changed_by_sensor(measured, simulated);
   const double freedom = static_cast<double>(deviations.size()) - 1.0;
-  Agreement result;
+  ScoreUncertainty result;
   for (const MetricSpec& metric : kMetrics) {
     const auto score = metric.value;
     const double by_repeats = jackknife_variance(without, score);
@@ -101,7 +144,10 @@ std::optional<Agreement> agreement_uncertainty(const MeasuredMean& measured,
     const double share = variance > 0.0 ? by_repeats / variance : 1.0;
     const double factor =
         share > 0.0 ? student_t_quantile(0.975, freedom / (share * share)) : normal_quantile(0.975);
-    result.*score = factor * std::sqrt(variance);
+    const double half = factor * std::sqrt(variance);
+    result.one_sided.*score = half;
+    result.two_sided.*score =
+        half_with_bias(without, found, score, largest_noise(measured), half, factor);
   }
   return result;
 }

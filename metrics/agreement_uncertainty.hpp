@@ -17,8 +17,16 @@ struct MeasuredMean {
   double offset_sd = 0.0;  ///< standard uncertainty of its offset, unit of the mean
 };
 
-/// Expanded uncertainty of each score of a given model: with 95 % confidence the score differs by
-/// no more from the score against the mean of unlimited repeats and a true sensor.
+/// Expanded uncertainties of each score of a given model, against the mean of unlimited repeats and
+/// a true sensor.
+struct ScoreUncertainty {
+  /// The score is falsely better by more in at most 2.5 % of cases: the guard band of a limit.
+  Agreement one_sided;
+  /// The score differs by no more, in either direction, in 95 %: what stands behind +-.
+  Agreement two_sided;
+};
+
+/// Expanded uncertainty of each score.
 ///
 /// The contribution of the repeats is the jackknife, u^2 = (R - 1) / R sum (S_r - mean S_r)^2,
 /// where S_r is the score without repeat r. It makes no assumption on the correlation of deviations
@@ -30,13 +38,16 @@ struct MeasuredMean {
 /// of freedom by Welch-Satterthwaite, R - 1 for the repeats and unlimited for the sensor (JCGM
 /// 100:2008, G.4).
 ///
-/// Noise that remains in the mean makes a score worse on average, by the amount that noise_floor()
-/// gives. That is not included: a limit that is kept in spite of it is kept.
+/// Noise that remains in the mean makes a score worse on average. One-sided, that is not included:
+/// a limit that is kept in spite of it is kept. Two-sided it is: by the bias of the jackknife, of
+/// the score (fractions such as rho2), of its square (rmse), or with 1/sqrt(R) (sums of absolute
+/// errors), as the noise enters. The largest error moves by no more than the largest noise of the
+/// mean, which the largest deviation of the repeats tells: it adds as a square.
 ///
 /// @return nothing with fewer than two repeats, if all are equal (copies carry no information), or
 ///         if a score does not exist without one of them
 /// @throws as agreement()
-std::optional<Agreement> agreement_uncertainty(const MeasuredMean& measured,
-                                               std::span<const double> simulated);
+std::optional<ScoreUncertainty> agreement_uncertainty(const MeasuredMean& measured,
+                                                      std::span<const double> simulated);
 
 }  // namespace rigcal::metrics

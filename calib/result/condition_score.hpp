@@ -25,6 +25,8 @@ struct ChannelScore {
   std::optional<metrics::NoiseFloor> noise_floor;  ///< absent where the noise is unknown
   /// Of each score, from repeats and sensor; absent with fewer than two repeats.
   std::optional<metrics::Agreement> expanded_uncertainty;
+  /// The same two-sided: what stands behind +-.
+  std::optional<metrics::Agreement> two_sided_uncertainty;
   std::optional<double> gain_ratio, phase_deg, delay_s;  ///< at the fundamental (sine, square)
   std::string problem;                                   ///< why a metric does not exist, in words
   /// Tests of measured minus simulated, over the longest window; absent if that is too short or the

@@ -74,6 +74,9 @@ struct FittedParameter {
   IntervalSource interval = IntervalSource::none;  ///< basis of ci95_if_exact
   /// With which the error that ci95_if_exact rests on is known; at most metrics::kManyDegrees.
   std::optional<double> degrees_of_freedom;
+  /// Standard error by what differs between days, in no interval: it counts where estimates of
+  /// different dates are compared.
+  std::optional<double> between_days_error;
   std::optional<Budget95> budget;  ///< contributions to ci95; absent where nothing was considered
   /// The most that an effect which the residuals ask for would move the estimate, SI.
   double moved_by_missing = 0.0;

@@ -96,8 +96,11 @@ ChannelScore score_channel(const datasets::Campaign& campaign, const ProblemCond
   score.channel = channel.channel;
   try {
     score.agreement = metrics::agreement(channel.measured, simulated);
-    score.expanded_uncertainty =
-        metrics::agreement_uncertainty(measured_mean(campaign, condition, channel), simulated);
+    if (const auto found = metrics::agreement_uncertainty(
+            measured_mean(campaign, condition, channel), simulated)) {
+      score.expanded_uncertainty = found->one_sided;
+      score.two_sided_uncertainty = found->two_sided;
+    }
   } catch (const std::logic_error& error) {  // constant, or fewer than two samples
     add_problem(score, error.what());
   }

@@ -247,6 +247,8 @@ std::vector<FittedParameter> describe_unknowns(const Problem& problem, const Eva
     parameter.correlated = found.root.condition_of(static_cast<Eigen::Index>(j)) < 0;
     parameter.standard_error = found.standard_error[j];
     parameter.robust_standard_error = found.robust_standard_error[j];
+    if (found.standard_error[j] && j < found.between_days.size())
+      parameter.between_days_error = found.between_days[j];
     if (parameter.standard_error) {
       const double half_width = choose_interval(problem, found, j, parameter);
       parameter.ci95 = {std::max(spec.lower, parameter.value - half_width),

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "calib/problem/day_effects.hpp"
 #include "calib/problem/evaluation.hpp"
 #include "common/parallel.hpp"
 
@@ -101,37 +102,85 @@ std::vector<std::string> uncertain_names(const Problem& problem) {
   return names;
 }
 
-KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
-                                   const std::vector<ConditionRows>& rows, const ArrowRoot& root,
-                                   int threads) {
-  KnownUncertainty result;
-  const std::vector<Known> values = uncertain_values(problem);
-  result.names = uncertain_names(problem);
-  const auto knowns = static_cast<Eigen::Index>(values.size());
-  result.response = Eigen::MatrixXd::Zero(root.unknowns(), knowns);
-  if (values.empty()) return result;
+Eigen::MatrixXd response_of_unknowns(const Problem& problem, const std::vector<ConditionRows>& rows,
+                                     const ArrowRoot& root, Eigen::Index columns, int threads,
+                                     const std::function<Eigen::MatrixXd(std::size_t)>& known) {
+  Eigen::MatrixXd response = Eigen::MatrixXd::Zero(root.unknowns(), columns);
+  if (columns == 0) return response;
   std::vector<Eigen::MatrixXd> parts(problem.conditions.size());
   parallel_for(parts.size(), threads, [&](std::size_t i) {
-    const Eigen::MatrixXd known = known_rows(problem, i, z, values);
-    if (known.size() == 0) return;
+    const Eigen::MatrixXd changes = known(i);
+    if (changes.size() == 0) return;
     parts[i] =
-        root.rows(problem.map.acting(i), i).transpose() * (rows[i].jacobian.transpose() * known);
+        root.rows(problem.map.acting(i), i).transpose() * (rows[i].jacobian.transpose() * changes);
   });
   const Eigen::Index shared = root.shared().cols();
-  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(shared, knowns);
+  Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(shared, columns);
   for (const Eigen::MatrixXd& part : parts) {
     if (part.size() > 0) sum += part.bottomRows(shared);
   }
   for (Eigen::Index j = 0; j < root.unknowns(); ++j) {
     const auto i = static_cast<std::size_t>(std::max(0, root.condition_of(j)));
     const Eigen::VectorXd c = root.row(j, i);
-    result.response.row(j) = -(c.tail(shared).transpose() * sum);
+    response.row(j) = -(c.tail(shared).transpose() * sum);
     if (root.condition_of(j) >= 0 && parts[i].size() > 0) {
       const Eigen::Index own = root.own_directions(i);
-      result.response.row(j) -= c.head(own).transpose() * parts[i].topRows(own);
+      response.row(j) -= c.head(own).transpose() * parts[i].topRows(own);
     }
   }
+  return response;
+}
+
+KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
+                                   const std::vector<ConditionRows>& rows, const ArrowRoot& root,
+                                   int threads) {
+  KnownUncertainty result;
+  const std::vector<Known> values = uncertain_values(problem);
+  result.names = uncertain_names(problem);
+  result.response =
+      response_of_unknowns(problem, rows, root, static_cast<Eigen::Index>(values.size()), threads,
+                           [&](std::size_t i) { return known_rows(problem, i, z, values); });
   return result;
+}
+
+Eigen::VectorXd day_errors(const Problem& problem, std::span<const double> z,
+                           const std::vector<ConditionRows>& rows, const ArrowRoot& root,
+                           int threads) {
+  if (problem.conditions.empty()) return Eigen::VectorXd::Zero(root.unknowns());
+  double interval_s = HUGE_VAL;
+  std::vector<std::string> days;
+  std::vector<Eigen::Index> day_of;  // of each condition
+  for (const ProblemCondition& each : problem.conditions) {
+    const auto& time_s = each.record->time_s;
+    if (time_s.size() > 1)
+      interval_s = std::min(
+          interval_s, (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1));
+    const std::string day = each.condition->date.value_or("");
+    const auto found = std::find(days.begin(), days.end(), day);
+    day_of.push_back(found - days.begin());
+    if (found == days.end()) days.push_back(day);
+  }
+  const std::vector<DayQuantity> quantities =
+      day_quantities(*problem.campaign, problem.values_at(0, z), interval_s);
+  const std::vector<int> indices = further_rows(quantities, {});
+  const auto count = static_cast<Eigen::Index>(quantities.size());
+  const Eigen::Index columns = count * static_cast<Eigen::Index>(days.size());
+  const auto changes = [&](std::size_t i) -> Eigen::MatrixXd {
+    const ProblemCondition& data = problem.conditions[i];
+    const auto run = model::simulate(data.rig, problem.values_at(i, z), indices, data.inputs,
+                                     data.fit_times(), data.outputs, problem.simulation_options());
+    if (!run.ok()) return {};
+    const auto samples = static_cast<Eigen::Index>(data.rows.size());
+    const std::vector<Eigen::Index> counted(data.rows.begin(), data.rows.end());
+    const auto channels = static_cast<Eigen::Index>(data.channels.size());
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(samples * channels, columns);
+    for (Eigen::Index k = 0; k < channels; ++k)
+      result.block(k * samples, day_of[i] * count, samples, count) =
+          day_changes(data, run, k, indices, data.fit_times(), quantities)(counted, Eigen::all) /
+          data.channels[static_cast<std::size_t>(k)].sd;
+    return result;
+  };
+  return response_of_unknowns(problem, rows, root, columns, threads, changes).rowwise().norm();
 }
 
 }  // namespace rigcal::calib

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,10 +30,27 @@ std::vector<std::string> uncertain_names(const Problem& problem);
 Eigen::MatrixXd known_sensitivities(const Problem& problem, std::size_t condition,
                                     std::span<const double> z, const std::vector<int>& indices);
 
+/// Change of the unknowns in the unit box, -(J^T J)^-1 J^T K, by what changes the weighted outputs
+/// of each condition by the columns of K. Shape (unknowns, columns).
+///
+/// @param known  K of a condition, shape (residuals, columns); empty: none
+Eigen::MatrixXd response_of_unknowns(const Problem& problem, const std::vector<ConditionRows>& rows,
+                                     const ArrowRoot& root, Eigen::Index columns, int threads,
+                                     const std::function<Eigen::MatrixXd(std::size_t)>& known);
+
 /// @param rows  of each condition at z
 /// @param root  R with R R^T = (J^T J)^-1 on the directions that the data determine
 KnownUncertainty known_uncertainty(const Problem& problem, std::span<const double> z,
                                    const std::vector<ConditionRows>& rows, const ArrowRoot& root,
                                    int threads);
+
+/// Standard errors of the unknowns in the unit box by what differs between days: each date of the
+/// conditions has deviations of its own. Zero where nothing differs.
+///
+/// @param rows  of each condition at z
+/// @param root  R with R R^T = (J^T J)^-1 on the directions that the data determine
+Eigen::VectorXd day_errors(const Problem& problem, std::span<const double> z,
+                           const std::vector<ConditionRows>& rows, const ArrowRoot& root,
+                           int threads);
 
 }  // namespace rigcal::calib

@@ -25,19 +25,27 @@ bool takes_part(const Condition& condition) {
   return condition.use == datasets::Use::fit || condition.use == datasets::Use::validate;
 }
 
+/// Noise of the mean of as many repeats as the condition plans; without a number it is that of a
+/// file as the campaign describes one, of the repeats of [synthetic], or of a record that exists.
 double planned_sd(const Campaign& campaign, const Condition& condition, Channel channel,
                   const std::vector<Record>& records) {
+  const auto of_mean = [&](double of_one, double otherwise) {
+    const auto& repeats = condition.planned_repeats;
+    return repeats ? of_one / std::sqrt(static_cast<double>(*repeats)) : otherwise;
+  };
   const auto setting = campaign.channels.find(channel);
-  if (setting->second.sd) return *setting->second.sd;
+  if (const auto& sd = setting->second.sd) return of_mean(*sd, *sd);
   if (campaign.synthetic_settings) {
     const auto& synthetic = *campaign.synthetic_settings;
     const auto noise = synthetic.noise_sd.find(channel);
-    if (noise != synthetic.noise_sd.end()) return noise->second / std::sqrt(synthetic.repeats);
+    if (noise != synthetic.noise_sd.end())
+      return of_mean(noise->second, noise->second / std::sqrt(synthetic.repeats));
   }
   for (const Record& record : records) {
     const auto series = record.channels.find(channel);
-    if (series != record.channels.end() && series->second.sd_of_mean > 0.0)
-      return series->second.sd_of_mean;
+    if (series == record.channels.end() || !(series->second.sd_of_mean > 0.0)) continue;
+    const double sd = series->second.sd_of_mean;
+    return of_mean(sd * std::sqrt(static_cast<double>(record.repeats)), sd);
   }
   throw InputError(condition.where,
                    fmt::format("condition \"{}\": nothing tells the noise of channel {}, so what "

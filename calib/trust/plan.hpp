@@ -31,7 +31,8 @@ struct Plan {
 
 /// Conditions of use `fit` or `validate` without a record, but with duration and sample rate, are
 /// planned ones. Their noise is the channel's `sd`, that of [synthetic] divided by the root of its
-/// repeats, or that of the records.
+/// repeats, or that of the records; with `planned_repeats` that of a single repeat divided by its
+/// root.
 ///
 /// @param values  of an earlier fit, or null: the campaign's own
 /// @throws InputError  nothing is free, no condition, or a planned one of unknown noise

@@ -129,6 +129,12 @@ Uncertainty uncertainty(const Problem& problem, const Evaluation& optimum,
   result.spread = svd.spread(sigma, least);
   result.root = root;
   result.known = known_uncertainty(problem, optimum.z, rows, root, threads);
+  if (detail == Detail::full) {
+    const Eigen::VectorXd days = day_errors(problem, optimum.z, rows, root, threads);
+    for (Eigen::Index j = 0; j < n; ++j)
+      result.between_days.push_back(
+          days(j) * problem.map.slope(static_cast<int>(j), optimum.z[static_cast<std::size_t>(j)]));
+  }
   ArrowMatrix priors = root.zero();
   add_prior_information(problem, optimum.z, root, priors);
   std::vector<ScoreRows> scores;

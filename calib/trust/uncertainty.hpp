@@ -48,7 +48,9 @@ struct Uncertainty {
   /// R with R R^T = (J^T J)^-1 on the directions that the data determine; `scatter` is in its
   /// coordinates.
   ArrowRoot root;
-  KnownUncertainty known;              ///< is in all errors
+  KnownUncertainty known;  ///< is in all errors
+  /// By what differs between days (day_errors()), SI; in no error. Empty with Detail::plain.
+  std::vector<double> between_days;
   std::vector<ScoreRows> scores;       ///< that `scatter` is made of
   std::vector<ScoreScatter> scatter;   ///< per condition; empty: no robust errors
   double independent_residuals = 0.0;  ///< sum over all conditions and channels

@@ -136,6 +136,7 @@ struct Condition {
   std::vector<RepeatPattern> repeats;
   std::optional<std::string> averaged;  ///< file that is averaged already
   int repeats_averaged = 1;
+  std::optional<int> planned_repeats;  ///< of a record that `plan` plans
   std::vector<TimeWindow> windows;  ///< empty: the whole record counts
   bool moving_windows = false;      ///< `windows = "moving"`: found from the record
   std::optional<std::vector<AcceptanceLimit>> acceptance;  ///< in place of the campaign's
@@ -216,6 +217,7 @@ struct Campaign {
   bool time_in_counts = false;  ///< samples are numbered, and their interval is unknown
   std::map<Channel, ChannelSetting> channels;
   Alignment alignment = Alignment::correlate;
+  bool leave_out_outliers = false;  ///< repeats far from the others are not in the mean
   std::vector<AcceptanceLimit> acceptance;
   AcceptanceBounds acceptance_bounds;
   FitSettings fit;

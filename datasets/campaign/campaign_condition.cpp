@@ -117,6 +117,11 @@ void read_records(const TomlNode& node, const Campaign& campaign, Condition& con
     condition.repeats_averaged = count->integer(1, 1'000'000);
     if (!averaged) count->fail("has a meaning only together with averaged = \"file\"");
   }
+  if (const auto count = node.find("planned_repeats")) {
+    condition.planned_repeats = count->integer(1, 1'000'000);
+    if (repeats || averaged)
+      count->fail("stands beside a record: expected it where none exists yet, for plan");
+  }
 }
 
 TimeWindow read_window(const TomlNode& node) {
@@ -245,17 +250,29 @@ Condition read_condition(const TomlNode& unnamed, const Campaign& campaign) {
   Condition condition;
   condition.id = read_id(unnamed.require("id", "the name of the condition"));
   const TomlNode node = unnamed.renamed(fmt::format("condition \"{}\"", condition.id));
-  node.allow_only({"id",          "waveform",
-                   "frequency",   "end_frequency",
-                   "sweep_time",  "sweep",
-                   "amplitude",   "leak_level",
-                   "use",         "parameters",
-                   "controller",  "repeats",
-                   "averaged",    "repeats_averaged",
-                   "window",      "windows",
-                   "duration",    "sample_rate",
-                   "temperature", "date",
-                   "specimen",    "acceptance"});
+  node.allow_only({"id",
+                   "waveform",
+                   "frequency",
+                   "end_frequency",
+                   "sweep_time",
+                   "sweep",
+                   "amplitude",
+                   "leak_level",
+                   "use",
+                   "parameters",
+                   "controller",
+                   "repeats",
+                   "averaged",
+                   "repeats_averaged",
+                   "planned_repeats",
+                   "window",
+                   "windows",
+                   "duration",
+                   "sample_rate",
+                   "temperature",
+                   "date",
+                   "specimen",
+                   "acceptance"});
   condition.where = node.where();
   read_waveform(node, campaign, condition);
   if (const auto level = node.find("leak_level")) {

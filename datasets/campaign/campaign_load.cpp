@@ -122,11 +122,14 @@ void read_synthetic_entry(const TomlNode& node, Campaign& campaign) {
   }
 }
 
-Alignment read_alignment(const TomlNode& node) {
-  node.allow_only({"align"});
-  const auto align = node.find("align");
-  if (!align) return Alignment::correlate;
-  return align->choice<Alignment>({{"correlate", Alignment::correlate}, {"none", Alignment::none}});
+void read_averaging(const TomlNode& node, Campaign& campaign) {
+  node.allow_only({"align", "outliers"});
+  if (const auto align = node.find("align")) {
+    campaign.alignment =
+        align->choice<Alignment>({{"correlate", Alignment::correlate}, {"none", Alignment::none}});
+  }
+  if (const auto outliers = node.find("outliers"))
+    campaign.leave_out_outliers = outliers->choice<bool>({{"keep", false}, {"leave_out", true}});
 }
 
 }  // namespace
@@ -153,7 +156,7 @@ Campaign load_campaign(const std::filesystem::path& file, const std::filesystem:
   // The order matters: the later sections are checked against the earlier ones.
   if (const auto node = root.find("leak_level")) read_leak_levels(*node, campaign);
   if (const auto node = root.find("recording")) read_recording(*node, campaign);
-  if (const auto node = root.find("averaging")) campaign.alignment = read_alignment(*node);
+  if (const auto node = root.find("averaging")) read_averaging(*node, campaign);
   if (const auto node = root.find("acceptance")) read_acceptance(*node, campaign);
   if (const auto node = root.find("fit")) campaign.fit = read_fit(*node, campaign);
   if (const auto node = root.find("considered"))

@@ -276,10 +276,11 @@ void warn_of_outliers(const Stack& stack, Channel channel, Span span, const Aver
     RepeatReport& report = record.repeat_reports[stack.carriers[k]];
     report.outlier = true;
     record.warnings.push_back(fmt::format(
-        "{}: {} lies {:.3g} {} rms from the median of the {} repeats, {}; it stays in the mean",
-        info(channel).key, report.source, from_median[k], info(channel).unit, stack.rows.size(),
+        "{}: {} lies {:.3g} {} rms from the median of the {} repeats, {}; {}", info(channel).key,
+        report.source, from_median[k], info(channel).unit, stack.rows.size(),
         typical > 0.0 ? fmt::format("{:.3g} times as far as is typical", from_median[k] / typical)
-                      : std::string("where the others agree exactly")));
+                      : std::string("where the others agree exactly"),
+        kStaysInMean));
   }
 }
 

@@ -3,11 +3,15 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "datasets/record.hpp"
 
 namespace rigcal::datasets {
+
+/// The end of what a record's warning says of an outlier.
+inline constexpr std::string_view kStaysInMean = "it stays in the mean";
 
 struct AverageOptions {
   bool align =

@@ -209,6 +209,32 @@ std::vector<Repeat> load_all_repeats(const Campaign& campaign, const Condition& 
   return repeats;
 }
 
+namespace {
+
+/// The average of the repeats that are no outliers, which are taken out of `repeats`, too; the same
+/// where there are none, or fewer than two would stay.
+Record without_outliers(const Condition& condition, std::vector<Repeat>& repeats,
+                        const AverageOptions& options, const Record& all) {
+  const auto is_outlier = [](const RepeatReport& each) { return each.outlier; };
+  const auto outliers =
+      std::count_if(all.repeat_reports.begin(), all.repeat_reports.end(), is_outlier);
+  if (outliers == 0 || all.repeats - outliers < 2) return all;
+  std::vector<Repeat> kept;
+  for (std::size_t r = 0; r < repeats.size(); ++r)
+    if (!all.repeat_reports[r].outlier) kept.push_back(std::move(repeats[r]));
+  repeats = std::move(kept);
+  std::vector<std::string> told;
+  for (const std::string& warning : all.warnings)
+    if (warning.ends_with(kStaysInMean))
+      told.push_back(warning.substr(0, warning.size() - kStaysInMean.size()) +
+                     "it is left out, as [averaging] outliers asks");
+  Record record = average(condition.id, repeats, options);
+  record.warnings.insert(record.warnings.begin(), told.begin(), told.end());
+  return record;
+}
+
+}  // namespace
+
 Record average_of(const Campaign& campaign, const Condition& condition,
                   std::vector<Repeat>& repeats, bool keep_deviations) {
   try {
@@ -221,6 +247,7 @@ Record average_of(const Campaign& campaign, const Condition& condition,
     options.keep_deviations = keep_deviations;
     for (auto& [channel, sd] : options.known_sd) sd *= done.noise_gain;
     Record record = average(condition.id, repeats, options);
+    if (campaign.leave_out_outliers) record = without_outliers(condition, repeats, options, record);
     record.notes = bridged_notes(repeats);
     record.notes.insert(record.notes.end(), done.notes.begin(), done.notes.end());
     seen.insert(seen.end(), done.warnings.begin(), done.warnings.end());

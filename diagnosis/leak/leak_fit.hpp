@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "calib/consider/day_effects.hpp"
+#include "calib/problem/day_effects.hpp"
 #include "calib/fit.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"

@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
 
 #include "metrics/significance.hpp"
 #include "report/comparison/comparison_parts.hpp"
@@ -29,6 +31,7 @@ std::optional<StoredEstimate> estimate_of(const StoredFit& fit,
     estimate.degrees_of_freedom = std::optional(error->freedom);
   }
   if (usable) estimate.ci95 = found->ci95;
+  if (usable && found->between_days_error) estimate.between_days_error = found->between_days_error;
   estimate.identifiability = found->identifiability;
   estimate.at_bound = found->at_bound;
   return estimate;
@@ -45,7 +48,7 @@ bool may_be_zero(const StoredEstimate& estimate) {
 /// The difference, except for the adjustment that needs all parameters together.
 std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate>& first,
                                               const std::optional<StoredEstimate>& other,
-                                              bool same_records) {
+                                              bool same_records, bool other_dates) {
   if (!first || !other) return std::nullopt;
   StoredDifference result;
   const auto untested = [&](const char* reason) {
@@ -58,9 +61,10 @@ std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate
   if (!may_be_zero(*first)) result.percent = 100.0 * (*other->value / *first->value - 1.0);
   if (!first->fitted && !other->fitted) return untested(kKnownInBoth);
   // A known value has no error.
-  const auto error = [](const StoredEstimate& estimate) {
-    return metrics::EstimateError{estimate.standard_error.value_or(0.0),
-                                  estimate.degrees_of_freedom.value_or(metrics::kManyDegrees)};
+  const auto error = [&](const StoredEstimate& estimate) {
+    const metrics::EstimateError own{estimate.standard_error.value_or(0.0),
+                                     estimate.degrees_of_freedom.value_or(metrics::kManyDegrees)};
+    return other_dates ? with_days(own, estimate.between_days_error) : own;
   };
   for (const auto* estimate : {&*first, &*other})
     if (estimate->fitted && !estimate->standard_error)
@@ -69,6 +73,8 @@ std::optional<StoredDifference> difference_of(const std::optional<StoredEstimate
     return untested("estimated from the same data, so not independent of each other");
   const metrics::EstimateError both = metrics::error_of_difference(error(*first), error(*other));
   result.standard_error = both.standard_error;
+  if (other_dates && (first->between_days_error || other->between_days_error))
+    result.of_other_dates = true;
   result.degrees_of_freedom = std::optional(both.freedom);
   result.p_value = metrics::difference_p_value(difference, both);
   return result;
@@ -105,7 +111,34 @@ std::vector<StoredComparedParameter> all_parameters(const std::vector<Compared>&
   return list;
 }
 
+/// Dates of the conditions that a result was fitted to; none where one has no date.
+std::set<std::string> fitted_dates(const Compared& compared) {
+  std::set<std::string> dates;
+  for (const StoredCondition& condition : compared.result.conditions) {
+    if (condition.use != datasets::Use::fit) continue;
+    if (!condition.date) return {};
+    dates.insert(*condition.date);
+  }
+  return dates;
+}
+
+/// Whether two results are stated to be of different dates. Where one has no date nothing tells.
+bool of_other_dates(const Compared& first, const Compared& other) {
+  const auto a = fitted_dates(first);
+  const auto b = fitted_dates(other);
+  return !a.empty() && !b.empty() && a != b;
+}
+
 }  // namespace
+
+metrics::EstimateError with_days(const metrics::EstimateError& own,
+                                 const std::optional<double>& between_days_error) {
+  const double days = between_days_error.value_or(0.0);
+  if (!(days > 0.0)) return own;
+  const std::array parts{metrics::ErrorPart{own.standard_error * own.standard_error, own.freedom},
+                         metrics::ErrorPart{days * days, metrics::kManyDegrees}};
+  return {std::hypot(own.standard_error, days), metrics::effective_freedom(parts)};
+}
 
 std::vector<StoredComparedParameter> compared_parameters(const std::vector<Compared>& results) {
   std::vector<StoredComparedParameter> list = all_parameters(results);
@@ -115,7 +148,8 @@ std::vector<StoredComparedParameter> compared_parameters(const std::vector<Compa
     parameter.differences.emplace_back();
     for (std::size_t i = 1; i < results.size(); ++i) {
       parameter.differences.push_back(difference_of(parameter.estimates[0], parameter.estimates[i],
-                                                    share_fitted_records(results[0], results[i])));
+                                                    share_fitted_records(results[0], results[i]),
+                                                    of_other_dates(results[0], results[i])));
     }
   }
   for (std::size_t i = 1; i < results.size(); ++i) judge_together(list, i);

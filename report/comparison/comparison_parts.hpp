@@ -61,6 +61,10 @@ std::vector<StoredComparedMetric> compared_metrics(
     const std::vector<StoredComparedCondition>& conditions, const std::vector<Compared>& results);
 /// Files and the results that used them.
 std::vector<StoredComparedRecord> compared_records(const std::vector<Compared>& results);
+/// The error of an estimate with that by what differs between days.
+metrics::EstimateError with_days(const metrics::EstimateError& own,
+                                 const std::optional<double>& between_days_error);
+
 /// Estimates of the parameter of a key along dates and temperatures.
 std::vector<StoredSeries> trends(const std::vector<Compared>& results, std::string_view key);
 

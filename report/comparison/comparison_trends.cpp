@@ -102,8 +102,13 @@ StoredTrendPoint point_of(const Compared& compared, const StoredParameter& param
                                   });
   point.value = parameter.value;
   if (const auto error = interval_error(parameter)) {
-    point.standard_error = error->standard_error;
-    point.degrees_of_freedom = std::optional(error->freedom);
+    const bool dated = point.day.has_value();  // each date has a day of its own
+    const metrics::EstimateError all =
+        dated ? with_days(*error, parameter.between_days_error) : *error;
+    if (dated && parameter.between_days_error)
+      point.between_days_error = parameter.between_days_error;
+    point.standard_error = all.standard_error;
+    point.degrees_of_freedom = std::optional(all.freedom);
   }
   point.ci95 = parameter.ci95;
   return point;

@@ -41,8 +41,9 @@ struct StoredEstimate {
   std::optional<Range> ci95;
   std::optional<calib::Identifiability> identifiability;
   bool at_bound = false;
+  Omittable<double> between_days_error;  ///< standard error by what differs between days
   RIGCAL_DESCRIBE(value, fitted, standard_error, degrees_of_freedom, ci95, identifiability,
-                  at_bound)
+                  at_bound, between_days_error)
 };
 
 /// An estimate minus that of the first result.
@@ -55,8 +56,9 @@ struct StoredDifference {
   std::optional<double> p_value_of_all;             ///< adjusted for all parameters (Holm)
   std::optional<bool> significant;
   std::optional<std::string> reason;  ///< why it is not tested
+  Omittable<bool> of_other_dates;     ///< the error includes what differs between days
   RIGCAL_DESCRIBE(difference, percent, standard_error, degrees_of_freedom, p_value, p_value_of_all,
-                  significant, reason)
+                  significant, reason, of_other_dates)
 };
 
 struct StoredComparedParameter {
@@ -140,8 +142,9 @@ struct StoredTrendPoint {
   std::optional<double> value, standard_error;
   Later<std::optional<double>> degrees_of_freedom;  ///< for the error
   std::optional<Range> ci95;
+  Omittable<double> between_days_error;  ///< is in the standard error, too
   RIGCAL_DESCRIBE(result, level, day, temperature_k, value, standard_error, degrees_of_freedom,
-                  ci95)
+                  ci95, between_days_error)
 };
 
 /// A line through the points, weighted by their errors.

@@ -69,9 +69,37 @@ TEST_CASE("agreement_uncertainty: of a constant error it is t times the standard
   }
   const auto found = agreement_uncertainty(measured(repeats), truth);
   REQUIRE(found.has_value());
-  CHECK_THAT(found->rmse,
+  CHECK_THAT(found->one_sided.rmse,
              WithinRel(student_t_quantile(0.975, 4.0) * std::sqrt(squares / 4.0 / 5.0), 1e-9));
-  CHECK(found->rho2 < 1e-12);  // blind to an offset
+  CHECK(found->one_sided.rho2 < 1e-12);  // blind to an offset
+}
+
+TEST_CASE("agreement_uncertainty: two-sided, the score of unlimited repeats is within it",
+          "[metrics]") {
+  // A model that is exact, off by less than the noise, and by more; noise without and with memory.
+  std::mt19937_64 random(20261126);
+  const std::vector<double> truth = sine(400, 1.0);
+  constexpr int kDraws = 400;
+  for (const double scale : {1.0, 0.995, 0.97}) {
+    const std::vector<double> simulated = sine(400, scale);
+    const Agreement exact = agreement(truth, simulated);
+    std::vector<int> within(kMetrics.size(), 0);
+    for (int draw_number = 0; draw_number < kDraws; ++draw_number) {
+      const Repeats repeats = draw(truth, 5, draw_number % 2 == 0 ? 1e-4 : 0.005, 0.02, random);
+      const Agreement found = agreement(repeats.mean, simulated);
+      const auto uncertainty = agreement_uncertainty(measured(repeats), simulated);
+      REQUIRE(uncertainty.has_value());
+      for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+        const auto score = kMetrics[m].value;
+        CHECK(uncertainty->two_sided.*score >= uncertainty->one_sided.*score);
+        if (std::abs(exact.*score - found.*score) <= uncertainty->two_sided.*score) ++within[m];
+      }
+    }
+    for (std::size_t m = 0; m < kMetrics.size(); ++m) {
+      CAPTURE(scale, kMetrics[m].name, within[m]);
+      CHECK(within[m] >= kDraws * 0.90);
+    }
+  }
 }
 
 TEST_CASE("agreement_uncertainty: the score of unlimited repeats is seldom worse than it allows",
@@ -97,8 +125,8 @@ TEST_CASE("agreement_uncertainty: the score of unlimited repeats is seldom worse
       const auto score = kMetrics[m].value;
       const double sign = kMetrics[m].higher_is_better ? -1.0 : 1.0;
       const double distance = sign * (exact.*score - found.*score);  // above zero: worse than found
-      if (distance > (*uncertainty).*score) ++worse[m];
-      widths[m] += (*uncertainty).*score / kDraws;
+      if (distance > uncertainty->one_sided.*score) ++worse[m];
+      widths[m] += uncertainty->one_sided.*score / kDraws;
       scatter[m] += distance * distance / kDraws;
     }
   }
@@ -118,21 +146,21 @@ TEST_CASE("agreement_uncertainty: a sensor's gain and offset", "[metrics]") {
   with.gain_sd = 0.01;
   const auto gain = agreement_uncertainty(with, truth);
   REQUIRE(gain.has_value());
-  CHECK_THAT(gain->rmse, WithinRel(1.959964 * 0.01 / std::sqrt(2.0), 1e-5));
+  CHECK_THAT(gain->one_sided.rmse, WithinRel(1.959964 * 0.01 / std::sqrt(2.0), 1e-5));
   with.gain_sd = 0.0;
   with.offset_sd = 0.02;
   const auto offset = agreement_uncertainty(with, truth);
-  CHECK_THAT(offset->maximum_error, WithinRel(1.959964 * 0.02, 1e-5));
-  CHECK_THAT(offset->rmse, WithinRel(1.959964 * 0.02, 1e-5));  // the same at every sample
+  CHECK_THAT(offset->one_sided.maximum_error, WithinRel(1.959964 * 0.02, 1e-5));
+  CHECK_THAT(offset->one_sided.rmse, WithinRel(1.959964 * 0.02, 1e-5));  // the same at every sample
   // rho2 is blind to a constant, so the offset goes from -0.02 at one end of the range to 0.02 at
   // the other.
-  CHECK_THAT(offset->rho2, WithinRel(1.959964 * std::pow(0.02 / 0.98, 2.0), 1e-2));
+  CHECK_THAT(offset->one_sided.rho2, WithinRel(1.959964 * std::pow(0.02 / 0.98, 2.0), 1e-2));
   with.offset_sd = 20.0;  // larger than the signal
-  CHECK(agreement_uncertainty(with, truth)->rho2 > 0.9);
+  CHECK(agreement_uncertainty(with, truth)->one_sided.rho2 > 0.9);
   with.offset_sd = 0.02;
   with.gain_sd = 0.01;
-  CHECK_THAT(agreement_uncertainty(with, truth)->rmse,
-             WithinRel(std::hypot(gain->rmse, offset->rmse), 1e-6));
+  CHECK_THAT(agreement_uncertainty(with, truth)->one_sided.rmse,
+             WithinRel(std::hypot(gain->one_sided.rmse, offset->one_sided.rmse), 1e-6));
 }
 
 TEST_CASE("agreement_uncertainty: where repeats lack samples the others speak", "[metrics]") {
@@ -145,9 +173,9 @@ TEST_CASE("agreement_uncertainty: where repeats lack samples the others speak", 
   repeats.deviations[0][1] = kNan;
   const auto part = agreement_uncertainty(measured(repeats), truth);
   REQUIRE((whole && part));
-  CHECK(std::isfinite(part->rmse));
-  CHECK_THAT(part->rmse, WithinRel(whole->rmse, 0.05));
-  CHECK(part->rmse != whole->rmse);
+  CHECK(std::isfinite(part->one_sided.rmse));
+  CHECK_THAT(part->one_sided.rmse, WithinRel(whole->one_sided.rmse, 0.05));
+  CHECK(part->one_sided.rmse != whole->one_sided.rmse);
 }
 
 TEST_CASE("agreement_uncertainty: one repeat and copies tell nothing", "[metrics]") {

@@ -415,7 +415,9 @@ void add_score(const Judged& signal, doc::Cell& cell) {
   cell.line = {check.metric == "absolute_error_percent" ? "error % " : spaced(check.metric) + " ",
                doc::score(check.metric, check.value)};
   Line limit;
-  const auto& all = signal.condition->expanded_uncertainty;
+  const auto& two_sided = signal.condition->two_sided_uncertainty;
+  // Files of earlier versions have the one-sided one alone.
+  const auto& all = two_sided ? two_sided : signal.condition->expanded_uncertainty;
   const auto* known = all ? find(*all, signal.channel) : nullptr;
   if (known != nullptr && *known) {
     for (const metrics::MetricSpec& metric : metrics::kMetrics) {

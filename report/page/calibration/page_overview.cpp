@@ -106,8 +106,10 @@ std::string whose(const Extreme& worst, const std::string& metric,
     text += fmt::format(", limit {:.6g}", *check->limit);
   else
     text += ", no limit";
-  if (!condition.expanded_uncertainty) return text;
-  const auto* uncertainty = find(*condition.expanded_uncertainty, worst.channel);
+  const auto& all = condition.two_sided_uncertainty ? condition.two_sided_uncertainty
+                                                    : condition.expanded_uncertainty;
+  if (!all) return text;
+  const auto* uncertainty = find(*all, worst.channel);
   if (uncertainty != nullptr && *uncertainty && std::isfinite((**uncertainty).*value))
     text += fmt::format(", U {}", significant((**uncertainty).*value, kErrorDigits));
   return text;

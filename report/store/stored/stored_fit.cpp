@@ -115,6 +115,8 @@ StoredParameter stored(const calib::FittedParameter& p, const model::ParameterSp
   result.ci95 = range_of(p.ci95);
   result.ci95_if_exact = range_of(p.ci95_if_exact);
   if (p.budget) result.budget = stored(*p.budget);
+  if (p.between_days_error && std::isfinite(*p.between_days_error))
+    result.between_days_error = *p.between_days_error;
   if (p.ci95) result.ci95_from = std::optional(p.interval);
   result.degrees_of_freedom = finite(p.degrees_of_freedom);
   if (p.bootstrap)
@@ -289,6 +291,7 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score)
   condition.not_scored = unless_empty(score.not_scored);
   condition.failure = unless_empty(score.failure);
   condition.expanded_uncertainty.emplace();
+  condition.two_sided_uncertainty.emplace();
   for (const calib::ChannelScore& channel : score.channels) {
     const std::string key = key_of(channel.channel);
     condition.metrics.emplace_back(key, stored(channel));
@@ -299,6 +302,9 @@ StoredCondition stored(const Result& result, const calib::ConditionScore& score)
     condition.expanded_uncertainty->emplace_back(
         key, channel.expanded_uncertainty ? std::optional(stored(channel.expanded_uncertainty))
                                           : std::nullopt);
+    condition.two_sided_uncertainty->emplace_back(
+        key, channel.two_sided_uncertainty ? std::optional(stored(channel.two_sided_uncertainty))
+                                           : std::nullopt);
     std::optional<StoredResidualTests> tests;
     if (channel.residual_tests)
       tests = report::stored(*channel.residual_tests, info(channel.channel).unit);

@@ -161,6 +161,7 @@ struct StoredParameter {
   Later<std::optional<calib::IntervalSource>> ci95_from;  ///< basis of ci95_if_exact
   Later<std::optional<double>> degrees_of_freedom;  ///< of the error that ci95_if_exact rests on
   Omittable<StoredBudget> budget;
+  Omittable<double> between_days_error;  ///< standard error by what differs between days
   Omittable<StoredBootstrap> bootstrap;
   Omittable<StoredProfile> profile;
   bool at_bound = false;
@@ -168,7 +169,8 @@ struct StoredParameter {
   std::string reason;
   RIGCAL_DESCRIBE(name, key, symbol, unit, scope, level, value, start, lower, upper, fitted,
                   nuisance, standard_error, robust_standard_error, ci95, ci95_if_exact, ci95_from,
-                  degrees_of_freedom, budget, bootstrap, profile, at_bound, identifiability, reason)
+                  degrees_of_freedom, budget, between_days_error, bootstrap, profile, at_bound,
+                  identifiability, reason)
 };
 
 /// What the parameters of a result of an earlier schema say today.
@@ -315,7 +317,9 @@ struct StoredCondition {
   std::optional<std::string> failure;
   Keyed<StoredScore> metrics;  ///< by channel, like the three below
   Keyed<std::optional<StoredNoiseFloor>> noise_floor;
-  Omittable<Keyed<std::optional<StoredAgreement>>> expanded_uncertainty;  ///< per score
+  /// Per score, one-sided: the guard band of its limit.
+  Omittable<Keyed<std::optional<StoredAgreement>>> expanded_uncertainty;
+  Omittable<Keyed<std::optional<StoredAgreement>>> two_sided_uncertainty;  ///< per score, of +-
   Keyed<std::optional<StoredResidualTests>> residual_tests;
   Later<std::vector<StoredLimitCheck>> limit_checks;
   Later<Keyed<calib::Verdict>> channel_verdicts;
@@ -324,8 +328,8 @@ struct StoredCondition {
   RIGCAL_DESCRIBE(id, waveform, frequency_hz, amplitude_m, amplitude_v, amplitude_n, amplitude_pa,
                   amplitude_m_per_s2, leak_level, use, temperature_k, date, samples, record_sha256,
                   windows_s, notes, acceptance, not_judged, warnings, not_scored, failure, metrics,
-                  noise_floor, expanded_uncertainty, residual_tests, limit_checks, channel_verdicts,
-                  verdict, reasons)
+                  noise_floor, expanded_uncertainty, two_sided_uncertainty, residual_tests,
+                  limit_checks, channel_verdicts, verdict, reasons)
 
   /// Verdict on a channel; nothing without a limit.
   std::optional<calib::Verdict> verdict_of(const std::string& channel) const;

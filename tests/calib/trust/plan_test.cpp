@@ -46,6 +46,18 @@ TEST_CASE("plan: four repeats halve the error", "[calib]") {
   CHECK_THAT(planned_error(campaign), WithinRel(0.5 * of_one, 1e-3));
 }
 
+TEST_CASE("plan: a condition says how many repeats it plans", "[calib]") {
+  datasets::Campaign campaign = planned_mass();
+  campaign.synthetic_settings = of_noise(5e-5, 1);
+  const double of_one = planned_error(campaign);
+  campaign.synthetic_settings = of_noise(5e-5, 9);
+  campaign.conditions.front().planned_repeats = 4;
+  CHECK_THAT(planned_error(campaign), WithinRel(0.5 * of_one, 1e-3));
+  campaign.synthetic_settings.reset();
+  campaign.channels[datasets::Channel::position].sd = 5e-5;
+  CHECK_THAT(planned_error(campaign), WithinRel(0.5 * of_one, 1e-3));
+}
+
 TEST_CASE("plan: a prior adds what it tells", "[calib]") {
   datasets::Campaign campaign = planned_mass();
   campaign.synthetic_settings = of_noise(5e-5, 1);

@@ -257,6 +257,7 @@ TEST_CASE("load_campaign: conditions", "[datasets]") {
       {kSineFiles, "repeats = [3]\n", "repeats = [3]", {".repeats[1]"}},
       {kSineFiles, kSineFiles + "averaged = \"a.csv\"\n", "averaged", {"together with repeats"}},
       {kSineFiles, kSineFiles + "repeats_averaged = 5\n", "repeats_averaged", {"averaged"}},
+      {kSineFiles, kSineFiles + "planned_repeats = 5\n", "planned_repeats", {"beside a record"}},
       {kSineFiles,
        "averaged = \"a.csv\"\nrepeats_averaged = 0\n",
        "repeats_averaged",

@@ -29,6 +29,34 @@ Repeat starting_at(double first_s, double level) {
 
 }  // namespace
 
+TEST_CASE("repeat_records: a repeat far from the others is left out on request only",
+          "[datasets]") {
+  Campaign campaign;
+  campaign.alignment = Alignment::none;
+  Condition condition;
+  condition.id = "c";
+  std::vector<Repeat> repeats;
+  for (const double level : {0.010, -0.010, 0.005, -0.005, 0.400})
+    repeats.push_back(starting_at(0.0, level));
+  repeats.back().source = "the bad one";
+  const auto level_of = [](const Record& record) {
+    return record.channels.at(Channel::position).mean[100] - slope_and_ring(0.1);
+  };
+  const RepeatRecords all = repeat_records(campaign, condition, repeats);
+  CHECK(all.singles.size() == 5);
+  CHECK_THAT(level_of(all.average), WithinAbs(0.08, 1e-9));
+  campaign.leave_out_outliers = true;
+  const RepeatRecords without = repeat_records(campaign, condition, repeats);
+  CHECK(without.singles.size() == 4);
+  CHECK(without.average.repeats == 4);
+  CHECK_THAT(level_of(without.average), WithinAbs(0.0, 1e-9));
+  REQUIRE_FALSE(without.average.warnings.empty());
+  CHECK_THAT(without.average.warnings.front(),
+             Catch::Contains("the bad one") && Catch::Contains("left out"));
+  CHECK_THAT(all.average.warnings.front(),
+             Catch::Contains("the bad one") && Catch::Contains("stays in the mean"));
+}
+
 TEST_CASE("repeat_records: each repeat on the time base of the average, with the sd of one",
           "[datasets]") {
   Campaign campaign;

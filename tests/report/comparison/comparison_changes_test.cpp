@@ -130,6 +130,28 @@ TEST_CASE("comparison: the difference is the other less the first, with the erro
   CHECK(*difference(fit_of("a", 85.0), fit_of("b", 85.0)).difference == 0.0);
 }
 
+TEST_CASE("comparison: a difference between two dates contains two days", "[report]") {
+  const auto on = [](const std::string& name, double mass_kg, const Json& date) {
+    ComparedJson fit = fit_of(name, mass_kg, 0.3);
+    fit.result["parameters"][0]["between_days_error"] = 1.2;
+    for (Json& condition : fit.result["conditions"]) condition["date"] = date;
+    return fit;
+  };
+  const StoredDifference other =
+      difference(on("a", 85.0, "2026-03-01"), on("b", 84.0, "2026-03-02"));
+  CHECK_THAT(*other.standard_error, WithinRel(std::sqrt(2.0 * (0.09 + 1.44)), 1e-12));
+  CHECK(other.of_other_dates == true);
+  const StoredDifference same =
+      difference(on("a", 85.0, "2026-03-01"), on("b", 84.0, "2026-03-01"));
+  CHECK_THAT(*same.standard_error, WithinRel(0.3 * std::sqrt(2.0), 1e-12));
+  CHECK_FALSE(same.of_other_dates.has_value());
+  CHECK_FALSE(
+      difference(on("a", 85.0, nullptr), on("b", 84.0, "2026-03-01")).of_other_dates.has_value());
+  // Each point of a trend has a day of its own.
+  const auto points = trends(compared_all({on("a", 85.0, "2026-03-01")}), "mass").at(0).points;
+  CHECK_THAT(*points.at(0).standard_error, WithinRel(std::hypot(0.3, 1.2), 1e-12));
+}
+
 TEST_CASE("comparison: a known value has no error, and is not fitted to anything", "[report]") {
   ComparedJson known = fit_of("known", 80.0);
   known.result["parameters"][0]["fitted"] = false;

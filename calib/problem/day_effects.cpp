@@ -1,4 +1,4 @@
-#include "calib/consider/day_effects.hpp"
+#include "calib/problem/day_effects.hpp"
 
 #include <algorithm>
 #include <cmath>
