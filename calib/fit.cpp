@@ -130,7 +130,10 @@ Fit score_at(const Campaign& campaign, const std::vector<Record>& records,
     return fit;
   }
   fit.conditions = score_conditions(problem, z, options.threads);
-  if (spread != nullptr) add_prediction_sd(problem, z, *spread, options.threads, fit.conditions);
+  if (spread != nullptr) {
+    add_prediction_sd(problem, z, *spread, options.threads, fit.conditions);
+    test_predictions(problem, fit.conditions);
+  }
   if (problem.map.unknowns().empty() &&
       std::all_of(fit.conditions.begin(), fit.conditions.end(),
                   [](const ConditionScore& score) { return !score.failure.empty(); })) {

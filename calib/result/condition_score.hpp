@@ -32,6 +32,9 @@ struct ChannelScore {
   /// Tests of measured minus simulated, over the longest window; absent if that is too short or the
   /// residual is constant.
   std::optional<metrics::ResidualTests> residual_tests;
+  /// Part of the residual of a prediction that the uncertainty of the estimates explains, at the
+  /// samples that count; empty where nothing is known of it. The tests leave it out.
+  std::vector<double> explained;
   std::optional<LackOfFit> lack_of_fit;  ///< test of a prediction; absent if the noise is unknown
 };
 

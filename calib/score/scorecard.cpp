@@ -176,6 +176,22 @@ std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<c
   return scores;
 }
 
+void test_predictions(const Problem& problem, std::vector<ConditionScore>& scores) {
+  for (std::size_t i = 0; i < scores.size(); ++i) {
+    const ProblemCondition& condition = problem.conditions[i];
+    for (std::size_t k = 0; k < scores[i].channels.size(); ++k) {
+      ChannelScore& channel = scores[i].channels[k];
+      if (channel.explained.empty()) continue;
+      const std::vector<double>& whole = scores[i].series.at(channel.channel).second;
+      std::vector<double> simulated;
+      for (std::size_t j = 0; j < condition.rows.size(); ++j)
+        simulated.push_back(whole[condition.rows[j]] + channel.explained[j]);
+      channel.residual_tests =
+          test_residual(condition, condition.channels[k].measured, simulated, scores[i].drive);
+    }
+  }
+}
+
 std::vector<ConditionScore> unscored_conditions(const Problem& problem, const std::string& why) {
   std::vector<ConditionScore> scores;
   for (const ProblemCondition& condition : problem.conditions) {

@@ -17,6 +17,13 @@ namespace rigcal::calib {
 std::vector<ConditionScore> score_conditions(const Problem& problem, std::span<const double> z,
                                              int threads);
 
+/// Makes the residual tests of predictions again, without what the uncertainty of the estimates
+/// explains (ChannelScore::explained): under the right model an estimate that is off leaves a
+/// structure that is no error of the model.
+///
+/// @param scores  of the problem's conditions, in their order
+void test_predictions(const Problem& problem, std::vector<ConditionScore>& scores);
+
 /// The same conditions without scores, since their nuisance parameters were not estimated.
 ///
 /// @param why  in words

@@ -1,5 +1,6 @@
 #include "calib/trust/prediction_band.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -117,6 +118,36 @@ bool acts(const Problem& problem, const ProblemCondition& condition,
   return false;
 }
 
+/// Sets what the uncertainty of the estimates explains of the residuals: a step of linear least
+/// squares from the estimates, whose covariance is the prior.
+void explain(const ProblemCondition& condition, const model::Simulation& run, Eigen::Index free,
+             const Eigen::MatrixXd& root, ConditionScore& score) {
+  const std::vector<Eigen::Index> counted(condition.rows.begin(), condition.rows.end());
+  const auto samples = static_cast<Eigen::Index>(counted.size());
+  const auto channels = static_cast<Eigen::Index>(condition.channels.size());
+  if (samples == 0 || score.channels.size() != condition.channels.size()) return;
+  Eigen::MatrixXd effects(channels * samples, root.cols());
+  Eigen::VectorXd residual(channels * samples);
+  for (Eigen::Index k = 0; k < channels; ++k) {
+    const ProblemChannel& data = condition.channels[static_cast<std::size_t>(k)];
+    const auto own = Eigen::seqN(k * samples, samples);
+    effects(own, Eigen::all) =
+        run.sensitivities[static_cast<std::size_t>(k)].leftCols(free)(counted, Eigen::all) * root /
+        data.sd;
+    const Eigen::Map<const Eigen::VectorXd> measured(data.measured.data(), samples);
+    residual(own) = (measured - run.outputs(counted, k)) / data.sd;
+  }
+  Eigen::MatrixXd normal = effects.transpose() * effects;
+  normal.diagonal().array() += 1.0;
+  const Eigen::VectorXd explained = effects * normal.llt().solve(effects.transpose() * residual);
+  if (!explained.allFinite()) return;
+  for (Eigen::Index k = 0; k < channels; ++k) {
+    const double sd = condition.channels[static_cast<std::size_t>(k)].sd;
+    const Eigen::VectorXd part = sd * explained.segment(k * samples, samples);
+    score.channels[static_cast<std::size_t>(k)].explained = {part.begin(), part.end()};
+  }
+}
+
 void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
             const EstimateSpread& spread, ConditionScore& score) {
   const ProblemCondition& condition = problem.conditions[i];
@@ -146,6 +177,8 @@ void add_to(const Problem& problem, std::size_t i, std::span<const double> z,
   if (!run.ok()) return;
   const Eigen::MatrixXd root =
       (own != spread.own.end() ? own->root : spread.root)(rows, Eigen::all);
+  if (condition.condition->use != datasets::Use::fit && !free.empty())
+    explain(condition, run, static_cast<Eigen::Index>(free.size()), root, score);
   for (std::size_t k = 0; k < condition.channels.size(); ++k) {
     const Eigen::MatrixXd gradient =
         free.empty() ? Eigen::MatrixXd(run.outputs.rows(), 0)

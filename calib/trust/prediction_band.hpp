@@ -36,6 +36,9 @@ std::vector<double> prediction_sd(const Eigen::MatrixXd& gradient, const Eigen::
 /// from the record of a condition count as known there, unless they are among the estimates. A
 /// condition whose sensitivities cannot be simulated gets none.
 ///
+/// Of conditions that no estimate rests on, each channel gets the part of its residual that a step
+/// of the estimates would take off, with their covariance as a prior (ChannelScore::explained).
+///
 /// @param z       of `problem`, shape (its unknowns)
 /// @param scores  of the problem's conditions, in their order
 void add_prediction_sd(const Problem& problem, std::span<const double> z,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "calib/score/scorecard.hpp"
 #include "tests/calib/twin.hpp"
 
 namespace rigcal::calib {
@@ -75,6 +76,30 @@ TEST_CASE("prediction band: holds 95 % of the samples of fitted and new records"
     // 2000 samples: the binomial standard deviation is 0.5 %.
     CHECK_THAT(100.0 * within / all, WithinAbs(95.0, 2.0));
   }
+}
+
+TEST_CASE("test_predictions: an estimate off by its error is no error of the model", "[calib]") {
+  Twin twin;
+  twin.add("predicted", datasets::Waveform::sine, 3.0, 0.01, {}, datasets::Use::validate);
+  twin.noise_sd_m = 2e-5;
+  const auto records = twin.records(1000, 500.0, 1);
+  const double off = 0.98;  // of the valve gain
+  twin.setting("valve_gain").value *= off;
+  const Problem problem = problem_of(twin, records);
+  const auto fails = [&](double error) {
+    std::vector<ConditionScore> scores = score_conditions(problem, {}, 1);
+    EstimateSpread spread;
+    spread.estimates = {{Twin::index("valve_gain"), datasets::Scope::rig, ""}};
+    spread.root = Eigen::MatrixXd::Constant(1, 1, error * twin.setting("valve_gain").value / off);
+    add_prediction_sd(problem, {}, spread, 1, scores);
+    const auto& channel = scores.front().channels.front();
+    CHECK(channel.explained.size() == problem.conditions.front().rows.size());
+    test_predictions(problem, scores);
+    const auto& tests = channel.residual_tests.value();
+    return tests.cross_correlation->failed() || tests.autocorrelation.failed();
+  };
+  CHECK_FALSE(fails(0.02));
+  CHECK(fails(1e-5));
 }
 
 TEST_CASE("prediction band: without noise it holds the truth 95 times in a hundred", "[calib]") {
