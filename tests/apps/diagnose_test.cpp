@@ -79,7 +79,14 @@ TEST_CASE("diagnose: from synthetic records to classes", "[apps]") {
   // The limit of the mean of three is below that of one repeat, but of the same order.
   const json& smallest = result["smallest_leak_l_per_min"][0];
   CHECK(smallest["averaged"].get<double>() > 0.2 * smallest["single"].get<double>());
-  CHECK_THAT(outcome.out, Contains("supply and oil are taken as on the day of the healthy"));
+  CHECK_THAT(outcome.out, Contains("another day than their reference") &&
+                              Contains("Between days the rig may differ"));
+  const json& between_days = result["between_days"];
+  CHECK(between_days["source"] == "usual");
+  CHECK(between_days["quantities"].size() == 4);
+  REQUIRE(between_days["other_days"].size() == 1);  // that of the leaking record, which has no date
+  CHECK(smallest["of_another_day"] == true);
+  CHECK(smallest["averaged_same_day"].get<double>() < smallest["averaged"].get<double>());
   CHECK_THAT(folder.read("diagnosis/diagnosis.csv"), StartsWith("condition,repeat,signal,"));
   CHECK(violations(result, "diagnosis") == "");
   const std::string page = folder.read("diagnosis/report.html");
