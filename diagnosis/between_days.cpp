@@ -33,9 +33,10 @@ double factor_of(const BetweenDays& between) { return std::sqrt(between.variance
 
 std::string quantity_in_words(const BetweenDays& between, const calib::DayQuantity& quantity) {
   const double sd = factor_of(between) * quantity.sd;
-  const std::string size = quantity.unit == "Pa"  ? significant(1e-3 * sd, 2) + " kPa"
-                           : quantity.unit == "s" ? significant(1e3 * sd, 2) + " ms"
-                           : quantity.unit == "m" ? significant(1e3 * sd, 2) + " mm"
+  const std::string size = quantity.unit == "Pa" && sd >= 1e6 ? significant(1e-6 * sd, 2) + " MPa"
+                           : quantity.unit == "Pa"            ? significant(1e-3 * sd, 2) + " kPa"
+                           : quantity.unit == "s"             ? significant(1e3 * sd, 2) + " ms"
+                           : quantity.unit == "m"             ? significant(1e3 * sd, 2) + " mm"
                                                   : significant(sd, 2) + " " + quantity.unit;
   return quantity.meaning + " " + size;
 }
@@ -49,7 +50,7 @@ double BetweenDays::error(double weight, const Eigen::VectorXd& effects) const {
 std::string day_label(const datasets::Condition& condition) {
   if (condition.date) return *condition.date;
   if (condition.use == datasets::Use::fit) return kDayOfFit;
-  return fmt::format("that of \"{}\", which has no date", state_of(condition).name());
+  return fmt::format("\"{}\" (no date)", state_of(condition).name());
 }
 
 model::ParameterValues rig_values(const LeakProblem& problem) {
