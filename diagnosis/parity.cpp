@@ -1,6 +1,7 @@
 #include "diagnosis/parity.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -250,8 +251,12 @@ class Work {
     record.reference_records = static_cast<int>(others.size());
     std::vector<const Condition*> of;
     for (const Healthy& each : others) of.push_back(campaign_.find(each.condition->condition));
-    record.days =
-        day_weights(result_.between_days, campaign_, *campaign_.find(condition.condition), of);
+    const Condition& own = *campaign_.find(condition.condition);
+    record.days = day_weights(result_.between_days, campaign_, own, of);
+    // Only dates say that a record is of another day.
+    if (!own.date ||
+        std::any_of(of.begin(), of.end(), [](const auto* each) { return !each->date; }))
+      record.days.own = record.days.reference;
     record.residual_m = corrected(condition, record, repeat, records, others);
     describe(condition.time_s, window_s, record);
   }
@@ -369,6 +374,18 @@ class Work {
   std::vector<const Condition*> conditions_;  ///< of each reference
 };
 
+/// Says that records without a date count as of the day of the healthy ones.
+void warn_of_undated(const Campaign& campaign, Parity& result) {
+  std::vector<std::string> undated;
+  for (const ParityCondition& condition : result.conditions)
+    if (!campaign.find(condition.condition)->date) undated.push_back(condition.condition);
+  if (undated.empty() || result.between_days.quantities.empty()) return;
+  result.warnings.push_back(fmt::format(
+      "no date: {}. Records without a date count as of the day of the healthy ones: what differs "
+      "between days (supply, oil, zero, trigger) is in none of their thresholds",
+      fmt::join(undated, ", ")));
+}
+
 }  // namespace
 
 bool Parity::usable() const {
@@ -425,6 +442,7 @@ Parity parity(const Campaign& campaign, const std::vector<RepeatRecords>& record
   }
   if (const std::string text = in_words(result.between_days, result.other_days); !text.empty())
     result.warnings.push_back(text);
+  warn_of_undated(campaign, result);
   return result;
 }
 

@@ -184,6 +184,12 @@ TEST_CASE("parity: a record of another day has a threshold of its own", "[diagno
   REQUIRE(signal.threshold_of_another_day_m);
   CHECK(*signal.threshold_of_another_day_m > 1.5 * *signal.threshold_m);
   CHECK(other.conditions[1].records.front().threshold_m == signal.threshold_of_another_day_m);
+  // Without a date it counts as of the day of the healthy ones, and a warning says so.
+  campaign.conditions[1].date.reset();
+  const Parity undated = diagnosis::parity(campaign, records, true_rig(campaign), {});
+  CHECK(alarms_of(undated) == 5);
+  REQUIRE(undated.warnings.size() == 1);
+  CHECK(undated.warnings.front().find("no date: another_day") == 0);
 }
 
 TEST_CASE("parity: a record less the others' mean, sample by sample", "[diagnosis]") {
