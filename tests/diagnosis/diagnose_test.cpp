@@ -7,6 +7,7 @@
 #include "calib/published/leak_table.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "datasets/synthetic/synthetic_repeat.hpp"
+#include "metrics/distributions.hpp"
 
 using namespace rigcal;
 using datasets::Campaign;
@@ -221,6 +222,57 @@ TEST_CASE("diagnose: a supply half a percent lower on another day is no leak", "
   campaign.conditions[1].date = "2026-03-01";
   campaign.between_days.none = true;
   CHECK(diagnosed().records.at(4).estimate.leak_detected);
+}
+
+TEST_CASE("diagnose: over many days alarms are as stated, and the smallest leak is found",
+          "[diagnosis]") {
+  // The small version of bench/days_study.cpp: supplies at the quantiles of the difference of two
+  // days, of which the reference's is one.
+  constexpr int kDays = 20;
+  Campaign campaign = small_campaign();
+  campaign.conditions.resize(1);
+  const Condition healthy = campaign.conditions.front();
+  campaign.between_days.sds["supply_pressure"] = 31e3;
+  campaign.between_days.left_out = {"bulk_modulus", "position_offset", datasets::kTriggerKey};
+  const auto reference = records_of(campaign);
+  const auto diagnosed = [&](double coefficient) {
+    campaign.conditions.resize(1);
+    auto records = reference;
+    for (int i = 0; i < kDays; ++i) {
+      Condition& condition = campaign.conditions.emplace_back(healthy);
+      condition.id = fmt::format("day_{}", i);
+      condition.date = fmt::format("2026-03-{:02d}", i + 1);
+      condition.leak_level = "unknown";
+      condition.use = datasets::Use::diagnose;
+      condition.overrides = {{row_of(campaign, "leakage_coefficient"), coefficient}};
+      Campaign truth = campaign;
+      truth.conditions = {condition};
+      set_true(truth, "supply_pressure",
+               6.2e6 + std::sqrt(2.0) * 31e3 * metrics::normal_quantile((i + 0.5) / kDays));
+      records.push_back(records_of(truth, 100 + static_cast<std::uint64_t>(i)).front());
+      records.back().singles.clear();
+      records.back().covered.clear();
+    }
+    campaign.leak_levels["unknown"] = {};
+    return diagnosis::diagnose(campaign, records, known_rig(campaign), {});
+  };
+  const auto alarms_of = [](const Diagnosis& found) {
+    int alarms = 0;
+    for (const auto& record : found.records)
+      alarms += record.condition.starts_with("day_") && record.estimate.leak_detected ? 1 : 0;
+    return alarms;
+  };
+  const Diagnosis none = diagnosed(0.0);
+  CHECK(alarms_of(none) <= 1);
+  for (const auto& record : none.records) CHECK_FALSE(record.estimate.incompatible);
+  REQUIRE(none.signals.front().smallest_leak);
+  const double limit = none.signals.front().smallest_leak->coefficient;
+  CHECK(alarms_of(diagnosed(limit)) >= 18);
+  // The days themselves make the limit: half the leak is missed in half of them.
+  CHECK(alarms_of(diagnosed(0.5 * limit)) < 17);
+  campaign.between_days = {};
+  campaign.between_days.none = true;
+  CHECK(alarms_of(diagnosed(0.0)) > 5);
 }
 
 TEST_CASE("diagnose: healthy records of many dates tell how days differ", "[diagnosis]") {
