@@ -68,8 +68,8 @@ double half_with_bias(const std::vector<Agreement>& without, const Agreement& fo
   away = std::abs(away);
   if (score == &Agreement::maximum_error) return std::hypot(half, noise);
   const bool fit_percent = score == &Agreement::nrmse_fit_percent;
-  if (score == &Agreement::rmse || fit_percent) {
-    // Squares of rms errors have a bias in 1/R; a fit in percent is one less such an error.
+  if (score == &Agreement::rmse || score == &Agreement::absolute_error_percent || fit_percent) {
+    // Squares of errors have a bias in 1/R; a fit in percent is one less such an error.
     const auto error_of = [&](const Agreement& each) {
       return fit_percent ? 100.0 - each.*score : each.*score;
     };
@@ -83,8 +83,6 @@ double half_with_bias(const std::vector<Agreement>& without, const Agreement& fo
     const double bias = std::max(0.0, (mean - square) * (repeats - 1.0));
     return std::max(half, error_of(found) - std::sqrt(std::max(0.0, square - bias - error)));
   }
-  if (score == &Agreement::absolute_error_percent)
-    return half + away / (std::sqrt(repeats / (repeats - 1.0)) - 1.0);
   return half + away * (repeats - 1.0);
 }
 

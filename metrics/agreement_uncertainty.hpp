@@ -40,8 +40,8 @@ struct ScoreUncertainty {
 ///
 /// Noise that remains in the mean makes a score worse on average. One-sided, that is not included:
 /// a limit that is kept in spite of it is kept. Two-sided it is: by the bias of the jackknife, of
-/// the score (fractions such as rho2), of its square (rmse), or with 1/sqrt(R) (sums of absolute
-/// errors), as the noise enters. The largest error moves by no more than the largest noise of the
+/// the score (fractions such as rho2), or of its square (rms and absolute errors), as the noise
+/// enters. The largest error moves by no more than the largest noise of the
 /// mean, which the largest deviation of the repeats tells: it adds as a square.
 ///
 /// @return nothing with fewer than two repeats, if all are equal (copies carry no information), or
