@@ -7,8 +7,9 @@
 namespace rigcal::diagnosis {
 namespace {
 
-/// The largest component of noise scatters about the edge; this much above it stands out.
-constexpr double kBeyondEdge = 1.2;
+/// The largest component of noise scatters about the edge; this much above it stands out. (A weak
+/// cause that is missed raises alarms; noise taken for a cause makes a threshold a little higher.)
+constexpr double kBeyondEdge = 1.05;
 /// Autocorrelations below this are those of noise.
 constexpr double kNoCorrelation = 0.05;
 

@@ -46,7 +46,7 @@ TEST_CASE("common_causes: noise has none, a sine that differs is one", "[diagnos
     CHECK(causes.rest.squaredNorm() / (kSamples * kRecords) > 0.9);
     CHECK(causes.rest.squaredNorm() / (kSamples * kRecords) < 1.7);
   }
-  CHECK(in_noise <= 3);
+  CHECK(in_noise <= 12);
   CHECK(found >= 90);
   // 1.5^2 / 2, as far as four degrees of freedom in a hundred trials tell it.
   CHECK(power > 0.85);
