@@ -137,8 +137,8 @@ struct Condition {
   std::optional<std::string> averaged;  ///< file that is averaged already
   int repeats_averaged = 1;
   std::optional<int> planned_repeats;  ///< of a record that `plan` plans
-  std::vector<TimeWindow> windows;  ///< empty: the whole record counts
-  bool moving_windows = false;      ///< `windows = "moving"`: found from the record
+  std::vector<TimeWindow> windows;     ///< empty: the whole record counts
+  bool moving_windows = false;         ///< `windows = "moving"`: found from the record
   std::optional<std::vector<AcceptanceLimit>> acceptance;  ///< in place of the campaign's
   std::vector<Channel> not_judged;                         ///< in addition to those of the campaign
   std::optional<double> duration_s;
