@@ -98,7 +98,7 @@ const std::vector<DaysRow>& days_rows() {
     DaysRow dates{"other days, twice the usual sizes, six healthy dates", times(2.0, kUsual)};
     dates.healthy_dates = 6;
     all.push_back(dates);
-    DaysRow trend{"trend over four other days, usual sizes", kUsual};
+    DaysRow trend{"trend over four dates, usual sizes", kUsual};
     trend.trend = true;
     all.push_back(trend);
     return all;

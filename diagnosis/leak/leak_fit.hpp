@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "calib/problem/day_effects.hpp"
 #include "calib/fit.hpp"
+#include "calib/problem/day_effects.hpp"
 #include "datasets/campaign/campaign.hpp"
 #include "datasets/prepare/single_repeats.hpp"
 #include "diagnosis/leak/leak_curve.hpp"

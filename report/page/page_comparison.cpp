@@ -389,6 +389,18 @@ std::vector<Figure> comparison_figures(const StoredComparison& comparison) {
   return figures;
 }
 
+namespace {
+
+/// Whether an error of a difference includes what differs between days.
+bool has_other_dates(const StoredComparison& comparison) {
+  for (const StoredComparedParameter& parameter : comparison.parameters)
+    for (const auto& difference : parameter.differences)
+      if (difference && difference->of_other_dates.value_or(false)) return true;
+  return false;
+}
+
+}  // namespace
+
 std::vector<doc::Section> comparison_sections(const StoredComparison& comparison) {
   std::vector<doc::Section> sections;
   sections.push_back({"results",
@@ -405,6 +417,10 @@ std::vector<doc::Section> comparison_sections(const StoredComparison& comparison
     estimates.blocks.emplace_back(doc::reading(
         fmt::format("{}: {}.", comparison.results.at(i).name, each ? each->text : std::string())));
   }
+  if (has_other_dates(comparison))
+    estimates.blocks.emplace_back(
+        doc::reading("Fits of different dates: the error of a difference includes what differs "
+                     "between days (supply, oil, zero, trigger; [between_days] of the campaign)."));
   estimates.blocks.emplace_back(parameter_table_of(comparison));
   doc::Gallery gallery;
   for (Figure& figure : parameter_figures(comparison))

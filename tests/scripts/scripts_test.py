@@ -46,7 +46,7 @@ class Scripts(unittest.TestCase):
         for name in ("datasets", "tests"):
             (self.tree / name).symlink_to(ROOT / name)
         release = self.tree / "build" / "release"
-        for name in ("speed", "coverage_study", "diagnosis_study", "posterior_study"):
+        for name in ("speed", "coverage_study", "days_study", "diagnosis_study", "posterior_study"):
             make_program(release / "bench" / f"rigcal_{name}")
         (release / "rigcal").symlink_to(RIGCAL)
         self.programs = self.tree / "programs"  # before all others
@@ -63,6 +63,9 @@ class Scripts(unittest.TestCase):
 
     def test_coverage_study(self):
         self.assertEqual(self.run_script("coverage-study", "7", "2"), "rigcal_coverage_study 7 2\n")
+
+    def test_days_study(self):
+        self.assertEqual(self.run_script("days-study", "7", "9201", "2"), "rigcal_days_study 7 9201 2\n")
 
     def test_demo(self):
         printed = self.run_script("demo")

@@ -11,6 +11,7 @@
 
 #include "common/error.hpp"
 #include "report/comparison/comparison_parts.hpp"
+#include "report/document/render_terminal.hpp"
 #include "tests/report/stored_fixture.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -147,6 +148,15 @@ TEST_CASE("comparison: a difference between two dates contains two days", "[repo
   CHECK_FALSE(same.of_other_dates.has_value());
   CHECK_FALSE(
       difference(on("a", 85.0, nullptr), on("b", 84.0, "2026-03-01")).of_other_dates.has_value());
+  // The page says so.
+  const auto words = [&](const char* date) {
+    StoredComparison comparison = comparison_of(
+        compared_parameters(compared_all({on("a", 85.0, "2026-03-01"), on("b", 84.0, date)})));
+    comparison.significance.resize(2);
+    return doc::render_terminal({}, comparison_sections(comparison), {});
+  };
+  CHECK_THAT(words("2026-03-02"), Contains("Fits of different dates"));
+  CHECK_THAT(words("2026-03-01"), !Contains("Fits of different dates"));
   // Each point of a trend has a day of its own.
   const auto points = trends(compared_all({on("a", 85.0, "2026-03-01")}), "mass").at(0).points;
   CHECK_THAT(*points.at(0).standard_error, WithinRel(std::hypot(0.3, 1.2), 1e-12));
