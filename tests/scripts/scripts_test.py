@@ -46,7 +46,7 @@ class Scripts(unittest.TestCase):
         for name in ("datasets", "tests"):
             (self.tree / name).symlink_to(ROOT / name)
         release = self.tree / "build" / "release"
-        for name in ("speed", "coverage_study", "days_study", "diagnosis_study", "posterior_study"):
+        for name in ("speed", "coverage_study", "days_study", "design_study", "diagnosis_study", "posterior_study"):
             make_program(release / "bench" / f"rigcal_{name}")
         (release / "rigcal").symlink_to(RIGCAL)
         self.programs = self.tree / "programs"  # before all others
@@ -72,6 +72,9 @@ class Scripts(unittest.TestCase):
         self.assertIn("setup \nbuild release --target rigcal\n", printed)
         for name in ("truth.json", "fit.json", "validation.json", "report.html", "validation/report.html"):
             self.assertTrue((self.tree / "demo" / name).is_file(), name)
+
+    def test_design_study(self):
+        self.assertEqual(self.run_script("design-study", "7", "2", "10"), "rigcal_design_study 7 2 10\n")
 
     def test_diagnosis_study(self):
         printed = self.run_script("diagnosis-study", "3", "4", "50")
