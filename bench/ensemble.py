@@ -20,7 +20,7 @@ WALKERS = 32
 
 
 def main():
-    steps = int(sys.argv[1]) if len(sys.argv) > 1 else 1500
+    steps = int(sys.argv[1]) if len(sys.argv) > 1 else 3000
     with subprocess.Popen([STUDY, "--replay"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as study:
 
         def ask(line):
