@@ -26,7 +26,7 @@ Eigen::RowVectorXd last_of(const Experiment& e) {
 double polynomial(double x, double c0, double c1, double c2) { return c0 + (c1 + c2 * x) * x; }
 
 /// Flow of an open edge of arm_rig() [m3/s].
-double edge_flow(double opening_m, double head_pa) {
+double spool_edge_flow(double opening_m, double head_pa) {
   return 0.65 * 0.02 * opening_m * std::sqrt(2.0 * head_pa / 870.0);
 }
 
@@ -137,8 +137,9 @@ TEST_CASE("linkage: in steady motion the flows are those of the edges", "[model]
   CHECK(end(4) == 2e6);
   CHECK(end(5) == 0.0);  // no voltage
   CHECK(end(0) > 1e-3);
-  CHECK_THAT(edge_flow(opening_m, 2e7 - end(1)), WithinRel(4e-3 * 0.3 * end(0), 1e-4));
-  CHECK_THAT(0.7 * edge_flow(opening_m, end(2) - 2e5), WithinRel(2.4e-3 * 0.3 * end(0), 1e-4));
+  CHECK_THAT(spool_edge_flow(opening_m, 2e7 - end(1)), WithinRel(4e-3 * 0.3 * end(0), 1e-4));
+  CHECK_THAT(0.7 * spool_edge_flow(opening_m, end(2) - 2e5),
+             WithinRel(2.4e-3 * 0.3 * end(0), 1e-4));
   CHECK_THAT(0.3 * (4e-3 * end(1) - 2.4e-3 * end(2)), WithinRel(4e4 * end(0), 1e-4));
 }
 
@@ -219,7 +220,7 @@ TEST_CASE("linkage: the tank fills a chamber that the load pulls empty", "[model
   e.set("make_up_conductance", 1e-8);
   const auto end = last_of(e);
   CHECK(without_pa < -1e5);
-  const double asked = 4e-3 * 0.3 * end(0) - 0.01 * edge_flow(1e-10 * 5e5, 2e7 - end(1));
+  const double asked = 4e-3 * 0.3 * end(0) - 0.01 * spool_edge_flow(1e-10 * 5e5, 2e7 - end(1));
   REQUIRE(asked > 1e-5);
   CHECK_THAT(2e5 - end(1), WithinRel(asked / 1e-8, 1e-3));
 }
