@@ -18,7 +18,7 @@ using Catch::Contains;
 using Catch::WithinAbs;
 using Catch::WithinRel;
 
-Twin small_rig() {
+Twin drawn_rig() {
   Twin twin;
   twin.free("mass", 60.0, 20.0, 180.0);
   twin.free("valve_gain", 0.03e-3, 0.01e-3, 0.09e-3);
@@ -26,7 +26,7 @@ Twin small_rig() {
   return twin;
 }
 
-FitOptions quick() {
+FitOptions few_draws() {
   FitOptions options;
   options.consider = false;
   options.posterior = 300;
@@ -75,12 +75,12 @@ void check_same_draws(const Fit& a, const Fit& b) {
 }  // namespace
 
 TEST_CASE("posterior: near the optimum it is what the errors say", "[calib]") {
-  Twin twin = small_rig();
+  Twin twin = drawn_rig();
   twin.campaign.acceptance.push_back({datasets::Channel::position, "rho2", 0.9, std::nullopt});
   twin.campaign.acceptance.push_back(
       {datasets::Channel::position, "rho2", 0.9999999, std::nullopt});
   const auto records = twin.records(250, 500.0, 3);
-  FitOptions options = quick();
+  FitOptions options = few_draws();
   options.posterior = 1000;
   const Fit found = fit(twin.campaign, records, options);
   REQUIRE(found.status == FitStatus::converged);
@@ -113,14 +113,14 @@ TEST_CASE("posterior: near the optimum it is what the errors say", "[calib]") {
 }
 
 TEST_CASE("posterior: an unknown at its bound stays within it", "[calib]") {
-  Twin twin = small_rig();
+  Twin twin = drawn_rig();
   twin.free("leakage_coefficient", 0.2, 0.0, 2.0);
   datasets::ParameterSetting absent = known(Twin::index("leakage_coefficient"), 0.0);
   for (auto& each : twin.truth.parameters) {
     if (each.index == absent.index) each = absent;
   }
   const auto records = twin.records(250, 500.0, 3);
-  const Fit found = fit(twin.campaign, records, quick());
+  const Fit found = fit(twin.campaign, records, few_draws());
   REQUIRE(found.status == FitStatus::converged);
   REQUIRE(found.posterior);
   const FittedParameter& leak = parameter(found, "leakage_coefficient");
@@ -133,9 +133,9 @@ TEST_CASE("posterior: an unknown at its bound stays within it", "[calib]") {
 
 TEST_CASE("posterior: the same bits in any number of threads, in pieces, and elsewhere",
           "[calib]") {
-  const Twin twin = small_rig();
+  const Twin twin = drawn_rig();
   const auto records = twin.records(200, 500.0, 3);
-  FitOptions options = quick();
+  FitOptions options = few_draws();
   const Fit alone = fit(twin.campaign, records, options);
   REQUIRE(alone.posterior);
   REQUIRE(alone.posterior->draws == 300);
@@ -173,9 +173,9 @@ TEST_CASE("posterior: the same bits in any number of threads, in pieces, and els
 }
 
 TEST_CASE("posterior: a limit of evaluations ends it between stretches", "[calib]") {
-  const Twin twin = small_rig();
+  const Twin twin = drawn_rig();
   const auto records = twin.records(200, 500.0, 3);
-  FitOptions options = quick();
+  FitOptions options = few_draws();
   options.max_evaluations = 4000;  // less than warm-up and a stretch of four chains
   const Fit stopped = fit(twin.campaign, records, options);
   REQUIRE(stopped.posterior);
@@ -209,7 +209,7 @@ TEST_CASE("posterior: the ranks of truths among their draws are uniform", "[cali
     }
     twin.noise_sd_m = 1e-3;
     const auto records = twin.records(30, 100.0, 100U + static_cast<unsigned>(campaign));
-    FitOptions options = quick();
+    FitOptions options = few_draws();
     options.posterior = 100;
     options.threads = 2;
     options.seed = static_cast<std::uint64_t>(campaign);
