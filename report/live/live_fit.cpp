@@ -25,7 +25,7 @@ constexpr std::size_t kMostCases = 40;
 /// As 32-bit numbers these are 2 MB.
 constexpr std::size_t kMostSamples = 500'000;
 /// A condition beyond that limit keeps at least so many.
-constexpr std::size_t kLeastSamples = 500;
+constexpr std::size_t kLeastOfACase = 500;
 
 bool is_estimate(const calib::FittedParameter& p) { return p.fitted && std::isfinite(p.value); }
 
@@ -138,9 +138,9 @@ void add_measured(const std::vector<const calib::ConditionScore*>& scores, Json&
   for (std::size_t i = 0; i < scores.size(); ++i) {
     const calib::ConditionScore& score = *scores[i];
     const auto channels = compared(score);
-    const std::size_t others = kLeastSamples * (scores.size() - i - 1);
+    const std::size_t others = kLeastOfACase * (scores.size() - i - 1);
     const std::size_t wanted = score.time_s.size() * channels.size();
-    const std::size_t room = std::max(left > others ? left - others : 0, kLeastSamples);
+    const std::size_t room = std::max(left > others ? left - others : 0, kLeastOfACase);
     const std::size_t every = wanted <= room ? 1 : (wanted + room - 1) / room;
     left -= std::min(left, wanted / every);
     Json& row = cases[i];

@@ -187,9 +187,9 @@ void shorten(Parts& parts) {
   }
 }
 
-enum class Extent { whole, brief };
+enum class PageExtent { whole, brief };
 
-std::string page_of(const Parts& parts, const std::string& sha256, Extent extent) {
+std::string page_of(const Parts& parts, const std::string& sha256, PageExtent extent) {
   const Part& first = parts.drawn.front();
   // One unusable result marks the whole page.
   const bool bad = std::any_of(parts.drawn.begin(), parts.drawn.end(), [](const Part& part) {
@@ -204,11 +204,11 @@ std::string page_of(const Parts& parts, const std::string& sha256, Extent extent
       "http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
       "'unsafe-inline'; script-src 'unsafe-inline'{}; img-src data: blob:\">\n<meta "
       "name=\"color-scheme\" content=\"light dark\">\n<title>{} – {} – {}</title>\n",
-      first.live && extent == Extent::whole ? " 'wasm-unsafe-eval'; worker-src blob:" : "",
+      first.live && extent == PageExtent::whole ? " 'wasm-unsafe-eval'; worker-src blob:" : "",
       escaped(badge.words), escaped(first.campaign), escaped(first.name));
   page += fmt::format("<style>{}{}{}</style>\n</head>\n", asset("report.css"), asset("uPlot.css"),
                       foot_style(first, bad, sha256));
-  if (extent == Extent::brief) {
+  if (extent == PageExtent::brief) {
     page += fmt::format("<body class=\"{}\">\n<main>\n", bad ? "bad" : doc::css(badge.state));
     add_first_page(parts, synthetic, sha256, page);
     for (const Part& part : parts.drawn)
@@ -255,13 +255,15 @@ std::string page_of(const Parts& parts, const std::string& sha256, Extent extent
 std::string result_page(const ReadFile& read, const std::string& where, int threads,
                         const ReadTable& made) {
   const Parts parts = parts_of({read, where, threads, made});
-  return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")), Extent::whole);
+  return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")),
+                 PageExtent::whole);
 }
 
 std::string brief_page(const ReadFile& read, const std::string& where, const ReadTable& made) {
   Parts parts = parts_of({read, where, 1, made});
   shorten(parts);
-  return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")), Extent::brief);
+  return page_of(parts, sha256_of_text(read(parts.drawn.front().file).value_or("")),
+                 PageExtent::brief);
 }
 
 std::vector<std::pair<fs::path, std::string>> result_figures(const ReadFile& read,

@@ -94,8 +94,7 @@ std::vector<ResultFile> files_of(const fs::path& out, const Result& result,
   files.push_back({"residual_tests.json", json_line(json_of(stored_curves(result)))});
   if (result.kind == ResultKind::fit && stored.status != FitStatus::failed)
     files.push_back({"fitted.toml", fitted_toml(out, result)});
-  if (const auto live = live_fit(result))
-    files.push_back({kLiveFile, json_line(*live)});
+  if (const auto live = live_fit(result)) files.push_back({kLiveFile, json_line(*live)});
   name_files(residuals, files, stored.provenance);
   // Last, so that its presence means that the others are there.
   files.push_back({main_file(result.kind), json_text(json_of(stored))});
@@ -125,7 +124,7 @@ std::vector<fs::path> write_result(HeldFolder& held, int threads, const Result& 
   held.plan(planned);
   ResultsInWriting writing(held, result.provenance.inputs);
   const std::vector<InputFile> residuals =
-      add_residuals(result, threads, [&](ResultFile file) { writing.add(std::move(file)); });
+      add_residuals(result, threads, [&](const ResultFile& file) { writing.add(file); });
   std::vector<fs::path> paths;
   for (const InputFile& file : residuals) paths.emplace_back(file.path);
   std::vector<ResultFile> files = files_of(out, result, residuals, stored);

@@ -1,8 +1,7 @@
-#include "report/run/simulation_file.hpp"
-
 #include <algorithm>
 #include <catch2/catch.hpp>
 
+#include "report/run/simulation_file.hpp"
 #include "tests/report/run/made_rig.hpp"
 
 namespace rigcal::report {
