@@ -108,7 +108,7 @@ class Installed(unittest.TestCase):
         if not (pathlib.Path(BUILD) / "python" / "rigcal").is_dir():
             self.skipTest("the module was not built")
         self.assertEqual(len(modules), 1)
-        self.assertEqual({"__init__.py", "_rigcal.pyi", "errors.py", "py.typed"},
+        self.assertEqual({"__init__.py", "_rigcal.pyi", "errors.py", "notebook.py", "py.typed"},
                          {file.name for file in (modules[0] / "rigcal").iterdir() if file.suffix != ".so"})
         made = self.folder / "for_python"
         printed = run("/usr/bin/python3", "-B", "-c",

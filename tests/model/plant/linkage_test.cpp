@@ -16,14 +16,14 @@ using Catch::WithinRel;
 namespace {
 
 /// Outputs at the last sample, in the order of e.outputs.
-Eigen::RowVectorXd last_of(const Experiment& e) {
+Eigen::RowVectorXd last_of_arm(const Experiment& e) {
   const Simulation run = e();
   INFO(run.reason);
   REQUIRE(run.ok());
   return run.outputs.row(run.outputs.rows() - 1);
 }
 
-double polynomial(double x, double c0, double c1, double c2) { return c0 + (c1 + c2 * x) * x; }
+double quadratic_of(double x, double c0, double c1, double c2) { return c0 + (c1 + c2 * x) * x; }
 
 /// Flow of an open edge of arm_rig() [m3/s].
 double spool_edge_flow(double opening_m, double head_pa) {
@@ -107,9 +107,9 @@ TEST_CASE("linkage: at rest the piston holds the moment of the load at its angle
     e.set("gravity_moment_curvature", 4e3).set("initial_angle", theta);
     e.outputs = {Output::angle, Output::pressure_a, Output::pressure_b, Output::force,
                  Output::position};
-    const auto end = last_of(e);
-    const double lever = polynomial(theta - 0.2, 0.3, 0.06, -0.1);
-    const double moment = polynomial(theta - 0.2, 5e3, -8e3, 4e3);
+    const auto end = last_of_arm(e);
+    const double lever = quadratic_of(theta - 0.2, 0.3, 0.06, -0.1);
+    const double moment = quadratic_of(theta - 0.2, 5e3, -8e3, 4e3);
     CAPTURE(theta, moment);
     CHECK_THAT(end(0), WithinAbs(theta, 1e-7));
     CHECK_THAT(lever * (4e-3 * end(1) - 2.4e-3 * end(2)), WithinAbs(moment, 0.1));
@@ -131,7 +131,7 @@ TEST_CASE("linkage: in steady motion the flows are those of the edges", "[model]
   e.options.tolerance = 1e-9;
   e.outputs = {Output::angular_velocity, Output::pressure_a, Output::pressure_b, Output::spool,
                Output::pilot_pressure,   Output::command};
-  const auto end = last_of(e);
+  const auto end = last_of_arm(e);
   const double opening_m = 1e-11 * 1e6;  // the dead band is 1 MPa
   CHECK_THAT(end(3), WithinRel(opening_m, 1e-12));
   CHECK(end(4) == 2e6);
@@ -151,11 +151,11 @@ TEST_CASE("linkage: the spool opens by a power of the pilot pressure, both ways 
     for (const double sign : {1.0, -1.0}) {
       e.inputs.drive = Signal::constant(sign * (1e6 + beyond_pa));
       const double expected = 5e-10 * 8e5 * std::pow(beyond_pa / 8e5, 2.5);
-      CHECK_THAT(last_of(e)(0), WithinRel(sign * expected, 1e-12));
+      CHECK_THAT(last_of_arm(e)(0), WithinRel(sign * expected, 1e-12));
     }
   }
   e.inputs.drive = Signal::constant(0.99e6);
-  CHECK(last_of(e)(0) == 0.0);
+  CHECK(last_of_arm(e)(0) == 0.0);
 }
 
 TEST_CASE("linkage: a pump gives its first flow, then its second", "[model]") {
@@ -190,7 +190,7 @@ TEST_CASE("linkage: at its stop the chamber fills to the pressure that the pump 
   e.inputs.drive = Signal::constant(3e6);
   e.times_s = {0.0, 20.0};
   e.outputs = {Output::angle, Output::pressure_a, Output::pressure_b};
-  const auto end = last_of(e);
+  const auto end = last_of_arm(e);
   CHECK_THAT(end(1), WithinRel(2e7, 1e-4));
   CHECK_THAT(end(2), WithinRel(2e5, 1e-3));
   // Pressed in by what the piston pushes, over the stiffness of the stop.
@@ -203,7 +203,7 @@ TEST_CASE("linkage: a support holds what the pressures do not", "[model]") {
   e.inputs.drive = Signal::constant(0.0);
   e.set("gravity_moment", 3e3).set("initial_angle", -1.001);
   e.set("initial_pressure_a", 1e6).set("initial_pressure_b", 2e6);
-  const auto end = last_of(e);
+  const auto end = last_of_arm(e);
   CHECK_THAT(end(0), WithinAbs(-1.0 + (0.3 * (4e-3 * 1e6 - 2.4e-3 * 2e6) - 3e3) / 1e7, 1e-8));
   CHECK_THAT(end(1), WithinAbs(0.0, 1e-7));
 }
@@ -216,9 +216,9 @@ TEST_CASE("linkage: the tank fills a chamber that the load pulls empty", "[model
   e.set("gain_b_to_tank", 4.0);
   e.times_s = {0.0, 3.0};
   e.outputs = {Output::angular_velocity, Output::pressure_a};
-  const double without_pa = last_of(e)(1);
+  const double without_pa = last_of_arm(e)(1);
   e.set("make_up_conductance", 1e-8);
-  const auto end = last_of(e);
+  const auto end = last_of_arm(e);
   CHECK(without_pa < -1e5);
   const double asked = 4e-3 * 0.3 * end(0) - 0.01 * spool_edge_flow(1e-10 * 5e5, 2e7 - end(1));
   REQUIRE(asked > 1e-5);
