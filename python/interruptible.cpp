@@ -50,9 +50,12 @@ std::exception_ptr run_interruptibly(std::atomic<bool>& cancel, const std::funct
     lock.unlock();
     worker.join();
   }
-  // A signal that came while the work ended belongs to this call, too.
-  if (!raised && PyErr_CheckSignals() != 0)
-    raised = std::make_exception_ptr(py::error_already_set());
+  // A signal that came while the work ended belongs to this call, too; a further one says nothing
+  // new.
+  if (PyErr_CheckSignals() != 0) {
+    const auto last = std::make_exception_ptr(py::error_already_set());
+    if (!raised) raised = last;
+  }
   if (!raised && thrown) std::rethrow_exception(thrown);
   return raised;
 }
