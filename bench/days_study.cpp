@@ -33,13 +33,13 @@ namespace {
 
 using datasets::Channel;
 
-constexpr double kNoise_m = 0.05e-3;
+constexpr double kDayNoise_m = 0.05e-3;
 constexpr int kRepeats = 5;
 constexpr int kOtherDays = 4;
 /// Coefficient of the seal whose trend is looked for.
 constexpr double kWornSeal = 0.1;
 constexpr double kStandardErrors = 4.0;  ///< slope of that trend
-const std::vector<Reference> kSignals{
+const std::vector<Reference> kDaySignals{
     {"square", 1.0, 0.05, 2.0}, {"sine", 5.0, 0.02, 1.0}, {"sine", 2.0, 0.05, 1.0}};
 
 /// Standard deviations between days.
@@ -151,10 +151,10 @@ struct DaysMade {
   /// @param singles  how many repeats are diagnosed on their own
   void add(const ForeignRig& rig, const std::string& level, int day, datasets::Use use,
            std::size_t singles, DaysStream& stream, const std::vector<double>& leaks = {}) {
-    for (std::size_t s = 0; s < kSignals.size(); ++s) {
+    for (std::size_t s = 0; s < kDaySignals.size(); ++s) {
       ForeignRig own = rig;
       if (!leaks.empty()) own.leak_coefficient = leaks[s];
-      const Reference& signal = kSignals[s];
+      const Reference& signal = kDaySignals[s];
       datasets::Condition condition;
       condition.id = fmt::format("{}_{}Hz_{}_{}", signal.waveform, signal.frequency_hz, level, day);
       condition.waveform =
@@ -165,7 +165,7 @@ struct DaysMade {
       condition.leak_level = level;
       condition.date = date_of(day);
       condition.use = use;
-      boost::random::normal_distribution<double> normal(0.0, kNoise_m);
+      boost::random::normal_distribution<double> normal(0.0, kDayNoise_m);
       const std::vector<double> readings = foreign_readings(own, signal);
       std::vector<datasets::Repeat> repeats;
       for (int r = 0; r < kRepeats; ++r) {
@@ -290,8 +290,8 @@ DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
   }
   const diagnosis::Diagnosis healthy = with_others("unknown", [](int) { return 0.0; }, {});
   count_healthy(healthy, "unknown", counts);
-  std::vector<double> leaks(kSignals.size());
-  for (std::size_t s = 0; s < kSignals.size(); ++s) {
+  std::vector<double> leaks(kDaySignals.size());
+  for (std::size_t s = 0; s < kDaySignals.size(); ++s) {
     const std::string& id = made.campaign.conditions[s].id;
     const auto record = std::find_if(healthy.records.begin(), healthy.records.end(),
                                      [&](const auto& each) { return each.condition == id; });
@@ -300,7 +300,7 @@ DaysCounts counts_of(const DaysRow& row, std::uint64_t seed) {
                      [&](const auto& each) { return each.signal == record->signal; });
     leaks[s] = signal->smallest_leak.value().coefficient;
     counts.limit_l_per_min +=
-        60e3 * signal->smallest_leak->leak_flow_m3_per_s / static_cast<double>(kSignals.size());
+        60e3 * signal->smallest_leak->leak_flow_m3_per_s / static_cast<double>(kDaySignals.size());
   }
   count_leaks(with_others(
                   "leaking", [](int) { return 0.0; }, leaks),

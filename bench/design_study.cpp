@@ -26,7 +26,7 @@ using datasets::Channel;
 
 constexpr double kNoiseOfOneRepeat = 0.05e-3;  // [m]
 constexpr int kRepeatsOfDesign = 5;
-constexpr double kOff = 1.1;
+constexpr double kStartsOff = 1.1;
 
 /// The shipped campaign at its truth: what a plan knows after a first fit.
 datasets::Campaign at_truth(const std::string& like) {
@@ -130,7 +130,7 @@ void print_spread(const calib::Design& design, datasets::Campaign campaign, int 
   drive.role = datasets::ChannelRole::input;
   drive.recognise = false;
   for (auto& setting : campaign.parameters)
-    if (setting.fit) setting.value *= kOff;
+    if (setting.fit) setting.value *= kStartsOff;
   const double sd = kNoiseOfOneRepeat / std::sqrt(kRepeatsOfDesign);
   std::vector<std::vector<double>> errors(static_cast<std::size_t>(fits));
   parallel_for(errors.size(), threads, [&](std::size_t i) {

@@ -31,8 +31,8 @@ namespace {
 
 using datasets::Channel;
 
-constexpr double kNoise_m = 0.5e-3;
-constexpr double kRateHz = 250.0;
+constexpr double kTwinNoise_m = 0.5e-3;
+constexpr double kTwinRateHz = 250.0;
 constexpr int kBins = 20;
 constexpr int kThinned = 100;  ///< draws of a posterior among which the truth is ranked
 
@@ -81,8 +81,8 @@ std::vector<datasets::Record> records_of(const datasets::Campaign& campaign, std
   for (const datasets::Condition& condition : campaign.conditions) {
     datasets::Record record;
     record.condition = condition.id;
-    const int samples = static_cast<int>(*condition.duration_s * kRateHz);
-    for (int i = 0; i < samples; ++i) record.time_s.push_back(i / kRateHz);
+    const int samples = static_cast<int>(*condition.duration_s * kTwinRateHz);
+    for (int i = 0; i < samples; ++i) record.time_s.push_back(i / kTwinRateHz);
     model::ParameterValues values = datasets::values_in(campaign, condition);
     for (const auto& [index, value] : truths) values.set(index, value);
     const std::vector<model::Output> outputs{model::Output::position};
@@ -95,8 +95,8 @@ std::vector<datasets::Record> records_of(const datasets::Campaign& campaign, std
     auto stream = datasets::random_stream(seed, {"noise", condition.id});
     datasets::Series series;
     for (int i = 0; i < samples; ++i)
-      series.mean.push_back(run.outputs(i, 0) + datasets::normal(stream, kNoise_m));
-    series.sd_of_mean = kNoise_m;
+      series.mean.push_back(run.outputs(i, 0) + datasets::normal(stream, kTwinNoise_m));
+    series.sd_of_mean = kTwinNoise_m;
     record.channels[Channel::position] = series;
     records.push_back(std::move(record));
   }

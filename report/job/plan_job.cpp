@@ -37,8 +37,8 @@ StoredPlan plan_of_records(const datasets::Campaign& campaign,
                            const Provenance& provenance, int threads) {
   const bool any =
       std::any_of(campaign.conditions.begin(), campaign.conditions.end(), calib::is_planned_with);
-  if (!any && has_design) return stored(campaign, {}, provenance);
-  return stored(campaign, calib::plan(campaign, records, values, threads), provenance);
+  if (!any && has_design) return report::stored(campaign, {}, provenance);
+  return report::stored(campaign, calib::plan(campaign, records, values, threads), provenance);
 }
 
 /// Designs a test and adds it to the result and to its files.
@@ -51,7 +51,7 @@ Table add_design(const datasets::Campaign& campaign, const std::vector<datasets:
   };
   const calib::Design design =
       calib::design(campaign, records, names, values, {terms.threads, &terms.cancel, progress});
-  designed.emplace(stored(campaign, design));
+  designed.emplace(report::stored(campaign, design));
   Table response = response_of(campaign, design);
   files.push_back({kDriveFile, datasets::drive_csv(campaign, design.time_s, design.drive)});
   files.push_back({kResponseFile, csv_of(response)});
