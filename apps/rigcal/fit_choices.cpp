@@ -47,7 +47,7 @@ void add_fit_choices(CLI::App& verb, FitChoices& choices) {
           "1000 where no number follows)")
       ->expected(0, 1)
       ->default_str("1000")
-      ->check(CLI::Range(datasets::kLeastPosteriorDraws, datasets::kMostPosteriorDraws));
+      ->check(whole_number(datasets::kLeastPosteriorDraws, datasets::kMostPosteriorDraws));
   verb.add_flag("--cross-validate", choices.cross_validate,
                 "Leave out one condition after the other and predict it");
   verb.add_option(
