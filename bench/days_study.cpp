@@ -44,8 +44,8 @@ const std::vector<Reference> kDaySignals{
 
 /// Standard deviations between days.
 struct DaySizes {
-  double supply = 0.0;        ///< of its value
-  double bulk_modulus = 0.0;  ///< of its value
+  double supply = 0.0;        ///< fraction of its value
+  double bulk_modulus = 0.0;  ///< fraction of its value
   double zero_m = 0.0;
   double trigger_s = 0.0;
 };
@@ -198,7 +198,7 @@ struct DaysCounts {
   int states = 0, state_alarms = 0;
   int leaks = 0, found = 0, held = 0;
   int trends = 0, significant = 0, slopes = 0, slopes_found = 0;
-  double limit_l_per_min = 0.0;  ///< of an average, mean over the signals
+  double limit_l_per_min = 0.0;  ///< smallest leak of an average, mean over the signals
 
   template <typename Take>
   void for_each(Take take) {

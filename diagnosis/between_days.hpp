@@ -23,7 +23,7 @@ struct BetweenDays {
   DaySource source = DaySource::usual;
   double variance =
       1.0;  ///< factor on the variances of the quantities, estimated from healthy days
-  double freedom = metrics::kManyDegrees;  ///< of that factor
+  double freedom = metrics::kManyDegrees;  ///< degrees of freedom of that factor
   int dates = 0;                           ///< stated dates of healthy records
 
   /// Error that the days cause where a coefficient moves by `effects` per standard deviation.
@@ -66,7 +66,7 @@ BetweenDays between_days_of(const datasets::Campaign& campaign,
 /// A healthy average that is compared with those of other days.
 struct HealthyDay {
   double coefficient = 0.0;
-  double variance = 0.0;       ///< of its own error
+  double variance = 0.0;       ///< variance of its own error
   double days_variance = 0.0;  ///< that the days would cause at the usual sizes
 };
 

@@ -29,7 +29,7 @@ struct StateMember {
   double freedom = 1.0;
   Eigen::VectorXd rig_moves;    ///< like LeakFit::rig_moves
   Eigen::VectorXd day_effects;  ///< like LeakFit::day_effects
-  Eigen::VectorXd day_weights;  ///< of each day, see DayWeights::difference()
+  Eigen::VectorXd day_weights;  ///< one for each day, see DayWeights::difference()
 
   /// Change of the coefficient by each quantity of each day, shape (days * quantities).
   Eigen::VectorXd day_moves() const;
@@ -47,7 +47,7 @@ struct PooledLeak {
   CoefficientError error;       ///< widened where members disagree
   Eigen::VectorXd rig_moves;    ///< moves of the pooled coefficient
   Eigen::VectorXd day_moves;    ///< by each quantity of each day
-  Eigen::VectorXd day_weights;  ///< of each day
+  Eigen::VectorXd day_weights;  ///< one for each day
   double chi_squared = 0.0;     ///< disagreement of the members
   double freedom = 0.0;         ///< members - 1
   double p = 1.0;               ///< probability of as much disagreement by their errors alone

@@ -150,7 +150,7 @@ std::vector<ResidualValues> values_of_patterns(const Eigen::MatrixXd& patterns,
 
 /// What the healthy records of a signal differ by, as far as the thresholds need it.
 struct HealthyScatter {
-  std::vector<ResidualValues> own;     ///< of each record, without the causes
+  std::vector<ResidualValues> own;     ///< one for each record, without the causes
   std::vector<ResidualValues> causes;  ///< per standard deviation of each
   std::vector<ResidualValues> days;    ///< per standard deviation of each quantity between days
   double records = 0.0;
@@ -371,7 +371,7 @@ class Work {
   Parity& result_;
   // Of the signal that is being judged.
   HealthyScatter scatter_;
-  std::vector<const Condition*> conditions_;  ///< of each reference
+  std::vector<const Condition*> conditions_;  ///< one for each reference
 };
 
 /// Says that records without a date count as of the day of the healthy ones.

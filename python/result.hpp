@@ -15,7 +15,7 @@ namespace rigcal::python {
 /// these are pickled as.
 struct Result {
   std::string kind;                       ///< "diagnosis"
-  std::string name;                       ///< of the campaign
+  std::string name;                       ///< name of the campaign
   std::vector<report::ResultFile> files;  ///< without the page; the JSON comes last
   std::string text;                       ///< what the command prints
   std::vector<report::InputFile> inputs;

@@ -8,7 +8,8 @@
 namespace rigcal::calib {
 namespace {
 
-constexpr double kUniformPrecision = 12.0;  // of a uniform distribution between 0 and 1
+constexpr double kUniformPrecision =
+    12.0;  // inverse variance of a uniform distribution from 0 to 1
 
 }  // namespace
 

@@ -43,7 +43,7 @@ struct Design {
   std::vector<LimitUse> limits;
   std::vector<DesignedParameter> parameters;
   std::vector<FamilyTrial> trials;
-  std::map<datasets::Channel, double> noise_sd;  ///< of a sample of one repeat, SI
+  std::map<datasets::Channel, double> noise_sd;  ///< per sample of one repeat, SI
   std::vector<std::string> own_conditions;       ///< the campaign's own signals
   double own_duration_s = 0.0;                   ///< all of them together
   bool stopped = false;                          ///< by the flag: the best drive until then

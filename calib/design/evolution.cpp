@@ -9,7 +9,7 @@ namespace rigcal::calib {
 namespace {
 
 constexpr double kRandomShare = 1.0 / 3.0;
-constexpr double kFirstWidth = 0.2;  // of the box
+constexpr double kFirstWidth = 0.2;  // fraction of the box
 
 /// Reflected at the faces of the unit box as often as needed.
 Eigen::VectorXd reflected(const Eigen::VectorXd& point) {

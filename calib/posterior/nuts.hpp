@@ -35,9 +35,9 @@ struct ChainState {
 /// A draw with what diagnostics need of it.
 struct Draw {
   Eigen::VectorXd position;
-  double energy = 0.0;      ///< of the trajectory that it is from: minus log density plus kinetic
+  double energy = 0.0;      ///< total energy of its trajectory: minus log density plus kinetic
   double acceptance = 0.0;  ///< mean probability of acceptance over the trajectory
-  int doublings = 0;        ///< of the trajectory
+  int doublings = 0;        ///< number that its trajectory took
   bool diverged = false;    ///< the energy error exceeded 1000: steps are too long for the density
 };
 

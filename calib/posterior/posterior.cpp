@@ -42,7 +42,7 @@ struct ChainTask {
   double step = 0.0;
   long iteration = 0;
   long evaluations = 0;
-  std::vector<std::vector<double>> positions;  ///< of each draw
+  std::vector<std::vector<double>> positions;  ///< one for each draw
   std::vector<double> energies;
   int diverged = 0;
   int longest = 0;

@@ -28,7 +28,7 @@ struct KeptLimit {
   std::string metric;
   double limit = 0.0;
   double probability = 0.0;  ///< share of the simulated draws that keep it
-  double median = 0.0;       ///< of the metric over these draws
+  double median = 0.0;       ///< median of the metric over these draws
 };
 
 /// Chains of the no-U-turn sampler, and what is known of them.
@@ -41,11 +41,12 @@ struct Posterior {
   int diverged = 0;              ///< trajectories whose energy error showed that steps are too long
   int longest = 0;               ///< trajectories that were cut off at the most doublings
   double energy_fraction = 0.0;  ///< least of the chains
-  double noise_variance = 1.0;   ///< of a weighted residual outside the estimates' directions
-  double r_hat = 0.0;            ///< largest of all unknowns
-  std::string worst;             ///< unknown that has it
-  double least_draws = 0.0;      ///< least effective sample size, bulk or tail
-  std::vector<std::string> names;           ///< of the unknowns
+  double noise_variance =
+      1.0;                   ///< variance of a weighted residual outside the estimates' directions
+  double r_hat = 0.0;        ///< largest of all unknowns
+  std::string worst;         ///< unknown that has it
+  double least_draws = 0.0;  ///< least effective sample size, bulk or tail
+  std::vector<std::string> names;           ///< names of the unknowns
   std::vector<std::vector<double>> values;  ///< SI, of each unknown: chain after chain
   int simulated = 0;                        ///< draws from which the limits are judged
   std::vector<KeptLimit> limits;

@@ -149,7 +149,7 @@ Eigen::VectorXd day_errors(const Problem& problem, std::span<const double> z,
   if (problem.conditions.empty()) return Eigen::VectorXd::Zero(root.unknowns());
   double interval_s = HUGE_VAL;
   std::vector<std::string> days;
-  std::vector<Eigen::Index> day_of;  // of each condition
+  std::vector<Eigen::Index> day_of;  // index of its day, for each condition
   for (const ProblemCondition& each : problem.conditions) {
     const auto& time_s = each.record->time_s;
     if (time_s.size() > 1)

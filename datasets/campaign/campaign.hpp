@@ -137,7 +137,7 @@ struct Condition {
   std::vector<RepeatPattern> repeats;
   std::optional<std::string> averaged;  ///< file that is averaged already
   int repeats_averaged = 1;
-  std::optional<int> planned_repeats;  ///< of a record that `plan` plans
+  std::optional<int> planned_repeats;  ///< repeats of a record that does not exist yet, for `plan`
   std::vector<TimeWindow> windows;     ///< empty: the whole record counts
   bool moving_windows = false;         ///< `windows = "moving"`: found from the record
   std::optional<std::vector<AcceptanceLimit>> acceptance;  ///< in place of the campaign's

@@ -26,7 +26,7 @@ const StoredParitySignal* signal_of(const StoredParity& parity, const std::strin
 struct Summary {
   std::string condition, level;
   const StoredParitySignal* signal = nullptr;
-  std::optional<double> threshold_m;  ///< of its day
+  std::optional<double> threshold_m;  ///< threshold for records of its day
   bool healthy = false;
   bool reference = false;  ///< its records set the threshold
   int judged = 0;

@@ -23,7 +23,7 @@ struct StoredDesignedParameter {
   bool named = false;  ///< the drive was designed for it
   double value = 0.0;
   std::optional<double> sd;              ///< nothing: the test does not determine it
-  std::optional<double> sd_own_signals;  ///< of the campaign's signals in the same time
+  std::optional<double> sd_own_signals;  ///< from the campaign's signals in the same time
   RIGCAL_DESCRIBE(name, unit, scope, level, named, value, sd, sd_own_signals)
 
   std::string label() const;  ///< "leakage_coefficient (33 %)"
@@ -47,7 +47,7 @@ struct StoredFamilyTrial {
   datasets::DriveFamily family = datasets::DriveFamily::multisine;
   int evaluations = 0;
   bool found = false;                     ///< one of them keeps the limits
-  std::vector<std::optional<double>> sd;  ///< of each parameter, by the best of them
+  std::vector<std::optional<double>> sd;  ///< for each parameter, by the best drive
   RIGCAL_DESCRIBE(family, evaluations, found, sd)
 };
 
@@ -55,15 +55,15 @@ struct StoredDesign {
   std::string status;  ///< "done", or "stopped": the best drive until a signal
   datasets::DriveFamily family = datasets::DriveFamily::multisine;
   datasets::DesignCriterion criterion = datasets::DesignCriterion::determinant;
-  std::string channel;  ///< of the drive, as in the campaign file
-  std::string unit;     ///< of the drive, SI
+  std::string channel;  ///< channel of the drive, as in the campaign file
+  std::string unit;     ///< SI unit of the drive
   double amplitude = 0.0;
   double duration_s = 0.0;
   double sample_rate_hz = 0.0;
   int repeats = 0;
   std::uint64_t seed = 0;
   std::optional<std::string> leak_level;
-  Keyed<double> noise_sd;  ///< of a sample of one repeat, by channel with its SI unit
+  Keyed<double> noise_sd;  ///< per sample of one repeat, by channel with its SI unit
   std::vector<StoredDesignedParameter> parameters;
   std::vector<StoredDesignLimit> limits;
   std::vector<StoredDrivePart> drive;

@@ -166,10 +166,10 @@ struct StoredDayQuantity {
 
 /// What was taken of the variation between days.
 struct StoredBetweenDays {
-  std::vector<std::string> other_days;  ///< of records that are not of their reference's day
+  std::vector<std::string> other_days;  ///< dates of records that differ from their reference's
   std::string source;                   ///< "usual", "stated", "estimated"
   double factor = 1.0;                  ///< on the usual sizes, where it is estimated
-  std::optional<double> freedom;        ///< of that; nothing: none is estimated
+  std::optional<double> freedom;  ///< degrees of freedom of the factor; nothing: none is estimated
   int healthy_dates = 0;
   std::vector<StoredDayQuantity> quantities;
   std::optional<std::string> sentence;

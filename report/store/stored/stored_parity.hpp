@@ -42,7 +42,7 @@ struct StoredParityRecord {
   std::optional<double> time_to_alarm_s;
   ByFeature<std::optional<double>> features;
   ByFeature<std::optional<bool>> exceeds;  ///< nothing: no threshold
-  Omittable<double> threshold_m;           ///< of its day
+  Omittable<double> threshold_m;           ///< threshold for records of its day
   RIGCAL_DESCRIBE(condition, repeat, signal, leak_level, healthy, sets_threshold, reference_records,
                   failure, peak_m, alarm, time_to_alarm_s, features, exceeds, threshold_m)
 };

@@ -43,7 +43,7 @@ struct StoredPlan {
   std::vector<StoredPlannedParameter> parameters;
   std::vector<StoredPlannedRecord> records;
   std::vector<std::string> messages;
-  Omittable<StoredDesign> design;  ///< of `plan --design`
+  Omittable<StoredDesign> design;  ///< result of `plan --design`
   StoredProvenance provenance;
   RIGCAL_DESCRIBE(schema, campaign, parameters, records, messages, design, provenance)
 };

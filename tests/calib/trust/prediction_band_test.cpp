@@ -83,7 +83,7 @@ TEST_CASE("test_predictions: an estimate off by its error is no error of the mod
   twin.add("predicted", datasets::Waveform::sine, 3.0, 0.01, {}, datasets::Use::validate);
   twin.noise_sd_m = 2e-5;
   const auto records = twin.records(1000, 500.0, 1);
-  const double off = 0.98;  // of the valve gain
+  const double off = 0.98;  // factor on the valve gain
   twin.setting("valve_gain").value *= off;
   const Problem problem = problem_of(twin, records);
   const auto fails = [&](double error) {

@@ -121,7 +121,7 @@ TEST_CASE("fmu variables: an arm is told in radians, and its pilot pressure driv
   CHECK(variables.front().unit == "Pa");
   CHECK(named(variables, "angle").unit == "rad");
   CHECK(named(variables, "angle").is_state);
-  CHECK(named(variables, "position").causality == Causality::output);  // of the piston
+  CHECK(named(variables, "position").causality == Causality::output);  // the piston's
   CHECK(named(variables, "der(pump_demand)").unit == "1");
   CHECK(named(variables, "lever_curvature").unit == "m/rad3");
   for (const char* absent : {"external_force", "command", "payload_acceleration", "stroke"})
